@@ -1,0 +1,1 @@
+"""Rig, structure and radiation: from the torque in the bushing to the sound at the microphone."""

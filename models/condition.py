@@ -1,0 +1,43 @@
+"""The operating condition of a recording or of a run: what the engineer sets on the rig."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+__all__ = ["FIXED", "Condition"]
+
+FIXED = math.inf
+"""Support stiffness of the clamp bolted to the baseplate [Nm/rad]."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Operating condition; ``None`` where it is not known.
+
+    Parameters
+    ----------
+    speed : float, optional
+        Angular speed of the shaft [rad/s], signed. ``None`` also where it varied during the run.
+    interference : float, optional
+        Interference fit between shaft and compressed bushing [m].
+    support_stiffness : float, optional
+        Torsional stiffness of the beams that hold the clamp [Nm/rad]; `FIXED` where the clamp
+        is bolted to the baseplate.
+    material : str, optional
+        Elastomer, named as the material files are.
+    temperature : float, optional
+        Ambient temperature [degree Celsius].
+
+    Examples
+    --------
+    >>> squawk = Condition(speed=5.0, interference=0.279e-3, support_stiffness=2214.0)
+    >>> squawk.material is None
+    True
+    """
+
+    speed: float | None = None
+    interference: float | None = None
+    support_stiffness: float | None = None
+    material: str | None = None
+    temperature: float | None = None

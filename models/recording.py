@@ -1,0 +1,126 @@
+"""A recording: samples of several channels in physical units, and what is known about them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from models.condition import Condition
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["CHANNEL_UNITS", "Channel", "Recording"]
+
+CHANNEL_UNITS = {
+    "torque": "N m",
+    "acceleration": "m/s^2",
+    "pressure": "Pa",
+    "angle": "rad",
+    "speed": "rad/s",
+    "force": "N",
+}
+"""The kinds of channel and the SI unit that each is kept in."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What one channel of a recording measures.
+
+    Parameters
+    ----------
+    name : str
+        A key of `CHANNEL_UNITS`; further channels of a kind are ``pressure_2``, ``pressure_3`` ...
+    position : tuple of 3 floats, optional
+        Where the sensor sits [m].
+    direction : tuple of 3 floats, optional
+        Unit vector along which it measures.
+    full_scale : float
+        Value of the channel, in its unit, at digital full scale of the file it came from; the
+        reference of levels in dBFS.
+
+    Examples
+    --------
+    >>> Channel("acceleration_2").kind, Channel("acceleration_2").unit
+    ('acceleration', 'm/s^2')
+    """
+
+    name: str
+    position: tuple[float, float, float] | None = None
+    direction: tuple[float, float, float] | None = None
+    full_scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        stem, _, number = self.name.partition("_")
+        if stem not in CHANNEL_UNITS or (number and not (number.isdecimal() and int(number) > 1)):
+            known = ", ".join(CHANNEL_UNITS)
+            raise ParameterError(
+                f"channel {self.name!r} is of no known kind; use {known}, or one of them followed "
+                f"by _2, _3 ..."
+            )
+
+    @property
+    def kind(self) -> str:
+        """The key of `CHANNEL_UNITS` that the channel belongs to."""
+        return self.name.partition("_")[0]
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the samples."""
+        return CHANNEL_UNITS[self.kind]
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Samples of all channels of one run, with what is known about it.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n_channels, n_samples)
+        In the unit of each channel; in fractions of full scale where not `calibrated`.
+    rate : float
+        Sampling rate [Hz].
+    channels : tuple of Channel
+        One a row of `samples`.
+    condition : Condition
+        Operating condition, as far as it is known.
+    calibrated : bool
+        Whether the samples are in physical units.
+    name : str
+        What the recording is called in tables and messages, usually its file.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> tone = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
+    >>> tone.duration, "torque" in tone, tone["pressure"].shape
+    (0.01, False, (480,))
+    """
+
+    samples: NDArray[np.float64]
+    rate: float
+    channels: tuple[Channel, ...]
+    condition: Condition = field(default_factory=Condition)
+    calibrated: bool = True
+    name: str = ""
+
+    @property
+    def duration(self) -> float:
+        """Length [s]."""
+        return float(self.samples.shape[1] / self.rate)
+
+    @property
+    def channel_names(self) -> tuple[str, ...]:
+        """Names of the channels in the order of the samples."""
+        return tuple(channel.name for channel in self.channels)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.channel_names
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if name not in self:
+            have = ", ".join(self.channel_names)
+            raise ParameterError(f"recording {self.name!r} has no channel {name!r}; it has {have}")
+        return self.samples[self.channel_names.index(name)]

@@ -1,0 +1,211 @@
+"""The test rig as plain data: what it is made of, where the sensors sit.
+
+Reading and checking rig files is the business of `models.rig_file`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+__all__ = ["Beams", "Fit", "LawSpec", "Microphone", "Plate", "Rig"]
+
+
+@dataclass(frozen=True)
+class LawSpec:
+    """A friction law or an effect by name, with its parameters.
+
+    Examples
+    --------
+    >>> str(LawSpec("slip_pulse", {"amplitude": 120.0}))
+    'slip_pulse:amplitude=120'
+    """
+
+    name: str
+    parameters: Mapping[str, float | str] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        values = ",".join(
+            f"{key}={value:g}" if isinstance(value, float) else f"{key}={value}"
+            for key, value in self.parameters.items()
+        )
+        return f"{self.name}:{values}" if values else self.name
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Properties of the bushing at one interference fit.
+
+    Parameters
+    ----------
+    interference : float
+        [m]
+    elastomer_stiffness : float
+        Torsional stiffness k_E [Nm/rad] (Table 5.3).
+    critical_torque, kinetic_torque : float
+        Friction torque at which the contact breaks, and while it slides [Nm] (Section 4.2).
+    damping : mapping of float to float
+        Torsional damping c_E of bushing and beams together [Nm s/rad] by support stiffness
+        [Nm/rad], the bolted clamp being ``math.inf`` (Table 5.5).
+    """
+
+    interference: float
+    elastomer_stiffness: float
+    critical_torque: float
+    kinetic_torque: float
+    damping: Mapping[float, float]
+
+
+@dataclass(frozen=True)
+class Beams:
+    """The two steel beams that carry the clamp; their length follows from the support stiffness.
+
+    Parameters
+    ----------
+    width, thickness : float
+        Cross-section [m].
+    lever : float
+        Distance R from the shaft's axis to the beams' roots at the clamp [m] (4.12).
+    youngs_modulus : float
+        [Pa]
+    density : float
+        [kg/m3]
+    damping_ratio : float
+        Of the beams' bending modes above the first torsional one.
+    accelerometer : float
+        Where on the beam it sits, as a fraction of the length from the clamp.
+    """
+
+    width: float
+    thickness: float
+    lever: float
+    youngs_modulus: float
+    density: float
+    damping_ratio: float
+    accelerometer: float
+
+
+@dataclass(frozen=True)
+class Plate:
+    """The baseplate that the beams' anchors stand on.
+
+    Parameters
+    ----------
+    length, width, thickness : float
+        Along x, y and z [m]; the origin of all positions is the middle of its upper surface.
+    youngs_modulus : float
+        [Pa]
+    density : float
+        [kg/m3]
+    poisson_ratio : float
+    loss_factor : float
+        Of all modes.
+    clamp_position : tuple of 2 floats
+        Where the middle of the clamp stands over the plate, x and y [m]; the beams lie along x.
+    """
+
+    length: float
+    width: float
+    thickness: float
+    youngs_modulus: float
+    density: float
+    poisson_ratio: float
+    loss_factor: float
+    clamp_position: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Microphone:
+    """Where the sound is heard, relative to the middle of the plate's upper surface [m]."""
+
+    position: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Everything that the simulation needs to know about a test rig and its bushing.
+
+    Parameters
+    ----------
+    name, material : str
+    elastomer_inertia, clamp_inertia : float
+        J_E and J_C [kg m2].
+    fits : tuple of Fit
+        By rising interference.
+    friction : LawSpec
+        Friction law of the contact; its torques come from the fit.
+    elastomer_damping_share : float
+        Share of c_E that acts in the elastomer, the rest in the beams; the thesis assumes 0.5.
+    effects : tuple of LawSpec
+        What the model includes beyond the friction law.
+    beams, plate, microphone
+        The structure and the sound's way.
+    assumed : tuple of str
+        The entries of the files that no source gives.
+    """
+
+    name: str
+    material: str
+    elastomer_inertia: float
+    clamp_inertia: float
+    fits: tuple[Fit, ...]
+    friction: LawSpec
+    elastomer_damping_share: float
+    effects: tuple[LawSpec, ...]
+    beams: Beams
+    plate: Plate
+    microphone: Microphone
+    assumed: tuple[str, ...] = ()
+
+    @property
+    def interference_range(self) -> tuple[float, float]:
+        """Smallest and largest interference for which the bushing's properties are given [m]."""
+        return self.fits[0].interference, self.fits[-1].interference
+
+    def fit(self, interference: float) -> Fit:
+        """Properties at `interference` [m]: linear between the given fits, held outside them."""
+        low, high = self.interference_range
+        interference = min(max(interference, low), high)
+        for left, right in zip(self.fits, self.fits[1:], strict=False):
+            if interference <= right.interference:
+                t = (interference - left.interference) / (right.interference - left.interference)
+                return _between(left, right, t)
+        return self.fits[-1]
+
+
+def damping_at(fit: Fit, support_stiffness: float) -> float:
+    """Damping c_E [Nm s/rad] at a support stiffness, linear in the compliance between entries.
+
+    Examples
+    --------
+    >>> bushing = Fit(2.79e-4, 665.0, 10.7, 8.0, {2214.0: 0.105, 3745.0: 0.085})
+    >>> damping_at(bushing, 2214.0), damping_at(bushing, math.inf)
+    (0.105, 0.085)
+    """
+    points = sorted((_compliance(k), c) for k, c in fit.damping.items())
+    x = _compliance(support_stiffness)
+    if x <= points[0][0]:
+        return points[0][1]
+    for (x0, c0), (x1, c1) in zip(points, points[1:], strict=False):
+        if x <= x1:
+            return c0 + (c1 - c0) * (x - x0) / (x1 - x0)
+    return points[-1][1]
+
+
+def _compliance(stiffness: float) -> float:
+    return 0.0 if math.isinf(stiffness) else 1.0 / stiffness
+
+
+def _between(left: Fit, right: Fit, t: float) -> Fit:
+    def mix(a: float, b: float) -> float:
+        return a + t * (b - a)
+
+    supports = sorted({*left.damping, *right.damping})
+    return Fit(
+        interference=mix(left.interference, right.interference),
+        elastomer_stiffness=mix(left.elastomer_stiffness, right.elastomer_stiffness),
+        critical_torque=mix(left.critical_torque, right.critical_torque),
+        kinetic_torque=mix(left.kinetic_torque, right.kinetic_torque),
+        damping={k: mix(damping_at(left, k), damping_at(right, k)) for k in supports},
+    )
