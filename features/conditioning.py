@@ -1,0 +1,261 @@
+"""Bands of a signal at rates of their own, cut from one transform of the whole signal.
+
+Recordings come at 16 to 96 kHz, and a number that describes a noise must not depend on which.
+So all that describes the shape of a noise in frequency or time is computed from its part below
+`WORKING_LIMIT`, brought to `WORKING_RATE` first; what lies above has features of its own. One
+Fourier transform of the whole signal gives every band by masking bins and transforming back to a
+length just long enough for it, which is resampling and filtering in one. A block cut from a longer
+recording does not end where it began: it is faded in and out over 5 ms before the transform, so
+that the cut makes no click, and what was faded is cut off from every band. Continuing the block
+beyond its ends instead was tried: mirrored, a tone gets a kink, and turned about the last sample,
+noise gets a step; either is louder than what a quiet band holds.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy import fft
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "ACOUSTIC_FROM",
+    "NOTHING",
+    "USABLE_SHARE",
+    "WORKING_LIMIT",
+    "WORKING_RATE",
+    "Transform",
+    "band_analytic",
+    "band_signal",
+    "checked_signal",
+    "forward",
+    "usable_limit",
+]
+
+WORKING_RATE = 16_000.0
+"""Sampling rate [Hz] at which features that must not depend on the recording's are computed."""
+
+ACOUSTIC_FROM = 150.0
+"""Frequency [Hz] from which sound and acceleration are described: below lie hum and rumble."""
+
+WORKING_LIMIT = 7_000.0
+"""Frequency [Hz] up to which they see the signal: what a rate of 16 kHz holds with a clean edge."""
+
+USABLE_SHARE = WORKING_LIMIT / WORKING_RATE
+"""Share of a sampling rate up to which its content is taken at face value."""
+
+NOTHING = 1e-9
+"""A signal that varies less than this, relative to its mean, is constant but for rounding."""
+
+_FADE = 0.005
+"""Length of the fades that are cut off again [s] ..."""
+
+_FADE_SHARE = 0.125
+"""... but at most this share of the signal each."""
+
+_EDGE = 0.2
+"""Width of the flank below a band, as a share of the band's lower limit."""
+
+_MIN_SAMPLES = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Transform:
+    """Fourier transform of a signal, faded at its ends.
+
+    Parameters
+    ----------
+    bins : ndarray of complex, shape (length // 2 + 1,)
+        As `scipy.fft.rfft` scales them.
+    length : int
+        Samples transformed, zeros at the end included.
+    lead : int
+        Samples of the fade at the start.
+    n_samples : int
+        Samples between the fades.
+    rate : float
+        Sampling rate of the signal [Hz].
+    """
+
+    bins: NDArray[np.complex128]
+    length: int
+    lead: int
+    n_samples: int
+    rate: float
+
+
+def usable_limit(rate: float) -> float:
+    """Highest frequency [Hz] to which a sampling rate [Hz] is taken at face value.
+
+    Examples
+    --------
+    >>> usable_limit(16e3), usable_limit(48e3)
+    (7000.0, 21000.0)
+    """
+    return USABLE_SHARE * rate
+
+
+def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
+    """Return the signal as an array of floats, refused if it can't be analysed.
+
+    Parameters
+    ----------
+    signal : array_like, shape (n_samples,)
+        One channel.
+    rate : float
+        Sampling rate [Hz].
+
+    Raises
+    ------
+    ParameterError
+        Not one-dimensional, shorter than 16 samples, a sample that is no finite number, or a rate
+        that is not positive.
+
+    Examples
+    --------
+    >>> checked_signal([1.0] * 5, 48e3)
+    Traceback (most recent call last):
+    models.errors.ParameterError: signal has 5 samples; an analysis needs at least 16
+    """
+    x = np.asarray(signal, dtype=np.float64)
+    if x.ndim != 1:
+        raise ParameterError(f"signal has shape {x.shape}; give one channel, shape (n_samples,)")
+    if x.size < _MIN_SAMPLES:
+        raise ParameterError(
+            f"signal has {x.size} samples; an analysis needs at least {_MIN_SAMPLES}"
+        )
+    if not np.isfinite(x).all():
+        bad = int(np.flatnonzero(~np.isfinite(x))[0])
+        raise ParameterError(f"signal: sample {bad} is {x[bad]}; all samples must be finite")
+    if not (math.isfinite(rate) and rate > 0):
+        raise ParameterError(f"rate is {rate}; a sampling rate is a positive number of hertz")
+    return x
+
+
+def forward(signal: NDArray[np.float64], rate: float) -> Transform:
+    """Transform a signal faded in and out over 5 ms, or an eighth of its length.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n_samples,)
+        Mean removed.
+    rate : float
+        Sampling rate [Hz].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> forward(np.zeros(4800), 48e3).n_samples
+    4320
+    """
+    n = signal.size
+    lead = min(int(_FADE_SHARE * n), round(_FADE * rate))
+    fade = np.sin(0.5 * np.pi * (np.arange(lead) + 0.5) / lead) ** 2
+    length = int(fft.next_fast_len(n, real=True))
+    x = np.zeros(length)
+    x[:n] = signal
+    x[:lead] *= fade
+    x[n - lead : n] *= fade[::-1]
+    return Transform(fft.rfft(x), length, lead, n - 2 * lead, rate)
+
+
+def band_signal(
+    transform: Transform, low: float, high: float
+) -> tuple[NDArray[np.float64], float]:
+    """Part of a signal between two frequencies, at the lowest rate that holds it cleanly.
+
+    Parameters
+    ----------
+    transform : Transform
+    low, high : float
+        Limits of the band [Hz]; `low` 0 keeps everything below `high`. The flanks outside them are
+        raised cosines, 20 % wide below and 14 % above.
+
+    Returns
+    -------
+    samples : ndarray
+    rate : float
+        [Hz]; `high` divided by `USABLE_SHARE` to within the rounding of whole samples, at most the
+        rate of the signal.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(4800) / 48e3
+    >>> tones = np.sin(2 * np.pi * 1000 * t) + np.sin(2 * np.pi * 9000 * t)
+    >>> below, rate = band_signal(forward(tones, 48e3), 0.0, 7000.0)
+    >>> round(rate), round(float(np.mean(below**2)), 2)
+    (16000, 0.5)
+    """
+    length = 2 * round(0.5 * transform.length * min(1.0, high / usable_limit(transform.rate)))
+    bins = np.zeros(length // 2 + 1, dtype=np.complex128)
+    first, mask = _mask(transform, low, high, bins.size)
+    bins[first : first + mask.size] = transform.bins[first : first + mask.size] * mask
+    ratio = length / transform.length
+    samples = fft.irfft(bins, length) * ratio
+    return samples[_interior(transform, ratio)], transform.rate * ratio
+
+
+def band_analytic(
+    transform: Transform, low: float, high: float
+) -> tuple[NDArray[np.complex128], float]:
+    """Analytic signal of a band, shifted to zero frequency: its magnitude is the band's envelope.
+
+    Parameters
+    ----------
+    transform : Transform
+    low, high : float
+        Limits of the band [Hz], flanks as in `band_signal`.
+
+    Returns
+    -------
+    analytic : ndarray of complex
+        The magnitude of a sinusoid in the band is its amplitude.
+    rate : float
+        [Hz], about 1.25 times the band's width with its flanks.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(4800) / 48e3
+    >>> tone, rate = band_analytic(forward(3 * np.sin(2 * np.pi * 4000 * t), 48e3), 2e3, 7e3)
+    >>> round(float(np.median(abs(tone))), 2)
+    3.0
+    """
+    first, mask = _mask(transform, low, high, transform.bins.size)
+    length = int(fft.next_fast_len(round(1.25 * mask.size) + 8))
+    bins = np.zeros(length, dtype=np.complex128)
+    bins[: mask.size] = transform.bins[first : first + mask.size] * mask
+    ratio = length / transform.length
+    samples = fft.ifft(bins) * (2.0 * ratio)
+    return samples[_interior(transform, ratio)], transform.rate * ratio
+
+
+def _mask(
+    transform: Transform, low: float, high: float, n_bins: int
+) -> tuple[int, NDArray[np.float64]]:
+    """First bin of a band with its flanks, and its gain from there on."""
+    spacing = transform.rate / transform.length
+    above = min(high * 0.5 / USABLE_SHARE, 0.5 * transform.rate)
+    first = math.ceil((1.0 - _EDGE) * low / spacing)
+    last = min(math.floor(above / spacing), n_bins - 1)
+    frequency = np.arange(first, last + 1) * spacing
+    mask = np.ones(frequency.size)
+    if low > 0:
+        rising = np.clip((frequency - (1.0 - _EDGE) * low) / (_EDGE * low), 0.0, 1.0)
+        mask = np.sin(0.5 * np.pi * rising) ** 2
+    falling = np.clip((above - frequency) / (above - high), 0.0, 1.0)
+    return first, mask * np.sin(0.5 * np.pi * falling) ** 2
+
+
+def _interior(transform: Transform, ratio: float) -> slice:
+    """Where the signal itself lies among the samples transformed back."""
+    start = round(transform.lead * ratio)
+    return slice(start, start + max(1, round(transform.n_samples * ratio)))

@@ -1,0 +1,212 @@
+"""Slips that are heard: pulses of sound or vibration, and their rhythm.
+
+A creak is a sequence of impulses, one at each slip (thesis, 5.2.3), and what tells it from rain or
+a crackling fire is less the spectrum than their rhythm: their rate, how regular they are about a
+rate that may glide, how high they stand. Pulses are maxima of the envelope of the part above 2 kHz,
+where hum and tones are weak and every pulse is short; the envelope is smoothed over 2 ms, which
+leaves room for 250 pulses a second and makes noise too steady to have 6 dB maxima often.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.signal import find_peaks
+
+from features.conditioning import (
+    ACOUSTIC_FROM,
+    NOTHING,
+    WORKING_LIMIT,
+    band_analytic,
+    checked_signal,
+    forward,
+    usable_limit,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Pulses", "acoustic_slips"]
+
+PULSE_BAND_FROM = 2_000.0
+"""Lower limit of the band in which pulses are sought [Hz]; lower for a rate below 16 kHz."""
+
+_SMOOTHING = 0.0008
+"""Standard deviation of the Gaussian that smooths the squared envelope [s]: 2 ms wide at half."""
+
+_PULSE_PROMINENCE_DB = 6.0
+"""A pulse rises and falls by at least this much [dB]."""
+
+_LEAST_PULSES = 4
+
+_PULSE_RANGE_DB = 25.0
+"""Pulses weaker than the strongest by more than this are not counted [dB]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pulses:
+    """Pulses in a sound or an acceleration, one at each slip of a creak.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n_pulses,)
+        From the start of the signal [s].
+    rate : float
+        Pulses in a second, 0 for fewer than two.
+    irregularity : float
+        Standard deviation of the intervals' logarithms about their trend: 0 for a clock whatever
+        its glide, 1.3 for raindrops (a Poisson process). NaN for fewer than four pulses.
+    glide : float
+        Trend of the rate's logarithm [1/s]: 0.7 doubles the rate in a second. NaN likewise.
+    crest_factor : float
+        Peak of the envelope over the rms value of the signal; 1.41 for a tone.
+    kurtosis : float
+        Of the signal's part below 7 kHz: 1.5 for a tone, 3 for noise, more for pulses.
+    high_kurtosis : float
+        The same of the band in which pulses are sought.
+    concentration : float
+        Share of that band's energy in the loudest tenth of the time, 0.1 to 1.
+    """
+
+    times: NDArray[np.float64]
+    rate: float
+    irregularity: float
+    glide: float
+    crest_factor: float
+    kurtosis: float
+    high_kurtosis: float
+    concentration: float
+
+
+def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
+    """Find the pulses in a sound pressure or an acceleration.
+
+    Parameters
+    ----------
+    signal : array_like, shape (n_samples,)
+        [Pa] or [m/s2] or any other unit.
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    Pulses
+        No pulses, and NaN for the rest, of a signal that is constant.
+
+    Raises
+    ------
+    ParameterError
+        A signal that can't be analysed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> clicks = np.zeros(16000)
+    >>> clicks[100::200] = 1.0
+    >>> slips = acoustic_slips(clicks, 16e3)
+    >>> round(slips.rate), round(slips.irregularity, 2)
+    (80, 0.0)
+    """
+    x = checked_signal(signal, rate)
+    mean = float(x.mean())
+    x = x - mean
+    if float(np.abs(x).max()) <= NOTHING * abs(mean) or not x.any():
+        nan = math.nan
+        return Pulses(np.empty(0), 0.0, nan, nan, nan, nan, nan, nan)
+    transform = forward(x, rate)
+    limit = min(WORKING_LIMIT, usable_limit(rate))
+    whole, _ = band_analytic(transform, ACOUSTIC_FROM * limit / WORKING_LIMIT, limit)
+    high, high_rate = band_analytic(transform, pulse_band_from(limit), limit)
+    return pulses_of(whole, high, high_rate)
+
+
+def pulse_band_from(limit: float) -> float:
+    """Lower limit of the band in which pulses are sought, for its upper limit [Hz].
+
+    Examples
+    --------
+    >>> pulse_band_from(7000.0), pulse_band_from(3500.0)
+    (2000.0, 1000.0)
+    """
+    return PULSE_BAND_FROM * limit / WORKING_LIMIT
+
+
+def pulses_of(
+    whole: NDArray[np.complex128], high: NDArray[np.complex128], high_rate: float
+) -> Pulses:
+    """`acoustic_slips` of analytic signals that are at hand.
+
+    Parameters
+    ----------
+    whole, high : ndarray of complex
+        Analytic signal of all that counts, and of the band in which pulses are sought.
+    high_rate : float
+        Sampling rate of the latter [Hz].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> pulses_of(np.ones(100, complex), np.ones(100, complex), 1e3).rate
+    0.0
+    """
+    power = np.abs(whole) ** 2
+    high_power = np.abs(high) ** 2
+    smooth = gaussian_filter1d(high_power, _SMOOTHING * high_rate, mode="nearest", truncate=3.0)
+    times = _pulse_times(smooth, high_rate)
+    irregularity, glide = _rhythm(times)
+    loudest = np.partition(smooth, -max(1, smooth.size // 10))[-max(1, smooth.size // 10) :]
+    total = float(smooth.sum())
+    return Pulses(
+        times=times,
+        rate=times.size / (high.size / high_rate) if times.size > 1 else 0.0,
+        irregularity=irregularity,
+        glide=glide,
+        crest_factor=math.sqrt(2.0 * float(power.max()) / float(power.mean()))
+        if power.any()
+        else math.nan,
+        kurtosis=envelope_kurtosis(power),
+        high_kurtosis=envelope_kurtosis(high_power),
+        concentration=float(loudest.sum()) / total if total > 0.0 else math.nan,
+    )
+
+
+def envelope_kurtosis(power: NDArray[np.float64]) -> float:
+    """Kurtosis of a band-limited signal from its squared envelope; NaN without any.
+
+    Half as much again as that of the envelope's square: for any signal whose phase is evenly
+    spread the same as of its samples, but sampled at the band's own rate.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> envelope_kurtosis(np.ones(8))
+    1.5
+    """
+    mean = float(power.mean())
+    return 1.5 * float((power**2).mean()) / mean**2 if mean > 0.0 else math.nan
+
+
+def _pulse_times(smooth: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Times of the maxima of a smoothed squared envelope [s]."""
+    top = float(smooth.max())
+    if not top > 0.0:
+        return np.empty(0)
+    level = 10.0 * np.log10(np.maximum(smooth / top, 1e-12))
+    peaks, _ = find_peaks(level, height=-_PULSE_RANGE_DB, prominence=_PULSE_PROMINENCE_DB)
+    return peaks / rate
+
+
+def _rhythm(times: NDArray[np.float64]) -> tuple[float, float]:
+    """Irregularity and glide [1/s] of pulses: deviation of log intervals from a line, its slope."""
+    if times.size < _LEAST_PULSES:
+        return math.nan, math.nan
+    interval = np.log(np.diff(times))
+    middle = 0.5 * (times[1:] + times[:-1])
+    middle = middle - middle.mean()
+    slope = float(middle @ interval / (middle @ middle))
+    residual = interval - interval.mean() - slope * middle
+    return math.sqrt(float(residual @ residual) / (interval.size - 2)), -slope

@@ -1,0 +1,179 @@
+"""A structure as the sum of its modes, on a frequency axis and as sampled impulse responses.
+
+Modes are kept with viscous damping, so every impulse response is causal. Each becomes a digital
+section of second order with the poles of the continuous mode. Its numerator has the zeros that
+the quantity itself has: two at 0 Hz for the acceleration, none for the displacement, for which
+Numerov's weights (1, 10, 1)/12 straighten the band. Gain is matched at low frequencies. Up to
+a sixth of the sampling rate the result differs from the continuous mode by less than 0.2 dB, up
+to a quarter by less than 1 dB; sampling the continuous impulse response would alias, the more
+so as an acceleration does not fall off towards high frequencies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import lfilter
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["ModalModel", "acceleration_section", "displacement_section", "ringing_samples"]
+
+DECAY_EXPONENT = 14.0
+"""A mode is followed until it has decayed by exp(14), 122 dB."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModalModel:
+    """Linear structure with modes r, each obeying q'' + 2 zeta omega q' + omega^2 q = inputs.
+
+    Parameters
+    ----------
+    frequencies, damping_ratios : ndarray, shape (n_modes,)
+        Undamped natural frequencies [Hz] and fractions of critical damping.
+    inputs : ndarray, shape (n_modes, n_inputs)
+        Modal force for a unit of each input, with mode shapes normalised to unit modal mass.
+    displacements, accelerations : ndarray, shape (n_outputs, n_modes)
+        What each output gathers from q and from q''.
+    feedthrough : ndarray, shape (n_outputs, n_inputs)
+        Instant part of the outputs, for what modes left out contribute statically.
+
+    Examples
+    --------
+    An oscillator of 2 kg at 100 Hz, of which the acceleration is measured:
+
+    >>> one, none = np.array([[1 / np.sqrt(2)]]), np.zeros((1, 1))
+    >>> oscillator = ModalModel(np.array([100.0]), np.array([0.01]), one, none, one, none)
+    >>> gain = oscillator.frequency_response([100.0, 1e5])[0, 0]
+    >>> np.abs(gain).round(3)
+    array([25. ,  0.5])
+    """
+
+    frequencies: NDArray[np.float64]
+    damping_ratios: NDArray[np.float64]
+    inputs: NDArray[np.float64]
+    displacements: NDArray[np.float64]
+    accelerations: NDArray[np.float64]
+    feedthrough: NDArray[np.float64]
+
+    def frequency_response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Give the outputs for a unit of each input, exact in continuous time.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (n,)
+            [Hz]
+
+        Returns
+        -------
+        ndarray, shape (n_outputs, n_inputs, n)
+        """
+        omega = 2 * np.pi * np.asarray(frequency, dtype=np.float64)
+        natural = 2 * np.pi * self.frequencies[:, None]
+        q = 1 / (natural**2 - omega**2 + 2j * self.damping_ratios[:, None] * natural * omega)
+        response: NDArray[np.complex128] = (
+            np.einsum("om,mi,mf->oif", self.displacements, self.inputs, q, optimize=True)
+            - np.einsum(
+                "om,mi,mf->oif", self.accelerations, self.inputs, omega**2 * q, optimize=True
+            )
+            + self.feedthrough[:, :, None]
+        )
+        return response
+
+    def impulse_response(self, rate: float, n_samples: int) -> NDArray[np.float64]:
+        """Give the outputs for a unit sample of each input, for convolution with samples.
+
+        Parameters
+        ----------
+        rate : float
+            Sampling rate [Hz]; more than twice the highest of the `frequencies`.
+        n_samples : int
+
+        Returns
+        -------
+        ndarray, shape (n_outputs, n_inputs, n_samples)
+        """
+        response = np.zeros((*self.feedthrough.shape, n_samples))
+        response[:, :, 0] = self.feedthrough
+        for r, (frequency, ratio) in enumerate(
+            zip(self.frequencies, self.damping_ratios, strict=True)
+        ):
+            ringing = ringing_samples(frequency, ratio, rate, n_samples)
+            unit = np.zeros(ringing)
+            unit[0] = 1.0
+            q = lfilter(*displacement_section(frequency, ratio, rate), unit)
+            q_tt = lfilter(*acceleration_section(frequency, ratio, rate), unit)
+            outputs = np.outer(self.displacements[:, r], q) + np.outer(
+                self.accelerations[:, r], q_tt
+            )
+            response[:, :, :ringing] += self.inputs[r][None, :, None] * outputs[:, None, :]
+        return response
+
+
+def acceleration_section(
+    frequency: float, damping_ratio: float, rate: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Digital filter from the modal force to q'' of a mode of unit modal mass.
+
+    Parameters
+    ----------
+    frequency : float
+        Undamped natural frequency [Hz], below half of `rate`.
+    damping_ratio : float
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    numerator, denominator : ndarray, shape (3,)
+        In rising powers of the unit delay.
+
+    Examples
+    --------
+    >>> b, a = acceleration_section(1000.0, 0.02, 96e3)
+    >>> bool(abs(b.sum()) < 1e-12)  # nothing at 0 Hz
+    True
+    """
+    denominator = _poles(frequency, damping_ratio, rate)
+    gain = denominator.sum() / (2 * np.pi * frequency / rate) ** 2
+    return gain * np.array([1.0, -2.0, 1.0]), denominator
+
+
+def displacement_section(
+    frequency: float, damping_ratio: float, rate: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Digital filter from the modal force to q of a mode of unit modal mass.
+
+    Parameters and returns are those of `acceleration_section`.
+
+    Examples
+    --------
+    >>> b, a = displacement_section(1000.0, 0.02, 96e3)
+    >>> float(b.sum() / a.sum() * (2 * np.pi * 1000.0) ** 2)  # static: force over stiffness
+    1.0
+    """
+    denominator = _poles(frequency, damping_ratio, rate)
+    gain = denominator.sum() / (2 * np.pi * frequency) ** 2
+    return gain * np.array([1.0, 10.0, 1.0]) / 12, denominator
+
+
+def ringing_samples(frequency: float, damping_ratio: float, rate: float, n_samples: int) -> int:
+    """Count the samples until a mode has died away (122 dB down), at most `n_samples`.
+
+    Examples
+    --------
+    >>> ringing_samples(1000.0, 0.01, 48e3, 48000)
+    10696
+    """
+    decay = 2 * np.pi * frequency * damping_ratio / rate
+    return n_samples if decay * n_samples <= DECAY_EXPONENT else int(DECAY_EXPONENT / decay) + 1
+
+
+def _poles(frequency: float, damping_ratio: float, rate: float) -> NDArray[np.float64]:
+    angle = 2 * np.pi * frequency / rate
+    radius = np.exp(-damping_ratio * angle)
+    turn = np.cos(angle * np.sqrt(1 - damping_ratio**2))
+    return np.array([1.0, -2 * radius * turn, radius**2])

@@ -1,0 +1,121 @@
+"""Sound of a vibrating surface in a rigid baffle: Rayleigh's integral as a short filter.
+
+p(t) = rho_0 / (2 pi) * integral of a(t - r/c) / r dA, where a is the normal acceleration at the
+distance r from the microphone. Travel times differ by a few milliseconds at most over a plate,
+so for a given distribution of the acceleration the integral is a filter of some hundred taps,
+and it is one sparse matrix for all distributions. Times between samples are interpolated by
+Lagrange's cubic, which costs 0.1 dB at a sixth of the sampling rate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["AIR_DENSITY", "SOUND_SPEED", "RayleighIntegral", "rayleigh_integral"]
+
+AIR_DENSITY = 1.204
+"""Of dry air at 20 degree Celsius and 1013 hPa [kg/m3]."""
+
+SOUND_SPEED = 343.2
+"""In dry air at 20 degree Celsius [m/s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayleighIntegral:
+    """Rayleigh's integral from one set of surface elements to one microphone.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (n_taps, n_elements)
+        Takes the elements' acceleration [m/s2] to filter taps [Pa].
+    delay : int
+        Samples that pass before the first tap.
+    """
+
+    matrix: csr_array
+    delay: int
+
+    def taps(self, distribution: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Filter from the time course of an acceleration to the sound pressure.
+
+        Parameters
+        ----------
+        distribution : ndarray, shape (n_elements,) or (n_elements, n_distributions)
+            The acceleration of each element in units of that time course.
+
+        Returns
+        -------
+        ndarray, shape (n_taps,) or (n_taps, n_distributions)
+            [Pa per m/s2], the first one `delay` samples late.
+        """
+        result: NDArray[np.float64] = self.matrix @ distribution
+        return result
+
+
+def rayleigh_integral(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    area: NDArray[np.float64] | float,
+    microphone: tuple[float, float, float],
+    rate: float,
+) -> RayleighIntegral:
+    """Set up Rayleigh's integral.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n_elements,)
+        Middle of each surface element, all of them at z = 0 [m].
+    area : ndarray, shape (n_elements,), or float
+        [m2]; the elements must be small against the wavelength and the microphone's height.
+    microphone : tuple of 3 floats
+        [m]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    RayleighIntegral
+
+    Notes
+    -----
+    F. Fahy and P. Gardonio, *Sound and Structural Vibration*, 2nd ed., chapter 3.
+
+    Examples
+    --------
+    A small piston of 1 cm2 that accelerates by 1 m/s2, heard at 1 m:
+
+    >>> middle = np.zeros(1)
+    >>> piston = rayleigh_integral(middle, middle, 1e-4, (0.0, 0.0, 1.0), 96e3)
+    >>> float(piston.taps(np.ones(1)).sum().round(9))  # 1.204 * 1e-4 / (2 pi)
+    1.9162e-05
+    >>> piston.delay  # one sample ahead of the arrival at 279.7, for the interpolation
+    278
+    """
+    distance = np.sqrt((x - microphone[0]) ** 2 + (y - microphone[1]) ** 2 + microphone[2] ** 2)
+    strength = AIR_DENSITY / (2 * np.pi) * area / distance
+    time = distance * (rate / SOUND_SPEED)
+    sample = np.maximum(np.floor(time).astype(np.int64), 1)
+    f = time - sample
+    weights = np.stack(
+        [
+            -f * (1 - f) * (2 - f) / 6,
+            (1 + f) * (1 - f) * (2 - f) / 2,
+            (1 + f) * f * (2 - f) / 2,
+            -(1 + f) * f * (1 - f) / 6,
+        ]
+    )
+    delay = int(sample.min()) - 1
+    rows = sample - 1 - delay + np.arange(4)[:, None]
+    columns = np.broadcast_to(np.arange(distance.size), rows.shape)
+    matrix = csr_array(
+        ((weights * strength).ravel(), (rows.ravel(), columns.ravel())),
+        shape=(int(rows.max()) + 1, distance.size),
+    )
+    return RayleighIntegral(matrix, delay)

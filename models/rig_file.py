@@ -1,0 +1,331 @@
+"""Rig and material files (TOML): read, check, and lay over the bench that is shipped.
+
+A rig is the shipped bench, with what the material's file says of the bushing laid over it, with
+what the user's file says laid over both. A file that brings its own ``[[fit]]`` entries describes
+a bushing of its own: constant critical and kinetic torque, damping split evenly, no effects,
+unless it says otherwise.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from models.errors import ParameterError
+from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
+
+__all__ = ["load_material_rig", "load_rig", "material_names", "parse_spec"]
+
+_DATA = resources.files("models") / "data"
+
+_KEYS = {
+    "name",
+    "material",
+    "elastomer_inertia_kgm2",
+    "clamp_inertia_kgm2",
+    "elastomer_damping_share",
+    "effects",
+    "friction",
+    "fit",
+    "beams",
+    "plate",
+    "microphone",
+    "assumed",
+}
+
+_OF_THE_BUSHING = ("elastomer_damping_share", "effects", "friction", "fit")
+
+_PLAIN_BUSHING = {
+    "elastomer_damping_share": 0.5,
+    "effects": [],
+    "friction": {"law": "coulomb"},
+}
+
+
+def material_names() -> tuple[str, ...]:
+    """Names of the materials that are shipped.
+
+    Examples
+    --------
+    >>> "PDMS" in material_names()
+    True
+    """
+    folder = _DATA / "materials"
+    return tuple(sorted(Path(entry.name).stem for entry in folder.iterdir()))
+
+
+def load_material_rig(material: str) -> Rig:
+    """Return the shipped bench with a bushing of `material`; case does not matter.
+
+    Raises
+    ------
+    ParameterError
+        If the material is unknown.
+
+    Examples
+    --------
+    >>> load_material_rig("fluorocarbon-thesis").fit(0.279e-3).critical_torque
+    10.7
+    """
+    return _build(_bench() | _material(material), f"material {material!r}")
+
+
+def load_rig(path: str | Path) -> Rig:
+    """Read a rig file.
+
+    Raises
+    ------
+    ParameterError
+        If the file cannot be read, or holds what cannot be used; the message names the key.
+    """
+    path = Path(path)
+    try:
+        given = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ParameterError(f"rig file {path}: {error.strerror or error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ParameterError(f"rig file {path}: no valid TOML: {error}") from None
+    where = f"rig file {path}"
+    if "measured_response" in given:
+        raise ParameterError(f"{where}: [[measured_response]] is not supported by this version")
+    _refuse_unknown(given, _KEYS, where)
+    base = _bench()
+    if "fit" in given:
+        bushing: dict[str, Any] = _PLAIN_BUSHING
+    else:
+        named = given.get("material", base["material"])
+        bushing = _material(_text(named, "material", where))
+    merged = base | bushing | given
+    for table in ("beams", "plate", "microphone"):
+        merged[table] = base[table] | _table(given.get(table, {}), table, where)
+    return _build(merged, where)
+
+
+def parse_spec(text: str, where: str = "effect") -> LawSpec:
+    """Parse ``name:key=value,key=value``.
+
+    Raises
+    ------
+    ParameterError
+        If the text has another form.
+
+    Examples
+    --------
+    >>> parse_spec("slip_pulse:amplitude=120,threshold=3")
+    LawSpec(name='slip_pulse', parameters={'amplitude': 120.0, 'threshold': 3.0})
+    """
+    name, _, rest = text.partition(":")
+    parameters: dict[str, float | str] = {}
+    for part in filter(None, (p.strip() for p in rest.split(","))):
+        key, equals, value = part.partition("=")
+        if not (equals and key.strip() and value.strip()):
+            raise ParameterError(f"{where} {text!r}: write it as NAME:key=value,key=value")
+        try:
+            parameters[key.strip()] = float(value)
+        except ValueError:
+            parameters[key.strip()] = value.strip()
+    if not name.strip():
+        raise ParameterError(f"{where} {text!r}: write it as NAME:key=value,key=value")
+    return LawSpec(name.strip(), parameters)
+
+
+def _bench() -> dict[str, Any]:
+    return tomllib.loads((_DATA / "rigs" / "bench.toml").read_text(encoding="utf-8"))
+
+
+def _material(name: str) -> dict[str, Any]:
+    for known in material_names():
+        if known.lower() == name.strip().lower():
+            text = (_DATA / "materials" / f"{known}.toml").read_text(encoding="utf-8")
+            return tomllib.loads(text) | {"material": known}
+    raise ParameterError(f"material {name!r} is unknown; there are {', '.join(material_names())}")
+
+
+def _build(merged: Mapping[str, Any], where: str) -> Rig:
+    fits = tuple(
+        sorted(
+            (_fit(table, f"{where}, fit {i + 1}") for i, table in enumerate(merged["fit"])),
+            key=lambda fit: fit.interference,
+        )
+    )
+    if not fits:
+        raise ParameterError(f"{where}: needs at least one [[fit]]")
+    if len({fit.interference for fit in fits}) < len(fits):
+        raise ParameterError(f"{where}: two [[fit]] entries have the same interference_mm")
+    friction = dict(_table(merged["friction"], "friction", where))
+    law = _text(friction.pop("law", "coulomb"), "friction.law", where)
+    for key in friction:
+        _number(friction, key, f"{where}, friction", low=-math.inf)
+    effects = merged["effects"]
+    if not isinstance(effects, list):
+        raise ParameterError(f'{where}: effects must be a list such as ["slip_pulse:amplitude=20"]')
+    return Rig(
+        name=_text(merged["name"], "name", where),
+        material=_text(merged["material"], "material", where),
+        elastomer_inertia=_number(merged, "elastomer_inertia_kgm2", where),
+        clamp_inertia=_number(merged, "clamp_inertia_kgm2", where),
+        fits=fits,
+        friction=LawSpec(law, friction),
+        elastomer_damping_share=_number(
+            merged, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True
+        ),
+        effects=tuple(
+            parse_spec(_text(e, "effects", where), f"{where}, effect") for e in effects
+        ),
+        beams=_beams(merged["beams"], f"{where}, beams"),
+        plate=_plate(merged["plate"], f"{where}, plate"),
+        microphone=_microphone(merged["microphone"], f"{where}, microphone"),
+        assumed=tuple(str(key) for key in merged.get("assumed", [])),
+    )
+
+
+def _fit(table: Any, where: str) -> Fit:
+    table = _table(table, "fit", where)
+    _refuse_unknown(
+        table,
+        {
+            "interference_mm",
+            "elastomer_stiffness_Nm_rad",
+            "critical_torque_Nm",
+            "kinetic_torque_Nm",
+            "damping_Nms_rad",
+        },
+        where,
+    )
+    critical = _number(table, "critical_torque_Nm", where)
+    kinetic = _number(table, "kinetic_torque_Nm", where)
+    if critical < kinetic:
+        raise ParameterError(
+            f"{where}: critical_torque_Nm = {critical:g} is below kinetic_torque_Nm = {kinetic:g}; "
+            "a contact cannot break below the torque at which it slides"
+        )
+    damping = table.get("damping_Nms_rad")
+    by_support = damping if isinstance(damping, Mapping) else {"fixed": damping}
+    if not by_support:
+        raise ParameterError(f"{where}: damping_Nms_rad is empty")
+    return Fit(
+        interference=1e-3 * _number(table, "interference_mm", where),
+        elastomer_stiffness=_number(table, "elastomer_stiffness_Nm_rad", where),
+        critical_torque=critical,
+        kinetic_torque=kinetic,
+        damping={
+            _support(key, where): _number(
+                {"damping_Nms_rad": value}, "damping_Nms_rad", where, high=1e3, closed=True
+            )
+            for key, value in by_support.items()
+        },
+    )
+
+
+def _beams(table: Mapping[str, Any], where: str) -> Beams:
+    fields = {
+        "width": "width_m",
+        "thickness": "thickness_m",
+        "lever": "lever_m",
+        "youngs_modulus": "youngs_modulus_Pa",
+        "density": "density_kgm3",
+        "damping_ratio": "damping_ratio",
+        "accelerometer": "accelerometer",
+    }
+    _refuse_unknown(table, set(fields.values()), where)
+    values = {field: _number(table, key, where) for field, key in fields.items()}
+    _number(table, "damping_ratio", where, high=1.0)
+    _number(table, "accelerometer", where, high=1.0, closed=True)
+    return Beams(**values)
+
+
+def _plate(table: Mapping[str, Any], where: str) -> Plate:
+    fields = {
+        "length": "length_m",
+        "width": "width_m",
+        "thickness": "thickness_m",
+        "youngs_modulus": "youngs_modulus_Pa",
+        "density": "density_kgm3",
+        "poisson_ratio": "poisson_ratio",
+        "loss_factor": "loss_factor",
+    }
+    _refuse_unknown(table, {*fields.values(), "clamp_position_m"}, where)
+    values = {field: _number(table, key, where) for field, key in fields.items()}
+    _number(table, "poisson_ratio", where, high=0.5)
+    _number(table, "loss_factor", where, high=1.0)
+    x, y = _vector(table, "clamp_position_m", 2, where)
+    if abs(x) >= 0.5 * values["length"] or abs(y) >= 0.5 * values["width"]:
+        raise ParameterError(f"{where}: clamp_position_m = [{x:g}, {y:g}] lies off the plate")
+    return Plate(**values, clamp_position=(x, y))
+
+
+def _microphone(table: Mapping[str, Any], where: str) -> Microphone:
+    _refuse_unknown(table, {"position_m"}, where)
+    x, y, z = _vector(table, "position_m", 3, where)
+    if z < 0.01:
+        raise ParameterError(
+            f"{where}: position_m has z = {z:g} m; it must be at least 0.01 m above the plate"
+        )
+    return Microphone((x, y, z))
+
+
+def _refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> None:
+    for key in table:
+        if key not in known:
+            raise ParameterError(f"{where}: unknown key {key!r}; known are {', '.join(sorted(known))}")
+
+
+def _table(value: Any, key: str, where: str) -> Mapping[str, Any]:
+    if not isinstance(value, Mapping):
+        raise ParameterError(f"{where}: {key} must be a table")
+    return value
+
+
+def _text(value: Any, key: str, where: str) -> str:
+    if not isinstance(value, str):
+        raise ParameterError(f"{where}: {key} = {value!r} must be a text in quotes")
+    return value
+
+
+def _number(
+    table: Mapping[str, Any],
+    key: str,
+    where: str,
+    *,
+    low: float = 0.0,
+    high: float = math.inf,
+    closed: bool = False,
+) -> float:
+    """Return a finite number above `low`, up to `high`; `closed` admits `low` itself."""
+    value = table.get(key)
+    if value is None:
+        raise ParameterError(f"{where}: {key} is missing")
+    number = float(value) if isinstance(value, (int, float)) and value is not True else math.nan
+    inside = low <= number <= high if closed else low < number <= high
+    if not (math.isfinite(number) and inside):
+        least = "at least" if closed else "above"
+        most = "" if math.isinf(high) else f" and at most {high:g}"
+        wanted = "a number" if math.isinf(low) else f"a number {least} {low:g}{most}"
+        raise ParameterError(f"{where}: {key} = {value!r} must be {wanted}")
+    return number
+
+
+def _vector(table: Mapping[str, Any], key: str, size: int, where: str) -> tuple[float, ...]:
+    value = table.get(key)
+    if not isinstance(value, list) or len(value) != size:
+        raise ParameterError(f"{where}: {key} = {value!r} must be a list of {size} numbers")
+    return tuple(_number({key: v}, key, where, low=-math.inf) for v in value)
+
+
+def _support(key: str, where: str) -> float:
+    if key == "fixed":
+        return math.inf
+    try:
+        stiffness = float(key)
+    except ValueError:
+        stiffness = math.nan
+    if not stiffness > 0.0:
+        raise ParameterError(
+            f"{where}: damping_Nms_rad has the entry {key!r}; entries are support stiffnesses in "
+            "Nm/rad, or fixed"
+        )
+    return stiffness

@@ -1,0 +1,73 @@
+"""Files that appear whole or not at all.
+
+A batch that is killed half-way must not leave half a file that a later run, or another program,
+takes for a result. So every output is written under another name beside its target, on the same
+volume, and moved over it in one step of the file system. The passing name starts with a dot, which
+folder walks leave out, and ends as the target does, because many writers choose their format by
+that ending.
+"""
+
+from __future__ import annotations
+
+import uuid
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["atomic"]
+
+
+@contextmanager
+def atomic(target: str | Path) -> Iterator[Path]:
+    """Give a temporary path to write to, which becomes `target` when the block ends well.
+
+    Parameters
+    ----------
+    target : str or Path
+        The file to write; parent folders are made, an older file is replaced.
+
+    Yields
+    ------
+    Path
+        Where to write. On an error, or an interrupt, it is removed and `target` is left as it was.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be written there; every `OSError` of the block is taken to say so.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with atomic(Path(folder) / "new" / "table.csv") as path:
+    ...         _ = path.write_text("speed_rad_s")
+    ...     (Path(folder) / "new" / "table.csv").read_text()
+    'speed_rad_s'
+    """
+    target = Path(target)
+    temporary = target.parent / f".{uuid.uuid4().hex}.part{target.suffix}"
+    try:
+        if target.is_dir():
+            raise ParameterError(f"{target}: is a folder; name a file to write")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        yield temporary
+        temporary.replace(target)
+    except OSError as error:
+        reason = error.strerror or error
+        raise ParameterError(f"{target}: cannot be written ({reason})") from error
+    finally:
+        _remove(temporary)
+
+
+def _remove(path: Path) -> None:
+    try:
+        path.unlink(missing_ok=True)
+    except OSError:
+        # The folder itself cannot be used; the error that says so is already on its way.
+        return

@@ -1,0 +1,113 @@
+"""Rigs and conditions that differ as designs do, for the classifier to learn from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from models.rig import Fit, LawSpec, Microphone, Plate, Rig
+from models.rig_file import load_material_rig
+
+if TYPE_CHECKING:
+    import numpy as np
+
+__all__ = ["Design", "random_design"]
+
+_MATERIALS = {"fluorocarbon": 0.8, "fluorocarbon-thesis": 0.1, "PDMS": 0.1}
+"""Share of the designs that start from each."""
+
+_SUPPORTS = (2214.0, 3745.0, math.inf)
+"""Of the thesis's rig [Nm/rad]."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """A rig with the condition that it runs at; units as in `sim.run.simulate`."""
+
+    rig: Rig
+    speed: float
+    interference: float
+    support_stiffness: float
+
+
+def random_design(rng: np.random.Generator) -> Design:
+    """Draw a design and a condition.
+
+    Stiffness, inertia and torque scatter by a third or so about the shipped bushing's, the
+    elastomer's inertia by a factor of ten, which moves its mode, hence the squeal, up to 3 kHz;
+    plate, microphone and slip pulse vary as from one car to the next.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> random_design(np.random.default_rng(3)).rig.material
+    'fluorocarbon'
+    """
+    names = list(_MATERIALS)
+    rig = load_material_rig(str(rng.choice(names, p=list(_MATERIALS.values()))))
+    interference = float(rng.uniform(0.15e-3, 0.42e-3))
+    stiffness = math.exp(rng.normal(0.0, 0.3))
+    torque = math.exp(rng.normal(0.0, 0.25))
+    rig = replace(
+        rig,
+        elastomer_inertia=rig.elastomer_inertia * math.exp(rng.uniform(math.log(0.12), 0.3)),
+        clamp_inertia=rig.clamp_inertia * math.exp(rng.normal(0.0, 0.3)),
+        elastomer_damping_share=min(
+            0.9, rig.elastomer_damping_share * math.exp(rng.normal(0.0, 0.3))
+        ),
+        fits=tuple(_scaled(fit, stiffness, torque) for fit in rig.fits),
+        friction=_jittered(rig.friction, 0.2, rng),
+        effects=tuple(_jittered(spec, 0.4, rng) for spec in rig.effects),
+        plate=_random_plate(rig.plate, rng),
+        microphone=Microphone(
+            (
+                float(rng.uniform(-0.8, 0.8)),
+                float(rng.uniform(-0.8, 0.8)),
+                float(rng.uniform(0.2, 1.5)),
+            )
+        ),
+    )
+    support = float(rng.choice(_SUPPORTS))
+    if rng.random() < 0.4:
+        support = math.exp(rng.uniform(math.log(1000.0), math.log(10000.0)))
+    slowest = 0.1 if interference > 0.33e-3 else 0.5  # slow creaks have few slips a second
+    speed = math.exp(rng.uniform(math.log(slowest), math.log(15.0)))
+    return Design(rig, speed, interference, support)
+
+
+def _scaled(fit: Fit, stiffness: float, torque: float) -> Fit:
+    return replace(
+        fit,
+        elastomer_stiffness=fit.elastomer_stiffness * stiffness,
+        critical_torque=fit.critical_torque * torque,
+        kinetic_torque=fit.kinetic_torque * torque,
+    )
+
+
+def _jittered(spec: LawSpec, scatter: float, rng: np.random.Generator) -> LawSpec:
+    return LawSpec(
+        spec.name,
+        {
+            name: value * math.exp(min(0.5, rng.normal(0.0, scatter)))
+            if isinstance(value, float)
+            else value
+            for name, value in spec.parameters.items()
+        },
+    )
+
+
+def _random_plate(plate: Plate, rng: np.random.Generator) -> Plate:
+    length = float(rng.uniform(0.4, 1.0))
+    width = length * float(rng.uniform(0.5, 0.9))
+    return replace(
+        plate,
+        length=length,
+        width=width,
+        thickness=float(rng.uniform(0.005, 0.0127)),
+        loss_factor=float(rng.uniform(0.01, 0.06)),
+        clamp_position=(
+            length * float(rng.uniform(-0.12, 0.12)),
+            width * float(rng.uniform(-0.3, 0.3)),
+        ),
+    )

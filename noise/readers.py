@@ -1,0 +1,105 @@
+"""The file formats that recordings come in: an ending, and the function that reads it.
+
+Readers are named, not imported: a format whose library is an optional extra costs nothing until a
+file of it turns up, and a further format is one file and one entry here. A reader returns what the
+file says and nothing more; what the samples mean is decided once, for all formats, in
+`noise.recordings`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import RecordingError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["READERS", "RawSamples", "Reader", "read_raw"]
+
+
+@dataclass(frozen=True, eq=False)
+class RawSamples:
+    """What a file holds, before anyone says what it means.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n_channels, n_samples)
+        As stored: fractions of full scale where `fractional`.
+    rate : float
+        Sampling rate [Hz].
+    fractional : bool
+        Whether samples are coded as fractions of a full scale (integers, lossy formats) and not
+        as floating-point values of their own.
+    description, comment : str
+        Free text in the file, where meters and engineers note a calibration.
+    """
+
+    samples: NDArray[np.float64]
+    rate: float
+    fractional: bool
+    description: str = ""
+    comment: str = ""
+
+
+Reader = Callable[[Path], RawSamples]
+
+_SOUND = "noise.sound_file:read_sound_file"
+
+READERS = {
+    ".aif": _SOUND,
+    ".aiff": _SOUND,
+    ".flac": _SOUND,
+    ".mp3": _SOUND,
+    ".oga": _SOUND,
+    ".ogg": _SOUND,
+    ".opus": _SOUND,
+    ".rf64": _SOUND,
+    ".wav": _SOUND,
+}
+"""Ending in lower case -> reader, as ``module:function``."""
+
+
+def read_raw(path: Path) -> RawSamples:
+    """Read a file with the reader of its ending.
+
+    Parameters
+    ----------
+    path : Path
+        A file whose ending is a key of `READERS`, in either case.
+
+    Raises
+    ------
+    RecordingError
+        The file is missing, empty, of no known format, or its reader refuses it.
+
+    Examples
+    --------
+    >>> read_raw(Path("nowhere.wav"))
+    Traceback (most recent call last):
+    models.errors.RecordingError: nowhere.wav: there is no such file
+    """
+    try:
+        if path.is_dir():
+            raise RecordingError(f"{path}: is a folder, not a recording")
+        if not path.exists():
+            raise RecordingError(f"{path}: there is no such file")
+        if not path.is_file():
+            raise RecordingError(f"{path}: is no regular file")
+        if path.stat().st_size == 0:
+            raise RecordingError(f"{path}: is empty (0 bytes)")
+        if path.suffix.lower() not in READERS:
+            known = ", ".join(READERS)
+            raise RecordingError(f"{path}: has no ending of a recording; known are {known}")
+        module, _, function = READERS[path.suffix.lower()].partition(":")
+        reader: Reader = getattr(import_module(module), function)
+        return reader(path)
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except MemoryError as error:
+        raise RecordingError(f"{path}: needs more memory than there is") from error

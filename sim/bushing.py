@@ -1,0 +1,111 @@
+"""The lumped bushing at one condition: the numbers of the two-degree-of-freedom model (Figure 4.1).
+
+J_E theta1'' = T - T_E, J_C theta2'' = T_E - k_B theta2 - c_B theta2', with the torque of the
+elastomer T_E = k_E (theta1 - theta2) + c (theta1' - theta2'). The thesis splits the measured
+damping c_E evenly between elastomer and beams (4.1); `Rig.elastomer_damping_share` sets the split.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from models.rig import damping_at
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+
+__all__ = ["LumpedBushing", "lumped_bushing"]
+
+
+@dataclass(frozen=True)
+class LumpedBushing:
+    """Inertia, stiffness and damping of the lumped model.
+
+    Parameters
+    ----------
+    elastomer_inertia, clamp_inertia : float
+        J_E, J_C [kg m2].
+    elastomer_stiffness, support_stiffness : float
+        k_E, k_B [Nm/rad]; an infinite k_B is the clamp bolted to the baseplate.
+    elastomer_damping, support_damping : float
+        [Nm s/rad]
+    """
+
+    elastomer_inertia: float
+    clamp_inertia: float
+    elastomer_stiffness: float
+    support_stiffness: float
+    elastomer_damping: float
+    support_damping: float
+
+    @property
+    def clamp_is_fixed(self) -> bool:
+        """Whether the clamp is bolted to the baseplate."""
+        return math.isinf(self.support_stiffness)
+
+    def packed(self) -> NDArray[np.float64]:
+        """Return the parameters as an array for compiled code; a fixed clamp has k_B = -1."""
+        support = -1.0 if self.clamp_is_fixed else self.support_stiffness
+        return np.array(
+            [
+                self.elastomer_inertia,
+                self.clamp_inertia,
+                self.elastomer_stiffness,
+                support,
+                self.elastomer_damping,
+                self.support_damping,
+            ]
+        )
+
+    def natural_frequencies(self, *, stuck: bool = False) -> NDArray[np.float64]:
+        """Undamped natural frequencies [Hz], ascending; `stuck` with the surface held by the shaft.
+
+        Examples
+        --------
+        >>> rig = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 2214.0, 0.0, 0.0)
+        >>> rig.natural_frequencies().round(1), rig.natural_frequencies(stuck=True).round(1)
+        (array([ 256.9, 1056.6]), array([295.8]))
+        """
+        k_e, k_b = self.elastomer_stiffness, self.support_stiffness
+        j_e, j_c = self.elastomer_inertia, self.clamp_inertia
+        if self.clamp_is_fixed:
+            squares = [] if stuck else [k_e / j_e]
+        elif stuck:
+            squares = [(k_e + k_b) / j_c]
+        else:
+            mean = 0.5 * (k_e / j_e + (k_e + k_b) / j_c)
+            root = math.sqrt(mean**2 - k_e * k_b / (j_e * j_c))
+            squares = [mean - root, mean + root]
+        return np.sqrt(np.array(squares)) / (2.0 * math.pi)
+
+
+def lumped_bushing(rig: Rig, interference: float, support_stiffness: float) -> LumpedBushing:
+    """Return the lumped model of a rig at an interference [m] and a support stiffness [Nm/rad].
+
+    Raises
+    ------
+    ParameterError
+        If the support stiffness is not positive.
+    """
+    if not support_stiffness > 0.0:
+        raise ParameterError(
+            f"support stiffness = {support_stiffness:g} Nm/rad must be positive, or 'fixed'"
+        )
+    fit = rig.fit(interference)
+    damping = damping_at(fit, support_stiffness)
+    share = rig.elastomer_damping_share
+    return LumpedBushing(
+        elastomer_inertia=rig.elastomer_inertia,
+        clamp_inertia=rig.clamp_inertia,
+        elastomer_stiffness=fit.elastomer_stiffness,
+        support_stiffness=support_stiffness,
+        elastomer_damping=share * damping,
+        support_damping=(1.0 - share) * damping,
+    )

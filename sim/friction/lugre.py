@@ -1,0 +1,76 @@
+r"""LuGre friction: bristles that bend, a Stribeck curve, and a viscous torque.
+
+.. math::
+    \dot z = v - K |v| z / g(v), \qquad T = K z + \sigma_1 \dot z + \sigma_2 v, \qquad
+    g = T_{kin} + (T_{crit} - T_{kin}) e^{-(v / v_s)^2}
+
+Canudas de Wit, Olsson, Astrom and Lischinsky (1995). Steady sliding gives T = g(v) + sigma_2 v;
+with T_crit = T_kin and sigma_2 > 0 the torque rises with speed and sliding is stable at any speed,
+as PDMS does on the rig (5.1.2).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from sim.friction.law import RATES_SIGNATURE, FrictionLaw
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Fit
+
+__all__ = ["LAW"]
+
+_PARAMETERS = {
+    "contact_stiffness_per_torque": Parameter(
+        1700.0, "1/rad", 1.0, 1e5, "K / T_kin: stiffness of the bristles"
+    ),
+    "contact_damping_per_torque": Parameter(
+        9e-5, "s/rad", 0.0, 1e-2, "sigma_1 / T_kin: damping of the bristles"
+    ),
+    "stribeck_speed": Parameter(1.0, "rad/s", 1e-4, 1e3, "v_s: speed over which torque falls"),
+    "viscous_share_per_speed": Parameter(
+        0.0, "s/rad", 0.0, 10.0, "sigma_2 / T_kin: rise of the torque with speed"
+    ),
+}
+
+
+def _coefficients(fit: Fit, values: Mapping[str, float]) -> NDArray[np.float64]:
+    t_kin = fit.kinetic_torque
+    return np.array(
+        [
+            values["contact_stiffness_per_torque"] * t_kin,
+            values["contact_damping_per_torque"] * t_kin,
+            t_kin,
+            fit.critical_torque - t_kin,
+            values["stribeck_speed"],
+            values["viscous_share_per_speed"] * t_kin,
+        ]
+    )
+
+
+def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
+    return np.zeros(1)
+
+
+@njit(RATES_SIGNATURE, cache=True, error_model="numpy")
+def _rates(v, state, c, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    strength = c[2] + c[3] * math.exp(-((v / c[4]) ** 2))
+    state_rates[0] = v - c[0] * abs(v) * state[0] / strength
+    return c[0] * state[0] + c[1] * state_rates[0] + c[5] * v
+
+
+LAW = FrictionLaw(
+    name="lugre",
+    parameters=_PARAMETERS,
+    coefficients=_coefficients,
+    initial_state=_initial_state,
+    rates=_rates,
+)

@@ -1,0 +1,170 @@
+"""The motion of shaft, bushing and clamp at one condition: the simulator's core."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from sim.bushing import LumpedBushing, lumped_bushing
+from sim.friction import friction_law
+from sim.parameters import resolve
+from sim.smooth_contact import solve_smooth_contact
+from sim.stick_slip import solve_stick_slip
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+    from sim.shaft import ShaftMotion
+
+__all__ = ["STICK_SPEED_SHARE", "Motion", "simulate_motion"]
+
+STICK_SPEED_SHARE = 0.05
+"""The contact counts as stuck while it slides slower than this share of the shaft's speed."""
+
+_LONGEST_STEP = 5e-6
+"""Of the integration of smooth contacts [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Motion and torques over time, sampled at `rate`; all arrays have shape (n,).
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    torque : ndarray
+        Torque that the bushing puts into the clamp, T_E [Nm]; what the thesis plots and the
+        torque cell is taken to read.
+    friction_torque : ndarray
+        Torque in the contact [Nm]; differs from `torque` by the inertia of the elastomer.
+    shaft_angle, shaft_speed : ndarray
+        [rad], [rad/s]
+    interface_speed : ndarray
+        Angular speed of the bushing's surface [rad/s].
+    clamp_angle, clamp_speed : ndarray
+        [rad], [rad/s]
+    """
+
+    rate: float
+    torque: NDArray[np.float64]
+    friction_torque: NDArray[np.float64]
+    shaft_angle: NDArray[np.float64]
+    shaft_speed: NDArray[np.float64]
+    interface_speed: NDArray[np.float64]
+    clamp_angle: NDArray[np.float64]
+    clamp_speed: NDArray[np.float64]
+
+    @property
+    def sliding_speed(self) -> NDArray[np.float64]:
+        """Speed of the shaft over the bushing's surface [rad/s]."""
+        return self.shaft_speed - self.interface_speed
+
+    def since(self, first: int) -> Motion:
+        """Return the motion from sample `first` on."""
+        kept = {
+            field.name: getattr(self, field.name)[first:]
+            for field in fields(self)
+            if field.name != "rate"
+        }
+        return Motion(rate=self.rate, **kept)
+
+    @property
+    def stuck(self) -> NDArray[np.bool_]:
+        """Where the contact sticks: slides slower than `STICK_SPEED_SHARE` of the shaft's speed."""
+        slow = np.abs(self.sliding_speed) <= STICK_SPEED_SHARE * np.abs(self.shaft_speed)
+        return np.asarray(slow & (self.shaft_speed != 0.0))
+
+
+def simulate_motion(
+    rig: Rig,
+    shaft: ShaftMotion,
+    *,
+    interference: float,
+    support_stiffness: float,
+    seconds: float,
+    rate: float,
+) -> Motion:
+    """Simulate the rig from rest.
+
+    Parameters
+    ----------
+    rig : Rig
+    shaft : ShaftMotion
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    seconds : float
+        Length [s].
+    rate : float
+        Of the output [Hz]; the solution itself does not depend on it.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used, or the friction law's parameters are out of range.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.shaft import ConstantSpeed
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> run = simulate_motion(rig, ConstantSpeed(1.0), interference=0.279e-3,
+    ...                       support_stiffness=3745.0, seconds=0.1, rate=30e3)
+    >>> round(float(run.torque.max()), 1)
+    10.7
+    """
+    n = round(seconds * rate)
+    if not n >= 2:
+        raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
+    system = lumped_bushing(rig, interference, support_stiffness)
+    fit = rig.fit(interference)
+    law = friction_law(rig.friction.name)
+    values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
+    coefficients = law.coefficients(fit, values)
+    step = 1.0 / rate
+    time = np.arange(n) * step
+    speed = shaft.speed(time)
+    if law.rates is None:
+        critical, kinetic = coefficients
+        states, _, _ = solve_stick_slip(system.packed(), critical, kinetic, speed, step)
+    else:
+        substeps = math.ceil(step / _LONGEST_STEP)
+        states = solve_smooth_contact(law, coefficients, system.packed(), speed, step, substeps)
+    _refuse_overflow(states, system)
+    return Motion(
+        rate=rate,
+        torque=states[:, 1],
+        friction_torque=states[:, 0],
+        shaft_angle=_integral(speed, step),
+        shaft_speed=speed,
+        interface_speed=states[:, 3],
+        clamp_angle=states[:, 4],
+        clamp_speed=states[:, 5],
+    )
+
+
+def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+    angle = np.zeros_like(speed)
+    np.cumsum(0.5 * step * (speed[1:] + speed[:-1]), out=angle[1:])
+    return angle
+
+
+def _refuse_overflow(states: NDArray[np.float64], system: LumpedBushing) -> None:
+    if not np.isfinite(states[-1]).all():
+        raise ParameterError(
+            "the motion grows without bound with these parameters; check inertia "
+            f"({system.elastomer_inertia:g}, {system.clamp_inertia:g} kg m2), stiffness "
+            f"({system.elastomer_stiffness:g} Nm/rad) and damping "
+            f"({system.elastomer_damping:g} Nm s/rad)"
+        )

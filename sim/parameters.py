@@ -1,0 +1,71 @@
+"""Declared parameters of friction laws and effects: unit, default, range, meaning.
+
+A declaration gives one uniform message for every value that cannot be used, and the help text.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from models.errors import ParameterError
+
+__all__ = ["Parameter", "resolve"]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number that a friction law or an effect takes.
+
+    Parameters
+    ----------
+    default : float
+    unit : str
+    low, high : float
+        Admitted range, both ends included.
+    meaning : str
+        One line.
+    """
+
+    default: float
+    unit: str
+    low: float
+    high: float
+    meaning: str
+
+
+def resolve(
+    owner: str, declared: Mapping[str, Parameter], given: Mapping[str, float | str]
+) -> dict[str, float]:
+    """Return the values of all declared parameters, defaults where nothing is given.
+
+    Raises
+    ------
+    ParameterError
+        For a name that is not declared, a value that is no number, or one out of range.
+
+    Examples
+    --------
+    >>> declared = {"duration": Parameter(50e-6, "s", 1e-6, 1e-3, "of the pulse")}
+    >>> resolve("slip_pulse", declared, {"duration": 1e-4})
+    {'duration': 0.0001}
+    """
+    for name in given:
+        if name not in declared:
+            known = ", ".join(declared) or "none"
+            raise ParameterError(f"{owner}: no parameter {name!r}; it has {known}")
+    values = {}
+    for name, parameter in declared.items():
+        raw = given.get(name, parameter.default)
+        try:
+            value = float(raw)
+        except (TypeError, ValueError):
+            raise ParameterError(f"{owner}: {name} = {raw!r} is no number") from None
+        if not (math.isfinite(value) and parameter.low <= value <= parameter.high):
+            raise ParameterError(
+                f"{owner}: {name} = {value:g} {parameter.unit} is out of range; it must lie in "
+                f"[{parameter.low:g}, {parameter.high:g}] {parameter.unit}".rstrip()
+            )
+        values[name] = value
+    return values

@@ -1,0 +1,187 @@
+"""One run of the rig: from an operating condition to a recording, as the rig's computer has it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.radiation import radiate, response
+from models.recording import Channel, Recording
+from sim.acquisition import Acquisition, sample
+from sim.effects import effect
+from sim.motion import Motion, simulate_motion
+from sim.shaft import ConstantSpeed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+    from sim.shaft import ShaftMotion
+
+__all__ = ["DEFAULT_SETTLING", "Run", "simulate"]
+
+DEFAULT_SETTLING = 0.5
+"""How long a shaft at constant speed has turned before the recording starts [s]."""
+
+_LEAST_SOUND_RATE = 90e3
+"""Motion and sound are computed at a multiple of the sampling rate no lower than this [Hz]."""
+
+_LONGEST_RUN = 600.0
+"""[s]; the whole run is held in memory."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What a simulated run gives.
+
+    Parameters
+    ----------
+    recording : Recording
+        What the sensors recorded.
+    motion : Motion
+        What moved, including what no sensor sees; at the rate of the computation.
+    pressure : ndarray, shape (n,)
+        Sound pressure at the microphone at ``motion.rate``, free of noise [Pa].
+    pulse_pressure : ndarray, shape (n,)
+        The part of `pressure` that slip pulses make through the plate [Pa].
+    """
+
+    recording: Recording
+    motion: Motion
+    pressure: NDArray[np.float64]
+    pulse_pressure: NDArray[np.float64]
+
+
+def simulate(
+    rig: Rig,
+    shaft: ShaftMotion | float,
+    *,
+    interference: float = 0.279e-3,
+    support_stiffness: float = 2214.0,
+    temperature: float = 23.0,
+    seconds: float = 1.0,
+    acquisition: Acquisition | None = None,
+    settling: float | None = None,
+    rng: np.random.Generator | None = None,
+) -> Run:
+    """Simulate one run of the rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    shaft : ShaftMotion or float
+        How the shaft turns; a number is a constant speed [rad/s].
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    temperature : float
+        Ambient [degree Celsius]; recorded, without influence on the shipped friction laws.
+    seconds : float
+        Length of the recording [s].
+    acquisition : Acquisition, optional
+        Sampling rate, noise and converter; by default 30 kHz.
+    settling : float, optional
+        How long the rig has run before the recording starts [s]; by default `DEFAULT_SETTLING`
+        at constant speed, else none.
+    rng : numpy.random.Generator, optional
+        Of the sensors' noise; by default seeded with 0.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
+    >>> run.recording.channel_names, run.recording.samples.shape
+    (('torque', 'acceleration', 'pressure', 'angle'), (4, 3000))
+    """
+    acquisition = acquisition or Acquisition()
+    rng = rng or np.random.default_rng(0)
+    if isinstance(shaft, (int, float)):
+        shaft = ConstantSpeed(float(shaft))
+    constant = isinstance(shaft, ConstantSpeed)
+    if settling is None:
+        settling = DEFAULT_SETTLING if constant else 0.0
+    _check(seconds, acquisition.rate, interference)
+
+    decimation = math.ceil(_LEAST_SOUND_RATE / acquisition.rate)
+    rate = decimation * acquisition.rate
+    n_kept = round(seconds * acquisition.rate) * decimation
+    n_settling = round(settling * rate)
+    motion = simulate_motion(
+        rig,
+        shaft,
+        interference=interference,
+        support_stiffness=support_stiffness,
+        seconds=(n_settling + n_kept) / rate,
+        rate=rate,
+    )
+    force = np.zeros_like(motion.torque)
+    for spec in rig.effects:
+        force += effect(spec).force(motion)
+    paths = response(rig, interference, support_stiffness, rate)
+    acceleration, pressure = radiate(paths, motion.torque, force)
+    _, pulse_pressure = radiate(paths, np.zeros_like(force), force)
+
+    kept = slice(n_settling, None)
+    signals = {
+        "torque": motion.torque[kept],
+        "acceleration": acceleration[kept],
+        "pressure": pressure[kept],
+        "angle": motion.shaft_angle[kept] - motion.shaft_angle[n_settling],
+    }
+    sampled = sample(signals, decimation, acquisition, rng)
+    condition = Condition(
+        speed=shaft.value if isinstance(shaft, ConstantSpeed) else None,
+        interference=interference,
+        support_stiffness=support_stiffness,
+        material=rig.material,
+        temperature=temperature,
+    )
+    recording = Recording(
+        samples=np.stack(list(sampled.values())),
+        rate=acquisition.rate,
+        channels=_channels(rig),
+        condition=condition,
+    )
+    return Run(
+        recording=recording,
+        motion=motion.since(n_settling),
+        pressure=pressure[kept],
+        pulse_pressure=pulse_pressure[kept],
+    )
+
+
+def _channels(rig: Rig) -> tuple[Channel, ...]:
+    return (
+        Channel("torque"),
+        Channel("acceleration"),
+        Channel("pressure", position=rig.microphone.position),
+        Channel("angle"),
+    )
+
+
+def _check(seconds: float, rate: float, interference: float) -> None:
+    if not 0.0 < seconds <= _LONGEST_RUN:
+        raise ParameterError(
+            f"seconds = {seconds:g} must be above 0 and at most {_LONGEST_RUN:g}"
+        )
+    if not 1e3 <= rate <= 400e3:
+        raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
+    if not 0.0 < interference < 1e-2:
+        raise ParameterError(
+            f"interference = {1e3 * interference:g} mm must be above 0 and below 10"
+        )

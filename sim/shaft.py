@@ -1,0 +1,132 @@
+"""How the shaft turns: at constant speed, on a ramp, to and fro, or as it was logged."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["ConstantSpeed", "LoggedSpeed", "Oscillation", "ShaftMotion", "SpeedRamp"]
+
+
+class ShaftMotion(Protocol):
+    """Anything that knows the shaft's angular speed at given times."""
+
+    def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angular speed [rad/s] at `time` [s]."""
+        ...
+
+
+@dataclass(frozen=True)
+class ConstantSpeed:
+    """The rig's own way of turning.
+
+    Parameters
+    ----------
+    value : float
+        Angular speed [rad/s], signed.
+
+    Examples
+    --------
+    >>> ConstantSpeed(5.0).speed(np.array([0.0, 1.0]))
+    array([5., 5.])
+    """
+
+    value: float
+
+    def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angular speed [rad/s] at `time` [s]."""
+        return np.full(time.shape, float(self.value))
+
+
+@dataclass(frozen=True)
+class SpeedRamp:
+    """A run-up: speed changes linearly from `start` to `end` [rad/s] over `duration` [s].
+
+    Examples
+    --------
+    >>> SpeedRamp(0.0, 10.0, 2.0).speed(np.array([0.0, 1.0, 3.0]))
+    array([ 0.,  5., 10.])
+    """
+
+    start: float
+    end: float
+    duration: float
+
+    def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angular speed [rad/s] at `time` [s]."""
+        return self.start + (self.end - self.start) * np.clip(time / self.duration, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """A stabilizer bar on the road: the angle swings as ``amplitude * sin(2 pi frequency t)``.
+
+    Parameters
+    ----------
+    amplitude : float
+        [rad]
+    frequency : float
+        [Hz]
+
+    Examples
+    --------
+    >>> float(Oscillation(0.25, 2.0).speed(np.array([0.25]))[0].round(6))
+    -3.141593
+    """
+
+    amplitude: float
+    frequency: float
+
+    def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angular speed [rad/s] at `time` [s]."""
+        omega = 2.0 * math.pi * self.frequency
+        return np.asarray(self.amplitude * omega * np.cos(omega * time))
+
+
+class LoggedSpeed:
+    """Speed as logged, linear between the samples and held beyond them.
+
+    Parameters
+    ----------
+    time : array_like, shape (n,)
+        [s], rising.
+    speed : array_like, shape (n,)
+        [rad/s]
+
+    Raises
+    ------
+    ParameterError
+        If a value is not finite, the times do not rise, or there are fewer than two samples.
+
+    Examples
+    --------
+    >>> LoggedSpeed([0.0, 1.0], [0.0, 4.0]).speed(np.array([0.25, 9.0]))
+    array([1., 4.])
+    """
+
+    def __init__(self, time: ArrayLike, speed: ArrayLike) -> None:
+        self._time = np.asarray(time, dtype=float)
+        self._speed = np.asarray(speed, dtype=float)
+        if self._time.ndim != 1 or self._time.shape != self._speed.shape or self._time.size < 2:
+            raise ParameterError(
+                "logged speed: needs two or more samples, one speed [rad/s] for each time [s]"
+            )
+        for name, values in (("time", self._time), ("speed", self._speed)):
+            bad = np.flatnonzero(~np.isfinite(values))
+            if bad.size:
+                raise ParameterError(f"logged speed: {name} in row {bad[0] + 1} is no finite number")
+        falls = np.flatnonzero(np.diff(self._time) <= 0.0)
+        if falls.size:
+            raise ParameterError(f"logged speed: time does not rise at row {falls[0] + 2}")
+
+    def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angular speed [rad/s] at `time` [s]."""
+        return np.interp(time, self._time, self._speed)
