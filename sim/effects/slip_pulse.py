@@ -3,10 +3,11 @@
 The lumped model's anchor force above 5 kHz is some 100 dB too small to creak, and the torque cell
 shows little above 2 kHz; bolting the clamp to the baseplate ends the creak (5.2.3). So the source
 lies downstream of the torque cell, in clamp, beam or anchor: a micro-impact that the slip sets
-off. One law for all fits: nothing below a threshold of the torque's drop, then a half-sine whose
-peak grows in proportion to what the drop exceeds it by, up to `amplitude` at the drop of the
-creaking fit (6.94 Nm at 0.381 mm). Limits: amplitude zero is no pulse at all, and a drop below the
-threshold makes none.
+off. One law for all fits: nothing below a threshold of the torque's drop, as the joint holds; above
+it a half-sine whose peak grows with the root of what the drop exceeds it by, as the speed of a
+part that has come loose does with its energy, through `amplitude` at the drop of the creaking fit
+(6.94 Nm at 0.381 mm). Limits: amplitude zero is no pulse at all, and a drop below the threshold
+makes none.
 """
 
 from __future__ import annotations
@@ -121,7 +122,7 @@ class SlipPulse:
     stage = "structure"
     parameters = {
         "amplitude": Parameter(60.0, "N", 0.0, 1e4, "peak force at a torque drop of 6.94 Nm"),
-        "threshold": Parameter(4.0, "Nm", 0.0, 6.9, "torque drop below which nothing happens"),
+        "threshold": Parameter(5.2, "Nm", 0.0, 6.9, "torque drop below which nothing happens"),
         "duration": Parameter(50e-6, "s", 1e-5, 1e-3, "of the half-sine"),
     }
 
@@ -137,7 +138,8 @@ class SlipPulse:
         if self.amplitude == 0.0:
             return force
         where, drops = torque_drops(motion.torque * turning, max(self.threshold, 1e-6))
-        peaks = self.amplitude * (drops - self.threshold) / (_REFERENCE_DROP - self.threshold)
+        excess = (drops - self.threshold) / (_REFERENCE_DROP - self.threshold)
+        peaks = self.amplitude * np.sqrt(np.maximum(excess, 0.0))
         n = math.ceil(self.duration * motion.rate)
         shape = np.sin(np.pi * np.arange(1, n + 1) / (self.duration * motion.rate))
         shape = np.clip(shape, 0.0, None)

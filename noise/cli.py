@@ -1,0 +1,188 @@
+"""The command ``bushing-noise``: which command is meant, and how anything that goes wrong is told.
+
+What a user can cause ends in one line on standard error and an exit code, never in a traceback:
+0 all done, 1 done but inputs were refused, 2 the call cannot be used. Beyond these a program that
+is interrupted (130) or whose reader goes away (141) ends as the shell has it. An error that nobody
+foresaw is told in one line as well, with the place in the code; ``python -X dev -m noise`` shows
+the whole traceback.
+
+Only the command that is called is imported, so that help is there at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import traceback
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from models.errors import BushingNoiseError
+from noise.commands import COMMANDS, load_command
+from noise.progress import note, say
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import TextIO
+
+__all__ = ["main"]
+
+_NAME = "bushing-noise"
+_USAGE_ERROR = 2
+_INTERRUPTED = 130  # 128 + SIGINT
+_CLOSED_PIPE = 141  # 128 + SIGPIPE
+
+_NEGATIVE = re.compile(r"-(\.?\d|inf|nan)", re.IGNORECASE)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Arguments without the name of the program; by default those of the process.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Examples
+    --------
+    >>> main(["--help"])
+    usage: bushing-noise ...
+    0
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # names of files that the terminal cannot show
+            stream.reconfigure(errors="backslashreplace")
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning
+        try:
+            code = _run(arguments)
+            if sys.stdout is not None:
+                sys.stdout.flush()
+        except BrokenPipeError:
+            _abandon_output()
+            return _CLOSED_PIPE
+        return code
+
+
+def _run(arguments: list[str]) -> int:
+    try:
+        parser = _parser(arguments)
+        if not arguments:
+            parser.print_help(sys.stderr)
+            return _USAGE_ERROR
+        options = parser.parse_args(_with_negative_values(arguments))
+        return load_command(options.command).run(options)
+    except SystemExit as stop:  # argparse: 0 after help, 2 after an error
+        return stop.code if isinstance(stop.code, int) else 0
+    except BushingNoiseError as error:
+        return _failed(str(error))
+    except MemoryError:
+        return _failed("this needs more memory than there is; try a shorter recording")
+    except KeyboardInterrupt:
+        say(f"{_NAME}: interrupted")
+        return _INTERRUPTED
+    except BrokenPipeError:
+        raise
+    except Exception as error:
+        if sys.flags.dev_mode:
+            raise
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{Path(place.filename).name}, line {place.lineno}"
+        return _failed(f"unexpected, please report: {type(error).__name__}: {error} ({where})")
+
+
+def _failed(message: str) -> int:
+    say(f"{_NAME}: error: {message}")
+    return _USAGE_ERROR
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """Tell an error of the call in one line."""
+        _failed(f"{_plain(message)} (see {self.prog} --help)")
+        raise SystemExit(_USAGE_ERROR)
+
+
+def _plain(message: str) -> str:
+    """Let a value's message follow its option: ``--speed is 'x', expected ...``."""
+    return re.sub(r"^argument ([^:]+): is ", r"\1 is ", message)
+
+
+class _Version(argparse.Action):
+    def __call__(self, *_: object) -> None:
+        """Print the installed version."""
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            installed = version(_NAME)
+        except PackageNotFoundError:
+            installed = "(run from its source, not installed)"
+        sys.stdout.write(f"{_NAME} {installed}\n")
+        raise SystemExit(0)
+
+
+def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+    """All commands by name and line; options only of those that the arguments mention."""
+    parser = _Parser(
+        prog=_NAME,
+        description="Simulate, hear, label and explain the creak, squawk and squeal of a rubber "
+        "bushing.",
+        epilog=f"{_NAME} COMMAND --help explains each command. Exit code 0: all done; 1: done, "
+        "but some inputs were refused; 2: the call cannot be used.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and stop")
+    commands = parser.add_subparsers(
+        dest="command", metavar="COMMAND", required=True, title="commands"
+    )
+    for name, entry in COMMANDS.items():
+        command = commands.add_parser(name, help=entry.line, allow_abbrev=False)
+        if name in arguments:
+            load_command(name).configure(command)
+    return parser
+
+
+def _with_negative_values(arguments: Sequence[str]) -> list[str]:
+    """Tie negative values to their options: ``--speed -5..5`` becomes ``--speed=-5..5``.
+
+    Left alone, the parser takes all but plain negative numbers for options.
+    """
+    tied: list[str] = []
+    for argument in arguments:
+        option = tied[-1] if tied else ""
+        if option.startswith("--") and "=" not in option and _NEGATIVE.match(argument):
+            tied[-1] = f"{option}={argument}"
+        else:
+            tied.append(argument)
+    return tied
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    note(str(message))
+
+
+def _abandon_output() -> None:
+    """Point the standard streams nowhere, so that nothing is left to fail when Python ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BrokenPipeError:
+            os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)

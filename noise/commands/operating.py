@@ -1,0 +1,209 @@
+"""From the options of an operating condition to the simulated run."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.commands import options as opt
+from noise.progress import note, say
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from models.rig import LawSpec, Rig
+    from sim.run import Run
+    from sim.shaft import LoggedSpeed, ShaftMotion
+
+__all__ = ["CONDITION_OPTIONS", "given_options", "simulated_run"]
+
+CONDITION_OPTIONS = (
+    "speed",
+    "oscillate",
+    "interference",
+    "support_stiffness",
+    "material",
+    "temperature",
+    "seconds",
+    "effect",
+    "rig",
+    "converter",
+)
+"""What `noise.commands.options.add_condition` adds, as attributes of the options."""
+
+
+def given_options(options: Namespace) -> list[str]:
+    """Return the options of a condition that were given, as they are typed."""
+    return [
+        "--" + name.replace("_", "-")
+        for name in CONDITION_OPTIONS
+        if getattr(options, name) is not None
+    ]
+
+
+def simulated_run(options: Namespace, rate: float) -> Run:
+    """Simulate the run that the options of a condition describe.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        With the attributes of `CONDITION_OPTIONS` and ``seed``.
+    rate : float
+        Sampling rate of the recording [Hz].
+
+    Raises
+    ------
+    ParameterError
+        Options are missing, exclude each other, or name what there is not.
+    """
+    if (options.speed is None) == (options.oscillate is None):
+        asked = "is needed" if options.speed is None else "can be given, not both"
+        raise ParameterError(f"exactly one of --speed and --oscillate {asked}")
+    seconds = _or(options.seconds, opt.DEFAULT_SECONDS)
+    stiffness = _or(options.support_stiffness, opt.DEFAULT_SUPPORT_STIFFNESS)
+    interference_mm = _or(options.interference, opt.DEFAULT_INTERFERENCE_MM)
+    if round(seconds * rate) < _LEAST_SAMPLES:
+        raise ParameterError(
+            f"--seconds {seconds:g} is too short at {rate:g} Hz; a recording holds "
+            f"{_LEAST_SAMPLES} samples or more"
+        )
+    rig = _rig(options)
+    shaft, turning = _shaft(options, seconds)
+    low, high = (1e3 * limit for limit in rig.interference_range)
+    if not low * (1.0 - 1e-9) <= interference_mm <= high * (1.0 + 1e-9):
+        nearest = low if interference_mm < low else high
+        note(
+            f"--interference {interference_mm:g} mm lies outside the fits given for "
+            f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used"
+        )
+    support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
+    say(f"simulating {seconds:g} s: {turning}, {interference_mm:g} mm, {support}, {rig.material}")
+
+    import numpy as np
+
+    from sim.acquisition import Acquisition
+    from sim.run import simulate
+
+    return simulate(
+        rig,
+        shaft,
+        interference=interference_mm / 1e3,
+        support_stiffness=stiffness,
+        temperature=_or(options.temperature, opt.DEFAULT_TEMPERATURE),
+        seconds=seconds,
+        acquisition=Acquisition(rate=rate, converter=bool(options.converter)),
+        rng=np.random.default_rng(options.seed),
+    )
+
+
+_LEAST_SAMPLES = 16
+"""What `noise.recordings` takes for a recording."""
+
+
+def _or(given: float | None, default: float) -> float:
+    return default if given is None else given
+
+
+def _rig(options: Namespace) -> Rig:
+    from models.rig_file import load_material_rig, load_rig
+
+    if options.rig is None:
+        try:
+            rig = load_material_rig(options.material or opt.DEFAULT_MATERIAL)
+        except ParameterError as error:
+            raise ParameterError(f"--material: {error}") from None
+    else:
+        try:
+            rig = load_rig(options.rig)
+        except ParameterError as error:
+            raise ParameterError(f"--rig: {error}") from None
+        named = options.material
+        if named is not None and named.strip().lower() != rig.material.lower():
+            raise ParameterError(
+                f"--material {named} contradicts --rig {options.rig}, whose material is "
+                f"{rig.material}; leave --material out, or change the file"
+            )
+    return replace(rig, effects=_effects(rig.effects, options.effect or ()))
+
+
+def _effects(
+    of_the_rig: tuple[LawSpec, ...], given: list[LawSpec] | tuple[()]
+) -> tuple[LawSpec, ...]:
+    from sim.effects import effect
+
+    for spec in given:
+        try:
+            effect(spec)
+        except ParameterError as error:
+            raise ParameterError(f"--effect: {error}") from None
+    by_name = {spec.name: spec for spec in (*of_the_rig, *given)}
+    return tuple(by_name.values())
+
+
+def _shaft(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
+    """How the shaft turns, and that in words."""
+    from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
+
+    if options.oscillate is not None:
+        degrees, frequency = options.oscillate.amplitude, options.oscillate.frequency
+        words = f"swinging +-{degrees:g} degrees at {frequency:g} Hz"
+        return Oscillation(math.radians(degrees), frequency), words
+    if isinstance(options.speed, opt.Ramp):
+        start, end = options.speed.start, options.speed.end
+        return SpeedRamp(start, end, seconds), f"{start:g} to {end:g} rad/s"
+    if isinstance(options.speed, Path):
+        return _logged_speed(options.speed, seconds), f"speed as logged in {options.speed.name}"
+    return ConstantSpeed(options.speed), f"{options.speed:g} rad/s"
+
+
+def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
+    from sim.shaft import LoggedSpeed
+
+    try:
+        time, speed = _read_log(path)
+        logged = LoggedSpeed(time, speed)
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ParameterError(f"--speed {path}: cannot be read ({error})") from None
+    except ParameterError as error:
+        raise ParameterError(f"--speed {path}: {error}") from None
+    if time[0] > 0.0 or time[-1] < seconds:
+        note(
+            f"--speed {path} covers {time[0]:g} to {time[-1]:g} s, the run 0 to {seconds:g} s; "
+            "where the log says nothing its nearest speed is held"
+        )
+    elif time[-1] > seconds:
+        note(f"--speed {path} lasts {time[-1]:g} s, the run takes its first {seconds:g} s")
+    return logged
+
+
+def _read_log(path: Path) -> tuple[list[float], list[float]]:
+    time: list[float] = []
+    speed: list[float] = []
+    columns = (0, 1)
+    header_possible = True
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = csv.reader(file)
+        for row in rows:
+            cells = [cell.strip() for cell in row]
+            if not any(cells):
+                continue
+            if header_possible and not any(map(_is_number, cells)):
+                header_possible = False
+                if "time_s" in cells and "speed_rad_s" in cells:
+                    columns = (cells.index("time_s"), cells.index("speed_rad_s"))
+                continue
+            header_possible = False
+            try:
+                moment, value = (float(cells[column]) for column in columns)
+            except (ValueError, IndexError):
+                raise ParameterError(
+                    f"line {rows.line_num} is {','.join(row)!r}, expected time in s and speed in "
+                    "rad/s with a comma between"
+                ) from None
+            time.append(moment)
+            speed.append(value)
+    return time, speed
