@@ -166,9 +166,7 @@ def forward(signal: NDArray[np.float64], rate: float) -> Transform:
     return Transform(fft.rfft(x), length, lead, n - 2 * lead, rate)
 
 
-def band_signal(
-    transform: Transform, low: float, high: float
-) -> tuple[NDArray[np.float64], float]:
+def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[np.float64], float]:
     """Part of a signal between two frequencies, at the lowest rate that holds it cleanly.
 
     Parameters

@@ -22,8 +22,8 @@ from features.lines import (
     RANGE_DB,
     Lines,
     find_lines,
-    line_resolution,
     line_powers,
+    line_resolution,
     noise_floor,
 )
 from features.periodicity import Period, strongest_period
@@ -121,7 +121,7 @@ def analyse_harmonics(
     >>> sawtooth = (155.0 * t) % 1.0
     >>> found = analyse_harmonics(sawtooth, 16e3)
     >>> round(found.fundamental, 1), found.count > 20, round(found.harmonicity, 2)
-    (155.0, True, 0.98)
+    (155.0, True, 0.99)
     """
     x = checked_signal(signal, rate)
     highest = min(highest, usable_limit(rate))
@@ -188,7 +188,7 @@ def harmonics_of(
     else:
         fundamental = _refined(period, lines)
     number = np.arange(1, max(1, math.floor(usable_limit(rate) / fundamental)) + 1)
-    frequency = number * fundamental
+    frequency = np.asarray(number * fundamental, dtype=np.float64)
     excess = line_powers(spectrum, floor, frequency, spacing=0.5 * fundamental)
     power = np.maximum(excess, 0.0)
     least = 10.0 ** (-0.1 * RANGE_DB) * float(power.max())

@@ -102,8 +102,8 @@ def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
 
     Notes
     -----
-    Running median over 200 Hz or 31 bins, divided by the median of the chi-square law for the number of
-    averages, so that it is the mean of noise and not its median.
+    Running median over 200 Hz or 31 bins, divided by the median of the chi-square law for the
+    number of averages, so that it is the mean of noise and not its median.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
     half = 0.5 * spectrum.degrees_of_freedom
     median_of_noise = float(special.gammaincinv(half, 0.5)) / half
     floor = ndimage.median_filter(p, size=width, mode="reflect") / median_of_noise
-    return np.maximum(floor, _LEAST_FLOOR * p.max())
+    return np.asarray(np.maximum(floor, _LEAST_FLOOR * p.max()))
 
 
 def find_lines(
@@ -239,17 +239,20 @@ def _separate(
     """Keep the strongest of peaks that lie within each other's width."""
     if peaks.size < 2:
         return peaks
-    reach = MAIN_LOBE * spacing + WANDER * f[peaks]
-    if float((np.diff(f[peaks]) - reach[1:] - reach[:-1]).min()) > 0.0:
+    at = f[peaks]
+    reach = MAIN_LOBE * spacing + WANDER * at
+    if bool((np.diff(at) > reach[1:]).all()):
         return peaks
-    kept: list[int] = []
+    free = np.ones(peaks.size, dtype=np.bool_)
+    kept = np.zeros(peaks.size, dtype=np.bool_)
     for i in np.argsort(level[peaks])[::-1].tolist():
-        if all(abs(f[peaks[i]] - f[peaks[k]]) > reach[i] + reach[k] for k in kept):
-            kept.append(i)
-    return peaks[np.sort(kept)]
+        if free[i]:
+            kept[i] = True
+            free &= np.abs(at - at[i]) > reach[i]
+    return np.asarray(peaks[kept])
 
 
 def _nearest_neighbour(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
     """Distance of each of rising frequencies to the nearest other one."""
     gaps = np.concatenate([[np.inf], np.diff(frequency), [np.inf]])
-    return np.minimum(gaps[:-1], gaps[1:])
+    return np.asarray(np.minimum(gaps[:-1], gaps[1:]))

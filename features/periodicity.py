@@ -200,7 +200,7 @@ def _whitening_gain(bins: NDArray[np.complex128], spacing: float) -> NDArray[np.
 
 
 def _maxima(values: NDArray[np.float64], first: int) -> NDArray[np.intp]:
-    """Indices of local maxima from `first` on, the ends excluded."""
+    """Find the indices of local maxima from `first` on, the ends excluded."""
     first = max(first, 1)
     middle = values[first:-1]
     rising = (middle > values[first - 1 : -2]) & (middle >= values[first + 1 :])

@@ -37,7 +37,7 @@ from features.slip_pulses import (
     pulses_of,
     squared,
 )
-from features.spectra import Spectrum, SpectralShape, spectral_shape, welch
+from features.spectra import SpectralShape, Spectrum, spectral_shape, welch
 from features.time_course import TimeCourse, time_course
 
 if TYPE_CHECKING:

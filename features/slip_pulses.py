@@ -27,6 +27,7 @@ from features.conditioning import (
     forward,
     usable_limit,
 )
+from models.errors import ParameterError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -37,12 +38,14 @@ PULSE_BAND_FROM = 2_000.0
 """Lower limit of the band in which pulses are sought [Hz]; lower for a rate below 16 kHz."""
 
 _SMOOTHING = 0.0005
-"""Standard deviation of the Gaussian that smooths the squared envelope [s]."""
+"""Standard deviation of the Gaussian that smooths the squared envelope; their times [s]."""
 
 _PULSE_PROMINENCE_DB = 6.0
 """A pulse rises and falls by at least this much [dB]."""
 
 _LEAST_PULSES = 4
+
+_LEAST_RATE = 400.0
 
 _LEAST_HIGH_SHARE = 1e-6
 """Power of the high band, relative to the whole, below which it holds leakage only."""
@@ -108,7 +111,7 @@ def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
     Raises
     ------
     ParameterError
-        A signal that can't be analysed.
+        A signal that can't be analysed, or a rate below 400 Hz.
 
     Examples
     --------
@@ -117,16 +120,18 @@ def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
     >>> clicks[100::200] = 1.0
     >>> slips = acoustic_slips(clicks, 16e3)
     >>> round(slips.rate), round(slips.irregularity, 2)
-    (80, 0.0)
+    (81, 0.0)
     """
     x = checked_signal(signal, rate)
+    if rate < _LEAST_RATE:
+        raise ParameterError(f"rate is {rate:g} Hz; pulses need at least {_LEAST_RATE:g} Hz")
     mean = float(x.mean())
     x = x - mean
     if float(np.abs(x).max()) <= NOTHING * abs(mean) or not x.any():
         return _NO_PULSES
     transform = forward(x, rate)
     limit = min(WORKING_LIMIT, usable_limit(rate))
-    whole, _ = band_analytic(transform, ACOUSTIC_FROM * limit / WORKING_LIMIT, limit)
+    whole, _ = band_analytic(transform, ACOUSTIC_FROM, limit)
     high, high_rate = band_analytic(transform, pulse_band_from(limit), limit)
     return pulses_of(whole, high, high_rate)
 
@@ -214,13 +219,13 @@ def squared(analytic: NDArray[np.complex128]) -> NDArray[np.float64]:
 
 
 def _pulse_times(smooth: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Times of the maxima of a smoothed squared envelope [s]."""
+    """Find the maxima of a smoothed squared envelope; their times [s]."""
     top = float(smooth.max())
     if not top > 0.0:
         return np.empty(0)
     level = 10.0 * np.log10(np.maximum(smooth / top, 1e-12))
     peaks, _ = find_peaks(level, height=-_PULSE_RANGE_DB, prominence=_PULSE_PROMINENCE_DB)
-    return peaks / rate
+    return np.asarray(peaks / rate)
 
 
 def _rhythm(times: NDArray[np.float64]) -> tuple[float, float]:

@@ -64,25 +64,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
         try:
-            code = _run(arguments)
-            if sys.stdout is not None:
-                sys.stdout.flush()
+            return _told(arguments)
         except BrokenPipeError:
             _abandon_output()
             return _CLOSED_PIPE
-        return code
 
 
-def _run(arguments: list[str]) -> int:
+def _told(arguments: list[str]) -> int:
+    """Run the command; tell what goes wrong."""
     try:
-        parser = _parser(arguments)
-        if not arguments:
-            parser.print_help(sys.stderr)
-            return _USAGE_ERROR
-        options = parser.parse_args(_with_negative_values(arguments))
-        return load_command(options.command).run(options)
-    except SystemExit as stop:  # argparse: 0 after help, 2 after an error
-        return stop.code if isinstance(stop.code, int) else 0
+        code = _run(arguments)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+        return code
     except BushingNoiseError as error:
         return _failed(str(error))
     except MemoryError:
@@ -92,12 +86,30 @@ def _run(arguments: list[str]) -> int:
         return _INTERRUPTED
     except BrokenPipeError:
         raise
+    except OSError as error:
+        _abandon_output()
+        return _failed(f"{error.filename or 'output'}: {error.strerror or error}")
     except Exception as error:
         if sys.flags.dev_mode:
             raise
         place = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{Path(place.filename).name}, line {place.lineno}"
         return _failed(f"unexpected, please report: {type(error).__name__}: {error} ({where})")
+
+
+def _run(arguments: list[str]) -> int:
+    parser = _parser(arguments)
+    if not arguments:
+        parser.print_help(sys.stderr)
+        return _USAGE_ERROR
+    try:
+        options, unknown = parser.parse_known_args(_with_negative_values(arguments))
+    except SystemExit as stop:  # 0 after help, 2 after an error
+        return stop.code if isinstance(stop.code, int) else 0
+    if unknown:
+        options_there = f"see {_NAME} {options.command} --help"
+        return _failed(f"unrecognized: {' '.join(unknown)} ({options_there})")
+    return load_command(options.command).run(options)
 
 
 def _failed(message: str) -> int:
@@ -183,6 +195,6 @@ def _abandon_output() -> None:
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
-        except BrokenPipeError:
+        except OSError:
             os.dup2(nowhere, stream.fileno())
     os.close(nowhere)

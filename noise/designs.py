@@ -71,8 +71,10 @@ def random_design(rng: np.random.Generator) -> Design:
     support = float(rng.choice(_SUPPORTS))
     if rng.random() < 0.4:
         support = math.exp(rng.uniform(math.log(1000.0), math.log(10000.0)))
-    slowest = 0.1 if interference > 0.33e-3 else 0.5  # slow creaks have few slips a second
-    speed = math.exp(rng.uniform(math.log(slowest), math.log(15.0)))
+    if interference > 0.33e-3:  # slow creaks have few slips a second
+        speed = math.exp(rng.uniform(math.log(0.1), math.log(15.0)))
+    else:  # squeal lives in a narrow range of high speeds
+        speed = float(rng.uniform(0.5, 13.0))
     return Design(rig, speed, interference, support)
 
 

@@ -41,8 +41,8 @@ _TICKS |= {1000: "1k", 2000: "2k", 5000: "5k", 10000: "10k"}
 _DYNAMIC_RANGE = 100.0  # of a spectrum's axis [dB]
 _COLUMNS = 500  # steps across a panel that the eye can tell apart
 _SIZE = (5.2, 2.5)  # of a panel [inch]
-_AXES = (0.15, 0.215, 0.835, 0.665)
-_PREFIXES = ((5e-5, 1e6, "µ", "ppm "), (5e-2, 1e3, "m", "‰ "))  # of axes that end below
+_AXES = (0.19, 0.215, 0.785, 0.665)
+_PREFIXES = ((5e-4, 1e6, "µ", "ppm "), (0.5, 1e3, "m", "‰ "))  # of values below
 _STYLE = {
     "svg.fonttype": "path",  # the same on every machine, whatever fonts it has
     "svg.hashsalt": "bushing-noise",
@@ -152,8 +152,8 @@ def entry_figures(
 def _time_panel(trace: Trace, scale: Scale) -> Panel:
     kind = KINDS[trace.kind]
     middle, swing = trace.swing
-    swing = 1.08 * max(swing, scale.least_swing)
-    factor, unit = _display_unit(kind, abs(middle) + swing, calibrated=trace.calibrated)
+    swing = 1.08 * max(swing, scale.least_swing, kind.least_swing)
+    factor, unit = _display_unit(kind, scale.reach, calibrated=trace.calibrated)
     t = 1e3 * np.arange(trace.samples.size) / trace.rate
     length = 1e3 * trace.samples.size / trace.rate
     figure, axes = _panel(kind.name)
@@ -192,10 +192,11 @@ def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Pane
     axes.set_xlabel("Frequency [Hz]")
     axes.set_ylabel(f"dB re {density}")
     alt = f"Autospectrum of the {kind.name.lower()} from 20 Hz to 15 kHz: "
-    if levels.size and levels.max() >= bottom:
+    if levels.max(initial=-math.inf) >= bottom:
         peak = int(levels.argmax())
         alt += f"highest at {f[peak]:.0f} Hz with {levels[peak]:.0f} dB re {density}."
     else:
+        axes.text(0.5, 0.08, "below this axis", transform=axes.transAxes, ha="center")
         alt += f"all below {bottom:.0f} dB re {density}."
     return Panel(_svg(figure), alt)
 
@@ -213,9 +214,9 @@ def _caption(entry: Sequence[Trace]) -> str:
     )
 
 
-def _display_unit(kind: Kind, largest: float, *, calibrated: bool) -> tuple[float, str]:
+def _display_unit(kind: Kind, reach: float, *, calibrated: bool) -> tuple[float, str]:
     for below, factor, prefix, share in _PREFIXES:
-        if largest < below:
+        if reach < below:
             return factor, f"{prefix}{kind.unit}" if calibrated else f"{share}FS"
     return 1.0, kind.unit if calibrated else "FS"
 
@@ -240,7 +241,7 @@ def _panel(title: str) -> tuple[Figure, Axes]:
     axes = figure.add_axes(_AXES)
     axes.set_title(title, loc="left", fontweight="bold", color="#222222")
     # At the same place in every panel, however wide the numbers are.
-    axes.yaxis.set_label_coords(-0.125, 0.5)
+    axes.yaxis.set_label_coords(-0.19, 0.5)
     return figure, axes
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features import recording_features
+from features.registry import recording_features
 from features.harmonics import analyse_harmonics
 from noise.classifier import LABELS
 

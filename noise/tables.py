@@ -98,6 +98,8 @@ def write_table(
     """
     cells = [[_cell(row.get(column)) for column in columns] for row in rows]
     if path is None:
+        if sys.stdout is None:
+            raise ParameterError("standard output is closed; name a file for the table")
         _write_csv(sys.stdout, columns, cells)
         sys.stdout.flush()
         return

@@ -51,7 +51,7 @@ class Kind:
     density : str
         The reference of the autospectral density in words.
     least_swing : float
-        Half of what a time axis spans at least, in the channel's unit.
+        Taken for the swing of a signal that swings less, in the channel's unit.
     quiet : float
         A spectrum's axis ends no lower [dB].
     """
@@ -131,14 +131,22 @@ class Scale:
 
     Parameters
     ----------
-    least_swing : float
-        Half of what a time axis spans at least, in the samples' unit.
+    swing : float
+        How far the largest time history swings to either side of its middle, in the samples' unit.
+    reach : float
+        The largest value of all, in the samples' unit.
     top : float
         Upper end of the spectra's axis [dB].
     """
 
-    least_swing: float
+    swing: float
+    reach: float
     top: float
+
+    @property
+    def least_swing(self) -> float:
+        """Half of what a time axis spans at least, in the samples' unit."""
+        return _LEAST_SHARE * self.swing
 
 
 def traces(recording: Recording, segment: Segment, window: float) -> tuple[Trace, ...]:
@@ -229,16 +237,21 @@ def common_scales(shown: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
     >>> segment = Segment(channel="all", start=0.0, end=0.2, label="squeal",
     ...     probabilities={"squeal": 1.0}, frequency=1e3, level=91.0, level_dbfs=None)
     >>> common_scales(traces(tone, segment, 0.05))
-    {('pressure', True): Scale(least_swing=0.05..., top=90.0)}
+    {('pressure', True): Scale(swing=1.0, reach=1.0, top=90.0)}
     """
     scales: dict[tuple[str, bool], Scale] = {}
     for trace in shown:
         kind, key = KINDS[trace.kind], (trace.kind, trace.calibrated)
+        middle, swing = trace.swing
+        swing = max(swing, kind.least_swing)
         quiet = kind.quiet if trace.calibrated else _FULL_SCALE_QUIET
-        known = scales.get(key, Scale(kind.least_swing, quiet))
         _, levels = trace.levels
-        top = 10.0 * math.ceil((float(levels.max(initial=quiet - 10.0)) + _HEADROOM) / 10.0)
+        highest = float(levels.max(initial=-math.inf)) + _HEADROOM
+        top = 10.0 * math.ceil(max(highest, quiet) / 10.0)
+        known = scales.get(key, Scale(swing, abs(middle) + swing, top))
         scales[key] = Scale(
-            max(known.least_swing, _LEAST_SHARE * trace.swing[1]), max(known.top, top)
+            swing=max(known.swing, swing),
+            reach=max(known.reach, abs(middle) + swing),
+            top=max(known.top, top),
         )
     return scales

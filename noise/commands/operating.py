@@ -207,3 +207,11 @@ def _read_log(path: Path) -> tuple[list[float], list[float]]:
             time.append(moment)
             speed.append(value)
     return time, speed
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

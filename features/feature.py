@@ -1,0 +1,64 @@
+"""What a feature is: one number, its unit, its definition, its source, and how it is computed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from features.prepared import ACOUSTIC_KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from features.prepared import Prepared
+
+__all__ = ["Feature"]
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One number that describes a signal.
+
+    Parameters
+    ----------
+    name : str
+    unit : str
+        "1" for pure numbers.
+    definition : str
+        In one line.
+    source : str
+        Where the definition comes from.
+    compute : callable
+        Of a `Prepared` signal.
+    silent : float, optional
+        Value for a signal without content; None where `compute` knows itself.
+    calibrated : bool
+        Whether it needs a calibrated signal; all others do not depend on the gain.
+    kinds : tuple of str
+        Kinds of channel it applies to.
+
+    Examples
+    --------
+    >>> from features.prepared import prepare
+    >>> length = Feature("length", "s", "Duration.", "-", lambda p: p.samples.size / p.rate, None)
+    >>> length(prepare([0.0] * 480, 48e3, "pressure"))
+    0.01
+    """
+
+    name: str
+    unit: str
+    definition: str
+    source: str
+    compute: Callable[[Prepared], float]
+    silent: float | None = math.nan
+    calibrated: bool = False
+    kinds: tuple[str, ...] = ACOUSTIC_KINDS
+
+    def __call__(self, signal: Prepared) -> float:
+        """Value for a signal; NaN where it is undefined."""
+        if self.calibrated and not signal.calibrated:
+            return math.nan
+        if signal.silent and self.silent is not None:
+            return self.silent
+        return float(self.compute(signal))

@@ -1,0 +1,105 @@
+"""The label table: one row a segment, linked to the condition it was recorded at."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.classifier import LABELS
+
+if TYPE_CHECKING:
+    from models.recording import Recording
+    from noise.segments import Segment
+
+__all__ = ["COLUMNS", "error_row", "label_rows"]
+
+_CONDITIONS = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad")
+
+COLUMNS = (
+    "file", "channel", "start_s", "end_s", "label",
+    *(f"p_{label}" for label in LABELS),
+    "frequency_hz", "level_db", "level_dbfs", "calibrated",
+    *(f"{name}{part}" for name in _CONDITIONS for part in ("", "_low", "_high", "_source")),
+    "material", "material_source", "error",
+)  # fmt: skip
+"""Columns of the table, all of them always there."""
+
+
+def label_rows(name: str, recording: Recording, segments: list[Segment]) -> list[dict[str, object]]:
+    """Return one row for each segment.
+
+    Parameters
+    ----------
+    name : str
+        File as found, relative to the folder named.
+    recording : Recording
+        Where the shaft's speed was recorded, each segment gets its mean over that segment.
+    segments : list of Segment
+
+    Returns
+    -------
+    list of dict
+        By `COLUMNS`; a condition's source is ``logged`` or ``missing``, and its bounds are empty.
+        The bolted clamp's support stiffness is ``inf``.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> from noise.segments import Segment
+    >>> turning = Recording(np.array([[0.0, 1.0, 2.0, 3.0]]), 2.0, (Channel("angle"),))
+    >>> part = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
+    >>> row, = label_rows("run07.wav", turning, [part])
+    >>> row["speed_rad_s"], row["speed_rad_s_source"], row["material_source"]
+    (2.0, 'logged', 'missing')
+    """
+    return [_row(name, recording, segment) for segment in segments]
+
+
+def error_row(name: str, message: str) -> dict[str, object]:
+    """Return the row of a file that cannot be read."""
+    return {**dict.fromkeys(COLUMNS), "file": name, "error": message}
+
+
+def _row(name: str, recording: Recording, segment: Segment) -> dict[str, object]:
+    condition = recording.condition
+    row: dict[str, object] = {
+        **dict.fromkeys(COLUMNS),
+        "file": name,
+        "channel": segment.channel,
+        "start_s": round(segment.start, 6),
+        "end_s": round(segment.end, 6),
+        "label": segment.label,
+        **{f"p_{label}": round(p, 6) for label, p in segment.probabilities.items()},
+        "frequency_hz": _rounded(segment.frequency, 2),
+        "level_db": _rounded(segment.level, 2),
+        "level_dbfs": _rounded(segment.level_dbfs, 2),
+        "calibrated": recording.calibrated,
+        "material": condition.material,
+        "material_source": "logged" if condition.material else "missing",
+    }
+    logged = (
+        _segment_speed(recording, segment),
+        None if condition.interference is None else 1e3 * condition.interference,
+        condition.support_stiffness,
+    )
+    for column, value in zip(_CONDITIONS, logged, strict=True):
+        row[column] = _rounded(value, 6)
+        row[f"{column}_source"] = "missing" if value is None else "logged"
+    return row
+
+
+def _segment_speed(recording: Recording, segment: Segment) -> float | None:
+    """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set."""
+    first, last = round(segment.start * recording.rate), round(segment.end * recording.rate)
+    if recording.calibrated and "speed" in recording:
+        return float(np.mean(recording["speed"][first:last]))
+    if recording.calibrated and "angle" in recording and last - first > 1:
+        time = np.arange(last - first) / recording.rate
+        return float(np.polyfit(time, recording["angle"][first:last], 1)[0])
+    return recording.condition.speed
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    return None if value is None or math.isnan(value) else round(value, digits)
