@@ -35,6 +35,11 @@ _PERIODS = 2.0
 _WHITENING = 0.5
 """Share of the level differences between one-third octaves that whitening removes."""
 
+_SIXTH_OCTAVE = 2.0 ** (1.0 / 6.0) - 1.0
+
+_LEAST_REACH = 20.0
+"""Half the width over which whitening averages where one-third octaves are narrower [Hz]."""
+
 _OVERSAMPLING = 2
 _TRACK_OVERSAMPLING = 4
 
@@ -183,18 +188,16 @@ def track_periods(
 
 
 def _whitening_gain(bins: NDArray[np.complex128], spacing: float) -> NDArray[np.float64]:
-    """Gain that brings one-third octaves nearer to each other; 0 Hz is removed."""
+    """Gain that brings neighbouring one-third octaves nearer to each other; 0 Hz is removed."""
     power = bins.real**2 + bins.imag**2
     below = np.append(0.0, np.cumsum(power))
     index = np.arange(power.size)
-    reach = np.maximum(index * 2.0 ** (1.0 / 6.0) - index, 20.0 / spacing)
-    first = np.maximum(index - reach, 0).astype(np.intp)
-    last = np.minimum(index + reach + 1, power.size).astype(np.intp)
-    smooth = (below[last] - below[first]) / (last - first)
-    least = 1e-12 * float(smooth.max())
-    gain: NDArray[np.float64] = np.maximum(smooth, max(least, np.finfo(float).tiny)) ** (
-        -0.5 * _WHITENING
-    )
+    reach = np.maximum(index * _SIXTH_OCTAVE, _LEAST_REACH / spacing)
+    start = np.maximum(index - reach, 0).astype(np.intp)
+    stop = np.minimum(index + reach + 1, power.size).astype(np.intp)
+    smooth = (below[stop] - below[start]) / (stop - start)
+    least = max(1e-12 * float(smooth.max()), np.finfo(float).tiny)
+    gain = np.asarray(np.maximum(smooth, least) ** (-0.5 * _WHITENING))
     gain[0] = 0.0
     return gain
 

@@ -65,8 +65,9 @@ class Pulses:
     rate : float
         Pulses in a second, 0 for fewer than two.
     irregularity : float
-        Standard deviation of the intervals' logarithms about their trend: 0 for a clock whatever
-        its glide, 1.3 for raindrops (a Poisson process). NaN for fewer than four pulses.
+        Median magnitude of the logarithm of each interval's ratio to the one before: 0 for a clock
+        even where its rate glides or a pulse is missing, 1.1 (the logarithm of 3) for a Poisson
+        process. NaN for fewer than four pulses.
     glide : float
         Trend of the rate's logarithm [1/s]: 0.7 doubles the rate in a second. NaN likewise.
     crest_factor : float
@@ -229,12 +230,11 @@ def _pulse_times(smooth: NDArray[np.float64], rate: float) -> NDArray[np.float64
 
 
 def _rhythm(times: NDArray[np.float64]) -> tuple[float, float]:
-    """Irregularity and glide [1/s] of pulses: deviation of log intervals from a line, its slope."""
+    """Irregularity and glide [1/s] of pulses, from the logarithms of their intervals."""
     if times.size < _LEAST_PULSES:
         return math.nan, math.nan
     interval = np.log(np.diff(times))
     middle = 0.5 * (times[1:] + times[:-1])
     middle = middle - middle.mean()
     slope = float(middle @ interval / (middle @ middle))
-    residual = interval - interval.mean() - slope * middle
-    return math.sqrt(float(residual @ residual) / (interval.size - 2)), -slope
+    return float(np.median(np.abs(np.diff(interval)))), -slope

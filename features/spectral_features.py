@@ -48,10 +48,6 @@ def _strongest_line(p: Prepared) -> float:
     return float(p.lines.frequency[0]) if p.lines.frequency.size else math.nan
 
 
-def _prominence(p: Prepared) -> float:
-    return float(p.lines.prominence[0]) if p.lines.frequency.size else 0.0
-
-
 def _second_line(p: Prepared) -> float:
     power = p.lines.power
     if power.size == 0:
@@ -199,14 +195,6 @@ SPECTRAL_FEATURES = (
         "Share of the power in all lines.",
         _NOISES,
         lambda p: p.lines.share,
-        silent=0.0,
-    ),
-    Feature(
-        "line_prominence",
-        "dB",
-        "Height of the strongest line above the local floor, 0 without lines.",
-        _THIS,
-        _prominence,
         silent=0.0,
     ),
     Feature(

@@ -22,19 +22,42 @@ _THIS = "bushing-noise"
 
 TEMPORAL_FEATURES = (
     Feature(
-        "tonality",
+        "tone_share",
         "1",
         "Share of the power in the strongest line of each 64 ms, mean by energy.",
-        _THIS,
-        lambda p: p.course.tonality,
+        _NOISES,
+        lambda p: p.course.tone_share,
         silent=0.0,
     ),
     Feature(
-        "tonal_continuity",
+        "tone_continuity",
         "1",
         "The same, counting lines still there (within a semitone) in the next 64 ms.",
         _THIS,
         lambda p: p.course.continuity,
+    ),
+    Feature(
+        "tone_count",
+        "1",
+        "Lines in each 64 ms, within 20 dB of the strongest, mean by energy.",
+        _NOISES,
+        lambda p: p.course.tone_count,
+        silent=0.0,
+    ),
+    Feature(
+        "second_tone",
+        "dB",
+        "Level of the second line of each 64 ms re the strongest, at least -20, mean by energy.",
+        _NOISES,
+        lambda p: p.course.second_tone,
+    ),
+    Feature(
+        "short_periodicity",
+        "1",
+        "Autocorrelation of each 64 ms at its fundamental's period, mean by energy.",
+        "Boersma 1993",
+        lambda p: p.course.short_periodicity,
+        silent=0.0,
     ),
     Feature(
         "fundamental_wander",
@@ -103,7 +126,7 @@ TEMPORAL_FEATURES = (
     Feature(
         "pulse_irregularity",
         "1",
-        "Deviation of the pulses' log intervals from their trend; 0 for a clock, 1.3 for rain.",
+        "Median log ratio of neighbouring intervals; 0 for a clock, 1.1 for a Poisson process.",
         _THIS,
         lambda p: p.pulses.irregularity,
     ),

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy import ndimage
 
 from features.periodicity import track_periods
 from features.spectra import segment_powers
@@ -25,11 +26,20 @@ __all__ = ["TimeCourse", "time_course"]
 _SEGMENT = 0.064
 """Length of a segment [s]."""
 
-_LINE_BINS = 2
+_LOBE = 2
 """Bins on either side of a maximum that belong to it: the Hann window's main lobe."""
 
 _SAME_TONE = 1.0 / 12.0
 """A tone that moves less than this between segments is the same tone [octave]."""
+
+_TONE_DB = 13.0
+"""A tone stands this far above the floor of its segment: noise does so once in 5e8 bins."""
+
+_TONE_RANGE_DB = 20.0
+"""Tones weaker than the strongest of the segment by more than this do not count [dB]."""
+
+_FLOOR_BINS = 32
+"""Bins in a block whose median is the floor."""
 
 _VOICED = 0.5
 """Autocorrelation from which a segment counts as having a fundamental."""
@@ -40,31 +50,44 @@ _LOWEST_FUNDAMENTAL = 60.0
 _QUIETEST_DB = -60.0
 """Segments count as at least this loud, relative to the loudest [dB]."""
 
+_LEAST_VOICED = 4
 _BANDS_PER_OCTAVE = 3
 _NORMAL_CONSISTENT = 1.4826
+_TINY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True)
 class TimeCourse:
-    """Changes over the length of a signal; NaN where it holds a single segment.
+    """Changes over the length of a signal, segments counting by their energy.
 
     Parameters
     ----------
-    tonality : float
-        Share of the power in the strongest line of each segment, mean by energy, 0 to 1.
-    continuity : float
-        The same, counting only tones that are still there (within a semitone) in the next segment.
+    tone_share : float
+        Mean share of the power in the strongest line of a segment, 0 to 1.
+    tone_count : float
+        Mean number of lines in a segment, within 20 dB of its strongest and 13 dB above its floor.
+    second_tone : float
+        Mean level of a segment's second line relative to its strongest [dB], at least -20.
+    short_periodicity : float
+        Mean autocorrelation of a segment at its fundamental's period, 0 to 1.
     fundamental_wander : float
-        Robust standard deviation of the fundamental [octave]; NaN unless two segments have one.
+        Robust standard deviation of the fundamental [octave]; NaN unless four segments have one.
+    continuity : float
+        As `tone_share`, counting only tones that are still there (within a semitone) in the next
+        segment; NaN for a single one.
     flux : float
-        Share of the power that changes its one-third-octave band between neighbouring segments.
+        Share of the power that changes its one-third octave between neighbouring segments; NaN
+        likewise.
     level_variation : float
-        Standard deviation of the segments' levels [dB].
+        Standard deviation of the segments' levels [dB]; NaN likewise.
     """
 
-    tonality: float
-    continuity: float
+    tone_share: float
+    tone_count: float
+    second_tone: float
+    short_periodicity: float
     fundamental_wander: float
+    continuity: float
     flux: float
     level_variation: float
 
@@ -89,9 +112,9 @@ def time_course(x: NDArray[np.float64], rate: float, *, low: float, high: float)
     --------
     >>> import numpy as np
     >>> t = np.arange(16000) / 16e3
-    >>> steady = time_course(np.sin(2 * np.pi * 1000 * t), 16e3, low=150.0, high=7e3)
-    >>> round(steady.tonality, 2), round(steady.continuity, 2), round(steady.level_variation, 2)
-    (1.0, 1.0, 0.0)
+    >>> glide = time_course(np.sin(2 * np.pi * (2500 + 300 * t) * t), 16e3, low=150.0, high=7e3)
+    >>> round(glide.tone_share, 2), round(glide.continuity, 2), round(glide.tone_count, 2)
+    (1.0, 1.0, 1.0)
     """
     length = max(16, 2 * round(0.5 * _SEGMENT * rate))
     power, _ = segment_powers(x, min(length, x.size), transform_length=length)
@@ -100,51 +123,71 @@ def time_course(x: NDArray[np.float64], rate: float, *, low: float, high: float)
     power[:, :first] = 0.0
     power[:, last + 1 :] = 0.0
     energy = power.sum(axis=1)
-    whole = float(energy.sum())
-    if not whole > 0.0:
-        return TimeCourse(0.0, math.nan, math.nan, math.nan, math.nan)
-    weight = energy / whole
+    weight = energy / max(float(energy.sum()), _TINY)
     tone, share = _strongest_tones(power, energy)
-    tonality = float(weight @ share)
-    wander = _wander(power, spacing, low, weight)
-    if energy.size < 2:
-        return TimeCourse(tonality, math.nan, wander, math.nan, math.nan)
-    pairs = np.sqrt(weight[1:] * weight[:-1])
-    pairs = pairs / max(float(pairs.sum()), np.finfo(float).tiny)
-    stays = np.abs(np.diff(np.log2(tone))) < _SAME_TONE
-    continuity = float(pairs @ (np.sqrt(share[1:] * share[:-1]) * stays))
-    edges = _band_edges(first, last)
-    floor = max(float(energy.max()) * 1e-12, np.finfo(float).tiny)
-    bands = np.add.reduceat(power[:, : last + 1], edges, axis=1)
-    bands = bands / np.maximum(energy, floor)[:, np.newaxis]
-    flux = float(pairs @ (0.5 * np.abs(np.diff(bands, axis=0)).sum(axis=1)))
-    quietest = float(energy.max()) * 10.0 ** (0.1 * _QUIETEST_DB)
-    level_variation = float(np.std(10.0 * np.log10(np.maximum(energy, quietest))))
-    return TimeCourse(tonality, continuity, wander, flux, level_variation)
+    count, second = _other_tones(power[:, first : last + 1])
+    frequency, strength = track_periods(
+        power, spacing, lowest=max(_LOWEST_FUNDAMENTAL, 3.0 * spacing)
+    )
+    continuity = flux = level_variation = math.nan
+    if energy.size > 1:
+        pairs = np.sqrt(weight[1:] * weight[:-1])
+        pairs = pairs / max(float(pairs.sum()), _TINY)
+        stays = np.abs(np.diff(np.log2(tone))) < _SAME_TONE
+        continuity = float(pairs @ (np.sqrt(share[1:] * share[:-1]) * stays))
+        bands = np.add.reduceat(power[:, : last + 1], _band_edges(first, last), axis=1)
+        bands = bands / np.maximum(energy, _TINY)[:, np.newaxis]
+        flux = float(pairs @ (0.5 * np.abs(np.diff(bands, axis=0)).sum(axis=1)))
+        quietest = max(float(energy.max()) * 10.0 ** (0.1 * _QUIETEST_DB), _TINY)
+        level_variation = float(np.std(10.0 * np.log10(np.maximum(energy, quietest))))
+    return TimeCourse(
+        tone_share=float(weight @ share),
+        tone_count=float(weight @ count),
+        second_tone=float(weight @ second),
+        short_periodicity=float(weight @ strength),
+        fundamental_wander=_wander(frequency, strength, weight),
+        continuity=continuity,
+        flux=flux,
+        level_variation=level_variation,
+    )
 
 
 def _strongest_tones(
     power: NDArray[np.float64], energy: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Position of each segment's strongest line in bins, and its share of the segment's power."""
-    top = np.clip(power.argmax(axis=1), _LINE_BINS, power.shape[1] - 1 - _LINE_BINS)
-    bins = top[:, np.newaxis] + np.arange(-_LINE_BINS, _LINE_BINS + 1)
+    top = np.clip(power.argmax(axis=1), _LOBE, power.shape[1] - 1 - _LOBE)
+    bins = top[:, np.newaxis] + np.arange(-_LOBE, _LOBE + 1)
     lobe = np.take_along_axis(power, bins, axis=1)
     sums = lobe.sum(axis=1)
-    safe = np.maximum(sums, np.finfo(float).tiny)
-    tone = np.where(sums > 0.0, (lobe * bins).sum(axis=1) / safe, top)
-    return tone, sums / np.maximum(energy, safe)
+    tone = np.where(sums > 0.0, (lobe * bins).sum(axis=1) / np.maximum(sums, _TINY), top)
+    return tone, sums / np.maximum(energy, _TINY)
+
+
+def _other_tones(
+    power: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Count the lines in each segment; level of the second re the first [dB]."""
+    n_bins = power.shape[1]
+    size = min(_FLOOR_BINS, n_bins)
+    blocks = power[:, : n_bins // size * size].reshape(power.shape[0], -1, size)
+    block = np.minimum(np.arange(n_bins) // size, blocks.shape[1] - 1)
+    floor = np.median(blocks, axis=2)[:, block] / math.log(2.0)
+    maxima = ndimage.maximum_filter1d(power, 2 * _LOBE + 1, axis=1, mode="nearest")
+    top = power.max(axis=1, keepdims=True)
+    least = np.maximum(top * 10.0 ** (-0.1 * _TONE_RANGE_DB), floor * 10.0 ** (0.1 * _TONE_DB))
+    heights = np.where((power == maxima) & (power >= least) & (power > 0.0), power, 0.0)
+    count = np.count_nonzero(heights, axis=1).astype(np.float64)
+    second = np.partition(heights, -2, axis=1)[:, -2] / np.maximum(top[:, 0], _TINY)
+    return count, 10.0 * np.log10(np.maximum(second, 10.0 ** (-0.1 * _TONE_RANGE_DB)))
 
 
 def _wander(
-    power: NDArray[np.float64], spacing: float, low: float, weight: NDArray[np.float64]
+    frequency: NDArray[np.float64], strength: NDArray[np.float64], weight: NDArray[np.float64]
 ) -> float:
     """Robust deviation of the segments' fundamentals about their median [octave]."""
-    frequency, strength = track_periods(
-        power, spacing, lowest=max(_LOWEST_FUNDAMENTAL, 3.0 * spacing, 0.25 * low)
-    )
     voiced = (strength >= _VOICED) & (weight > 0.1 * weight.max())
-    if np.count_nonzero(voiced) < 2:
+    if np.count_nonzero(voiced) < _LEAST_VOICED:
         return math.nan
     pitch, weight = np.log2(frequency[voiced]), weight[voiced]
     return _NORMAL_CONSISTENT * _weighted_median(

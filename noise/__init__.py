@@ -1,1 +1,72 @@
-"""noise."""
+"""bushing-noise: simulate, hear, label and explain the noise of a rubber bushing.
+
+>>> import noise
+>>> rig = noise.load_material_rig("fluorocarbon")
+>>> run = noise.simulate(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0)
+>>> [segment.label for segment in noise.label_recording(run.recording, noise.load_classifier())]
+['squeal']
+
+Names are loaded when they are first used, so that ``import noise`` itself is quick.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+_EXPORTS = {
+    "models.condition": ("FIXED", "Condition"),
+    "models.errors": ("BushingNoiseError", "ParameterError", "RecordingError"),
+    "models.recording": ("Channel", "Recording"),
+    "models.rig_file": ("load_material_rig", "load_rig", "material_names"),
+    "noise.classifier": ("LABELS", "Classifier", "load_classifier", "train"),
+    "noise.labels": ("Segment", "file_label", "label_recording"),
+    "noise.recordings": ("find_recordings", "read_recording", "write_recording"),
+    "noise.report": ("ReportEntry", "write_report"),
+    "sim.acquisition": ("Acquisition",),
+    "sim.run": ("Run", "simulate"),
+    "sim.shaft": ("ConstantSpeed", "LoggedSpeed", "Oscillation", "SpeedRamp"),
+}
+"""What a notebook finds here, by the module it lives in."""
+
+_HOME = {name: module for module, names in _EXPORTS.items() for name in names}
+
+__all__ = sorted(_HOME)  # noqa: PLE0605
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+def _refuse_hidden_packages() -> None:
+    """Say so where a file of the user's own has the name of one of our packages."""
+    ours = Path(__file__).resolve().parent.parent
+    for name in ("models", "sim", "features"):
+        spec = find_spec(name)
+        if spec is None:
+            raise ImportError(
+                f"package {name!r} of bushing-noise is missing; install bushing-noise again",
+                name=name,
+            )
+        places = [spec.origin] if spec.origin else list(spec.submodule_search_locations or ())
+        found = Path(places[0]).resolve()
+        if ours / name not in (found, found.parent):
+            raise ImportError(
+                f"{found} hides the package {name!r} of bushing-noise; rename it, or work in a "
+                f"folder without it",
+                name=name,
+                path=str(found),
+            )
+
+
+_refuse_hidden_packages()

@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.recording import Channel, Recording
 from noise.atomic import atomic
 from noise.full_scale import REFERENCE_PRESSURE
 from noise.sidecar import sidecar_text
@@ -31,6 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
+
+    from models.recording import Channel, Recording
 
 __all__ = ["BITS", "audible", "common_full_scale", "least_full_scale", "write_audio"]
 
@@ -66,6 +67,7 @@ def audible(recording: Recording, rate: int = 48000) -> NDArray[np.float64]:
 
     Examples
     --------
+    >>> from models.recording import Channel, Recording
     >>> run = Recording(np.ones((1, 3000)), 30e3, (Channel("pressure"),))
     >>> audible(run).shape, audible(run, 44100).shape
     ((4800,), (4410,))
@@ -161,6 +163,7 @@ def write_audio(
     Examples
     --------
     >>> import tempfile
+    >>> from models.recording import Channel, Recording
     >>> from noise.recordings import read_recording
     >>> run = Recording(np.full((1, 480), 0.25), 48e3, (Channel("pressure"),))
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -12,7 +12,6 @@ Only the command that is called is imported, so that help is there at once.
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import sys
 import traceback
@@ -22,11 +21,10 @@ from typing import TYPE_CHECKING, NoReturn
 
 from models.errors import BushingNoiseError
 from noise.commands import COMMANDS, load_command
-from noise.progress import note, say
+from noise.progress import discard, note, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import TextIO
 
 __all__ = ["main"]
 
@@ -66,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         try:
             return _told(arguments)
         except BrokenPipeError:
-            _abandon_output()
+            discard(sys.stdout)
             return _CLOSED_PIPE
 
 
@@ -87,7 +85,7 @@ def _told(arguments: list[str]) -> int:
     except BrokenPipeError:
         raise
     except OSError as error:
-        _abandon_output()
+        discard(sys.stdout)
         return _failed(f"{error.filename or 'output'}: {error.strerror or error}")
     except Exception as error:
         if sys.flags.dev_mode:
@@ -178,23 +176,5 @@ def _with_negative_values(arguments: Sequence[str]) -> list[str]:
     return tied
 
 
-def _show_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
+def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
     note(str(message))
-
-
-def _abandon_output() -> None:
-    """Point the standard streams nowhere, so that nothing is left to fail when Python ends."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    for stream in (sys.stdout, sys.stderr):
-        try:
-            stream.flush()
-        except OSError:
-            os.dup2(nowhere, stream.fileno())
-    os.close(nowhere)

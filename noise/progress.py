@@ -7,13 +7,16 @@ that is closed is no reason to stop.
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Sized
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from typing import TextIO
 
-__all__ = ["counted", "note", "say", "track"]
+__all__ = ["counted", "discard", "note", "say", "track"]
 
 _Item = TypeVar("_Item")
 
@@ -28,12 +31,23 @@ def say(text: str) -> None:
     if sys.stderr is None:  # closed by the caller
         return
     line = " ".join(text.split("\n"))
-    if "tqdm" in sys.modules:
-        from tqdm import tqdm
+    try:
+        if "tqdm" in sys.modules:
+            from tqdm import tqdm
 
-        tqdm.write(line, file=sys.stderr)
-    else:
-        print(line, file=sys.stderr, flush=True)  # noqa: T201
+            tqdm.write(line, file=sys.stderr)
+        else:
+            sys.stderr.write(line + "\n")
+        sys.stderr.flush()
+    except OSError:  # nobody reads on; the work is worth going on with
+        discard(sys.stderr)
+
+
+def discard(stream: TextIO) -> None:
+    """Point a stream that can no longer be written nowhere, so that nothing is left to fail."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)
 
 
 def note(text: str) -> None:
@@ -82,7 +96,7 @@ def track(
     >>> list(track([1, 2], "adding", unit="number"))
     [1, 2]
     """
-    if total is None and hasattr(items, "__len__"):
+    if total is None and isinstance(items, Sized):
         total = len(items)
     if sys.stderr is None or not sys.stderr.isatty():
         say(doing if total is None else f"{doing} {counted(total, unit)}")

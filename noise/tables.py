@@ -61,7 +61,7 @@ def check_table_path(path: str | Path | None) -> None:
         raise ParameterError(f"{path}: is a folder; name a file to write")
     if ending == ".parquet":
         try:
-            import pyarrow  # noqa: F401
+            import pyarrow as pa  # noqa: F401
         except ImportError:
             raise ParameterError(
                 f"{path}: Parquet needs pyarrow, which is not installed; "
@@ -145,14 +145,14 @@ def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Seque
 
 
 def _write_parquet(path: Path, columns: Sequence[str], rows: Sequence[Sequence[Cell]]) -> None:
-    import pyarrow
+    import pyarrow as pa
     from pyarrow import parquet
 
     arrays = {
-        column: pyarrow.array([_utf8(row[index]) for row in rows])
+        column: pa.array([_utf8(row[index]) for row in rows])
         for index, column in enumerate(columns)
     }
-    parquet.write_table(pyarrow.table(arrays), path)
+    parquet.write_table(pa.table(arrays), path)
 
 
 def _utf8(value: Cell) -> Cell:

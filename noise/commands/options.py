@@ -84,13 +84,13 @@ def number(
 
 
 def add_seed(parser: ArgumentParser, use: str) -> None:
-    """Add ``--seed``, which all commands take; `use` says what hangs on it."""
+    """Add ``--seed``, which all commands take; `use` says what it is for."""
     parser.add_argument(
         "--seed",
         type=_whole_number,
         default=0,
         metavar="N",
-        help=f"whole number from which {use} (default: 0)",
+        help=f"{use} (a whole number; default: 0)",
     )
 
 
@@ -220,9 +220,7 @@ def _swing(text: str) -> Swing:
             finite = math.isfinite(amplitude) and math.isfinite(frequency)
             if finite and amplitude > 0.0 and frequency > 0.0:
                 return Swing(amplitude, frequency)
-    raise ArgumentTypeError(
-        f"is {text!r}, expected degrees and Hz, both above 0, such as 15,2"
-    )
+    raise ArgumentTypeError(f"is {text!r}, expected degrees and Hz, both above 0, such as 15,2")
 
 
 def _support_stiffness(text: str) -> float:

@@ -1,0 +1,48 @@
+"""``bushing-noise demo``: the whole chain, once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.commands import options as opt
+from noise.commands.targets import check_target
+from noise.progress import say
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+
+__all__ = ["configure", "run"]
+
+_DEFAULT_OUT = "bushing-noise-demo"
+
+
+def configure(parser: ArgumentParser) -> None:
+    """Declare description and options."""
+    parser.description = (
+        "Run the whole chain: simulate a creak, a squawk, a squeal and a silent run, make them "
+        "audible, compute their features, label them, and write a report. The folder then holds "
+        "recordings/, audio/, features.csv, labels.csv and report.html."
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path(_DEFAULT_OUT),
+        metavar="FOLDER",
+        help=f"folder for the results (default: {_DEFAULT_OUT})",
+    )
+    opt.add_seed(parser, "seed of the sensors' noise")
+
+
+def run(options: Namespace) -> int:
+    """Run the demonstration."""
+    if options.out.exists() and not options.out.is_dir():
+        raise ParameterError(f"--out {options.out}: is a file; name a folder")
+    check_target(options.out)
+    say(f"writing the demonstration into {options.out}")
+    from noise.demo import run_demo
+
+    run_demo(options.out, seed=options.seed)
+    print(options.out / "report.html")
+    return 0
