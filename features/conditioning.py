@@ -5,7 +5,7 @@ So all that describes the shape of a noise in frequency or time is computed from
 `WORKING_LIMIT`, brought to `WORKING_RATE` first; what lies above has features of its own. One
 Fourier transform of the whole signal gives every band by masking bins and transforming back to a
 length just long enough for it, which is resampling and filtering in one. A block cut from a longer
-recording does not end where it began: it is faded in and out over 5 ms before the transform, so
+recording does not end where it began: it is faded in and out over 20 ms before the transform, so
 that the cut makes no click, and what was faded is cut off from every band. Continuing the block
 beyond its ends instead was tried: mirrored, a tone gets a kink, and turned about the last sample,
 noise gets a step; either is louder than what a quiet band holds.
@@ -54,10 +54,10 @@ USABLE_SHARE = WORKING_LIMIT / WORKING_RATE
 NOTHING = 1e-9
 """A signal that varies less than this, relative to its mean, is constant but for rounding."""
 
-_FADE = 0.005
-"""Length of the fades that are cut off again [s] ..."""
+_FADE = 0.02
+"""Length of the fades that are cut off again [s]: keeps a hum of 50 Hz 60 dB below itself there ..."""
 
-_FADE_SHARE = 0.125
+_FADE_SHARE = 0.1
 """... but at most this share of the signal each."""
 
 _EDGE = 0.2
@@ -140,7 +140,7 @@ def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
 
 
 def forward(signal: NDArray[np.float64], rate: float) -> Transform:
-    """Transform a signal faded in and out over 5 ms, or an eighth of its length.
+    """Transform a signal faded in and out over 20 ms, or a tenth of its length each.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def forward(signal: NDArray[np.float64], rate: float) -> Transform:
     --------
     >>> import numpy as np
     >>> forward(np.zeros(4800), 48e3).n_samples
-    4320
+    3840
     """
     n = signal.size
     lead = min(int(_FADE_SHARE * n), round(_FADE * rate))
@@ -244,13 +244,16 @@ def _mask(
     above = min(high * 0.5 / USABLE_SHARE, 0.5 * transform.rate)
     first = math.ceil((1.0 - _EDGE) * low / spacing)
     last = min(math.floor(above / spacing), n_bins - 1)
-    frequency = np.arange(first, last + 1) * spacing
-    mask = np.ones(frequency.size)
-    if low > 0:
-        rising = np.clip((frequency - (1.0 - _EDGE) * low) / (_EDGE * low), 0.0, 1.0)
-        mask = np.sin(0.5 * np.pi * rising) ** 2
-    falling = np.clip((above - frequency) / (above - high), 0.0, 1.0)
-    return first, mask * np.sin(0.5 * np.pi * falling) ** 2
+    mask = np.ones(last + 1 - first)
+    full = min(math.ceil(low / spacing), last)
+    if full > first:
+        rising = (np.arange(first, full) * spacing / low - (1.0 - _EDGE)) / _EDGE
+        mask[: full - first] = np.sin(0.5 * np.pi * rising) ** 2
+    full = max(math.floor(high / spacing), first)
+    if full < last:
+        falling = (above - np.arange(full + 1, last + 1) * spacing) / (above - high)
+        mask[full + 1 - first :] *= np.sin(0.5 * np.pi * falling) ** 2
+    return first, mask
 
 
 def _interior(transform: Transform, ratio: float) -> slice:

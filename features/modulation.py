@@ -26,6 +26,9 @@ MODULATION_BAND = (2.0, 400.0)
 _LEAST_DEPTH = 0.01
 """Depth below which a rate means nothing: the ripple that filters leave."""
 
+_LEAST_STRENGTH = 0.2
+"""Autocorrelation below which an envelope counts as not repeating: that of noise reaches it."""
+
 
 class Modulation(NamedTuple):
     """Modulation of an envelope.
@@ -77,5 +80,5 @@ def modulation(envelope: NDArray[np.float64], rate: float) -> Modulation:
     depth = float(np.std(beats)) / mean
     if depth < _LEAST_DEPTH:
         return Modulation(math.nan, 0.0, depth)
-    period = strongest_period(beats, beat_rate, lowest=low, highest=high, whiten=False)
-    return Modulation(period.frequency, period.strength, depth)
+    rate, strength = strongest_period(beats, beat_rate, lowest=low, highest=high, whiten=False)
+    return Modulation(rate if strength >= _LEAST_STRENGTH else math.nan, strength, depth)

@@ -53,7 +53,7 @@ ACOUSTIC_KINDS = ("pressure", "acceleration")
 TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
 """Bands above the common limit [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
 
-_LEAST_IN_BAND = 1e-9
+_LEAST_IN_BAND = 1e-5
 """Power of the band described, relative to the whole, below which it holds leakage only."""
 
 _LEVEL_RESOLUTION = 25.0

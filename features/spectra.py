@@ -29,6 +29,9 @@ DEFAULT_RESOLUTION = 4.0
 
 _ROLL_OFF = 0.85
 _HANN_NOISE_BANDWIDTH = 1.5
+_OVERLAP_SLACK = 0.02
+"""Segments that a signal may lack for an overlap of half: no further one for a few samples."""
+
 _FLATNESS_FLOOR = 1e-12
 
 
@@ -185,7 +188,7 @@ def segment_powers(
     >>> power.shape
     (7, 129)
     """
-    n_segments = 1 + math.ceil((x.size - length) / (length / 2))
+    n_segments = 1 + math.ceil((x.size - length) / (length / 2) - _OVERLAP_SLACK)
     starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
     segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
     window = np.sin(np.pi * np.arange(length) / length) ** 2

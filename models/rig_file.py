@@ -37,8 +37,6 @@ _KEYS = {
     "assumed",
 }
 
-_OF_THE_BUSHING = ("elastomer_damping_share", "effects", "friction", "fit")
-
 _PLAIN_BUSHING = {
     "elastomer_damping_share": 0.5,
     "effects": [],
@@ -99,6 +97,7 @@ def load_rig(path: str | Path) -> Rig:
     else:
         named = given.get("material", base["material"])
         bushing = _material(_text(named, "material", where))
+        given["material"] = bushing["material"]
     merged = base | bushing | given
     for table in ("beams", "plate", "microphone"):
         merged[table] = base[table] | _table(given.get(table, {}), table, where)

@@ -154,7 +154,7 @@ def _time_panel(trace: Trace, scale: Scale) -> Panel:
     middle, swing = trace.swing
     swing = 1.08 * max(swing, scale.least_swing, kind.least_swing)
     factor, unit = _display_unit(kind, scale.reach, calibrated=trace.calibrated)
-    t = 1e3 * np.arange(trace.samples.size) / trace.rate
+    t = np.arange(trace.samples.size, dtype=np.float64) * (1e3 / trace.rate)
     length = 1e3 * trace.samples.size / trace.rate
     figure, axes = _panel(kind.name)
     axes.plot(*_thinned(t, t, factor * trace.samples), color=kind.colour, linewidth=1.2)

@@ -205,7 +205,7 @@ def _common_gain(entries: Sequence[ReportEntry]) -> str:
 
 
 def _values(entry: ReportEntry) -> dict[str, str]:
-    """What is known of a recording, in the units that the page states."""
+    """Write what is known of a recording, in the units that the page states."""
     condition, segment = entry.recording.condition, entry.segment
     values = {"speed": _speed(entry.recording)}
     if condition.interference is not None:
@@ -223,7 +223,7 @@ def _values(entry: ReportEntry) -> dict[str, str]:
     if segment.frequency is not None:
         values["frequency"] = f"{segment.frequency:.{0 if segment.frequency >= 100 else 1}f}"
     return {
-        name: value if name == "material" else value.replace("-", "−")
+        name: value if name == "material" else value.replace("-", "\N{MINUS SIGN}")
         for name, value in values.items()
         if value
     }

@@ -3,31 +3,21 @@ from __future__ import annotations
 import base64
 import io
 import re
-import subprocess
-import sys
 import warnings
 from html.parser import HTMLParser
-from xml.etree import ElementTree
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 import soundfile
-from hypothesis import given
-from hypothesis import strategies as st
 
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
-from noise import figures
-from noise.figures import entry_figures
 from noise.report import ReportEntry, write_report
 from noise.segments import Segment
-from noise.traces import common_scales, traces
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE
-SAWTOOTH = 2.0 * (80.0 * TIME % 1.0) - 1.0
 SHARES = {"creak": 0.02, "squawk": 0.05, "squeal": 0.9, "none": 0.026, "unknown": 0.004}
 
 
@@ -50,8 +40,6 @@ def sound(signal, *, rate=RATE, form="WAV", subtype="FLOAT"):
 TONE = np.sin(2.0 * np.pi * 1046.0 * TIME)
 RIG = recording(
     Condition(10.0, 0.279e-3, 3745.0, "fluorocarbon", 23.0),
-    torque=8.0 + TONE,
-    acceleration=90.0 * TONE,
     pressure=TONE,
 )
 
@@ -96,7 +84,7 @@ def test_the_page_refers_to_nothing_outside_itself(write):
     page = write(ReportEntry("Squeal", RIG, segment(), sound(TONE)))
     assert not re.search(r"https?:|@import|url\(", page.html)
     references = [a[key] for _, a in page.tags for key in ("src", "href") if key in a]
-    assert len(references) == 8
+    assert len(references) == 4
     assert all(reference.startswith(("data:", "#")) for reference in references)
 
 
@@ -106,7 +94,7 @@ def test_the_page_tells_language_heading_and_meaning_of_everything(write):
     assert page.text("h1") == ["Review"]
     assert "It squeals." in page.text("p")
     assert {a["scope"] for a in page.all("th")} == {"col", "row"}
-    assert len({a["alt"] for a in page.all("img")}) == len(page.all("img")) == 6
+    assert len({a["alt"] for a in page.all("img")}) == len(page.all("img")) == 2
     assert page.all("audio")[0]["aria-label"] == "Sound of Squeal"
 
 
@@ -137,7 +125,7 @@ def test_what_is_not_known_is_said_to_be(write):
         )
     )
     assert page.text("span").count("not known") == 5
-    assert "−23.2 dBFS" in page.text("dd")
+    assert "\N{MINUS SIGN}23.2 dBFS" in page.text("dd")
 
 
 def test_a_speed_that_varied_is_given_by_its_range(write):
@@ -160,7 +148,7 @@ def test_probabilities_are_bars_with_their_number(write):
 def test_a_title_stays_text(write, title):
     page = write(ReportEntry(title, RIG, segment(), sound(TONE), note=title))
     assert len(page.all("script")) == 1
-    assert len(page.all("img")) == 6
+    assert len(page.all("img")) == 2
     assert "".join(page.text("h2")) == title
     assert page.all("audio")[0]["aria-label"] == f"Sound of {title}"
 
@@ -234,148 +222,34 @@ def test_the_same_recordings_give_the_same_bytes(write):
     assert write(entry).html == write(entry).html
 
 
-def test_four_noisy_recordings_of_two_seconds_stay_below_three_megabytes(write):
+def test_a_noisy_recording_of_two_seconds_adds_less_than_three_quarters_of_a_megabyte(write):
     rng = np.random.default_rng(0)
     noise = rng.normal(size=(3, 2 * RATE))
     channels = (Channel("torque"), Channel("acceleration"), Channel("pressure"))
     audio = sound(0.1 * rng.normal(size=2 * 48_000), rate=48_000)
     hiss = ReportEntry("Hiss", Recording(noise, RATE, channels), segment(), audio)
-    assert len(write(hiss, hiss, hiss, hiss).html) < 3e6
+    assert len(write(hiss).html) < 0.75e6
 
 
 @pytest.mark.parametrize(
-    ("channels", "kinds"),
-    [
-        ({"pressure": TONE}, ["pressure"]),
-        ({"angle": TIME, "acceleration": TONE, "torque": TONE}, ["torque", "acceleration"]),
-        ({"angle": TIME}, []),
-    ],
+    ("channels", "n_rows"),
+    [({"pressure": TONE}, 1), ({"torque": TONE, "acceleration": TONE}, 2), ({"angle": TIME}, 0)],
 )
-def test_only_the_channels_there_are_are_shown(write, channels, kinds):
-    entry = ReportEntry("Partial", recording(**channels), segment())
-    (figure,) = entry_figures([(entry.recording, entry.segment)])
-    assert [row.kind for row in figure.rows] == kinds
-    page = write(entry)
-    assert len(page.all("img")) == 2 * len(kinds)
-    assert bool(kinds) != ("no channel" in page.text("figcaption")[0])
+def test_a_page_shows_the_channels_there_are(write, channels, n_rows):
+    page = write(ReportEntry("Partial", recording(**channels), segment()))
+    assert len(page.all("img")) == 2 * n_rows
+    assert (n_rows == 0) == ("no channel" in page.text("figcaption")[0])
 
 
-def test_constant_and_silent_recordings_are_drawn_without_a_warning(write):
+def test_silent_recordings_are_reported_without_a_warning(write):
+    silent = segment("none", frequency=None, level=None, dbfs=None)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        write(
-            ReportEntry("Silent", recording(torque=0.0, pressure=0.0), segment()),
-            ReportEntry("Constant", recording(torque=8.1, acceleration=-3.0), segment()),
-            ReportEntry("Digital zero", recording(pressure=0.0, calibrated=False), segment()),
+        page = write(
+            ReportEntry("Silent", recording(pressure=0.0), silent, sound(0.0 * TONE)),
+            ReportEntry("Digital zero", recording(pressure=0.0, calibrated=False), silent),
         )
-
-
-def test_a_recording_shorter_than_the_window_is_shown_whole():
-    short = Recording(TONE[None, :600], RATE, (Channel("pressure"),))
-    (trace,) = traces(short, segment(), 0.05)
-    assert (trace.start, trace.samples.size) == (0.0, 600)
-
-
-def test_the_time_history_is_from_the_middle_of_the_segment():
-    late = Segment("all", 0.6, 1.0, "squeal", SHARES, None, None, None)
-    (trace,) = traces(recording(pressure=TIME), late, 0.05)
-    assert trace.samples[[0, -1]] == pytest.approx([0.775, 0.825], abs=1e-4)
-    assert trace.analysed == pytest.approx((0.6, 1.0))
-
-
-def test_a_segment_of_one_track_shows_that_track():
-    both = recording(pressure=TONE, pressure_2=2.0 * TONE)
-    (trace,) = traces(both, segment(channel="2"), 0.05)
-    assert np.abs(trace.samples).max() == pytest.approx(2.0, rel=1e-3)
-
-
-def test_a_spectrum_reads_the_level_of_a_known_density():
-    noise = np.random.default_rng(3).normal(size=RATE)
-    (trace,) = traces(recording(pressure=noise), segment(), 0.05)
-    _, levels = trace.levels
-    expected = 10.0 * np.log10(1.0 / (RATE / 2.0) / 20e-6**2)
-    assert 10.0 * np.log10(np.mean(10.0 ** (levels / 10.0))) == pytest.approx(expected, abs=0.2)
-
-
-def test_recordings_of_one_page_share_the_scale_of_their_spectra():
-    loud, quiet = recording(pressure=TONE), recording(pressure=1e-3 * TONE)
-    together = common_scales(t for r in (loud, quiet) for t in traces(r, segment(), 0.05))
-    alone = common_scales(traces(loud, segment(), 0.05))
-    assert together == alone
-
-
-def test_thinning_keeps_every_peak():
-    position = np.linspace(0.0, 1.0, 20_000)
-    spikes = np.zeros(20_000)
-    spikes[137::613] = 1.0
-    _, kept = figures._thinned(position, position, spikes)
-    assert kept.size < 2000
-    assert np.count_nonzero(kept) == np.count_nonzero(spikes)
-
-
-@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=4000))
-def test_thinning_keeps_ends_order_and_extremes(values):
-    y = np.array(values)
-    x = np.arange(y.size, dtype=float)
-    kept_x, kept_y = figures._thinned(x, x, y)
-    assert np.all(np.diff(kept_x) > 0)
-    assert (kept_x[0], kept_x[-1]) == (x[0], x[-1])
-    assert (kept_y.min(), kept_y.max()) == (y.min(), y.max())
-
-
-@pytest.mark.parametrize("amplitude", [1e-7, 3e-4, 0.03, 0.3, 0.7, 8.0, 1040.0, 30_000.0])
-@pytest.mark.parametrize("calibrated", [True, False])
-def test_no_writing_on_a_panel_overlaps_or_is_cut_off(monkeypatch, amplitude, calibrated):
-    drawn = []
-    monkeypatch.setattr(figures, "_svg", lambda figure: drawn.append(figure) or b"")
-    loud = recording(
-        torque=amplitude * TONE - 36.9,
-        acceleration=amplitude * TONE,
-        pressure=amplitude * SAWTOOTH,
-        calibrated=calibrated,
-    )
-    quiet = recording(torque=8.0, acceleration=0.0, pressure=0.0, calibrated=calibrated)
-    entry_figures([(loud, segment()), (quiet, segment())])
-    assert len(drawn) == 12
-    for figure in drawn:
-        with mpl.style.context(["default", figures._STYLE]):
-            figure.draw_without_rendering()
-            (axes,) = figure.axes
-            label, tight = axes.yaxis.label.get_window_extent(), axes.get_tightbbox()
-            ticks = [t.label1 for t in axes.yaxis.get_major_ticks() if t.label1.get_visible()]
-            inside = [t for t in ticks if axes.get_ylim()[0] <= t.get_position()[1]]
-            assert min(t.get_window_extent().x0 for t in inside) > label.x1
-        assert tight.x0 >= -0.5
-        assert tight.y0 >= 0
-        assert tight.x1 <= figure.bbox.x1
-        assert tight.y1 <= figure.bbox.y1
-
-
-def test_panels_are_sound_svg_files():
-    (figure,) = entry_figures([(RIG, segment())])
-    for row in figure.rows:
-        for panel in (row.time, row.spectrum):
-            assert ElementTree.fromstring(panel.svg).tag == "{http://www.w3.org/2000/svg}svg"
-            assert panel.alt.endswith(".")
-
-
-def test_drawing_leaves_the_callers_settings_alone():
-    with mpl.rc_context({"font.size": 31.0, "axes.grid": False, "svg.hashsalt": "theirs"}):
-        before = dict(mpl.rcParams)
-        (figure,) = entry_figures([(RIG, segment())])
-        assert dict(mpl.rcParams) == before
-    assert entry_figures([(RIG, segment())]) == (figure,)
-
-
-def test_no_plotting_interface_with_state_is_loaded():
-    code = "import sys, noise.report; sys.exit('matplotlib.pyplot' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-
-
-@pytest.mark.parametrize("window", [0.0, -1.0, float("nan"), float("inf")])
-def test_a_window_of_no_length_is_refused(window):
-    with pytest.raises(ParameterError, match="window"):
-        entry_figures([(RIG, segment())], window=window)
+    assert page.text("span").count("none") == 2 * 2 + 2 * 2
 
 
 def test_text_stands_out_from_its_ground(write):

@@ -1,0 +1,202 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from models.condition import FIXED, Condition
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+from noise.audio import BITS, audible, common_full_scale, least_full_scale, write_audio
+from noise.recordings import read_recording
+
+SQUEAL = Condition(speed=10.0, interference=0.279e-3, support_stiffness=FIXED, material="PDMS")
+
+
+def tone(frequency, rate, *, seconds=0.5, amplitude=1.0, offset=0.0, **about):
+    time = np.arange(round(seconds * rate)) / rate
+    samples = amplitude * np.sin(2 * np.pi * frequency * time)[np.newaxis] + offset
+    return Recording(samples, rate, (Channel("pressure", (0.1, 0.0, 0.8)),), SQUEAL, **about)
+
+
+def amplitude_at(sound, frequency, rate):
+    middle = sound[sound.size // 8 : -sound.size // 8]
+    window = np.hanning(middle.size)
+    phase = np.exp(-2j * np.pi * frequency * np.arange(middle.size) / rate)
+    return 2 * abs((middle * window) @ phase) / window.sum()
+
+
+@pytest.mark.parametrize("rate", [8000.0, 30e3, 44100.0, 48e3, 51200.0, 51199.87, 96e3])
+@pytest.mark.parametrize("new_rate", [44100, 48000])
+def test_a_tone_keeps_pitch_loudness_and_length(rate, new_rate):
+    sound = audible(tone(1046.0, rate), new_rate)
+    assert amplitude_at(sound, 1046.0, new_rate) == pytest.approx(1.0, abs=1e-3)
+    assert sound.size / new_rate == pytest.approx(0.5, abs=2 / min(rate, new_rate))
+
+
+def test_the_rigs_rate_adds_no_image_of_a_creak():
+    sound = audible(tone(14e3, 30e3), 48000)
+    assert amplitude_at(sound, 14e3, 48000) == pytest.approx(1.0, abs=1e-3)
+    assert amplitude_at(sound, 16e3, 48000) < 1e-4
+
+
+def test_what_a_lower_rate_cannot_hold_does_not_fold_back():
+    sound = audible(tone(30e3, 96e3), 48000)
+    assert np.abs(sound[1000:-1000]).max() < 1e-4
+
+
+def test_an_offset_is_not_heard():
+    sound = audible(tone(500.0, 30e3, offset=40.0))
+    assert np.abs(sound).max() < 1.05
+    assert abs(sound.mean()) < 1e-3
+
+
+def test_sound_fades_in_and_out():
+    constant_power = tone(11e3, 48e3)
+    sound = audible(constant_power)
+    envelope = np.abs(sound).reshape(-1, 48).max(axis=1)  # of each millisecond
+    for edge in (envelope[:12], envelope[::-1][:12]):
+        assert edge[0] < 0.05
+        assert np.all(np.diff(edge[:10]) > 0)
+        assert edge[10] > 0.9
+
+
+def test_the_recording_itself_is_left_as_it_is():
+    recording = tone(500.0, 48e3, offset=1.0)
+    before = recording.samples.copy()
+    audible(recording)
+    assert np.array_equal(recording.samples, before)
+
+
+@pytest.mark.parametrize("n", [16, 17, 480])
+def test_the_shortest_recordings_can_be_heard(n):
+    click = np.zeros((1, n))
+    click[0, n // 2] = 1.0
+    assert np.abs(audible(Recording(click, 48e3, (Channel("pressure"),)))).max() > 0.5
+
+
+def test_a_recording_without_sound_is_refused():
+    torque = Recording(np.ones((1, 480)), 48e3, (Channel("torque"),), name="run07.wav")
+    with pytest.raises(ParameterError, match=r"run07\.wav.*no pressure channel.*torque"):
+        audible(torque)
+
+
+def test_the_first_pressure_channel_is_heard():
+    samples = np.zeros((3, 4800))
+    samples[1, 2400] = 1.0
+    channels = (Channel("torque"), Channel("pressure_2"), Channel("pressure"))
+    assert np.abs(audible(Recording(samples, 48e3, channels))).max() > 0.9
+
+
+amplitudes = st.floats(1e-6, 1e4)
+
+
+@given(st.lists(amplitudes, min_size=1, max_size=5), st.floats(0.0, 40.0))
+def test_one_gain_for_a_set_puts_its_loudest_peak_at_the_headroom(peaks, headroom):
+    signals = [np.array([0.0, -peak]) for peak in peaks]
+    full_scale = common_full_scale(signals, headroom)
+    assert max(peaks) / full_scale == pytest.approx(10 ** (-headroom / 20))
+
+
+def test_silence_has_a_full_scale():
+    assert common_full_scale([np.zeros(4)]) == 1.0
+    assert common_full_scale([]) == 1.0
+
+
+@given(amplitudes, st.sampled_from(BITS))
+def test_the_least_full_scale_does_not_clip_and_hardly_less_would(peak, bits):
+    least = least_full_scale(np.array([peak, -peak / 2]), bits)
+    largest = 1.0 if bits == 32 else 1.0 - 2.0 ** (1 - bits)
+    assert peak <= least * largest
+    assert peak > 0.998 * least * largest
+    assert float(f"{least:g}") == least
+
+
+@settings(max_examples=40)
+@given(amplitudes, st.floats(0.0, 60.0), st.sampled_from(BITS), st.integers(0, 9))
+def test_written_sound_reads_back_calibrated(tmp_path_factory, peak, headroom, bits, seed):
+    samples = np.random.default_rng(seed).uniform(-peak, peak, 101)
+    full_scale = common_full_scale([samples], headroom + 0.001)
+    path = tmp_path_factory.mktemp("audio") / "sound"
+    recording = tone(500.0, 48e3)
+    read = read_recording(
+        write_audio(path, samples, 48000, full_scale=full_scale, bits=bits, recording=recording)
+    )
+    resolution = full_scale * 2.0 ** -min(bits, 22)
+    assert read.calibrated
+    assert read.rate == 48000
+    assert read.condition == SQUEAL
+    assert read.channel_names == ("pressure",)
+    assert np.abs(read["pressure"] - samples).max() <= resolution
+
+
+@pytest.mark.parametrize(("bits", "subtype"), [(16, "PCM_16"), (24, "PCM_24"), (32, "FLOAT")])
+def test_players_find_the_samples_they_expect(tmp_path, bits, subtype):
+    recording = tone(500.0, 44.1e3)
+    path = write_audio(
+        tmp_path / "s.wav", recording["pressure"], 44100, full_scale=2, bits=bits, recording=recording
+    )
+    info = soundfile.info(path)
+    assert (info.subtype, info.samplerate, info.channels) == (subtype, 44100, 1)
+    read, _ = soundfile.read(path)
+    assert np.abs(read).max() == pytest.approx(0.5, abs=1e-4)
+
+
+@pytest.mark.parametrize("bits", BITS)
+def test_sound_stays_calibrated_when_its_sidecar_is_lost(tmp_path, bits):
+    recording = tone(500.0, 48e3)
+    path = write_audio(
+        tmp_path / "s", recording["pressure"], 48000, full_scale=3.7, bits=bits, recording=recording
+    )
+    path.with_suffix(".json").unlink()
+    read = read_recording(path)
+    assert read.calibrated
+    assert np.abs(read["pressure"]).max() == pytest.approx(1.0, rel=1e-3)
+
+
+def test_the_sidecar_says_what_full_scale_is_worth(tmp_path):
+    recording = tone(500.0, 48e3)
+    path = write_audio(
+        tmp_path / "s", recording["pressure"], 48000, full_scale=3.7, recording=recording
+    )
+    (channel,) = json.loads(path.with_suffix(".json").read_text())["channels"]
+    assert (channel["name"], channel["unit"], channel["scale"]) == ("pressure", "Pa", 3.7)
+    assert channel["position_m"] == [0.1, 0.0, 0.8]
+
+
+@pytest.mark.parametrize("bits", BITS)
+def test_sound_without_calibration_gets_none(tmp_path, bits):
+    recording = replace(tone(500.0, 48e3), calibrated=False)
+    path = write_audio(
+        tmp_path / "s", recording["pressure"], 48000, full_scale=2.0, bits=bits, recording=recording
+    )
+    assert json.loads(path.with_suffix(".json").read_text())["calibrated"] is False
+    read = read_recording(path)
+    assert not read.calibrated
+    assert np.abs(read["pressure"]).max() == pytest.approx(0.5, abs=1e-4)
+
+
+@pytest.mark.parametrize("bits", BITS)
+def test_what_would_clip_is_not_written(tmp_path, bits):
+    recording = tone(500.0, 48e3)
+    for full_scale in (0.99, 0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(ParameterError, match="full scale"):
+            write_audio(
+                *(tmp_path / "s", recording["pressure"], 48000),
+                full_scale=full_scale, bits=bits, recording=recording,
+            )  # fmt: skip
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_same_sound_gives_the_same_bytes(tmp_path):
+    recording = tone(500.0, 30e3)
+    one, other = (
+        write_audio(tmp_path / name, audible(recording), 48000, full_scale=2, recording=recording)
+        for name in ("one", "other")
+    )
+    assert one.read_bytes() == other.read_bytes()

@@ -1,0 +1,36 @@
+"""How the shaft turns."""
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from sim.shaft import ConstantSpeed, LoggedSpeed, Oscillation, SpeedRamp
+
+
+def test_an_oscillation_swings_by_its_amplitude():
+    time = np.linspace(0.0, 1.0, 100_001)
+    angle = np.concatenate([[0.0], np.cumsum(Oscillation(0.26, 2.0).speed(time)[:-1] * 1e-5)])
+    assert np.abs(angle).max() == pytest.approx(0.26, rel=1e-3)
+
+
+def test_a_ramp_is_held_beyond_its_ends():
+    ramp = SpeedRamp(2.0, -4.0, 2.0)
+    assert ramp.speed(np.array([0.0, 1.0, 2.0, 9.0])).tolist() == [2.0, -1.0, -4.0, -4.0]
+
+
+def test_constant_speed_is_constant_even_where_given_as_an_integer():
+    assert ConstantSpeed(5).speed(np.zeros(3)).dtype == float
+
+
+@pytest.mark.parametrize(
+    ("time", "speed", "message"),
+    [
+        ([0.0, 1.0], [1.0, np.nan], "speed in row 2 is no finite number"),
+        ([0.0, 0.0], [1.0, 1.0], "time does not rise at row 2"),
+        ([0.0], [1.0], "two or more samples"),
+        ([0.0, 1.0], [1.0], "two or more samples"),
+    ],
+)
+def test_a_log_that_cannot_be_used_is_refused_in_words(time, speed, message):
+    with pytest.raises(ParameterError, match=message):
+        LoggedSpeed(time, speed)
