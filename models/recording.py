@@ -123,4 +123,5 @@ class Recording:
         if name not in self:
             have = ", ".join(self.channel_names)
             raise ParameterError(f"recording {self.name!r} has no channel {name!r}; it has {have}")
-        return self.samples[self.channel_names.index(name)]
+        row: NDArray[np.float64] = self.samples[self.channel_names.index(name)]
+        return row

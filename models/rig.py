@@ -5,9 +5,13 @@ Reading and checking rig files is the business of `models.rig_file`.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 __all__ = ["Beams", "Fit", "LawSpec", "Microphone", "Plate", "Rig"]
 
@@ -187,7 +191,7 @@ def damping_at(fit: Fit, support_stiffness: float) -> float:
     x = _compliance(support_stiffness)
     if x <= points[0][0]:
         return points[0][1]
-    for (x0, c0), (x1, c1) in zip(points, points[1:], strict=False):
+    for (x0, c0), (x1, c1) in itertools.pairwise(points):
         if x <= x1:
             return c0 + (c1 - c0) * (x - x0) / (x1 - x0)
     return points[-1][1]

@@ -172,9 +172,7 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
         elastomer_damping_share=_number(
             merged, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True
         ),
-        effects=tuple(
-            parse_spec(_text(e, "effects", where), f"{where}, effect") for e in effects
-        ),
+        effects=tuple(parse_spec(_text(e, "effects", where), f"{where}, effect") for e in effects),
         beams=_beams(merged["beams"], f"{where}, beams"),
         plate=_plate(merged["plate"], f"{where}, plate"),
         microphone=_microphone(merged["microphone"], f"{where}, microphone"),
@@ -270,7 +268,9 @@ def _microphone(table: Mapping[str, Any], where: str) -> Microphone:
 def _refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> None:
     for key in table:
         if key not in known:
-            raise ParameterError(f"{where}: unknown key {key!r}; known are {', '.join(sorted(known))}")
+            raise ParameterError(
+                f"{where}: unknown key {key!r}; known are {', '.join(sorted(known))}"
+            )
 
 
 def _table(value: Any, key: str, where: str) -> Mapping[str, Any]:

@@ -101,9 +101,9 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
         entries,
         title="Creak, squawk and squeal of a rubber bushing",
         summary=(
-            "Three conditions at which the fluorocarbon bushing made a noise on the rig, and one at "
-            "which PDMS made none: simulated, radiated through the baseplate, labelled from the "
-            "recordings alone."
+            "Three conditions at which the fluorocarbon bushing made a noise on the rig, and one "
+            "at which PDMS made none: simulated, radiated through the baseplate, labelled from "
+            "the recordings alone."
         ),
     )
 

@@ -34,9 +34,7 @@ def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np
     return np.asarray(noise / noise.std())
 
 
-def resampled(
-    signal: NDArray[np.float64], rate: float, wanted: float
-) -> NDArray[np.float64]:
+def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArray[np.float64]:
     """Resample to another rate, band-limited; rates are taken to the nearest hertz.
 
     Examples
@@ -100,7 +98,13 @@ def _through_a_microphone(
     frequency = rfftfreq(sound.size, 1.0 / rate)
     low = math.exp(rng.uniform(math.log(15.0), math.log(250.0)))
     high = math.exp(rng.uniform(math.log(5e3), math.log(20e3)))
-    gain = 1.0 / np.sqrt((1.0 + (low / np.maximum(frequency, 1.0)) ** 2) * (1.0 + (frequency / high) ** 2))
+    gain = 1.0 / np.sqrt(
+        (1.0 + (low / np.maximum(frequency, 1.0)) ** 2) * (1.0 + (frequency / high) ** 2)
+    )
     octaves = np.log2(np.maximum(frequency, 20.0) / 1e3)
-    gain *= 10.0 ** (rng.uniform(0.0, 4.0) / 20.0 * np.sin(rng.uniform(1.0, 4.0) * octaves + rng.uniform(0.0, 6.3)))
+    gain *= 10.0 ** (
+        rng.uniform(0.0, 4.0)
+        / 20.0
+        * np.sin(rng.uniform(1.0, 4.0) * octaves + rng.uniform(0.0, 6.3))
+    )
     return np.asarray(irfft(rfft(sound) * gain, sound.size))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.registry import recording_features
 from features.harmonics import analyse_harmonics
+from features.registry import recording_features
 from noise.classifier import LABELS
 
 if TYPE_CHECKING:
@@ -142,9 +143,13 @@ def _label(recording: Recording, classifier: Classifier, channel: str) -> list[S
     edges = [0, *(np.flatnonzero(np.diff(labels)) + 1), len(labels)]
     return [
         _segment(
-            recording, channel, cells[first], cells[last], cell_probabilities[first:last].mean(axis=0)
+            recording,
+            channel,
+            cells[first],
+            cells[last],
+            cell_probabilities[first:last].mean(axis=0),
         )
-        for first, last in zip(edges, edges[1:], strict=False)
+        for first, last in itertools.pairwise(edges)
     ]
 
 
@@ -163,9 +168,7 @@ def _cut(recording: Recording, first: int, last: int) -> Recording:
     return replace(recording, samples=recording.samples[:, first:last])
 
 
-def _window_probabilities(
-    windows: list[Recording], classifier: Classifier
-) -> NDArray[np.float64]:
+def _window_probabilities(windows: list[Recording], classifier: Classifier) -> NDArray[np.float64]:
     silent = np.array([_is_silent(window) for window in windows])
     probabilities = np.zeros((len(windows), len(LABELS)))
     probabilities[silent, LABELS.index("none")] = 1.0

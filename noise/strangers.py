@@ -53,7 +53,9 @@ def _call(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
             pitch = f0 * np.exp2(bend + vibrato)
             voice = _harmonics(pitch, rate, rng.uniform(0.3, 1.5), rng)
             breath = rng.uniform(0.0, 0.5) * coloured_noise(m, 0.5, rng)
-            sound[start : start + m] += (voice + breath) * np.sin(np.pi * x) ** rng.uniform(0.3, 1.5)
+            sound[start : start + m] += (voice + breath) * np.sin(np.pi * x) ** rng.uniform(
+                0.3, 1.5
+            )
         start += m + int(rng.uniform(0.02, 0.5) * rate)
     return sound
 
@@ -62,7 +64,9 @@ def _speech(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64
     """Syllables: a voice with moving formants, fricatives between."""
     time = np.arange(n) / rate
     f0 = rng.uniform(85.0, 300.0)
-    pitch = f0 * np.exp2(0.25 * np.sin(2 * np.pi * rng.uniform(0.5, 2.5) * time + rng.uniform(0, 6)))
+    pitch = f0 * np.exp2(
+        0.25 * np.sin(2 * np.pi * rng.uniform(0.5, 2.5) * time + rng.uniform(0, 6))
+    )
     voice = _harmonics(pitch, rate, 0.7, rng)
     sound = np.zeros(n)
     start = 0
@@ -85,13 +89,15 @@ def _drops(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]
     hits[where] += rng.pareto(rng.uniform(1.2, 3.0), where.size) * rng.choice([-1, 1], where.size)
     ring = _resonance(hits, rng.uniform(800.0, 6000.0), rng.uniform(300.0, 4000.0), rate)
     bed = coloured_noise(n, rng.uniform(0.0, 1.5), rng)
-    return ring / (ring.std() + 1e-12) + rng.uniform(0.05, 1.0) * bed
+    return np.asarray(ring / (ring.std() + 1e-12) + rng.uniform(0.05, 1.0) * bed)
 
 
 def _weather(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Sea, wind, traffic: noise that swells."""
     time = np.arange(n) / rate
-    swell = 1.0 + rng.uniform(0.3, 1.0) * np.sin(2 * np.pi * rng.uniform(0.3, 3.0) * time + rng.uniform(0, 6))
+    swell = 1.0 + rng.uniform(0.3, 1.0) * np.sin(
+        2 * np.pi * rng.uniform(0.3, 3.0) * time + rng.uniform(0, 6)
+    )
     return coloured_noise(n, rng.uniform(0.3, 2.2), rng) * swell
 
 
@@ -120,7 +126,7 @@ def _ticks(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]
 
 
 def _slam(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """A door, a dropped tool, a sneeze: one burst that dies away."""
+    """Slamming doors, dropped tools, sneezes: one burst that dies away."""
     time = np.arange(n) / rate - rng.uniform(0.0, 0.3) * n / rate
     rise = np.clip(1.0 + time / rng.uniform(0.001, 0.08), 0.0, 1.0)
     envelope = rise * np.exp(-np.maximum(time, 0.0) / rng.uniform(0.02, 0.3))
@@ -145,10 +151,12 @@ def _music(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]
 def _rubbing(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Scraping, brushing: strokes of broadband noise without a tone."""
     time = np.arange(n) / rate
-    stroke = np.abs(np.sin(np.pi * rng.uniform(0.5, 5.0) * time + rng.uniform(0, 3))) ** rng.uniform(0.3, 2.0)
+    stroke = np.abs(
+        np.sin(np.pi * rng.uniform(0.5, 5.0) * time + rng.uniform(0, 3))
+    ) ** rng.uniform(0.3, 2.0)
     noise = coloured_noise(n, rng.uniform(0.0, 1.0), rng)
     broad = _resonance(noise, rng.uniform(800.0, 5000.0), rng.uniform(1000.0, 5000.0), rate)
-    return (broad / broad.std() + rng.uniform(0.1, 1.0) * noise) * stroke
+    return np.asarray((broad / broad.std() + rng.uniform(0.1, 1.0) * noise) * stroke)
 
 
 RECIPES: tuple[Recipe, ...] = (

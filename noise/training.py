@@ -9,7 +9,6 @@ has to work with whatever channels there are, so part of the samples keep pressu
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -30,6 +29,8 @@ from sim.acquisition import Acquisition
 from sim.run import simulate
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from numpy.typing import NDArray
 
 __all__ = ["Sample", "draw_sample", "train"]
@@ -95,9 +96,7 @@ def train(
     missing = set(range(len(LABELS))) - set(y[:n_training].tolist())
     if missing:
         absent = ", ".join(LABELS[i] for i in sorted(missing))
-        raise ParameterError(
-            f"{n_training} training samples hold no {absent}; draw more of them"
-        )
+        raise ParameterError(f"{n_training} training samples hold no {absent}; draw more of them")
     forest, out_of_bag = grow_forest(
         x[:n_training], y[:n_training], n_trees=N_TREES, least_leaf=LEAST_LEAF, seed=seed
     )
@@ -150,13 +149,17 @@ def _simulated(rng: np.random.Generator) -> tuple[Recording, str]:
     # Torque and acceleration have noise of their own, small against the oscillation or not.
     torque, acceleration = run.recording["torque"], run.recording["acceleration"]
     measured = {
-        "torque": torque + 10.0 ** rng.uniform(-3.5, -1.5) * np.abs(torque).mean()
+        "torque": torque
+        + 10.0 ** rng.uniform(-3.5, -1.5)
+        * np.abs(torque).mean()
         * rng.standard_normal(torque.size),
         "acceleration": acceleration
         + 10.0 ** rng.uniform(-3.0, 0.5) * rng.standard_normal(acceleration.size),
     }
     kept = [name for name in measured if rng.random() < 0.8]
-    rows = [heard.samples[0]] + [resampled(measured[name], run.recording.rate, rate) for name in kept]
+    rows = [heard.samples[0]] + [
+        resampled(measured[name], run.recording.rate, rate) for name in kept
+    ]
     n = min(row.size for row in rows)
     return (
         replace(

@@ -74,7 +74,7 @@ def sustained_frequencies(run: Run) -> NDArray[np.float64]:
     if not lines.power.size:
         return lines.frequency
     strong = lines.power >= lines.power[0] * 10.0 ** (-_LINE_RANGE / 10.0)
-    return lines.frequency[strong]
+    return np.asarray(lines.frequency[strong])
 
 
 def _level(pressure: NDArray[np.float64], rate: float) -> float:

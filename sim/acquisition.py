@@ -7,7 +7,6 @@ Gains and range are those of Section 3.1.2 and Appendices B to E: 12 bits over +
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,8 @@ import numpy as np
 from scipy.signal import resample_poly
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
 __all__ = ["CONVERTER_GAIN", "Acquisition", "sample"]

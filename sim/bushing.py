@@ -83,7 +83,7 @@ class LumpedBushing:
             mean = 0.5 * (k_e / j_e + (k_e + k_b) / j_c)
             root = math.sqrt(mean**2 - k_e * k_b / (j_e * j_c))
             squares = [mean - root, mean + root]
-        return np.sqrt(np.array(squares)) / (2.0 * math.pi)
+        return np.asarray(np.sqrt(np.array(squares)) / (2.0 * math.pi))
 
 
 def lumped_bushing(rig: Rig, interference: float, support_stiffness: float) -> LumpedBushing:

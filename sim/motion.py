@@ -133,7 +133,7 @@ def simulate_motion(
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
     coefficients = law.coefficients(fit, values)
     step = 1.0 / rate
-    time = np.arange(n) * step
+    time = np.arange(n, dtype=np.float64) * step
     speed = shaft.speed(time)
     if law.rates is None:
         critical, kinetic = coefficients

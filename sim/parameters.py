@@ -6,10 +6,13 @@ A declaration gives one uniform message for every value that cannot be used, and
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 __all__ = ["Parameter", "resolve"]
 

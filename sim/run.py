@@ -176,9 +176,7 @@ def _channels(rig: Rig) -> tuple[Channel, ...]:
 
 def _check(seconds: float, rate: float, interference: float) -> None:
     if not 0.0 < seconds <= _LONGEST_RUN:
-        raise ParameterError(
-            f"seconds = {seconds:g} must be above 0 and at most {_LONGEST_RUN:g}"
-        )
+        raise ParameterError(f"seconds = {seconds:g} must be above 0 and at most {_LONGEST_RUN:g}")
     if not 1e3 <= rate <= 400e3:
         raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
     if not 0.0 < interference < 1e-2:

@@ -122,11 +122,13 @@ class LoggedSpeed:
         for name, values in (("time", self._time), ("speed", self._speed)):
             bad = np.flatnonzero(~np.isfinite(values))
             if bad.size:
-                raise ParameterError(f"logged speed: {name} in row {bad[0] + 1} is no finite number")
+                raise ParameterError(
+                    f"logged speed: {name} in row {bad[0] + 1} is no finite number"
+                )
         falls = np.flatnonzero(np.diff(self._time) <= 0.0)
         if falls.size:
             raise ParameterError(f"logged speed: time does not rise at row {falls[0] + 2}")
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Angular speed [rad/s] at `time` [s]."""
-        return np.interp(time, self._time, self._speed)
+        return np.asarray(np.interp(time, self._time, self._speed))

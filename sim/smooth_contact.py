@@ -81,9 +81,7 @@ def _solve(law, s, coefficients, contact, shaft_speed, step, substeps, out):  # 
             if i + 1 == n:
                 break
             for j in range(size):
-                x[j] += (
-                    h / 6.0 * (rates[0, j] + 2.0 * (rates[1, j] + rates[2, j]) + rates[3, j])
-                )
+                x[j] += h / 6.0 * (rates[0, j] + 2.0 * (rates[1, j] + rates[2, j]) + rates[3, j])
 
 
 def solve_smooth_contact(

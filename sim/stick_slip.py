@@ -106,10 +106,7 @@ def _solve(s, t_crit, t_kin, shaft_speed, step, out, direction_out, event_times,
     for i in range(n):
         acceleration = (shaft_speed[i + 1] - shaft_speed[i]) / step if i + 1 < n else 0.0
         elastomer = k_e * (x[0] - x[2]) + c_e * (x[1] - x[3])
-        if direction == 0:
-            friction = elastomer + j_e * acceleration
-        else:
-            friction = direction * t_kin
+        friction = elastomer + j_e * acceleration if direction == 0 else direction * t_kin
         out[i, 0] = friction
         out[i, 1] = elastomer
         out[i, 2] = x[0]
@@ -135,7 +132,7 @@ def _solve(s, t_crit, t_kin, shaft_speed, step, out, direction_out, event_times,
                     if root >= 0.0 and (t_event < 0.0 or root < t_event):
                         t_event, sign = root, way
             else:
-                # Sliding speed, positive while sliding goes on; its root at the start is divided out.
+                # Sliding speed, positive while it lasts; its root at the start is divided out.
                 for k in range(_ORDER + 1):
                     p[k] = -direction * c[k, 1]
                 p[0] += direction * speed_now

@@ -139,7 +139,12 @@ def test_written_sound_reads_back_calibrated(tmp_path_factory, peak, headroom, b
 def test_players_find_the_samples_they_expect(tmp_path, bits, subtype):
     recording = tone(500.0, 44.1e3)
     path = write_audio(
-        tmp_path / "s.wav", recording["pressure"], 44100, full_scale=2, bits=bits, recording=recording
+        tmp_path / "s.wav",
+        recording["pressure"],
+        44100,
+        full_scale=2,
+        bits=bits,
+        recording=recording,
     )
     info = soundfile.info(path)
     assert (info.subtype, info.samplerate, info.channels) == (subtype, 44100, 1)

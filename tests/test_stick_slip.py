@@ -17,9 +17,7 @@ THESIS = load_material_rig("fluorocarbon-thesis")
 
 def packed(damping=0.085, stiffness=3745.0, elastomer_stiffness=665.0):
     half = 0.5 * damping
-    return LumpedBushing(
-        1 / 65000, 1 / 1200, elastomer_stiffness, stiffness, half, half
-    ).packed()
+    return LumpedBushing(1 / 65000, 1 / 1200, elastomer_stiffness, stiffness, half, half).packed()
 
 
 def constant(speed, seconds, step):
@@ -42,9 +40,7 @@ def test_slip_frequency_at_1_rad_s_is_that_of_the_exact_solution():
 @pytest.mark.parametrize(("damping", "sticks"), [(0.0780, True), (0.0782, False)])
 def test_critical_damping_at_7_5_rad_s_is_0_0781(damping, sticks):
     # The thesis prints 0.7599 for what its listing gives as 0.07598; exactly it is 0.07810.
-    _, direction, _ = solve_stick_slip(
-        packed(damping), 10.7, 8.0, constant(7.5, 0.3, 1e-5), 1e-5
-    )
+    _, direction, _ = solve_stick_slip(packed(damping), 10.7, 8.0, constant(7.5, 0.3, 1e-5), 1e-5)
     assert (direction[-10000:] == 0).any() == sticks
 
 
@@ -70,9 +66,7 @@ def test_first_slips_agree_with_an_independent_solver(speed, damping, stiffness,
     kinetic, critical = 1.0, 1.0 + drop
     system = packed(damping, stiffness)
     seconds = critical / (speed * 300.0) + 0.01
-    _, _, events = solve_stick_slip(
-        system, critical, kinetic, constant(speed, seconds, 1e-5), 1e-5
-    )
+    _, _, events = solve_stick_slip(system, critical, kinetic, constant(speed, seconds, 1e-5), 1e-5)
     expected = reference_events(system, critical, kinetic, speed, seconds)
     n = min(len(expected), len(events), 4)
     assert n > 0

@@ -5,9 +5,13 @@ A new effect is a file with a class and one line here.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.errors import ParameterError
-from models.rig import LawSpec
 from sim.effects.slip_pulse import SlipPulse
+
+if TYPE_CHECKING:
+    from models.rig import LawSpec
 
 __all__ = ["EFFECTS", "effect"]
 

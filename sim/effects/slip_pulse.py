@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numba import njit
@@ -118,9 +118,9 @@ class SlipPulse:
     threshold: float
     duration: float
 
-    name = "slip_pulse"
-    stage = "structure"
-    parameters = {
+    name: ClassVar[str] = "slip_pulse"
+    stage: ClassVar[str] = "structure"
+    parameters: ClassVar[dict[str, Parameter]] = {
         "amplitude": Parameter(60.0, "N", 0.0, 1e4, "peak force at a torque drop of 6.94 Nm"),
         "threshold": Parameter(5.2, "Nm", 0.0, 6.9, "torque drop below which nothing happens"),
         "duration": Parameter(50e-6, "s", 1e-5, 1e-3, "of the half-sine"),

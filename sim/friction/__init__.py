@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.errors import ParameterError
 from sim.friction import contact_with_memory, coulomb, lugre
-from sim.friction.law import FrictionLaw
+
+if TYPE_CHECKING:
+    from sim.friction.law import FrictionLaw
 
 __all__ = ["LAWS", "friction_law"]
 
-LAWS = {module.LAW.name: module.LAW for module in (coulomb, contact_with_memory, lugre)}
+LAWS: dict[str, FrictionLaw] = {
+    module.LAW.name: module.LAW for module in (coulomb, contact_with_memory, lugre)
+}
 """Every friction law by name."""
 
 

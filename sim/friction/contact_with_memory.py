@@ -20,7 +20,6 @@ constant T_kin; at rest for long, T may rise to T_crit.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +29,8 @@ from sim.friction.law import RATES_SIGNATURE, FrictionLaw
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from models.rig import Fit

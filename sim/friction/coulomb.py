@@ -7,7 +7,6 @@ kinetic torque sustains neither squawk nor squeal: it has no quasi-harmonic regi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +14,8 @@ import numpy as np
 from sim.friction.law import FrictionLaw
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from models.rig import Fit

@@ -12,7 +12,6 @@ as PDMS does on the rig (5.1.2).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +21,8 @@ from sim.friction.law import RATES_SIGNATURE, FrictionLaw
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from models.rig import Fit
