@@ -55,7 +55,7 @@ NOTHING = 1e-9
 """A signal that varies less than this, relative to its mean, is constant but for rounding."""
 
 _FADE = 0.02
-"""Length of the fades that are cut off again [s]: keeps a hum of 50 Hz 60 dB below itself there ..."""
+"""Length of the fades that are cut off again [s]: of a hum, 60 dB less is left above 150 Hz ..."""
 
 _FADE_SHARE = 0.1
 """... but at most this share of the signal each."""

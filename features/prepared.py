@@ -171,7 +171,8 @@ class Prepared:
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
         high, rate = band_analytic(self.transform, pulse_band_from(self.limit), self.limit)
-        return pulses_of(self.analytic[0], high, rate)
+        start = self.transform.lead / self.rate
+        return pulses_of(self.analytic[0], high, rate, start=start)
 
     @cached_property
     def modulation(self) -> Modulation:

@@ -63,7 +63,7 @@ class Pulses:
     times : ndarray, shape (n_pulses,)
         From the start of the signal [s].
     rate : float
-        Pulses in a second, 0 for fewer than two.
+        Pulses in a second, 0 for fewer than two. The fades at the signal's ends do not count.
     irregularity : float
         Median magnitude of the logarithm of each interval's ratio to the one before: 0 for a clock
         even where its rate glides or a pulse is missing, 1.1 (the logarithm of 3) for a Poisson
@@ -121,7 +121,7 @@ def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
     >>> clicks[100::200] = 1.0
     >>> slips = acoustic_slips(clicks, 16e3)
     >>> round(slips.rate), round(slips.irregularity, 2)
-    (81, 0.0)
+    (79, 0.0)
     """
     x = checked_signal(signal, rate)
     if rate < _LEAST_RATE:
@@ -134,7 +134,7 @@ def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
     limit = min(WORKING_LIMIT, usable_limit(rate))
     whole, _ = band_analytic(transform, ACOUSTIC_FROM, limit)
     high, high_rate = band_analytic(transform, pulse_band_from(limit), limit)
-    return pulses_of(whole, high, high_rate)
+    return pulses_of(whole, high, high_rate, start=transform.lead / rate)
 
 
 def pulse_band_from(limit: float) -> float:
@@ -149,7 +149,11 @@ def pulse_band_from(limit: float) -> float:
 
 
 def pulses_of(
-    whole: NDArray[np.complex128], high: NDArray[np.complex128], high_rate: float
+    whole: NDArray[np.complex128],
+    high: NDArray[np.complex128],
+    high_rate: float,
+    *,
+    start: float = 0.0,
 ) -> Pulses:
     """`acoustic_slips` of analytic signals that are at hand.
 
@@ -159,6 +163,8 @@ def pulses_of(
         Analytic signal of all that counts, and of the band in which pulses are sought.
     high_rate : float
         Sampling rate of the latter [Hz].
+    start : float
+        Time of their first sample [s].
 
     Examples
     --------
@@ -180,7 +186,7 @@ def pulses_of(
     tenth = max(1, smooth.size // 10)
     loudest = np.partition(smooth, -tenth)[-tenth:]
     return Pulses(
-        times=times,
+        times=start + times,
         rate=times.size / (high.size / high_rate) if times.size > 1 else 0.0,
         irregularity=irregularity,
         glide=glide,

@@ -33,12 +33,12 @@ if TYPE_CHECKING:
 __all__ = ["WINDOW", "ChannelPanels", "EntryFigure", "Panel", "entry_figures"]
 
 WINDOW = 0.05
-"""Length of the time histories [s]: four slips where creak is slowest, at 80 Hz, and no more than
-some fifty cycles of a squeal."""
+"""Length of the time histories [s]: two slips of a creak at 40 Hz, and no more than some fifty
+cycles of a squeal, which is as many as a panel keeps apart."""
 
 _TICKS = {20: "20", 50: "50", 100: "100", 200: "200", 500: "500"}
 _TICKS |= {1000: "1k", 2000: "2k", 5000: "5k", 10000: "10k"}
-_DYNAMIC_RANGE = 100.0  # of a spectrum's axis [dB]
+_DYNAMIC_RANGE = 120.0  # of a spectrum's axis [dB]
 _COLUMNS = 500  # steps across a panel that the eye can tell apart
 _SIZE = (5.2, 2.5)  # of a panel [inch]
 _AXES = (0.19, 0.215, 0.785, 0.665)
@@ -188,7 +188,7 @@ def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Pane
     axes.xaxis.set_major_locator(FixedLocator(list(_TICKS)))
     axes.xaxis.set_minor_locator(FixedLocator([]))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: _TICKS[round(x)]))
-    axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     axes.set_xlabel("Frequency [Hz]")
     axes.set_ylabel(f"dB re {density}")
     alt = f"Autospectrum of the {kind.name.lower()} from 20 Hz to 15 kHz: "

@@ -116,10 +116,16 @@ def _recording(options: Namespace, out: Path) -> Recording:
             f"{given[0]} describes a run to simulate, but {options.recording} is already recorded; "
             "give one or the other"
         )
-    source = options.recording.absolute()
-    if source.with_suffix("") == out.absolute().with_suffix(""):
+    if _same_recording(options.recording, out):
         raise ParameterError(f"--out {options.out} would overwrite the recording or its sidecar")
     from noise.recordings import read_recording
 
     say(f"reading {options.recording}")
     return read_recording(options.recording, full_scale=options.full_scale)
+
+
+def _same_recording(one: Path, other: Path) -> bool:
+    """Whether two files share their sidecar, or are one."""
+    if one.parent.resolve() / one.stem == other.parent.resolve() / other.stem:
+        return True
+    return one.exists() and other.exists() and one.samefile(other)
