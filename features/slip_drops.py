@@ -131,6 +131,8 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
     peaks = peaks[sudden]
     troughs = _troughs(smooth, peaks)
     drops = smooth[peaks] - smooth[troughs]
+    # A fall that the end of the signal cuts off is an event, but its size is not known.
+    drops = drops[:-1] if troughs[-1] == x.size - 1 else drops
     intervals = np.diff(peaks) / rate
     rises = peaks[1:] - troughs[:-1]
     start, middle, late = (
@@ -168,7 +170,7 @@ def _upright(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
         return np.asarray(torque * np.sign(slow))
     if abs(mean) > float(torque.std()):
         return torque * math.copysign(1.0, mean)
-    return torque if float((np.diff(torque) ** 3).sum()) < 0.0 else -torque
+    return torque if _skewness(np.diff(torque)) < 0.0 else -torque
 
 
 def _troughs(torque: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -27,7 +27,8 @@ _SEGMENT = 0.064
 """Length of a segment [s]."""
 
 _LOBE = 2
-"""Bins on either side of a maximum that belong to it: the Hann window's main lobe."""
+"""Bins on either side of a maximum that belong to it: the Hann window's main lobe. More, by the
+same factor, where a shorter signal is filled up with zeros."""
 
 _SAME_TONE = 1.0 / 12.0
 """A tone that moves less than this between segments is the same tone [octave]."""
@@ -117,15 +118,17 @@ def time_course(x: NDArray[np.float64], rate: float, *, low: float, high: float)
     (1.0, 1.0, 1.0)
     """
     length = max(16, 2 * round(0.5 * _SEGMENT * rate))
-    power, _ = segment_powers(x, min(length, x.size), transform_length=length)
+    segment = min(length, x.size)
+    lobe = math.ceil(_LOBE * length / segment)
+    power, _ = segment_powers(x, segment, transform_length=length)
     spacing = rate / length
     first, last = math.ceil(low / spacing), min(math.floor(high / spacing), power.shape[1] - 1)
     power[:, :first] = 0.0
     power[:, last + 1 :] = 0.0
     energy = power.sum(axis=1)
     weight = energy / max(float(energy.sum()), _TINY)
-    tone, share = _strongest_tones(power, energy)
-    count, second = _other_tones(power[:, first : last + 1])
+    tone, share = _strongest_tones(power, energy, lobe)
+    count, second = _other_tones(power[:, first : last + 1], lobe)
     frequency, strength = track_periods(
         power, spacing, lowest=max(_LOWEST_FUNDAMENTAL, 3.0 * spacing)
     )
@@ -153,19 +156,20 @@ def time_course(x: NDArray[np.float64], rate: float, *, low: float, high: float)
 
 
 def _strongest_tones(
-    power: NDArray[np.float64], energy: NDArray[np.float64]
+    power: NDArray[np.float64], energy: NDArray[np.float64], lobe: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Position of each segment's strongest line in bins, and its share of the segment's power."""
-    top = np.clip(power.argmax(axis=1), _LOBE, power.shape[1] - 1 - _LOBE)
-    bins = top[:, np.newaxis] + np.arange(-_LOBE, _LOBE + 1)
-    lobe = np.take_along_axis(power, bins, axis=1)
-    sums = lobe.sum(axis=1)
-    tone = np.where(sums > 0.0, (lobe * bins).sum(axis=1) / np.maximum(sums, _TINY), top)
+    lobe = min(lobe, (power.shape[1] - 1) // 2)
+    top = np.clip(power.argmax(axis=1), lobe, power.shape[1] - 1 - lobe)
+    bins = top[:, np.newaxis] + np.arange(-lobe, lobe + 1)
+    around = np.take_along_axis(power, bins, axis=1)
+    sums = around.sum(axis=1)
+    tone = np.where(sums > 0.0, (around * bins).sum(axis=1) / np.maximum(sums, _TINY), top)
     return tone, sums / np.maximum(energy, _TINY)
 
 
 def _other_tones(
-    power: NDArray[np.float64],
+    power: NDArray[np.float64], lobe: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Count the lines in each segment; level of the second re the first [dB]."""
     n_bins = power.shape[1]
@@ -173,7 +177,7 @@ def _other_tones(
     blocks = power[:, : n_bins // size * size].reshape(power.shape[0], -1, size)
     block = np.minimum(np.arange(n_bins) // size, blocks.shape[1] - 1)
     floor = np.median(blocks, axis=2)[:, block] / math.log(2.0)
-    maxima = ndimage.maximum_filter1d(power, 2 * _LOBE + 1, axis=1, mode="nearest")
+    maxima = ndimage.maximum_filter1d(power, 2 * lobe + 1, axis=1, mode="nearest")
     top = power.max(axis=1, keepdims=True)
     least = np.maximum(top * 10.0 ** (-0.1 * _TONE_RANGE_DB), floor * 10.0 ** (0.1 * _TONE_DB))
     heights = np.where((power == maxima) & (power >= least) & (power > 0.0), power, 0.0)

@@ -23,8 +23,8 @@ import numpy as np
 
 from models.errors import ParameterError
 from noise.atomic import atomic
-from noise.full_scale import REFERENCE_PRESSURE
-from noise.sidecar import sidecar_text
+from noise.recordings.full_scale import REFERENCE_PRESSURE
+from noise.recordings.sidecar import sidecar_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

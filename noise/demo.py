@@ -15,17 +15,17 @@ from features.registry import recording_feature_names, recording_features
 from models.rig_file import load_material_rig
 from noise.audio import audible, common_full_scale, write_audio
 from noise.classifier import load_classifier
-from noise.label_table import COLUMNS, label_rows
+from noise.labels.segments import file_label, label_recording
+from noise.labels.table import COLUMNS, label_rows
 from noise.progress import say, track
 from noise.recordings import read_recording, write_recording
 from noise.report import ReportEntry, write_report
-from noise.segments import file_label, label_recording
 from noise.tables import write_table
 from sim.run import simulate
 
 if TYPE_CHECKING:
     from models.recording import Recording
-    from noise.segments import Segment
+    from noise.labels.segments import Segment
 
 __all__ = ["CASES", "Case", "run_demo"]
 

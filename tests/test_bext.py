@@ -9,7 +9,7 @@ import soundfile
 from hypothesis import given
 from hypothesis import strategies as st
 
-from noise.bext import bext_description, chunks, missing_bytes
+from noise.recordings.bext import bext_description, chunks, missing_bytes
 
 
 def chunk(name: bytes, content: bytes, size: int | None = None) -> bytes:

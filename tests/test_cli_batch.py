@@ -13,9 +13,9 @@ from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.classifier import LABELS
 from noise.cli import main
-from noise.label_table import COLUMNS
+from noise.labels.segments import Segment
+from noise.labels.table import COLUMNS
 from noise.recordings import write_recording
-from noise.segments import Segment
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def labelled(monkeypatch):
         return [Segment("all", 0.0, end, "squeal", certain, 1046.0, None, -20.0)]
 
     monkeypatch.setattr("noise.classifier.load_classifier", load_classifier)
-    monkeypatch.setattr("noise.segments.label_recording", label_recording)
+    monkeypatch.setattr("noise.labels.segments.label_recording", label_recording)
     return asked
 
 
@@ -192,7 +192,7 @@ def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
         card = {"test": {"n": 600, "macro_f1": 0.9}}
         return Namespace(save=lambda path: path.write_bytes(b"trained"), card=card)
 
-    monkeypatch.setattr("noise.training.train", train)
+    monkeypatch.setattr("noise.classifier.training.train", train)
     out = tmp_path / "mine.npz"
     assert main(["train", "--out", str(out), "--seed", "3"]) == 0
     printed, err = capsys.readouterr()

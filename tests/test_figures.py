@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise import figures
-from noise.figures import entry_figures
-from noise.segments import Segment
+from noise.labels.segments import Segment
+from noise.report import figures
+from noise.report.figures import entry_figures
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE
@@ -126,7 +126,7 @@ def test_drawing_leaves_the_callers_settings_alone_and_does_not_depend_on_them()
 
 
 def test_no_plotting_interface_with_state_is_loaded():
-    code = "import sys, noise.figures; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, noise.report.figures; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

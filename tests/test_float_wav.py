@@ -5,7 +5,7 @@ import pytest
 import soundfile
 
 from models.errors import ParameterError
-from noise.float_wav import write_float_wav
+from noise.recordings.float_wav import write_float_wav
 
 
 @pytest.mark.parametrize("n_channels", [1, 2, 5])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from noise.full_scale import stated_full_scale
+from noise.recordings.full_scale import stated_full_scale
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import CHANNEL_UNITS, Channel, Recording
-from noise.readers import READERS
 from noise.recordings import find_recordings, read_recording, write_recording
+from noise.recordings.readers import READERS
 
 RATE = 48_000
 HALF = np.full(480, 0.5)

@@ -13,8 +13,8 @@ import soundfile
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
+from noise.labels.segments import Segment
 from noise.report import ReportEntry, write_report
-from noise.segments import Segment
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE

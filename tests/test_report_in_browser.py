@@ -8,8 +8,8 @@ import soundfile
 
 from models.condition import Condition
 from models.recording import Channel, Recording
+from noise.labels.segments import Segment
 from noise.report import ReportEntry, write_report
-from noise.segments import Segment
 from tests.browser import chromium
 
 RATE = 30_000

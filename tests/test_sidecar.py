@@ -11,7 +11,13 @@ from hypothesis import strategies as st
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import CHANNEL_UNITS, Channel, Recording
-from noise.sidecar import Sidecar, find_sidecar, parse_sidecar, read_sidecar, sidecar_text
+from noise.recordings.sidecar import (
+    Sidecar,
+    find_sidecar,
+    parse_sidecar,
+    read_sidecar,
+    sidecar_text,
+)
 
 FULL = {
     "channels": [

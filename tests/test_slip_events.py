@@ -45,7 +45,7 @@ def test_each_slip_of_a_creak_is_one_pulse(rate, slips_a_second):
     assert np.abs(found.times - slips).max() < 2e-3
     assert found.irregularity < 0.05
     assert abs(found.glide) < 0.05
-    assert found.rate == pytest.approx(slips.size / 0.96)
+    assert found.rate == pytest.approx(slips.size / 0.96, rel=1e-3)
 
 
 def test_pulses_are_found_in_noise_10_db_below_them():
@@ -111,7 +111,7 @@ def test_pulses_need_a_rate_of_400_hz():
         acoustic_slips(noise(100), 300.0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     frequency=st.floats(20.0, 200.0),
     drop=st.floats(0.5, 20.0),
@@ -128,7 +128,7 @@ def test_stick_slip_is_described_by_its_rate_drop_and_slope(frequency, drop, kin
     assert found.mean_drop == pytest.approx(drop, rel=0.1)
     assert found.drop_variation < 0.05
     assert found.stick_slope == pytest.approx(drop * frequency / 0.9, rel=0.02)
-    assert found.stick_fraction == pytest.approx(0.9, abs=0.03)
+    assert found.stick_fraction == pytest.approx(0.9, abs=0.05)
     assert found.stick_curvature == pytest.approx(1.0, abs=0.03)
     assert found.asymmetry < -1.0
 

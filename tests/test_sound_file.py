@@ -7,7 +7,7 @@ import pytest
 import soundfile
 
 from models.errors import RecordingError
-from noise.sound_file import read_sound_file
+from noise.recordings.sound_file import read_sound_file
 
 RATE = 48_000
 FORMATS = [

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from models.recording import Channel, Recording
-from noise.segments import Segment
-from noise.traces import common_scales, traces
+from noise.labels.segments import Segment
+from noise.report.traces import common_scales, traces
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE

@@ -37,9 +37,9 @@ def run(options: Namespace) -> int:
     """Label and write the table."""
     check_batch_out(options.out)
     from noise.classifier import load_classifier
-    from noise.label_table import COLUMNS, error_row, label_rows
+    from noise.labels.segments import label_recording
+    from noise.labels.table import COLUMNS, error_row, label_rows
     from noise.recordings import read_recording
-    from noise.segments import label_recording
 
     classifier = load_classifier(options.classifier)
 
@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
 
 def _names_no_channels(path: Path) -> bool:
     """Whether it is a plain sound file, whose tracks stand for themselves."""
-    from noise.sidecar import find_sidecar, read_sidecar
+    from noise.recordings.sidecar import find_sidecar, read_sidecar
 
     sidecar = find_sidecar(path)
     return sidecar is None or read_sidecar(sidecar).channels is None

@@ -72,8 +72,8 @@ def _rate(text: str) -> int:
 
 
 def _summary(recording: Recording) -> dict[str, object]:
-    from noise.full_scale import REFERENCE_PRESSURE
-    from noise.sidecar import sidecar_text
+    from noise.recordings.full_scale import REFERENCE_PRESSURE
+    from noise.recordings.sidecar import sidecar_text
 
     torque, pressure = recording["torque"], recording["pressure"]
     rms = float(pressure.std())

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
     from collections.abc import Iterable
 
-    from noise.training import Sample
+    from noise.classifier.training import Sample
 
 __all__ = ["configure", "run"]
 
@@ -42,7 +42,7 @@ def run(options: Namespace) -> int:
         raise ParameterError(f"--out {options.out}: a classifier is a file that ends in .npz")
     check_target(options.out)
     say("preparing")
-    from noise.training import train
+    from noise.classifier.training import train
 
     def progress(samples: Iterable[Sample], total: int) -> Iterable[Sample]:
         return track(samples, "simulating", total=total, unit="training sample")

@@ -14,8 +14,8 @@ import numpy as np
 import soundfile
 
 from models.errors import RecordingError
-from noise.bext import bext_description, missing_bytes
-from noise.readers import RawSamples
+from noise.recordings.bext import bext_description, missing_bytes
+from noise.recordings.readers import RawSamples
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -26,15 +26,15 @@ import numpy as np
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.atomic import atomic
-from noise.float_wav import write_float_wav
-from noise.full_scale import stated_full_scale
-from noise.readers import READERS, read_raw
-from noise.sidecar import Sidecar, find_sidecar, read_sidecar, sidecar_text
+from noise.recordings.float_wav import write_float_wav
+from noise.recordings.full_scale import stated_full_scale
+from noise.recordings.readers import READERS, read_raw
+from noise.recordings.sidecar import Sidecar, find_sidecar, read_sidecar, sidecar_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from noise.readers import RawSamples
+    from noise.recordings.readers import RawSamples
 
 __all__ = ["MIN_SAMPLES", "find_recordings", "read_recording", "write_recording"]
 
@@ -48,8 +48,8 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     Parameters
     ----------
     path : path-like
-        File with one of the endings of `noise.readers.READERS`. A sidecar is the file of the same
-        stem with the ending ``.json``. Without one each track is a pressure channel (an
+        File with one of the endings of `noise.recordings.readers.READERS`. A sidecar is the file
+        of the same stem with the ending ``.json``. Without one each track is a pressure channel (an
         acceleration channel where a meter says so).
     full_scale : float, optional
         Pressure of a full-scale sample [Pa]; wins over all that file and sidecar say.

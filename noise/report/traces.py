@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.recording import Recording
-    from noise.segments import Segment
+    from noise.labels.segments import Segment
 
 __all__ = ["HIGHEST", "KINDS", "LOWEST", "Kind", "Scale", "Trace", "common_scales", "traces"]
 
@@ -174,7 +174,7 @@ def traces(recording: Recording, segment: Segment, window: float) -> tuple[Trace
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.segments import Segment
+    >>> from noise.labels.segments import Segment
     >>> silence = Recording(np.zeros((1, 9600)), 48e3, (Channel("pressure"),))
     >>> segment = Segment(channel="all", start=0.0, end=0.1, label="none",
     ...     probabilities={"none": 1.0}, frequency=None, level=None, level_dbfs=None)
@@ -231,7 +231,7 @@ def common_scales(shown: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.segments import Segment
+    >>> from noise.labels.segments import Segment
     >>> t = np.arange(9600) / 48e3
     >>> tone = Recording(np.sin(2e3 * np.pi * t)[None], 48e3, (Channel("pressure"),))
     >>> segment = Segment(channel="all", start=0.0, end=0.2, label="squeal",

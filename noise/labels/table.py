@@ -11,7 +11,7 @@ from noise.classifier import LABELS
 
 if TYPE_CHECKING:
     from models.recording import Recording
-    from noise.segments import Segment
+    from noise.labels.segments import Segment
 
 __all__ = ["COLUMNS", "error_row", "label_rows"]
 
@@ -47,7 +47,7 @@ def label_rows(name: str, recording: Recording, segments: list[Segment]) -> list
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.segments import Segment
+    >>> from noise.labels.segments import Segment
     >>> turning = Recording(np.array([[0.0, 1.0, 2.0, 3.0]]), 2.0, (Channel("angle"),))
     >>> part = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
     >>> row, = label_rows("run07.wav", turning, [part])

@@ -2,8 +2,8 @@
 
 Three sets that share no draw: one grows the forest, one calibrates its probabilities (the votes of
 trees that did not see a sample), and one, drawn afresh, is scored and written into the card. What
-a run is called follows from its physics (`noise.truth`), never from its features. The classifier
-has to work with whatever channels there are, so part of the samples keep pressure alone.
+a run is called follows from its physics (`noise.classifier.truth`), never from its features. The
+classifier has to work with whatever channels there are, so part of the samples keep pressure alone.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from scipy.optimize import minimize_scalar
 from features.registry import recording_feature_names, recording_features
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.classifier import LABELS, Classifier, calibrated
-from noise.designs import random_design
-from noise.forest import grow_forest
-from noise.hearing import RATES, as_recorded, coloured_noise, resampled
-from noise.strangers import stranger
-from noise.truth import noise_of
+from noise.classifier.designs import random_design
+from noise.classifier.forest import grow_forest
+from noise.classifier.hearing import RATES, as_recorded, coloured_noise, resampled
+from noise.classifier.model import LABELS, Classifier, calibrated
+from noise.classifier.strangers import stranger
+from noise.classifier.truth import noise_of
 from sim.acquisition import Acquisition
 from sim.run import simulate
 

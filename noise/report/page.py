@@ -24,8 +24,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from models.errors import ParameterError, RecordingError
 from noise.atomic import atomic
 from noise.classifier import LABELS
-from noise.figures import entry_figures
-from noise.full_scale import REFERENCE_PRESSURE
+from noise.recordings.full_scale import REFERENCE_PRESSURE
+from noise.report.figures import entry_figures
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from jinja2 import Template
 
     from models.recording import Recording
-    from noise.figures import EntryFigure
-    from noise.segments import Segment
+    from noise.labels.segments import Segment
+    from noise.report.figures import EntryFigure
 
 __all__ = ["ReportEntry", "write_report"]
 
@@ -111,7 +111,7 @@ def write_report(
     >>> import tempfile
     >>> import numpy as np
     >>> from models.recording import Channel, Recording
-    >>> from noise.segments import Segment
+    >>> from noise.labels.segments import Segment
     >>> silence = Recording(np.zeros((1, 4800)), 48e3, (Channel("pressure"),))
     >>> segment = Segment(channel="all", start=0.0, end=0.1, label="none",
     ...     probabilities={"none": 1.0}, frequency=None, level=None, level_dbfs=None)
@@ -143,7 +143,7 @@ def write_report(
 @lru_cache(maxsize=1)
 def _template() -> Template:
     environment = Environment(
-        loader=PackageLoader("noise"),
+        loader=PackageLoader("noise.report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

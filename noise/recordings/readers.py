@@ -49,7 +49,7 @@ class RawSamples:
 
 Reader = Callable[[Path], RawSamples]
 
-_SOUND = "noise.sound_file:read_sound_file"
+_SOUND = "noise.recordings.sound_file:read_sound_file"
 
 READERS = {
     ".aif": _SOUND,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
-from noise.hearing import coloured_noise
+from noise.classifier.hearing import coloured_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 
 from models.errors import ParameterError
-from noise.traces import HIGHEST, KINDS, LOWEST, Trace, common_scales, traces
+from noise.report.traces import HIGHEST, KINDS, LOWEST, Trace, common_scales, traces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.recording import Recording
-    from noise.segments import Segment
-    from noise.traces import Kind, Scale
+    from noise.labels.segments import Segment
+    from noise.report.traces import Kind, Scale
 
 __all__ = ["WINDOW", "ChannelPanels", "EntryFigure", "Panel", "entry_figures"]
 
@@ -124,7 +124,7 @@ def entry_figures(
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.segments import Segment
+    >>> from noise.labels.segments import Segment
     >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 9600)), 48e3,
     ...                  (Channel("pressure"),))
     >>> segment = Segment(channel="all", start=0.0, end=0.2, label="unknown",

@@ -1,7 +1,7 @@
 """The classifier: features of a segment in, probabilities of the five labels out.
 
-Trained on simulation alone, it ships with the package (``noise/data/classifier.npz``); how it is
-trained is the business of `noise.training`.
+Trained on simulation alone, it ships with the package (``data/classifier.npz``); how it is
+trained is the business of `noise.classifier.training`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from models.errors import ParameterError
 from noise.atomic import atomic
-from noise.forest import Forest
+from noise.classifier.forest import Forest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -117,7 +117,7 @@ def load_classifier(path: str | Path | None = None) -> Classifier:
 
 @lru_cache(maxsize=1)
 def _shipped() -> Classifier:
-    with resources.as_file(resources.files("noise") / "data" / "classifier.npz") as path:
+    with resources.as_file(resources.files("noise.classifier") / "data" / "classifier.npz") as path:
         return _load(path)
 
 

@@ -1,0 +1,5 @@
+"""Recordings on disk: one file a format, the sidecar, and where a calibration can be found."""
+
+from noise.recordings.files import find_recordings, read_recording, write_recording
+
+__all__ = ["find_recordings", "read_recording", "write_recording"]
