@@ -158,7 +158,7 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     """
     length = min(x.size, max(16, round(rate / resolution)))
     power, window = segment_powers(x, length)
-    density = power.mean(axis=0) / (rate * float(window @ window))
+    density = power.mean(axis=0) / (rate * float(np.sum(window**2)))
     density[1 : -1 if length % 2 == 0 else None] *= 2.0
     return Spectrum(np.arange(density.size) * (rate / length), density, rate, power.shape[0])
 

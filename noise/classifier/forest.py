@@ -112,7 +112,7 @@ def grow_forest(
     --------
     >>> rng = np.random.default_rng(0)
     >>> y = np.repeat([0, 1], 100)
-    >>> forest, _ = grow_forest(rng.normal(size=(200, 2)) + 4.0 * y[:, None], y, n_trees=10,
+    >>> forest, _ = grow_forest(rng.normal(size=(200, 2)) + 4.0 * y[:, None], y, n_trees=50,
     ...                         least_leaf=2, seed=0)
     >>> forest.probabilities(np.array([[0.0, 0.0], [4.0, np.nan]])).round().tolist()
     [[1.0, 0.0], [0.0, 1.0]]

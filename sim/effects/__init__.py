@@ -29,6 +29,7 @@ def effect(spec: LawSpec) -> SlipPulse:
 
     Examples
     --------
+    >>> from models.rig import LawSpec
     >>> effect(LawSpec("slip_pulse", {"amplitude": 5.0})).amplitude
     5.0
     """

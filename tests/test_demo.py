@@ -1,0 +1,65 @@
+"""The main job: one call, one folder."""
+
+import csv
+
+import pytest
+
+from noise.demo import CASES, run_demo
+from noise.recordings import read_recording
+
+NAMES = [case.name for case in CASES]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    out = tmp_path_factory.mktemp("demo") / "new" / "folder"
+    run_demo(out, seed=0)
+    return out
+
+
+def table(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_folder_holds_what_the_readme_says(folder):
+    expected = {"report.html", "labels.csv", "features.csv", "recordings", "audio"}
+    assert {path.name for path in folder.iterdir()} == expected
+    for part in ("recordings", "audio"):
+        found = {path.name for path in (folder / part).iterdir()}
+        assert found == {f"{name}.{ending}" for name in NAMES for ending in ("wav", "json")}
+
+
+def test_every_recording_carries_its_label_linked_to_its_condition(folder):
+    rows = table(folder / "labels.csv")
+    assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
+    assert [row["label"] for row in rows] == NAMES
+    for row, case in zip(rows, CASES, strict=True):
+        assert float(row["speed_rad_s"]) == pytest.approx(case.speed, rel=0.01)
+        assert float(row["interference_mm"]) == pytest.approx(1e3 * case.interference)
+        assert float(row["support_stiffness_Nm_rad"]) == case.support_stiffness
+        assert row["material"] == case.material
+        assert row["calibrated"] == "true"
+
+
+def test_features_have_one_row_a_recording(folder):
+    rows = table(folder / "features.csv")
+    assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
+    assert all(row["pressure_level"] for row in rows)
+
+
+def test_sounds_never_clip_and_silence_stays_quiet(folder):
+    peaks = {name: abs(read_recording(folder / "audio" / f"{name}.wav").samples) for name in NAMES}
+    scales = {
+        name: read_recording(folder / "audio" / f"{name}.wav").channels[0].full_scale
+        for name in NAMES
+    }
+    assert all(peaks[name].max() < scales[name] for name in NAMES)
+    assert peaks["none"].max() < 0.2 * scales["none"]
+
+
+def test_the_same_seed_makes_the_same_recordings(folder, tmp_path):
+    run_demo(tmp_path, seed=0)
+    for name in NAMES:
+        first, again = (root / "recordings" / f"{name}.wav" for root in (folder, tmp_path))
+        assert first.read_bytes() == again.read_bytes()
