@@ -15,6 +15,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from models.checks import a_number, a_table, a_text, a_vector, refuse_unknown
 from models.errors import ParameterError
 from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
 
@@ -90,17 +91,17 @@ def load_rig(path: str | Path) -> Rig:
     where = f"rig file {path}"
     if "measured_response" in given:
         raise ParameterError(f"{where}: [[measured_response]] is not supported by this version")
-    _refuse_unknown(given, _KEYS, where)
+    refuse_unknown(given, _KEYS, where)
     base = _bench()
     if "fit" in given:
         bushing: dict[str, Any] = _PLAIN_BUSHING
     else:
         named = given.get("material", base["material"])
-        bushing = _material(_text(named, "material", where))
+        bushing = _material(a_text(named, "material", where))
         given["material"] = bushing["material"]
     merged = base | bushing | given
     for table in ("beams", "plate", "microphone"):
-        merged[table] = base[table] | _table(given.get(table, {}), table, where)
+        merged[table] = base[table] | a_table(given.get(table, {}), table, where)
     return _build(merged, where)
 
 
@@ -155,24 +156,24 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
         raise ParameterError(f"{where}: needs at least one [[fit]]")
     if len({fit.interference for fit in fits}) < len(fits):
         raise ParameterError(f"{where}: two [[fit]] entries have the same interference_mm")
-    friction = dict(_table(merged["friction"], "friction", where))
-    law = _text(friction.pop("law", "coulomb"), "friction.law", where)
+    friction = dict(a_table(merged["friction"], "friction", where))
+    law = a_text(friction.pop("law", "coulomb"), "friction.law", where)
     for key in friction:
-        _number(friction, key, f"{where}, friction", low=-math.inf)
+        a_number(friction, key, f"{where}, friction", low=-math.inf)
     effects = merged["effects"]
     if not isinstance(effects, list):
         raise ParameterError(f'{where}: effects must be a list such as ["slip_pulse:amplitude=20"]')
     return Rig(
-        name=_text(merged["name"], "name", where),
-        material=_text(merged["material"], "material", where),
-        elastomer_inertia=_number(merged, "elastomer_inertia_kgm2", where),
-        clamp_inertia=_number(merged, "clamp_inertia_kgm2", where),
+        name=a_text(merged["name"], "name", where),
+        material=a_text(merged["material"], "material", where),
+        elastomer_inertia=a_number(merged, "elastomer_inertia_kgm2", where),
+        clamp_inertia=a_number(merged, "clamp_inertia_kgm2", where),
         fits=fits,
         friction=LawSpec(law, friction),
-        elastomer_damping_share=_number(
+        elastomer_damping_share=a_number(
             merged, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True
         ),
-        effects=tuple(parse_spec(_text(e, "effects", where), f"{where}, effect") for e in effects),
+        effects=tuple(parse_spec(a_text(e, "effects", where), f"{where}, effect") for e in effects),
         beams=_beams(merged["beams"], f"{where}, beams"),
         plate=_plate(merged["plate"], f"{where}, plate"),
         microphone=_microphone(merged["microphone"], f"{where}, microphone"),
@@ -181,8 +182,8 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
 
 
 def _fit(table: Any, where: str) -> Fit:
-    table = _table(table, "fit", where)
-    _refuse_unknown(
+    table = a_table(table, "fit", where)
+    refuse_unknown(
         table,
         {
             "interference_mm",
@@ -193,8 +194,8 @@ def _fit(table: Any, where: str) -> Fit:
         },
         where,
     )
-    critical = _number(table, "critical_torque_Nm", where)
-    kinetic = _number(table, "kinetic_torque_Nm", where)
+    critical = a_number(table, "critical_torque_Nm", where)
+    kinetic = a_number(table, "kinetic_torque_Nm", where)
     if critical < kinetic:
         raise ParameterError(
             f"{where}: critical_torque_Nm = {critical:g} is below kinetic_torque_Nm = {kinetic:g}; "
@@ -205,12 +206,12 @@ def _fit(table: Any, where: str) -> Fit:
     if not by_support:
         raise ParameterError(f"{where}: damping_Nms_rad is empty")
     return Fit(
-        interference=1e-3 * _number(table, "interference_mm", where),
-        elastomer_stiffness=_number(table, "elastomer_stiffness_Nm_rad", where),
+        interference=1e-3 * a_number(table, "interference_mm", where),
+        elastomer_stiffness=a_number(table, "elastomer_stiffness_Nm_rad", where),
         critical_torque=critical,
         kinetic_torque=kinetic,
         damping={
-            _support(key, where): _number(
+            _support(key, where): a_number(
                 {"damping_Nms_rad": value}, "damping_Nms_rad", where, high=1e3, closed=True
             )
             for key, value in by_support.items()
@@ -228,10 +229,10 @@ def _beams(table: Mapping[str, Any], where: str) -> Beams:
         "damping_ratio": "damping_ratio",
         "accelerometer": "accelerometer",
     }
-    _refuse_unknown(table, set(fields.values()), where)
-    values = {field: _number(table, key, where) for field, key in fields.items()}
-    _number(table, "damping_ratio", where, high=1.0)
-    _number(table, "accelerometer", where, high=1.0, closed=True)
+    refuse_unknown(table, set(fields.values()), where)
+    values = {field: a_number(table, key, where) for field, key in fields.items()}
+    a_number(table, "damping_ratio", where, high=1.0)
+    a_number(table, "accelerometer", where, high=1.0, closed=True)
     return Beams(**values)
 
 
@@ -245,74 +246,24 @@ def _plate(table: Mapping[str, Any], where: str) -> Plate:
         "poisson_ratio": "poisson_ratio",
         "loss_factor": "loss_factor",
     }
-    _refuse_unknown(table, {*fields.values(), "clamp_position_m"}, where)
-    values = {field: _number(table, key, where) for field, key in fields.items()}
-    _number(table, "poisson_ratio", where, high=0.5)
-    _number(table, "loss_factor", where, high=1.0)
-    x, y = _vector(table, "clamp_position_m", 2, where)
+    refuse_unknown(table, {*fields.values(), "clamp_position_m"}, where)
+    values = {field: a_number(table, key, where) for field, key in fields.items()}
+    a_number(table, "poisson_ratio", where, high=0.5)
+    a_number(table, "loss_factor", where, high=1.0)
+    x, y = a_vector(table, "clamp_position_m", 2, where)
     if abs(x) >= 0.5 * values["length"] or abs(y) >= 0.5 * values["width"]:
         raise ParameterError(f"{where}: clamp_position_m = [{x:g}, {y:g}] lies off the plate")
     return Plate(**values, clamp_position=(x, y))
 
 
 def _microphone(table: Mapping[str, Any], where: str) -> Microphone:
-    _refuse_unknown(table, {"position_m"}, where)
-    x, y, z = _vector(table, "position_m", 3, where)
+    refuse_unknown(table, {"position_m"}, where)
+    x, y, z = a_vector(table, "position_m", 3, where)
     if z < 0.01:
         raise ParameterError(
             f"{where}: position_m has z = {z:g} m; it must be at least 0.01 m above the plate"
         )
     return Microphone((x, y, z))
-
-
-def _refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> None:
-    for key in table:
-        if key not in known:
-            raise ParameterError(
-                f"{where}: unknown key {key!r}; known are {', '.join(sorted(known))}"
-            )
-
-
-def _table(value: Any, key: str, where: str) -> Mapping[str, Any]:
-    if not isinstance(value, Mapping):
-        raise ParameterError(f"{where}: {key} must be a table")
-    return value
-
-
-def _text(value: Any, key: str, where: str) -> str:
-    if not isinstance(value, str):
-        raise ParameterError(f"{where}: {key} = {value!r} must be a text in quotes")
-    return value
-
-
-def _number(
-    table: Mapping[str, Any],
-    key: str,
-    where: str,
-    *,
-    low: float = 0.0,
-    high: float = math.inf,
-    closed: bool = False,
-) -> float:
-    """Return a finite number above `low`, up to `high`; `closed` admits `low` itself."""
-    value = table.get(key)
-    if value is None:
-        raise ParameterError(f"{where}: {key} is missing")
-    number = float(value) if isinstance(value, (int, float)) and value is not True else math.nan
-    inside = low <= number <= high if closed else low < number <= high
-    if not (math.isfinite(number) and inside):
-        least = "at least" if closed else "above"
-        most = "" if math.isinf(high) else f" and at most {high:g}"
-        wanted = "a number" if math.isinf(low) else f"a number {least} {low:g}{most}"
-        raise ParameterError(f"{where}: {key} = {value!r} must be {wanted}")
-    return number
-
-
-def _vector(table: Mapping[str, Any], key: str, size: int, where: str) -> tuple[float, ...]:
-    value = table.get(key)
-    if not isinstance(value, list) or len(value) != size:
-        raise ParameterError(f"{where}: {key} = {value!r} must be a list of {size} numbers")
-    return tuple(_number({key: v}, key, where, low=-math.inf) for v in value)
 
 
 def _support(key: str, where: str) -> float:

@@ -44,7 +44,7 @@ class Acquisition:
         Sampling rate [Hz].
     noise : mapping of str to float
         Standard deviation of the white noise on each kind of channel, in its unit. The defaults
-        are a quiet room (38 dB re 20 uPa up to 15 kHz) and good amplifiers; assumed.
+        are a quiet room (32 dB re 20 uPa up to 15 kHz) and good amplifiers; assumed.
     converter : bool
         Whether the samples pass the 12-bit converter (and clip at its range).
     """
@@ -54,7 +54,7 @@ class Acquisition:
         default_factory=lambda: {
             "torque": 0.005,
             "acceleration": 0.02,
-            "pressure": 1.6e-3,
+            "pressure": 0.8e-3,
             "angle": 1e-4,
         }
     )

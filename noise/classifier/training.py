@@ -90,8 +90,13 @@ def train(
         delayed(draw_sample)(child) for child in children
     )
     samples = list(progress(drawn, total) if progress else drawn)
-    names = recording_feature_names()
-    x = np.array([[sample.features.get(name, np.nan) for name in names] for sample in samples])
+    # Levels are left out: the samples are not calibrated, and a noise is one at any level.
+    names = [
+        name
+        for name in recording_feature_names()
+        if any(np.isfinite(sample.features[name]) for sample in samples[:n_training])
+    ]
+    x = np.array([[sample.features[name] for name in names] for sample in samples])
     y = np.array([LABELS.index(sample.label) for sample in samples])
     missing = set(range(len(LABELS))) - set(y[:n_training].tolist())
     if missing:

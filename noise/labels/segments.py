@@ -10,6 +10,7 @@ import numpy as np
 
 from features.harmonics import analyse_harmonics
 from features.registry import recording_features
+from features.slip_pulses import acoustic_slips
 from noise.classifier import LABELS
 
 if TYPE_CHECKING:
@@ -58,8 +59,8 @@ class Segment:
     probabilities : mapping of str to float
         Of all labels; mean over the segment's windows.
     frequency : float or None
-        Fundamental frequency of a creak or squawk, strongest line of others [Hz]; ``None``
-        where there is none.
+        Slip frequency of a creak or squawk, strongest line of others [Hz]; ``None`` where there
+        is none.
     level : float or None
         Sound pressure level [dB re 20 uPa]; ``None`` where not calibrated.
     level_dbfs : float or None
@@ -238,13 +239,19 @@ def _levels(recording: Recording) -> tuple[float | None, float | None]:
 
 
 def _frequency(recording: Recording, label: str) -> float | None:
+    """Slip frequency of creak and squawk, else the strongest line: of the torque if it is there."""
     if label == "none":
         return None
     names = recording.channel_names
-    index = next((names.index(n) for n in ("pressure", "acceleration", "torque") if n in names), 0)
+    index = next((names.index(n) for n in ("torque", "pressure", "acceleration") if n in names), 0)
     signal = recording.samples[index]
     spare = max(0, signal.size - round(_LONGEST_LOOK * recording.rate)) // 2
-    harmonics = analyse_harmonics(signal[spare : signal.size - spare], recording.rate)
+    signal = signal[spare : signal.size - spare]
+    if label == "creak" and names[index] != "torque":
+        pulses = acoustic_slips(signal, recording.rate).rate
+        if pulses > 0.0:
+            return float(pulses)
+    harmonics = analyse_harmonics(signal, recording.rate)
     if label in ("creak", "squawk") and np.isfinite(harmonics.fundamental):
         return float(harmonics.fundamental)
     lines = harmonics.peaks.frequency
