@@ -6,8 +6,7 @@ import struct
 import numpy as np
 import pytest
 import soundfile
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from noise.recordings.bext import bext_description, chunks, missing_bytes
 

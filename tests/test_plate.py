@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from models.plate import acceleration_model, plate_modes, pressure_response
 from models.rayleigh import AIR_DENSITY, SOUND_SPEED

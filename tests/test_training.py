@@ -13,11 +13,11 @@ from noise.classifier.training import draw_sample, train
 
 @pytest.fixture(scope="module")
 def small():
-    return train(seed=3, n_training=70, n_test=10)
+    return train(seed=3, n_training=70, n_calibration=10, n_test=10)
 
 
 def test_the_same_seed_gives_the_same_bytes_of_predictions(small):
-    again = train(seed=3, n_training=70, n_test=10)
+    again = train(seed=3, n_training=70, n_calibration=10, n_test=10)
     features = [draw_sample(np.random.SeedSequence(8)).features]
     assert small.predict_proba(features).tobytes() == again.predict_proba(features).tobytes()
     assert small.card == again.card
@@ -30,7 +30,7 @@ def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
 
 def test_too_few_samples_to_know_every_label_are_refused():
     with pytest.raises(ParameterError, match="draw more"):
-        train(seed=0, n_training=6, n_test=2)
+        train(seed=0, n_training=6, n_calibration=1, n_test=1)
 
 
 def test_every_label_occurs_among_the_samples():

@@ -46,7 +46,9 @@ def random_design(rng: np.random.Generator) -> Design:
     """
     names = list(_MATERIALS)
     rig = load_material_rig(str(rng.choice(names, p=list(_MATERIALS.values()))))
-    interference = float(rng.uniform(0.15e-3, 0.42e-3))
+    # Half of them tight, where creak is, the others looser and fast enough to squeal.
+    tight = bool(rng.random() < 0.5)
+    interference = float(rng.uniform(0.32e-3, 0.42e-3) if tight else rng.uniform(0.15e-3, 0.34e-3))
     stiffness = math.exp(rng.normal(0.0, 0.3))
     torque = math.exp(rng.normal(0.0, 0.25))
     rig = replace(
@@ -71,9 +73,9 @@ def random_design(rng: np.random.Generator) -> Design:
     support = float(rng.choice(_SUPPORTS))
     if rng.random() < 0.4:
         support = math.exp(rng.uniform(math.log(1000.0), math.log(10000.0)))
-    if interference > 0.33e-3:  # slow creaks have few slips a second
+    if tight:  # slow creaks have few slips a second
         speed = math.exp(rng.uniform(math.log(0.1), math.log(15.0)))
-    else:  # squeal lives in a narrow range of high speeds
+    else:
         speed = float(rng.uniform(0.5, 13.0))
     return Design(rig, speed, interference, support)
 

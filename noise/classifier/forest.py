@@ -90,7 +90,7 @@ def grow_forest(
     n_trees: int,
     least_leaf: int,
     seed: int,
-) -> tuple[Forest, NDArray[np.float64]]:
+) -> Forest:
     """Grow a forest with balanced classes.
 
     Parameters
@@ -104,16 +104,14 @@ def grow_forest(
 
     Returns
     -------
-    forest : Forest
-    out_of_bag : ndarray, shape (n, n_classes)
-        Votes of the trees that did not see a sample.
+    Forest
 
     Examples
     --------
     >>> rng = np.random.default_rng(0)
     >>> y = np.repeat([0, 1], 100)
-    >>> forest, _ = grow_forest(rng.normal(size=(200, 2)) + 4.0 * y[:, None], y, n_trees=50,
-    ...                         least_leaf=2, seed=0)
+    >>> forest = grow_forest(rng.normal(size=(200, 2)) + 4.0 * y[:, None], y, n_trees=10,
+    ...                      least_leaf=2, seed=0)
     >>> forest.probabilities(np.array([[0.0, 0.0], [4.0, np.nan]])).round().tolist()
     [[1.0, 0.0], [0.0, 1.0]]
     """
@@ -124,12 +122,10 @@ def grow_forest(
         min_samples_leaf=least_leaf,
         max_features="sqrt",
         class_weight="balanced",
-        oob_score=True,
         random_state=seed,
         n_jobs=-1,
     ).fit(x, y)
-    out_of_bag = np.nan_to_num(model.oob_decision_function_, nan=1.0 / model.n_classes_)
-    return _as_arrays(model), out_of_bag
+    return _as_arrays(model)
 
 
 def _as_arrays(model: Any) -> Forest:

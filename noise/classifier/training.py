@@ -1,7 +1,7 @@
 """Training the classifier, on simulation and on made-up strangers alone.
 
-Three sets that share no draw: one grows the forest, one calibrates its probabilities (the votes of
-trees that did not see a sample), and one, drawn afresh, is scored and written into the card. What
+Three sets that share no draw: one grows the forest, one calibrates its probabilities, and one is
+scored and written into the card. What
 a run is called follows from its physics (`noise.classifier.truth`), never from its features. The
 classifier has to work with whatever channels there are, so part of the samples keep pressure alone.
 """
@@ -38,6 +38,9 @@ __all__ = ["Sample", "draw_sample", "train"]
 N_TRAINING = 3000
 """Samples that grow the forest."""
 
+N_CALIBRATION = 600
+"""Samples that calibrate its probabilities."""
+
 N_TEST = 600
 """Samples that are scored."""
 
@@ -66,6 +69,7 @@ def train(
     *,
     seed: int = 0,
     n_training: int = N_TRAINING,
+    n_calibration: int = N_CALIBRATION,
     n_test: int = N_TEST,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
 ) -> Classifier:
@@ -74,17 +78,17 @@ def train(
     Parameters
     ----------
     seed : int
-    n_training, n_test : int
-        Samples to learn from and to score.
+    n_training, n_calibration, n_test : int
+        Samples to learn from, to calibrate on and to score.
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.
 
     Returns
     -------
     Classifier
-        Its card tells the scores on the samples that were not learned from.
+        Its card tells the scores on the last of the three sets.
     """
-    total = n_training + n_test
+    total = n_training + n_calibration + n_test
     children = np.random.SeedSequence(seed).spawn(total)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
         delayed(draw_sample)(child) for child in children
@@ -102,15 +106,13 @@ def train(
     if missing:
         absent = ", ".join(LABELS[i] for i in sorted(missing))
         raise ParameterError(f"{n_training} training samples hold no {absent}; draw more of them")
-    forest, out_of_bag = grow_forest(
-        x[:n_training], y[:n_training], n_trees=N_TREES, least_leaf=LEAST_LEAF, seed=seed
-    )
-    sharpness = _fitted_sharpness(out_of_bag, y[:n_training])
-    test = calibrated(forest.probabilities(x[n_training:]), sharpness)
+    learn, calibrate, test = np.split(np.arange(total), [n_training, n_training + n_calibration])
+    forest = grow_forest(x[learn], y[learn], n_trees=N_TREES, least_leaf=LEAST_LEAF, seed=seed)
+    sharpness = _fitted_sharpness(forest.probabilities(x[calibrate]), y[calibrate])
     card: dict[str, object] = {
         "seed": seed,
         "samples": dict(Counter(sample.label for sample in samples[:n_training])),
-        "test": _scores(test, y[n_training:]),
+        "test": _scores(calibrated(forest.probabilities(x[test]), sharpness), y[test]),
     }
     return Classifier(tuple(names), forest, sharpness, card)
 

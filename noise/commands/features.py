@@ -11,7 +11,11 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
     from pathlib import Path
 
+    from models.recording import Recording
+
 __all__ = ["configure", "run"]
+
+_PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_share")
 
 
 def configure(parser: ArgumentParser) -> None:
@@ -22,6 +26,12 @@ def configure(parser: ArgumentParser) -> None:
         "column error."
     )
     add_batch(parser)
+    parser.add_argument(
+        "--pitch",
+        action="store_true",
+        help="add the course of the pitch: median [Hz], range [octaves] and share of the time "
+        "that has one, of the first pressure channel (about one second a second of sound)",
+    )
     opt.add_full_scale(parser)
     opt.add_seed(parser, "taken by all commands; features use no random numbers")
 
@@ -34,10 +44,27 @@ def run(options: Namespace) -> int:
 
     def rows(path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         recording = read_recording(path, full_scale=options.full_scale)
-        return [{"file": name, **recording_features(recording)}], recording.calibrated
+        pitch = _pitch(recording) if options.pitch else {}
+        return [{"file": name, **recording_features(recording), **pitch}], recording.calibrated
 
     def error_row(name: str, message: str) -> dict[str, object]:
         return {"file": name, "error": message}
 
-    columns = ("file", *recording_feature_names(), "error")
+    columns = (
+        "file",
+        *recording_feature_names(),
+        *(_PITCH_COLUMNS if options.pitch else ()),
+        "error",
+    )
     return run_batch(options, Task("analysing", columns, rows, error_row))
+
+
+def _pitch(recording: Recording) -> dict[str, float]:
+    """Pitch of the first pressure channel."""
+    from features.pitch import pitch_track
+
+    if "pressure" not in recording:
+        return {}
+    track = pitch_track(recording["pressure"], recording.rate)
+    values = (track.median, track.range, track.voiced_share)
+    return dict(zip(_PITCH_COLUMNS, values, strict=True))

@@ -1,0 +1,48 @@
+from .bands import (
+    NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
+    REFERENCES as REFERENCES,
+    THESIS_BANDS as THESIS_BANDS,
+    a_weighting as a_weighting,
+    band_levels as band_levels,
+    band_power as band_power,
+    overall_level as overall_level,
+    third_octave_edges as third_octave_edges,
+    third_octave_levels as third_octave_levels,
+)
+from .feature import (
+    Feature as Feature,
+)
+from .harmonics import (
+    Harmonics as Harmonics,
+    analyse_harmonics as analyse_harmonics,
+)
+from .lines import (
+    Lines as Lines,
+    find_lines as find_lines,
+)
+from .pitch import (
+    PitchTrack as PitchTrack,
+    pitch_track as pitch_track,
+)
+from .registry import (
+    FEATURES as FEATURES,
+    feature_names as feature_names,
+    feature_vector as feature_vector,
+    features_of as features_of,
+    recording_feature_names as recording_feature_names,
+    recording_features as recording_features,
+)
+from .slip_drops import (
+    TorqueSlips as TorqueSlips,
+    torque_slips as torque_slips,
+)
+from .slip_pulses import (
+    Pulses as Pulses,
+    acoustic_slips as acoustic_slips,
+)
+from .spectra import (
+    SpectralShape as SpectralShape,
+    Spectrum as Spectrum,
+    autospectrum as autospectrum,
+    spectral_shape as spectral_shape,
+)

@@ -1,0 +1,31 @@
+from .beams import (
+    beam_length as beam_length,
+    torsional_stiffness as torsional_stiffness,
+)
+from .condition import (
+    FIXED as FIXED,
+    Condition as Condition,
+)
+from .errors import (
+    BushingNoiseError as BushingNoiseError,
+    ParameterError as ParameterError,
+    RecordingError as RecordingError,
+)
+from .recording import (
+    CHANNEL_UNITS as CHANNEL_UNITS,
+    Channel as Channel,
+    Recording as Recording,
+)
+from .rig import (
+    Beams as Beams,
+    Fit as Fit,
+    LawSpec as LawSpec,
+    Microphone as Microphone,
+    Plate as Plate,
+    Rig as Rig,
+)
+from .rig_file import (
+    load_material_rig as load_material_rig,
+    load_rig as load_rig,
+    material_names as material_names,
+)
