@@ -10,15 +10,18 @@ import numpy as np
 
 from models.errors import ParameterError
 from sim.bushing import LumpedBushing, lumped_bushing
+from sim.contact_solver import MOST_HOOKS, Hook, solve_contact
 from sim.friction import friction_law
 from sim.parameters import resolve
-from sim.smooth_contact import solve_smooth_contact
 from sim.stick_slip import solve_stick_slip
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from models.rig import Rig
+    from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
 __all__ = ["STICK_SPEED_SHARE", "Motion", "simulate_motion"]
@@ -26,8 +29,11 @@ __all__ = ["STICK_SPEED_SHARE", "Motion", "simulate_motion"]
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""
 
-_LONGEST_STEP = 5e-6
-"""Of the integration of smooth contacts [s]."""
+LONGEST_STEP = 12e-6
+"""Of the integration of a contact that truly sticks [s]."""
+
+LONGEST_STEP_OF_LAWS = 5e-6
+"""Of the integration of friction laws with an inner state, whose own times are shorter [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +95,8 @@ def simulate_motion(
     support_stiffness: float,
     seconds: float,
     rate: float,
+    effects: Sequence[ActiveEffect] = (),
+    rng: np.random.Generator | None = None,
 ) -> Motion:
     """Simulate the rig from rest.
 
@@ -104,6 +112,10 @@ def simulate_motion(
         Length [s].
     rate : float
         Of the output [Hz]; the solution itself does not depend on it.
+    effects : sequence of ActiveEffect
+        Those of drive and friction act, in this order; the others are left to others.
+    rng : numpy.random.Generator, optional
+        Of effects that scatter; by default seeded with 0.
 
     Returns
     -------
@@ -124,6 +136,7 @@ def simulate_motion(
     >>> round(float(run.torque.max()), 1)
     10.7
     """
+    rng = rng or np.random.default_rng(0)
     n = round(seconds * rate)
     if not n >= 2:
         raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
@@ -131,27 +144,53 @@ def simulate_motion(
     fit = rig.fit(interference)
     law = friction_law(rig.friction.name)
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
-    coefficients = law.coefficients(fit, values)
     step = 1.0 / rate
-    time = np.arange(n, dtype=np.float64) * step
-    speed = shaft.speed(time)
-    if law.rates is None:
-        critical, kinetic = coefficients
-        states, _, _ = solve_stick_slip(system.packed(), critical, kinetic, speed, step)
+    drive = shaft.speed(np.arange(n, dtype=np.float64) * step)
+    for active in effects:
+        if active.effect.drive is not None:
+            drive = active.effect.drive(drive, rate, active.form, active.values, rng)
+    hooks = tuple(_hook(active, rng) for active in effects if active.effect.contact is not None)
+    if len(hooks) > MOST_HOOKS:
+        names = ", ".join(a.effect.name for a in effects if a.effect.contact is not None)
+        raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
+    torques = fit.critical_torque, fit.kinetic_torque
+    if law.torque is None and not hooks:
+        states, _, _ = solve_stick_slip(system.packed(), *torques, drive, step)
+        speed = drive
     else:
-        substeps = math.ceil(step / _LONGEST_STEP)
-        states = solve_smooth_contact(law, coefficients, system.packed(), speed, step, substeps)
+        coefficients = law.coefficients(values)
+        longest = LONGEST_STEP if law.torque is None else LONGEST_STEP_OF_LAWS
+        states, _ = solve_contact(
+            system.packed(),
+            *torques,
+            drive,
+            step,
+            math.ceil(step / longest),
+            law=law.torque,
+            coefficients=coefficients,
+            law_state=law.state(coefficients),
+            hooks=hooks,
+        )
+        speed = states[:, 6]
     _refuse_overflow(states, system)
     return Motion(
         rate=rate,
         torque=states[:, 1],
         friction_torque=states[:, 0],
-        shaft_angle=_integral(speed, step),
+        shaft_angle=_integral(drive, step),
         shaft_speed=speed,
         interface_speed=states[:, 3],
         clamp_angle=states[:, 4],
         clamp_speed=states[:, 5],
     )
+
+
+def _hook(active: ActiveEffect, rng: np.random.Generator) -> Hook:
+    effect = active.effect
+    values = np.array(list(active.values.values()))
+    if effect.pack is not None:
+        values = effect.pack(active.form, active.values, rng)
+    return Hook(effect.contact, values, effect.n_states)
 
 
 def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:

@@ -13,14 +13,18 @@ from models.errors import ParameterError
 from models.radiation import radiate, response
 from models.recording import Channel, Recording
 from sim.acquisition import Acquisition, sample
-from sim.effects import effect
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
 from sim.motion import Motion, simulate_motion
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from models.rig import Rig
+    from sim.effects.effect import Effect
     from sim.shaft import ShaftMotion
 
 __all__ = ["DEFAULT_SETTLING", "Run", "simulate"]
@@ -67,6 +71,7 @@ def simulate(
     seconds: float = 1.0,
     acquisition: Acquisition | None = None,
     settling: float | None = None,
+    library: Mapping[str, Effect] | None = None,
     rng: np.random.Generator | None = None,
 ) -> Run:
     """Simulate one run of the rig.
@@ -89,8 +94,10 @@ def simulate(
     settling : float, optional
         How long the rig has run before the recording starts [s]; by default `DEFAULT_SETTLING`
         at constant speed, else none.
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among; by default `sim.effects.EFFECTS`.
     rng : numpy.random.Generator, optional
-        Of the sensors' noise; by default seeded with 0.
+        Of the sensors' noise and of effects that scatter; by default seeded with 0.
 
     Returns
     -------
@@ -121,6 +128,7 @@ def simulate(
     rate = decimation * acquisition.rate
     n_kept = round(seconds * acquisition.rate) * decimation
     n_settling = round(settling * rate)
+    effects = activated(rig.effects, library or EFFECTS)
     motion = simulate_motion(
         rig,
         shaft,
@@ -128,10 +136,13 @@ def simulate(
         support_stiffness=support_stiffness,
         seconds=(n_settling + n_kept) / rate,
         rate=rate,
+        effects=effects,
+        rng=rng,
     )
     force = np.zeros_like(motion.torque)
-    for spec in rig.effects:
-        force += effect(spec).force(motion)
+    for active in effects:
+        if active.effect.force is not None:
+            force += active.effect.force(motion, active.form, active.values)
     paths = response(rig, interference, support_stiffness, rate)
     acceleration, pressure = radiate(paths, motion.torque, force)
     _, pulse_pressure = radiate(paths, np.zeros_like(force), force)
@@ -143,6 +154,9 @@ def simulate(
         "pressure": pressure[kept],
         "angle": motion.shaft_angle[kept] - motion.shaft_angle[n_settling],
     }
+    for active in effects:
+        if active.effect.sensors is not None:
+            signals = active.effect.sensors(signals, rate, active.form, active.values, rng)
     sampled = sample(signals, decimation, acquisition, rng)
     condition = Condition(
         speed=shaft.value if isinstance(shaft, ConstantSpeed) else None,

@@ -1,38 +1,58 @@
 """What a rig does beyond its friction law, one effect a file.
 
-A new effect is a file with a class and one line here.
+A new effect is a file with an ``EFFECT`` and its name here; a user's own is a file anywhere, read
+by `load_effects`.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from sim.effects.slip_pulse import SlipPulse
+from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
-    from models.rig import LawSpec
+    from collections.abc import Mapping
 
-__all__ = ["EFFECTS", "effect"]
+__all__ = ["EFFECTS", "Effect", "load_effects"]
 
-EFFECTS = {SlipPulse.name: SlipPulse}
-"""Every effect by name."""
+_NAMES = ("slip_pulse",)
+
+EFFECTS: dict[str, Effect] = {name: import_module(f"sim.effects.{name}").EFFECT for name in _NAMES}
+"""Every shipped effect by name."""
 
 
-def effect(spec: LawSpec) -> SlipPulse:
-    """Return the effect that a specification names.
+def load_effects(path: str | Path) -> Mapping[str, Effect]:
+    """Return the shipped effects and those that a Python file of the user's own defines.
+
+    Parameters
+    ----------
+    path : path-like
+        Every `Effect` among the file's global names is taken. The file is run.
 
     Raises
     ------
     ParameterError
-        If there is none of that name, or a parameter cannot be used.
-
-    Examples
-    --------
-    >>> from models.rig import LawSpec
-    >>> effect(LawSpec("slip_pulse", {"amplitude": 5.0})).amplitude
-    5.0
+        The file cannot be run, defines no effect, or one with the name of a shipped one.
     """
-    if spec.name not in EFFECTS:
-        raise ParameterError(f"effect {spec.name!r} is unknown; there are {', '.join(EFFECTS)}")
-    return EFFECTS[spec.name].from_parameters(spec.parameters)
+    path = Path(path)
+    spec = spec_from_file_location(f"_effects_of_{path.stem}", path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise ParameterError(f"effects {path}: no Python file")
+    module = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise ParameterError(
+            f"effects {path}: cannot be run: {type(error).__name__}: {error}"
+        ) from error
+    own = {value.name: value for value in vars(module).values() if isinstance(value, Effect)}
+    if not own:
+        raise ParameterError(f"effects {path}: defines no Effect; see the README for an example")
+    for name in own:
+        if name in EFFECTS:
+            raise ParameterError(f"effects {path}: {name!r} is a shipped effect; choose a new name")
+    return EFFECTS | own

@@ -13,13 +13,13 @@ makes none.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
 
-from sim.parameters import Parameter, resolve
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from sim.motion import Motion
 
-__all__ = ["SlipPulse", "torque_drops"]
+__all__ = ["EFFECT", "torque_drops"]
 
 _REFERENCE_DROP = 6.94
 """T_crit - T_kin at 0.381 mm, from the peak sliding speed of Figure 6.7 [Nm]."""
@@ -100,50 +100,41 @@ def torque_drops(
     return where, size
 
 
-@dataclass(frozen=True)
-class SlipPulse:
-    """Force pulse in the anchors' joint at each slip.
+def _force(motion: Motion, form: str, values: Mapping[str, float]) -> NDArray[np.float64]:
+    turning = np.sign(np.where(motion.shaft_speed == 0.0, 1.0, motion.shaft_speed))
+    force = np.zeros_like(motion.torque)
+    threshold, duration = values["threshold"], values["duration"]
+    where, drops = torque_drops(motion.torque * turning, max(threshold, 1e-6))
+    excess = (drops - threshold) / (_REFERENCE_DROP - threshold)
+    peaks = values["amplitude"] * np.sqrt(np.maximum(excess, 0.0))
+    shape = _shape(form, duration, motion.rate)
+    for start, peak in zip(where, peaks, strict=True):
+        stop = min(start + shape.size, force.size)
+        force[start:stop] += turning[start] * peak * shape[: stop - start]
+    return force
 
-    Parameters
-    ----------
-    amplitude : float
-        Peak force at a torque drop of 6.94 Nm [N].
-    threshold : float
-        Torque drop below which nothing happens [Nm].
-    duration : float
-        Of the half-sine [s].
-    """
 
-    amplitude: float
-    threshold: float
-    duration: float
+def _shape(form: str, duration: float, rate: float) -> NDArray[np.float64]:
+    """Course of a pulse with unit peak, by its samples after the slip."""
+    if form == "exponential":
+        return np.exp(-np.arange(1, math.ceil(6.0 * duration * rate) + 1) / (duration * rate))
+    x = np.arange(1, math.ceil(duration * rate) + 1) / (duration * rate)
+    if form == "triangle":
+        return np.clip(1.0 - np.abs(2.0 * x - 1.0), 0.0, None)
+    return np.clip(np.sin(np.pi * x), 0.0, None)
 
-    name: ClassVar[str] = "slip_pulse"
-    stage: ClassVar[str] = "structure"
-    parameters: ClassVar[dict[str, Parameter]] = {
+
+EFFECT = Effect(
+    name="slip_pulse",
+    stage=Stage.STRUCTURE,
+    forms=("half_sine", "exponential", "triangle"),
+    parameters={
         "amplitude": Parameter(60.0, "N", 0.0, 1e4, "peak force at a torque drop of 6.94 Nm"),
         "threshold": Parameter(5.2, "Nm", 0.0, 6.9, "torque drop below which nothing happens"),
-        "duration": Parameter(50e-6, "s", 1e-5, 1e-3, "of the half-sine"),
-    }
-
-    @classmethod
-    def from_parameters(cls, given: Mapping[str, float | str]) -> SlipPulse:
-        """Return the effect with these parameters, the others at their defaults."""
-        return cls(**resolve(cls.name, cls.parameters, given))
-
-    def force(self, motion: Motion) -> NDArray[np.float64]:
-        """Force of the pulses over the motion [N], shape (n,)."""
-        turning = np.sign(np.where(motion.shaft_speed == 0.0, 1.0, motion.shaft_speed))
-        force = np.zeros_like(motion.torque)
-        if self.amplitude == 0.0:
-            return force
-        where, drops = torque_drops(motion.torque * turning, max(self.threshold, 1e-6))
-        excess = (drops - self.threshold) / (_REFERENCE_DROP - self.threshold)
-        peaks = self.amplitude * np.sqrt(np.maximum(excess, 0.0))
-        n = math.ceil(self.duration * motion.rate)
-        shape = np.sin(np.pi * np.arange(1, n + 1) / (self.duration * motion.rate))
-        shape = np.clip(shape, 0.0, None)
-        for start, peak in zip(where, peaks, strict=True):
-            stop = min(start + n, force.size)
-            force[start:stop] += turning[start] * peak * shape[: stop - start]
-        return force
+        "duration": Parameter(
+            50e-6, "s", 1e-5, 1e-3, "of the pulse; its time constant if exponential"
+        ),
+    },
+    strength="amplitude",
+    force=_force,
+)

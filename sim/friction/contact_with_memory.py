@@ -25,15 +25,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from sim.friction.law import RATES_SIGNATURE, FrictionLaw
+from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
+from sim.friction.law import FrictionLaw
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
-
-    from models.rig import Fit
 
 __all__ = ["LAW"]
 
@@ -58,41 +55,29 @@ _PARAMETERS = {
 }
 
 
-def _coefficients(fit: Fit, values: Mapping[str, float]) -> NDArray[np.float64]:
-    t_kin = fit.kinetic_torque
-    return np.array(
-        [
-            values["contact_stiffness_per_torque"] * t_kin,
-            values["contact_damping_per_torque"] * t_kin,
-            values["renewal_angle"],
-            values["ageing_time"],
-            t_kin,
-            fit.critical_torque - t_kin,
-            values["weakening_share"] * t_kin,
-            values["weakening_speed"],
-        ]
-    )
-
-
 def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
     return np.array([0.0, _LONG_REST])
 
 
-@njit(RATES_SIGNATURE, cache=True, error_model="numpy")
-def _rates(v, state, c, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
-    stiffness, damping, renewal_angle, ageing_time = c[0], c[1], c[2], c[3]
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    kinetic = contact[KINETIC]
+    stiffness, damping = c[0] * kinetic, c[1] * kinetic
     z, age = state[0], state[1]
     speed = abs(v)
-    strength = c[4] + c[5] * age / (age + ageing_time) + c[6] * math.exp(-speed / c[7])
+    strength = (
+        kinetic
+        + (contact[CRITICAL] - kinetic) * age / (age + c[3])
+        + c[4] * kinetic * math.exp(-speed / c[5])
+    )
     state_rates[0] = v - stiffness * speed * z / strength
-    state_rates[1] = 1.0 - speed * age / renewal_angle
+    state_rates[1] = 1.0 - speed * age / c[2]
     return stiffness * z + damping * state_rates[0]
 
 
 LAW = FrictionLaw(
     name="contact_with_memory",
     parameters=_PARAMETERS,
-    coefficients=_coefficients,
+    torque=_torque,
     initial_state=_initial_state,
-    rates=_rates,
 )

@@ -7,24 +7,8 @@ kinetic torque sustains neither squawk nor squeal: it has no quasi-harmonic regi
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import numpy as np
-
 from sim.friction.law import FrictionLaw
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
-    from models.rig import Fit
 
 __all__ = ["LAW"]
 
-
-def _coefficients(fit: Fit, values: Mapping[str, float]) -> NDArray[np.float64]:  # noqa: ARG001
-    return np.array([fit.critical_torque, fit.kinetic_torque])
-
-
-LAW = FrictionLaw(name="coulomb", parameters={}, coefficients=_coefficients)
+LAW = FrictionLaw(name="coulomb")

@@ -6,53 +6,54 @@ the bushing's surface, v = shaft speed - interface speed; the torque acts on the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from numba import float64, types
-
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     import numpy as np
     from numpy.typing import NDArray
 
-    from models.rig import Fit
     from sim.parameters import Parameter
 
-__all__ = ["RATES_SIGNATURE", "FrictionLaw"]
-
-RATES_SIGNATURE = float64(float64, float64[::1], float64[::1], float64[::1])
-"""``torque = rates(sliding_speed, state, coefficients, state_rates)``; fills `state_rates`.
-
-Laws are compiled for this signature, so that one compiled integrator serves them all.
-"""
+__all__ = ["FrictionLaw"]
 
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """A friction law: its parameters and what the solvers need of it.
+    """A friction law: its parameters and what the solver needs of it.
 
     Parameters
     ----------
     name : str
     parameters : mapping of str to Parameter
         What a material file may set.
-    coefficients : callable
-        ``coefficients(fit, values)`` packs the numbers that `rates` reads, from the bushing's
-        properties at a fit and the resolved parameters.
+    torque : compiled function, optional
+        ``torque(sliding_speed, coefficients, contact, state, state_rates)`` by
+        `sim.contact.LAW_SIGNATURE`: the torque [Nm], and the rates of the inner state. ``None``
+        for the law with true stick, where the solver itself finds what holds.
+    pack : callable, optional
+        ``pack(values)``: the coefficients that `torque` reads; by default the parameters' values
+        in their order. The torques of the fit are in the contact, as effects leave them.
     initial_state : callable, optional
-        ``initial_state(coefficients)``: the contact's inner state after a long rest.
-    rates : compiled function, optional
-        Torque [Nm] and rates of the inner state, by `RATES_SIGNATURE`. ``None`` for the law with
-        true stick and constant torques, whose motion is solved in closed form.
+        ``initial_state(coefficients)``: the contact's inner state after a long rest; by default
+        there is none.
     """
 
     name: str
-    parameters: Mapping[str, Parameter]
-    coefficients: Callable[[Fit, Mapping[str, float]], NDArray[np.float64]]
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+    torque: Any = None
+    pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     initial_state: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
-    rates: Any = None
 
+    def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
+        """Numbers that `torque` reads, from resolved parameters."""
+        import numpy as np
 
-FUNCTION_TYPE = types.FunctionType(RATES_SIGNATURE)
+        return np.array(list(values.values()) or [0.0]) if self.pack is None else self.pack(values)
+
+    def state(self, coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Inner state after a long rest."""
+        import numpy as np
+
+        return np.zeros(0) if self.initial_state is None else self.initial_state(coefficients)

@@ -17,15 +17,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from sim.friction.law import RATES_SIGNATURE, FrictionLaw
+from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
+from sim.friction.law import FrictionLaw
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
-
-    from models.rig import Fit
 
 __all__ = ["LAW"]
 
@@ -43,35 +40,22 @@ _PARAMETERS = {
 }
 
 
-def _coefficients(fit: Fit, values: Mapping[str, float]) -> NDArray[np.float64]:
-    t_kin = fit.kinetic_torque
-    return np.array(
-        [
-            values["contact_stiffness_per_torque"] * t_kin,
-            values["contact_damping_per_torque"] * t_kin,
-            t_kin,
-            fit.critical_torque - t_kin,
-            values["stribeck_speed"],
-            values["viscous_share_per_speed"] * t_kin,
-        ]
-    )
-
-
 def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
     return np.zeros(1)
 
 
-@njit(RATES_SIGNATURE, cache=True, error_model="numpy")
-def _rates(v, state, c, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
-    strength = c[2] + c[3] * math.exp(-((v / c[4]) ** 2))
-    state_rates[0] = v - c[0] * abs(v) * state[0] / strength
-    return c[0] * state[0] + c[1] * state_rates[0] + c[5] * v
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    kinetic = contact[KINETIC]
+    stiffness = c[0] * kinetic
+    strength = kinetic + (contact[CRITICAL] - kinetic) * math.exp(-((v / c[2]) ** 2))
+    state_rates[0] = v - stiffness * abs(v) * state[0] / strength
+    return stiffness * state[0] + c[1] * kinetic * state_rates[0] + c[3] * kinetic * v
 
 
 LAW = FrictionLaw(
     name="lugre",
     parameters=_PARAMETERS,
-    coefficients=_coefficients,
+    torque=_torque,
     initial_state=_initial_state,
-    rates=_rates,
 )

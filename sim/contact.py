@@ -1,0 +1,67 @@
+"""What solver, friction laws and effects share while the motion is solved: two small arrays.
+
+Effects read the *context*, what goes on at this instant, and change the *contact*, what bushing
+and elastomer are at this instant. Friction laws read the contact. Compiled functions with these
+signatures are called through pointers, so that one compiled solver serves all laws and effects.
+"""
+
+from __future__ import annotations
+
+from numba import float64, types
+
+__all__ = [
+    "CREEP", "CRITICAL", "ELASTOMER_TORQUE", "HOOK_SIGNATURE", "KINETIC", "LAW_SIGNATURE",
+    "N_CONTACT", "N_CONTEXT", "SHAFT_ANGLE", "SHAFT_INERTIA", "SHAFT_LAG", "SHAFT_LAG_RATE",
+    "SHAFT_SPEED", "SHAFT_TORQUE", "SLIDING_SPEED", "STICKS", "STICK_TIME", "STIFFNESS", "TIME",
+    "TORQUE", "TWIST", "TWIST_RATE",
+]  # fmt: skip
+
+# Context.
+TIME = 0
+"""Since the start [s]."""
+SHAFT_ANGLE = 1
+"""Of the drive [rad]."""
+SHAFT_SPEED = 2
+"""At the bushing [rad/s]."""
+SLIDING_SPEED = 3
+"""Of the shaft over the bushing's surface [rad/s]."""
+STICK_TIME = 4
+"""Since the contact began to stick [s]; that of the last stick while it slides."""
+STICKS = 5
+"""How often the contact has begun to stick."""
+TWIST = 6
+"""Of the elastomer, theta1 - theta2 [rad]."""
+TWIST_RATE = 7
+"""[rad/s]"""
+TORQUE = 8
+"""In the elastomer, before effects [Nm]."""
+SHAFT_LAG = 9
+"""Angle by which the shaft at the bushing lags behind its drive [rad]."""
+SHAFT_LAG_RATE = 10
+"""[rad/s]"""
+N_CONTEXT = 11
+
+# Contact.
+CRITICAL = 0
+"""Torque at which it breaks [Nm]."""
+KINETIC = 1
+"""Torque while it slides [Nm]."""
+STIFFNESS = 2
+"""Of the elastomer [Nm/rad]."""
+ELASTOMER_TORQUE = 3
+"""What the elastomer adds to stiffness and damping [Nm]."""
+CREEP = 4
+"""Share of the shaft's speed at which the contact slips while it sticks."""
+SHAFT_INERTIA = 5
+"""Of the shaft's end on a compliant shaft [kg m2]; infinite on a rigid one."""
+SHAFT_TORQUE = 6
+"""Of the compliant shaft on its end [Nm]."""
+N_CONTACT = 7
+
+_ARRAY = float64[::1]
+
+HOOK_SIGNATURE = types.void(_ARRAY, _ARRAY, _ARRAY, _ARRAY, _ARRAY)
+"""``hook(context, values, state, state_rates, contact)`` changes `contact`, fills `state_rates`."""
+
+LAW_SIGNATURE = float64(float64, _ARRAY, _ARRAY, _ARRAY, _ARRAY)
+"""``torque = law(sliding_speed, coefficients, contact, state, state_rates)``."""

@@ -1,0 +1,140 @@
+"""The small interface behind which every effect stands.
+
+An effect is what a real rig does and the plain model does not. It is one file with one `Effect`
+named ``EFFECT``, and acts in one stage of the signal's way. Most come in several functional forms,
+because nobody knows the form that the real one has; ``form=NAME`` chooses. At strength zero an
+effect is the plain model to rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from models.errors import ParameterError
+from sim.parameters import resolve
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from models.rig import LawSpec
+    from sim.motion import Motion
+    from sim.parameters import Parameter
+
+__all__ = ["ActiveEffect", "Effect", "Stage"]
+
+Values = Mapping[str, float]
+Signals = dict[str, "NDArray[np.float64]"]
+
+DriveFunction = Callable[
+    ["NDArray[np.float64]", float, str, Values, "np.random.Generator"], "NDArray[np.float64]"
+]
+ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
+SensorFunction = Callable[[Signals, float, str, Values, "np.random.Generator"], Signals]
+PackFunction = Callable[[str, Values, "np.random.Generator"], "NDArray[np.float64]"]
+
+
+class Stage(StrEnum):
+    """The stages of a signal's way, in its order."""
+
+    DRIVE = "drive"
+    FRICTION = "friction"
+    STRUCTURE = "structure"
+    RADIATION = "radiation"
+    MEASUREMENT = "measurement"
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect: what it is called, where it acts, what can be set, and how it acts.
+
+    Parameters
+    ----------
+    name : str
+    stage : Stage
+    forms : tuple of str
+        Functional forms, the first being the default.
+    parameters : mapping of str to Parameter
+    strength : str
+        The parameter that, at zero, leaves the plain model.
+    drive : callable, optional
+        ``drive(speed, rate, form, values, rng)``: another shaft speed [rad/s].
+    contact : compiled function, optional
+        Changes the contact while the motion is solved, by `sim.contact.HOOK_SIGNATURE`.
+    pack : callable, optional
+        ``pack(form, values, rng)``: the numbers that `contact` reads.
+    n_states : int
+        Inner states of `contact`, zero at the start.
+    force : callable, optional
+        ``force(motion, form, values)``: force of blows in the anchors' joint [N].
+    sensors : callable, optional
+        ``sensors(signals, rate, form, values, rng)``: other signals, by name of the channel.
+    """
+
+    name: str
+    stage: Stage
+    forms: tuple[str, ...]
+    parameters: Mapping[str, Parameter]
+    strength: str
+    drive: DriveFunction | None = None
+    contact: Any = None
+    pack: PackFunction | None = None
+    n_states: int = 0
+    force: ForceFunction | None = None
+    sensors: SensorFunction | None = None
+
+    def active(self, given: Mapping[str, float | str]) -> ActiveEffect:
+        """Return the effect with these parameters, the others at their defaults.
+
+        Raises
+        ------
+        ParameterError
+            A parameter or form that it does not have, or a value out of range.
+        """
+        values = dict(given)
+        form = str(values.pop("form", self.forms[0]))
+        if form not in self.forms:
+            raise ParameterError(
+                f"effect {self.name!r}: form {form!r} is unknown; there are {', '.join(self.forms)}"
+            )
+        return ActiveEffect(self, form, resolve(f"effect {self.name!r}", self.parameters, values))
+
+
+@dataclass(frozen=True)
+class ActiveEffect:
+    """An effect with a form and the values of all its parameters."""
+
+    effect: Effect
+    form: str
+    values: Values
+
+    @property
+    def is_off(self) -> bool:
+        """Whether its strength is zero."""
+        return self.values[self.effect.strength] == 0.0
+
+
+def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list[ActiveEffect]:
+    """Return the effects that specifications name, without those of strength zero.
+
+    Raises
+    ------
+    ParameterError
+        An effect that is unknown, or one that is named twice.
+    """
+    found: list[ActiveEffect] = []
+    names = [spec.name for spec in specs]
+    for spec in specs:
+        if spec.name not in effects:
+            raise ParameterError(
+                f"effect {spec.name!r} is unknown; there are {', '.join(sorted(effects))}"
+            )
+        if names.count(spec.name) > 1:
+            raise ParameterError(f"effect {spec.name!r} is named {names.count(spec.name)} times")
+        active = effects[spec.name].active(spec.parameters)
+        if not active.is_off:
+            found.append(active)
+    return found
