@@ -48,10 +48,6 @@ __all__ = ["MOST_HOOKS", "Hook", "solve_contact"]
 MOST_HOOKS = 4
 """Effects that can act on the contact at once."""
 
-_FIXED = 6
-"""States of the mechanics: theta1, theta1', theta2, theta2', and lag of the shaft and its rate."""
-
-
 _TIME_TOLERANCE = 1e-14
 """To which the ends of stick and slip are found [s]."""
 
@@ -66,12 +62,12 @@ class Hook:
 
 
 @njit(HOOK_SIGNATURE, cache=True)
-def _no_hook(context, values, state, state_rates, contact):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _no_hook(context, values, state, state_rates, contact):
     pass
 
 
 @njit(LAW_SIGNATURE, cache=True)
-def _no_law(sliding_speed, coefficients, contact, state, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
+def _no_law(sliding_speed, coefficients, contact, state, state_rates):  # noqa: ARG001
     return 0.0
 
 
@@ -83,119 +79,113 @@ _MATRIX = float64[:, ::1]
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _rates(
-    stage, mode, x, rates, drive, acceleration, s, torques, law, has_law, coefficients, n_law,
-    h0, h1, h2, h3, n_hooks, values, offsets, context, contact, result,
-):  # type: ignore[no-untyped-def]  # fmt: skip
-    """Fill row `stage` of `rates`, and of `result`: friction, elastomer, holding, critical."""
-    j_e, j_c, k_e, k_b, c_e, c_b = s[0], s[1], s[2], s[3], s[4], s[5]
-    shaft_speed = drive - x[5]
-    surface_speed = shaft_speed if mode == 0 and not has_law else x[1]
-    twist = x[0] - x[2]
-    twist_rate = surface_speed - x[3]
+    mode, x0, x1, x2, x3, x4, x5, inner, inner_rates, drive, acceleration, s, torques, law,
+    has_law, coefficients, h0, h1, h2, h3, n_hooks, values, offsets, context, contact,
+):  # fmt: skip
+    """Rates of theta1, theta1', theta2', and of the lag's rate; four torques.
+
+    Those are: friction, elastomer, what would hold the surfaces together, and what can. The
+    states are theta1, theta1', theta2, theta2', lag and its rate; those of law and effects follow
+    in `inner`.
+    """
+    j_e, k_e, k_b, c_e, c_b = s[0], s[2], s[3], s[4], s[5]
+    shaft_speed = drive - x5
+    surface_speed = shaft_speed if mode == 0 and not has_law else x1
+    twist = x0 - x2
+    twist_rate = surface_speed - x3
     torque = k_e * twist + c_e * twist_rate
     critical, kinetic, creep, mobility, shaft_torque = torques[0], torques[1], 0.0, 0.0, 0.0
-    if n_hooks > 0 or has_law:
-        contact[CRITICAL] = critical
-        contact[KINETIC] = kinetic
     if n_hooks > 0:
         context[SHAFT_SPEED] = shaft_speed
         context[SLIDING_SPEED] = shaft_speed - surface_speed
         context[TWIST] = twist
         context[TWIST_RATE] = twist_rate
         context[TORQUE] = torque
-        context[SHAFT_LAG] = x[4]
-        context[SHAFT_LAG_RATE] = x[5]
+        context[SHAFT_LAG] = x4
+        context[SHAFT_LAG_RATE] = x5
+        contact[CRITICAL] = critical
+        contact[KINETIC] = kinetic
         contact[STIFFNESS] = k_e
         contact[ELASTOMER_TORQUE] = 0.0
         contact[CREEP] = 0.0
         contact[SHAFT_INERTIA] = math.inf
         contact[SHAFT_TORQUE] = 0.0
         a, b = offsets[0], offsets[1]
-        h0(context, values[0], x[a:b], rates[stage, a:b], contact)
+        h0(context, values[0], inner[a:b], inner_rates[a:b], contact)
         if n_hooks > 1:
             a, b = offsets[1], offsets[2]
-            h1(context, values[1], x[a:b], rates[stage, a:b], contact)
+            h1(context, values[1], inner[a:b], inner_rates[a:b], contact)
         if n_hooks > 2:
             a, b = offsets[2], offsets[3]
-            h2(context, values[2], x[a:b], rates[stage, a:b], contact)
+            h2(context, values[2], inner[a:b], inner_rates[a:b], contact)
         if n_hooks > 3:
             a, b = offsets[3], offsets[4]
-            h3(context, values[3], x[a:b], rates[stage, a:b], contact)
+            h3(context, values[3], inner[a:b], inner_rates[a:b], contact)
         torque += (contact[STIFFNESS] - k_e) * twist + contact[ELASTOMER_TORQUE]
+        # What slides at a torque can be held by it, whatever an effect says.
         critical = max(contact[CRITICAL], contact[KINETIC])
         kinetic = contact[KINETIC]
         creep = contact[CREEP]
         mobility = 1.0 / contact[SHAFT_INERTIA]  # zero on a rigid shaft
         shaft_torque = contact[SHAFT_TORQUE]
     # What holds the surfaces together, on a shaft whose end yields to the same torque.
-    free = acceleration if mobility == 0.0 else shaft_torque * mobility
-    holding = (torque + j_e * free) / (1.0 + j_e * mobility)
+    if mobility == 0.0:
+        holding = torque + j_e * acceleration
+    else:
+        holding = (torque + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
     if has_law:
-        a, b = _FIXED, _FIXED + n_law
-        friction = law(
-            shaft_speed - surface_speed, coefficients, contact, x[a:b], rates[stage, a:b]
-        )
+        # Laws have the first of the inner states, effects those after.
+        friction = law(shaft_speed - surface_speed, coefficients, contact, inner, inner_rates)
     elif mode == 0:
         friction = holding
     else:
         friction = mode * kinetic
     if mode == 0 and not has_law:
-        rates[stage, 0] = shaft_speed * (1.0 - creep)
-        rates[stage, 1] = 0.0
+        d0, d1 = shaft_speed * (1.0 - creep), 0.0
     else:
-        rates[stage, 0] = x[1]
-        rates[stage, 1] = (friction - torque) / j_e
-    if k_b < 0.0:
-        rates[stage, 2] = 0.0
-        rates[stage, 3] = 0.0
-    else:
-        rates[stage, 2] = x[3]
-        rates[stage, 3] = (torque - k_b * x[2] - c_b * x[3]) / j_c
+        d0, d1 = x1, (friction - torque) * s[6]
+    d3 = (torque - k_b * x2 - c_b * x3) * s[7]
     # The lag is that of the shaft's end behind its drive.
-    rates[stage, 4] = x[5]
-    rates[stage, 5] = (
-        0.0 if mobility == 0.0 else acceleration - (shaft_torque - friction) * mobility
-    )
-    result[stage, 0] = friction
-    result[stage, 1] = torque
-    result[stage, 2] = holding
-    result[stage, 3] = critical
+    d5 = 0.0 if mobility == 0.0 else acceleration - (shaft_torque - friction) * mobility
+    return d0, d1, d3, d5, friction, torque, holding, critical
 
 
 @njit(
     types.void(
         _VECTOR, _VECTOR, _LAW, boolean, _VECTOR, _VECTOR, _HOOK, _HOOK, _HOOK, _HOOK, int64,
-        _MATRIX, int64[::1], int64, _VECTOR, float64, int64, _MATRIX, int64[::1],
+        _MATRIX, int64[::1], _VECTOR, float64, int64, _MATRIX, int64[::1],
     ),
     cache=True,
     error_model="numpy",
 )  # fmt: skip
 def _solve(
-    s, torques, law, has_law, coefficients, law_state, h0, h1, h2, h3, n_hooks, values, offsets,
-    n_states, shaft_speed, step, substeps, out, direction_out,
-):  # type: ignore[no-untyped-def]  # fmt: skip
-    n_law = law_state.size
-    x = np.zeros(n_states)
-    y = np.zeros(n_states)
-    beyond = np.zeros(n_states)
-    w = np.zeros(n_states)
-    # Rows 0 to 3 are the stages of a step, row 4 its end.
-    rates = np.zeros((5, n_states))
-    result = np.zeros((5, 4))
+    s, torques, law, has_law, coefficients, inner, h0, h1, h2, h3, n_hooks, values, offsets,
+    shaft_speed, step, substeps, out, direction_out,
+):  # fmt: skip
+    m = inner.size
+    trial_inner = np.zeros(m)
+    inner_rates = np.zeros(m)
+    inner_start = np.zeros(m)  # rates at the start of a step
+    inner_sum = np.zeros(m)
+    inner_beyond = np.zeros(m)
     context = np.zeros(N_CONTEXT)
     contact = np.zeros(N_CONTACT)
-    for j in range(n_law):
-        x[_FIXED + j] = law_state[j]
+    contact[CRITICAL] = torques[0]
+    contact[KINETIC] = torques[1]
+    n = shaft_speed.size
+    h = step / substeps
+    last_stage = 3 if has_law else 4
+    x0, x1, x2, x3, x4, x5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if not has_law:
+        x1 = shaft_speed[0]
     mode = 0
     stick_start = 0.0
     angle = 0.0
     acceleration = 0.0
-    started = False
-    n = shaft_speed.size
-    h = step / substeps
-    last_stage = 4 if has_law else 5
-    if not has_law:
-        x[1] = shaft_speed[0]
+    started = False  # whether the rates at the start of the step are known already
+    q0, q1, q2, q3, q4, q5, friction, torque, holding, critical = (
+        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+    )  # fmt: skip
     for i in range(n):
         previous = acceleration
         acceleration = (shaft_speed[i + 1] - shaft_speed[i]) / step if i + 1 < n else 0.0
@@ -205,24 +195,37 @@ def _solve(
         written = False
         sub = 0
         low, high, high_holding = 0.0, -1.0, 0.0  # where the phase ends, once that is bracketed
+        b0, b2, b3, b4, b5 = 0.0, 0.0, 0.0, 0.0, 0.0  # the state just beyond
         trial = h
         while sub < substeps:
             drive = shaft_speed[i] + acceleration * done
             time = i * step + done
-            # A step that was accepted has left what the next one starts with, a retry finds its own.
-            for stage in range(1 if started else 0, last_stage):
-                offset = 0.0 if stage == 0 else (0.5 * trial if stage < 3 else trial)
+            if started:
+                for j in range(m):
+                    inner_rates[j] = inner_start[j]
+                    inner_sum[j] = inner_start[j]
+            p0, p1, p2, p3, p4, p5 = q0, q1, q2, q3, q4, q5
+            t0, t1, t2, t3, t4, t5 = q0, q1, q2, q3, q4, q5
+            w0, w1, w2, w3, w4, w5 = x0, x1, x2, x3, x4, x5
+            f, e, g, c = friction, torque, holding, critical
+            for stage in range(1 if started else 0, last_stage + 1):
+                offset = 0.0
                 if stage == 0:
-                    for j in range(n_states):
-                        w[j] = x[j]
+                    for j in range(m):
+                        trial_inner[j] = inner[j]
                 elif stage < 4:
-                    for j in range(n_states):
-                        w[j] = x[j] + offset * rates[stage - 1, j]
+                    offset = trial if stage == 3 else 0.5 * trial
+                    w0, w1, w2 = x0 + offset * p0, x1 + offset * p1, x2 + offset * p2
+                    w3, w4, w5 = x3 + offset * p3, x4 + offset * p4, x5 + offset * p5
+                    for j in range(m):
+                        trial_inner[j] = inner[j] + offset * inner_rates[j]
                 else:
-                    for j in range(n_states):
-                        w[j] = x[j] + trial / 6.0 * (
-                            rates[0, j] + 2.0 * (rates[1, j] + rates[2, j]) + rates[3, j]
-                        )
+                    offset = trial
+                    third = trial / 6.0
+                    w0, w1, w2 = x0 + third * t0, x1 + third * t1, x2 + third * t2
+                    w3, w4, w5 = x3 + third * t3, x4 + third * t4, x5 + third * t5
+                    for j in range(m):
+                        trial_inner[j] = inner[j] + third * inner_sum[j]
                 if n_hooks > 0:
                     context[TIME] = time + offset
                     since = done + offset
@@ -231,74 +234,84 @@ def _solve(
                     )
                     if mode == 0:
                         context[STICK_TIME] = time + offset - stick_start
-                _rates(
-                    stage, mode, w, rates, drive + acceleration * offset, acceleration, s,
-                    torques, law, has_law, coefficients, n_law, h0, h1, h2, h3, n_hooks, values,
-                    offsets, context, contact, result,
+                p0, p1, p3, p5, f, e, g, c = _rates(
+                    mode, w0, w1, w2, w3, w4, w5, trial_inner, inner_rates,
+                    drive + acceleration * offset, acceleration, s, torques, law, has_law,
+                    coefficients, h0, h1, h2, h3, n_hooks, values, offsets, context, contact,
                 )  # fmt: skip
+                p2, p4 = w3, w5
+                if stage == 0:
+                    q0, q1, q2, q3, q4, q5 = p0, p1, p2, p3, p4, p5
+                    t0, t1, t2, t3, t4, t5 = p0, p1, p2, p3, p4, p5
+                    friction, torque, holding, critical = f, e, g, c
+                    for j in range(m):
+                        inner_start[j] = inner_rates[j]
+                        inner_sum[j] = inner_rates[j]
+                elif stage < 4:
+                    weight = 1.0 if stage == 3 else 2.0
+                    t0, t1, t2 = t0 + weight * p0, t1 + weight * p1, t2 + weight * p2
+                    t3, t4, t5 = t3 + weight * p3, t4 + weight * p4, t5 + weight * p5
+                    for j in range(m):
+                        inner_sum[j] += weight * inner_rates[j]
             started = True
             if not written:
-                out[i, 0] = result[0, 0]
-                out[i, 1] = result[0, 1]
-                for j in range(4):
-                    out[i, 2 + j] = x[j]
-                out[i, 6] = drive - x[5]
+                out[i, 0], out[i, 1] = friction, torque
+                out[i, 2], out[i, 3], out[i, 4], out[i, 5] = x0, x1, x2, x3
+                out[i, 6] = drive - x5
                 direction_out[i] = mode
                 written = True
                 if i + 1 == n:
                     break
             if has_law:
-                for j in range(n_states):
-                    x[j] += (
-                        trial
-                        / 6.0
-                        * (rates[0, j] + 2.0 * (rates[1, j] + rates[2, j]) + rates[3, j])
-                    )
+                third = trial / 6.0
+                x0, x1, x2 = x0 + third * t0, x1 + third * t1, x2 + third * t2
+                x3, x4, x5 = x3 + third * t3, x4 + third * t4, x5 + third * t5
+                for j in range(m):
+                    inner[j] += third * inner_sum[j]
                 sub += 1
                 done = sub * h
                 started = False
                 continue
-            if mode == 0 and result[0, 3] < abs(result[0, 2]):
+            if mode == 0 and critical < abs(holding):
                 # It cannot hold from the start: it slides on, or back.
-                mode = 1 if result[0, 2] > 0.0 else -1
+                mode = 1 if holding > 0.0 else -1
                 started = False
                 continue
-            for j in range(n_states):
-                y[j] = w[j]
             if mode == 0:
-                y[1] = rates[4, 0]
-                far = result[4, 3] - abs(result[4, 2])
+                w1 = p0
+                far = c - abs(g)
             else:
-                far = mode * (drive + acceleration * trial - y[5] - y[1])
-            if high < 0.0 and far >= 0.0:  # the phase outlasts the step
-                for j in range(n_states):
-                    x[j] = y[j]
-                    rates[0, j] = rates[4, j]
-                for j in range(4):
-                    result[0, j] = result[4, j]
-                started = True
+                far = mode * (drive + acceleration * trial - w5 - w1)
+            if high < 0.0 and far >= 0.0:  # the phase outlasts the step, whose end starts the next
+                x0, x1, x2, x3, x4, x5 = w0, w1, w2, w3, w4, w5
+                q0, q1, q2, q3, q4, q5 = p0, p1, p2, p3, p4, p5
+                friction, torque, holding, critical = f, e, g, c
+                for j in range(m):
+                    inner[j] = trial_inner[j]
+                    inner_start[j] = inner_rates[j]
                 sub += 1
                 done = sub * h
                 trial = h
                 continue
             if far < 0.0:
                 high = trial
-                high_holding = result[4, 2]
-                for j in range(n_states):
-                    beyond[j] = y[j]
+                high_holding = g
+                b0, b2, b3, b4, b5 = w0, w2, w3, w4, w5
+                for j in range(m):
+                    inner_beyond[j] = trial_inner[j]
             else:
                 low = trial
             trial = 0.5 * (low + high)
             if high - low > _TIME_TOLERANCE and low < trial < high:
                 continue
-            for j in range(n_states):
-                x[j] = beyond[j]
             done += high
+            x0, x2, x3, x4, x5 = b0, b2, b3, b4, b5
+            x1 = shaft_speed[i] + acceleration * done - x5
+            for j in range(m):
+                inner[j] = inner_beyond[j]
             if mode == 0:
                 mode = 1 if high_holding > 0.0 else -1
-                x[1] = shaft_speed[i] + acceleration * done - x[5]
             else:
-                x[1] = shaft_speed[i] + acceleration * done - x[5]
                 stick_start = i * step + done
                 context[STICKS] += 1.0
                 mode = 0
@@ -359,9 +372,11 @@ def solve_contact(
     no_state = np.zeros(0)
     law_state = no_state if law_state is None else law_state
     offsets = np.zeros(MOST_HOOKS + 1, dtype=np.int64)
-    offsets[0] = _FIXED + law_state.size
+    offsets[0] = law_state.size
     for i in range(MOST_HOOKS):
         offsets[i + 1] = offsets[i] + (hooks[i].n_states if i < len(hooks) else 0)
+    inner = np.zeros(int(offsets[-1]))
+    inner[: law_state.size] = law_state
     widest = max((hook.values.size for hook in hooks), default=1)
     values = np.zeros((MOST_HOOKS, widest))
     for row, hook in zip(values, hooks, strict=False):
@@ -369,10 +384,11 @@ def solve_contact(
     functions = [hook.function for hook in hooks] + [_no_hook] * (MOST_HOOKS - len(hooks))
     states = np.empty((shaft_speed.size, 7))
     direction = np.zeros(shaft_speed.size, dtype=np.int64)
+    j_e, j_c, _, k_b, _, _ = system
+    mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
     _solve(
-        system, np.array([critical_torque, kinetic_torque]), law or _no_law, law is not None,
-        np.zeros(1) if coefficients is None else coefficients, law_state, *functions, len(hooks),
-        values, offsets, int(offsets[-1]), np.ascontiguousarray(shaft_speed), step, substeps,
-        states, direction,
+        np.append(system, mobilities), np.array([critical_torque, kinetic_torque]), law or _no_law, law is not None,
+        np.zeros(1) if coefficients is None else coefficients, inner, *functions, len(hooks),
+        values, offsets, np.ascontiguousarray(shaft_speed), step, substeps, states, direction,
     )  # fmt: skip
     return states, direction

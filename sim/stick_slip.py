@@ -27,7 +27,7 @@ _PROBES = 8
 
 
 @njit(cache=True)
-def _series(x, torque, shaft_acceleration, stuck, s, c):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _series(x, torque, shaft_acceleration, stuck, s, c):
     """Fill `c[k]` with the Taylor coefficients of the state (theta1, theta1', theta2, theta2')."""
     j_e, j_c, k_e, k_b, c_e, c_b = s
     fixed = k_b < 0.0
@@ -51,7 +51,7 @@ def _series(x, torque, shaft_acceleration, stuck, s, c):  # type: ignore[no-unty
 
 
 @njit(cache=True)
-def _value(p, t):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _value(p, t):
     y = p[_ORDER]
     for k in range(_ORDER - 1, -1, -1):
         y = y * t + p[k]
@@ -59,7 +59,7 @@ def _value(p, t):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
 
 
 @njit(cache=True)
-def _first_root(p, start, end):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _first_root(p, start, end):
     """First t in (start, end] where the series turns from above zero to zero or below; else -1."""
     left = start
     width = (end - start) / _PROBES
@@ -94,7 +94,7 @@ def _first_root(p, start, end):  # type: ignore[no-untyped-def]  # noqa: ANN001,
     ),
     cache=True,
 )
-def _solve(s, t_crit, t_kin, shaft_speed, step, out, direction_out, event_times, counts):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _solve(s, t_crit, t_kin, shaft_speed, step, out, direction_out, event_times, counts):
     j_e, k_e, c_e = s[0], s[2], s[4]
     x = np.zeros(4)
     c = np.zeros((_ORDER + 1, 4))

@@ -6,8 +6,9 @@ import pytest
 from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
-from sim.effects import effect
-from sim.effects.slip_pulse import SlipPulse, torque_drops
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.effects.slip_pulse import torque_drops
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -21,14 +22,20 @@ def run(speed=2.5, interference=0.381e-3):
     )  # fmt: skip
 
 
+def force(motion, **given):
+    active = EFFECTS["slip_pulse"].active(given)
+    return active.effect.force(motion, active.form, active.values)
+
+
 def test_without_amplitude_there_is_no_force():
-    assert not SlipPulse(0.0, 5.2, 50e-6).force(run()).any()
+    assert not force(run(), amplitude=0.0).any()
+    assert activated((LawSpec("slip_pulse", {"amplitude": 0.0}),), EFFECTS) == []
 
 
 def test_force_is_proportional_to_the_amplitude():
     motion = run()
-    single = SlipPulse(10.0, 5.2, 50e-6).force(motion)
-    double = SlipPulse(20.0, 5.2, 50e-6).force(motion)
+    single = force(motion, amplitude=10.0)
+    double = force(motion, amplitude=20.0)
     assert single.any()
     assert double == pytest.approx(2.0 * single)
 
@@ -36,12 +43,11 @@ def test_force_is_proportional_to_the_amplitude():
 def test_slips_that_stay_below_the_threshold_strike_nothing():
     settled = run(2.5, 0.279e-3).since(14_400)
     assert torque_drops(settled.torque, 1.0)[0].size > 10
-    assert not effect(RIG.effects[0]).force(settled).any()
+    assert not force(settled, **RIG.effects[0].parameters).any()
 
 
 def test_blows_follow_the_direction_of_the_shaft():
-    forward, backward = SlipPulse(10.0, 5.2, 50e-6).force(run()), None
-    backward = SlipPulse(10.0, 5.2, 50e-6).force(run(-2.5))
+    forward, backward = force(run()), force(run(-2.5))
     assert np.array_equal(forward, -backward)
 
 
@@ -54,10 +60,18 @@ def test_each_fall_of_a_sawtooth_is_found_once():
 
 def test_unknown_effects_and_parameters_are_refused_by_name():
     with pytest.raises(ParameterError, match="'slip_puls' is unknown"):
-        effect(LawSpec("slip_puls"))
+        activated((LawSpec("slip_puls"),), EFFECTS)
     with pytest.raises(ParameterError, match="no parameter 'amplitud'"):
-        effect(LawSpec("slip_pulse", {"amplitud": 1.0}))
+        activated((LawSpec("slip_pulse", {"amplitud": 1.0}),), EFFECTS)
     with pytest.raises(ParameterError, match="out of range"):
-        effect(LawSpec("slip_pulse", {"amplitude": -1.0}))
+        activated((LawSpec("slip_pulse", {"amplitude": -1.0}),), EFFECTS)
     with pytest.raises(ParameterError, match="is no number"):
-        effect(LawSpec("slip_pulse", {"amplitude": "loud"}))
+        activated((LawSpec("slip_pulse", {"amplitude": "loud"}),), EFFECTS)
+
+
+@pytest.mark.parametrize("form", EFFECTS["slip_pulse"].forms)
+def test_every_form_of_a_blow_has_the_peak_that_the_drop_gives_it(form):
+    motion = run()
+    drops = torque_drops(motion.torque, 5.2)[1]
+    peak = 60.0 * np.sqrt((drops.max() - 5.2) / (6.94 - 5.2))
+    assert np.abs(force(motion, form=form)).max() == pytest.approx(peak, rel=0.2)

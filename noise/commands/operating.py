@@ -133,11 +133,12 @@ def _rig(options: Namespace) -> Rig:
 def _effects(
     of_the_rig: tuple[LawSpec, ...], given: list[LawSpec] | tuple[()]
 ) -> tuple[LawSpec, ...]:
-    from sim.effects import effect
+    from sim.effects import EFFECTS
+    from sim.effects.effect import activated
 
     for spec in given:
         try:
-            effect(spec)
+            activated((spec,), EFFECTS)
         except ParameterError as error:
             raise ParameterError(f"--effect: {error}") from None
     by_name = {spec.name: spec for spec in (*of_the_rig, *given)}

@@ -1,27 +1,25 @@
 """What a rig does beyond its friction law, one effect a file.
 
-A new effect is a file with an ``EFFECT`` and its name here; a user's own is a file anywhere, read
-by `load_effects`.
+A new effect is a file with an ``EFFECT`` that is named as the file is; a user's own is a file
+anywhere, read by `load_effects`.
 """
 
 from __future__ import annotations
 
-from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from sim.effects.effect import Effect
+from sim.library import Library
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = ["EFFECTS", "Effect", "load_effects"]
 
-_NAMES = ("slip_pulse",)
-
-EFFECTS: dict[str, Effect] = {name: import_module(f"sim.effects.{name}").EFFECT for name in _NAMES}
+EFFECTS: Library[Effect] = Library(__name__, __path__, "EFFECT", besides=("effect",))
 """Every shipped effect by name."""
 
 
@@ -55,4 +53,4 @@ def load_effects(path: str | Path) -> Mapping[str, Effect]:
     for name in own:
         if name in EFFECTS:
             raise ParameterError(f"effects {path}: {name!r} is a shipped effect; choose a new name")
-    return EFFECTS | own
+    return {**EFFECTS, **own}

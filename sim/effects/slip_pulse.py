@@ -35,7 +35,7 @@ _REFERENCE_DROP = 6.94
 
 
 @njit(cache=True)
-def _drops(torque, least):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _drops(torque, least):
     """Index of the steepest fall and size of each fall of more than `least`."""
     n = torque.size
     where = np.empty(n // 2 + 1, dtype=np.int64)

@@ -1,20 +1,14 @@
-"""Friction laws, one a file. A new law is a file with a ``LAW`` and one line here."""
+"""Friction laws, one a file: a new law is a file with a ``LAW`` that is named as the file is."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from models.errors import ParameterError
-from sim.friction import contact_with_memory, coulomb, lugre
-
-if TYPE_CHECKING:
-    from sim.friction.law import FrictionLaw
+from sim.friction.law import FrictionLaw
+from sim.library import Library
 
 __all__ = ["LAWS", "friction_law"]
 
-LAWS: dict[str, FrictionLaw] = {
-    module.LAW.name: module.LAW for module in (coulomb, contact_with_memory, lugre)
-}
+LAWS: Library[FrictionLaw] = Library(__name__, __path__, "LAW", besides=("law",))
 """Every friction law by name."""
 
 

@@ -60,7 +60,7 @@ def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  #
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
-def _torque(v, c, contact, state, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
     stiffness, damping = c[0] * kinetic, c[1] * kinetic
     z, age = state[0], state[1]

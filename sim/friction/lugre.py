@@ -45,7 +45,7 @@ def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  #
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
-def _torque(v, c, contact, state, state_rates):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
     stiffness = c[0] * kinetic
     strength = kinetic + (contact[CRITICAL] - kinetic) * math.exp(-((v / c[2]) ** 2))

@@ -9,12 +9,12 @@ from features.harmonics import analyse_harmonics
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
+from sim.contact_solver import solve_contact
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
 from sim.regime import Regime, friction_regime
 from sim.shaft import ConstantSpeed, Oscillation
-from sim.smooth_contact import solve_smooth_contact
 
 FLUOROCARBON = load_material_rig("fluorocarbon")
 PDMS = load_material_rig("PDMS")
@@ -40,12 +40,21 @@ def strongest_line(run):
 @pytest.mark.parametrize("name", ["contact_with_memory", "lugre"])
 def test_integration_agrees_with_a_sixteenth_of_its_step(name):
     law = friction_law(name)
-    fit = replace(FLUOROCARBON.fit(0.279e-3))
-    coefficients = law.coefficients(fit, resolve(name, law.parameters, {}))
+    fit = FLUOROCARBON.fit(0.279e-3)
+    coefficients = law.coefficients(resolve(name, law.parameters, {}))
     system = lumped_bushing(FLUOROCARBON, 0.279e-3, 2214.0).packed()
-    shaft = np.full(1800, 2.5)
     coarse, fine = (
-        solve_smooth_contact(law, coefficients, system, shaft, 1 / 90e3, substeps)[:, 1]
+        solve_contact(
+            system,
+            fit.critical_torque,
+            fit.kinetic_torque,
+            np.full(1800, 2.5),
+            1 / 90e3,
+            substeps,
+            law=law.torque,
+            coefficients=coefficients,
+            law_state=law.state(coefficients),
+        )[0][:, 1]
         for substeps in (3, 48)
     )
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
