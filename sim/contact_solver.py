@@ -386,9 +386,10 @@ def solve_contact(
     direction = np.zeros(shaft_speed.size, dtype=np.int64)
     j_e, j_c, _, k_b, _, _ = system
     mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
-    _solve(
-        np.append(system, mobilities), np.array([critical_torque, kinetic_torque]), law or _no_law, law is not None,
-        np.zeros(1) if coefficients is None else coefficients, inner, *functions, len(hooks),
+    compiled: Any = _solve
+    compiled(
+        np.append(system, mobilities), np.array([critical_torque, kinetic_torque]),
+        law or _no_law, law is not None, np.zeros(1) if coefficients is None else coefficients, inner, *functions, len(hooks),
         values, offsets, np.ascontiguousarray(shaft_speed), step, substeps, states, direction,
     )  # fmt: skip
     return states, direction

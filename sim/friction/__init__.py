@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.errors import ParameterError
-from sim.friction.law import FrictionLaw
 from sim.library import Library
+
+if TYPE_CHECKING:
+    from sim.friction.law import FrictionLaw
 
 __all__ = ["LAWS", "friction_law"]
 
