@@ -116,7 +116,8 @@ def simulate(
     (('torque', 'acceleration', 'pressure', 'angle'), (4, 3000))
     """
     acquisition = acquisition or Acquisition()
-    rng = rng or np.random.default_rng(0)
+    # Two streams, so that an effect that scatters leaves the sensors' noise as it is.
+    noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
     if isinstance(shaft, (int, float)):
         shaft = ConstantSpeed(float(shaft))
     constant = isinstance(shaft, ConstantSpeed)
@@ -137,7 +138,7 @@ def simulate(
         seconds=(n_settling + n_kept) / rate,
         rate=rate,
         effects=effects,
-        rng=rng,
+        rng=effect_rng,
     )
     force = np.zeros_like(motion.torque)
     for active in effects:
@@ -156,8 +157,8 @@ def simulate(
     }
     for active in effects:
         if active.effect.sensors is not None:
-            signals = active.effect.sensors(signals, rate, active.form, active.values, rng)
-    sampled = sample(signals, decimation, acquisition, rng)
+            signals = active.effect.sensors(signals, rate, active.form, active.values, effect_rng)
+    sampled = sample(signals, decimation, acquisition, noise_rng)
     condition = Condition(
         speed=shaft.value if isinstance(shaft, ConstantSpeed) else None,
         interference=interference,

@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.commands import options as opt
+from noise.commands.user_effects import effect_library
 from noise.progress import note, say
 
 if TYPE_CHECKING:
     from argparse import Namespace
+    from collections.abc import Mapping
 
     from models.rig import LawSpec, Rig
+    from sim.effects.effect import Effect
     from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
@@ -30,6 +33,7 @@ CONDITION_OPTIONS = (
     "temperature",
     "seconds",
     "effect",
+    "effects",
     "rig",
     "converter",
 )
@@ -71,7 +75,9 @@ def simulated_run(options: Namespace, rate: float) -> Run:
             f"--seconds {seconds:g} is too short at {rate:g} Hz; a recording holds "
             f"{_LEAST_SAMPLES} samples or more"
         )
-    rig = _rig(options)
+    library = effect_library(options.effects)
+    rig = _rig(options, library)
+    _note_idle(options.effects, rig, library)
     shaft, turning = _shaft(options, seconds)
     low, high = (1e3 * limit for limit in rig.interference_range)
     if not low * (1.0 - 1e-9) <= interference_mm <= high * (1.0 + 1e-9):
@@ -96,6 +102,7 @@ def simulated_run(options: Namespace, rate: float) -> Run:
         temperature=_or(options.temperature, opt.DEFAULT_TEMPERATURE),
         seconds=seconds,
         acquisition=Acquisition(rate=rate, converter=bool(options.converter)),
+        library=library,
         rng=np.random.default_rng(options.seed),
     )
 
@@ -108,7 +115,7 @@ def _or(given: float | None, default: float) -> float:
     return default if given is None else given
 
 
-def _rig(options: Namespace) -> Rig:
+def _rig(options: Namespace, library: Mapping[str, Effect]) -> Rig:
     from models.rig_file import load_material_rig, load_rig
 
     if options.rig is None:
@@ -127,22 +134,32 @@ def _rig(options: Namespace) -> Rig:
                 f"--material {named} contradicts --rig {options.rig}, whose material is "
                 f"{rig.material}; leave --material out, or change the file"
             )
-    return replace(rig, effects=_effects(rig.effects, options.effect or ()))
+    return replace(rig, effects=_effects(rig.effects, options.effect or (), library))
 
 
 def _effects(
-    of_the_rig: tuple[LawSpec, ...], given: list[LawSpec] | tuple[()]
+    of_the_rig: tuple[LawSpec, ...],
+    given: list[LawSpec] | tuple[()],
+    library: Mapping[str, Effect],
 ) -> tuple[LawSpec, ...]:
-    from sim.effects import EFFECTS
     from sim.effects.effect import activated
 
     for spec in given:
         try:
-            activated((spec,), EFFECTS)
+            activated((spec,), library)
         except ParameterError as error:
             raise ParameterError(f"--effect: {error}") from None
     by_name = {spec.name: spec for spec in (*of_the_rig, *given)}
     return tuple(by_name.values())
+
+
+def _note_idle(path: Path | None, rig: Rig, library: Mapping[str, Effect]) -> None:
+    """Say so where effects of the user's own are read and none is on."""
+    from sim.effects import EFFECTS
+
+    own = sorted(set(library) - set(EFFECTS))
+    if own and not any(spec.name in own for spec in rig.effects):
+        note(f"--effects {path} defines {', '.join(own)}; --effect {own[0]} turns it on")
 
 
 def _shaft(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:

@@ -164,6 +164,13 @@ def add_condition(parser: ArgumentParser) -> None:
         "(default: the effects of rig and material)",
     )
     group.add_argument(
+        "--effects",
+        type=Path,
+        metavar="FILE.py",
+        help="Python file that defines effects of your own, for --effect and the rig file to "
+        "name; the file is run",
+    )
+    group.add_argument(
         "--rig",
         type=Path,
         metavar="RIG.toml",

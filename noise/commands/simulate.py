@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from noise.commands import options as opt
 from noise.commands.operating import simulated_run
 from noise.commands.targets import check_target
+from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -30,7 +31,10 @@ def configure(parser: ArgumentParser) -> None:
         "one line of JSON: conditions, mean of the torque and its rms about the mean, peak and "
         "level (dB re 20 uPa) of the sound pressure."
     )
-    parser.epilog = "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07"
+    parser.epilog = (
+        "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07; effects: "
+        f"{', '.join(EFFECTS)}"
+    )
     opt.add_condition(parser)
     parser.add_argument(
         "--rate",

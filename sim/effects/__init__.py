@@ -6,6 +6,8 @@ anywhere, read by `load_effects`.
 
 from __future__ import annotations
 
+import sys
+from collections import ChainMap
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -41,16 +43,18 @@ def load_effects(path: str | Path) -> Mapping[str, Effect]:
     if spec is None or spec.loader is None or not path.is_file():
         raise ParameterError(f"effects {path}: no Python file")
     module = module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up there
     try:
         spec.loader.exec_module(module)
     except Exception as error:
         raise ParameterError(
             f"effects {path}: cannot be run: {type(error).__name__}: {error}"
         ) from error
-    own = {value.name: value for value in vars(module).values() if isinstance(value, Effect)}
+    found = {value.name: value for value in vars(module).values() if isinstance(value, Effect)}
+    own = {name: value for name, value in found.items() if value is not EFFECTS.get(name)}
     if not own:
         raise ParameterError(f"effects {path}: defines no Effect; see the README for an example")
     for name in own:
         if name in EFFECTS:
             raise ParameterError(f"effects {path}: {name!r} is a shipped effect; choose a new name")
-    return {**EFFECTS, **own}
+    return ChainMap(own, EFFECTS)  # type: ignore[arg-type]  # nothing writes to it

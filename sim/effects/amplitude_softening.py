@@ -1,0 +1,82 @@
+r"""The elastomer is softer the further it is deformed to and fro (Payne effect).
+
+.. math::
+    T_E &= k_E [\bar\theta + (\theta - \bar\theta) (1 - s g(x))] + c\dot\theta, \qquad
+    x = |\theta - \bar\theta| / \theta_r, \quad
+    t_m \dot{\bar\theta} = \theta - \bar\theta \\
+    g &= \frac{x}{1 + x}, \quad 1 - e^{-x}, \quad \frac{x^2}{1 + x^2}
+
+theta is the twist, with a bar its slow mean. Forms rational and quadratic are those of Kraus
+(1984), with m = 1/2 and 1; exponential falls off sooner. A filled rubber's network breaks down
+with the amplitude of the deformation and heals when that is small, whatever load it carries
+statically: so the departure from a slow mean softens, and the mean torque does not. The departure
+of the instant stands for the amplitude; unlike one held over the cycle it also makes odd harmonics.
+
+Limits: s = 0 is the plain model, and so are small vibrations; large ones feel k_E (1 - s). The
+torque rises with the departure everywhere as s <= 0.8.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from sim.contact import ELASTOMER_TORQUE, HOOK_SIGNATURE, STIFFNESS, TWIST
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = ["EFFECT"]
+
+_FORMS = ("rational", "exponential", "quadratic")
+
+
+def _pack(
+    form: str,
+    values: Mapping[str, float],
+    rng: np.random.Generator,  # noqa: ARG001
+) -> NDArray[np.float64]:
+    return np.array(
+        [_FORMS.index(form), values["share"], values["twist"], values["averaging_time"]]
+    )
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def _contact(context, values, state, state_rates, contact):
+    mean = state[0]
+    departure = context[TWIST] - mean
+    state_rates[0] = departure / values[3]
+    x = abs(departure) / values[2]
+    if values[0] == 0.0:
+        g = x / (1.0 + x)
+    elif values[0] == 1.0:
+        g = -math.expm1(-x)
+    else:
+        g = x * x / (1.0 + x * x)
+    lost = values[1] * g * contact[STIFFNESS]
+    contact[STIFFNESS] -= lost
+    contact[ELASTOMER_TORQUE] += lost * mean
+
+
+EFFECT = Effect(
+    name="amplitude_softening",
+    stage=Stage.FRICTION,
+    forms=_FORMS,
+    parameters={
+        "share": Parameter(0.3, "", 0.0, 0.8, "s: of the stiffness lost at large amplitude"),
+        "twist": Parameter(4e-3, "rad", 1e-5, 1.0, "theta_r: amplitude over which it is lost"),
+        "averaging_time": Parameter(0.05, "s", 1e-3, 10.0, "t_m: of the slow mean"),
+    },
+    strength="share",
+    contact=_contact,
+    pack=_pack,
+    n_states=1,
+)
+"""Stiffness of the elastomer that falls with the amplitude of its twist."""

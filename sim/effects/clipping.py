@@ -1,0 +1,80 @@
+"""An amplifier that runs out of voltage before the signal has reached its peak.
+
+With the largest magnitude M of a channel and the magnitude m of its mean, the peak is read as
+M - a (M - m), in every form, so that one amount means one overload whatever the form, the level
+and the offset; for a sound that is (1 - a) M, and a torque keeps its mean.
+
+- hard: min(max(x, -L), L) with L = M - a (M - m), an amplifier at its supply.
+- soft: L tanh(x / L), with the L that gives the peak its reading; tanh is the transfer curve of a
+  differential pair (Gray & Meyer, Analysis and Design of Analog Integrated Circuits, 3.5).
+- asymmetric: as hard, but on the side of M alone: a sensor with its supply on the signal's wire
+  whose bias has wandered.
+
+At amount zero all are the signal itself. Clipping comes before the anti-alias filter, which rounds
+the corners; what the converter clips is left to `sim.acquisition`. The angle is never clipped.
+
+>>> values = {"amount": 0.25, "acceleration": 1.0, "pressure": 1.0, "torque": 1.0}
+>>> signals = {"pressure": np.array([-2.5, -1.5, 4.0])}
+>>> _sensors(signals, 96e3, "hard", values, np.random.default_rng(0))["pressure"]
+array([-2.5, -1.5,  3. ])
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import brentq
+
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.effects.effect import Signals, Values
+
+__all__ = ["EFFECT"]
+
+
+def _sensors(
+    signals: Signals, _rate: float, form: str, values: Values, _rng: np.random.Generator
+) -> Signals:
+    read = {}
+    for name, signal in signals.items():
+        amount = values["amount"] * values.get(name.partition("_")[0], 0.0)
+        read[name] = _clipped(signal, form, amount) if amount > 0.0 and signal.any() else signal
+    return read
+
+
+def _clipped(signal: NDArray[np.float64], form: str, amount: float) -> NDArray[np.float64]:
+    peak = float(signal[np.argmax(np.abs(signal))])
+    cut = amount * (1.0 - abs(float(np.mean(signal)) / peak))
+    if form == "soft":
+        limit = abs(peak) / _overdrive(cut)
+        return limit * np.tanh(signal / limit)
+    limit = (1.0 - cut) * abs(peak)
+    if form == "asymmetric":
+        return np.minimum(signal, limit) if peak > 0.0 else np.maximum(signal, -limit)
+    return np.clip(signal, -limit, limit)
+
+
+def _overdrive(cut: float) -> float:
+    """M / L of the soft form: where tanh(u) / u has fallen to 1 - cut."""
+    kept = 1.0 - max(cut, 1e-9)  # below, rounding hides the root
+    return float(brentq(lambda u: np.tanh(u) - kept * u, 1e-6, 1.0 / kept))
+
+
+EFFECT = Effect(
+    name="clipping",
+    stage=Stage.MEASUREMENT,
+    forms=("hard", "soft", "asymmetric"),
+    parameters={
+        "amount": Parameter(0.3, "", 0.0, 0.95, "share of the peak above the mean that is cut off"),
+        "acceleration": Parameter(1.0, "", 0.0, 1.0, "share of the amount on accelerations"),
+        "pressure": Parameter(1.0, "", 0.0, 1.0, "share of the amount on pressures"),
+        "torque": Parameter(1.0, "", 0.0, 1.0, "share of the amount on torques"),
+    },
+    strength="amount",
+    sensors=_sensors,
+)

@@ -1,0 +1,80 @@
+"""A channel whose sensitivity is not what it is taken for.
+
+With e the error times the channel's share:
+
+- constant: (1 + e) x, a wrong calibration factor.
+- drift: (1 + e t / T) x, from none at the start of the recording to e at its end T: an amplifier
+  or a strain gauge that warms up.
+- shelf: x + e times its first-order high-pass at the `corner`: right for slow signals, on which a
+  static calibration is done, and wrong by e far above, as a microphone behind its grid or a
+  charge amplifier on a long cable; H(s) = (1 + (1 + e) s / omega_c) / (1 + s / omega_c).
+
+Shares are signed: `torque=-1` reads low what the others read high. A calibration
+(ISO 16063-21 for accelerometers) leaves a few per cent; a wrong factor may be anything. At error
+zero all are the signal itself.
+
+>>> values = {"error": 0.1, "corner": 1e3, "acceleration": 1.0, "pressure": 1.0, "torque": -0.5,
+...           "angle": 0.0}
+>>> read = _sensors({"torque": np.full(3, 8.0)}, 96e3, "constant", values,
+...                 np.random.default_rng(0))
+>>> read["torque"]
+array([7.6, 7.6, 7.6])
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import butter, lfilter, lfilter_zi
+
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.effects.effect import Signals, Values
+
+__all__ = ["EFFECT"]
+
+
+def _sensors(
+    signals: Signals, rate: float, form: str, values: Values, _rng: np.random.Generator
+) -> Signals:
+    read = {}
+    for name, signal in signals.items():
+        error = values["error"] * values.get(name.partition("_")[0], 0.0)
+        if error == 0.0:
+            read[name] = signal
+        else:
+            read[name] = signal + error * _misread(signal, form, values["corner"] / rate)
+    return read
+
+
+def _misread(signal: NDArray[np.float64], form: str, corner: float) -> NDArray[np.float64]:
+    """Return what is read too much at an error of one; `corner` in cycles a sample."""
+    if form == "drift":
+        return signal * np.linspace(0.0, 1.0, signal.size)
+    if form == "shelf":
+        b, a = butter(1, 2.0 * corner, "highpass")
+        above, _ = lfilter(b, a, signal, zi=lfilter_zi(b, a) * signal[0])
+        return np.asarray(above)
+    return signal
+
+
+EFFECT = Effect(
+    name="gain_error",
+    stage=Stage.MEASUREMENT,
+    forms=("constant", "drift", "shelf"),
+    parameters={
+        "error": Parameter(0.1, "", -0.9, 2.0, "relative error of the gain"),
+        "corner": Parameter(1e3, "Hz", 10.0, 20e3, "of the shelf"),
+        "acceleration": Parameter(1.0, "", -1.0, 1.0, "share of the error on accelerations"),
+        "pressure": Parameter(1.0, "", -1.0, 1.0, "share of the error on pressures"),
+        "torque": Parameter(1.0, "", -1.0, 1.0, "share of the error on torques"),
+        "angle": Parameter(0.0, "", -1.0, 1.0, "share of the error on angles"),
+    },
+    strength="error",
+    sensors=_sensors,
+)

@@ -1,0 +1,111 @@
+"""A sensor on a soft mount moves by itself.
+
+With G(s) = s**2 / (s**2 + 2 zeta omega s + omega**2), the reading is H(s) times the true signal:
+
+- single: H = 1 - a G, one local mode of participation a. At a = 1 it is the transmissibility of a
+  mass on spring and damper, (2 zeta omega s + omega**2) / (s**2 + 2 zeta omega s + omega**2).
+- roll_off: H = 1 - a + a omega**2 / ((s**2 + 2 zeta omega s + omega**2) (1 + s / (2 omega))): a
+  mass whose damping acts on its own motion only, on an adhesive that yields besides; nothing
+  passes far above.
+- double: H = 1 - a (2 G(omega) + G(2.3 omega)) / 3: the sensor also rocks.
+
+All read true far below the resonance, and everywhere at amount a = 0. ISO 5348 has the mounts of
+accelerometers: a stud resonates near 30 kHz, wax and adhesives a little below, a magnet near 7
+kHz, a hand-held tip at 2 kHz. The share of each kind of channel makes the same of torque cells
+and microphones on flexible stands. Filters are the bilinear transform, true at the resonance, and
+start as if the first value had lasted for ever.
+
+>>> values = {"amount": 1.0, "frequency": 5e3, "damping_ratio": 0.05, "acceleration": 1.0,
+...           "pressure": 0.0, "torque": 0.0}
+>>> tone = np.sin(2.0 * np.pi * 5e3 / 96e3 * np.arange(9600))
+>>> read = _sensors({"acceleration": tone}, 96e3, "single", values, np.random.default_rng(0))
+>>> round(float(2.0**0.5 * read["acceleration"][-960:].std()), 2)
+10.05
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import bilinear, lfilter, lfilter_zi
+
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.effects.effect import Signals, Values
+
+__all__ = ["EFFECT"]
+
+_SECOND = 2.3
+"""Frequency of the rocking over that of the first mode; assumed."""
+
+_SOFT = 2.0
+"""Corner of the adhesive over the frequency of the mode; assumed."""
+
+_SEEN = 0.45
+"""Modes above this share of the sampling rate are left out."""
+
+
+def _sensors(
+    signals: Signals, rate: float, form: str, values: Values, _rng: np.random.Generator
+) -> Signals:
+    read = {}
+    for name, signal in signals.items():
+        amount = values["amount"] * values.get(name.partition("_")[0], 0.0)
+        if amount == 0.0:
+            read[name] = signal
+        else:
+            lost = _lost(signal, form, values["frequency"] / rate, values["damping_ratio"])
+            read[name] = signal - amount * lost
+    return read
+
+
+def _lost(
+    signal: NDArray[np.float64], form: str, frequency: float, damping: float
+) -> NDArray[np.float64]:
+    """Return what a fully participating mount takes away; `frequency` in cycles a sample."""
+    if frequency > _SEEN:
+        return np.zeros_like(signal)
+    if form == "double":
+        first = _lost(signal, "single", frequency, damping)
+        return (2.0 * first + _lost(signal, "single", _SECOND * frequency, damping)) / 3.0
+    mode = [1.0, 2.0 * damping, 1.0]
+    if form == "single":
+        return _filtered(signal, [1.0, 0.0, 0.0], mode, frequency)
+    yielding = [1.0 / _SOFT, 1.0]
+    passed = _filtered(signal, [1.0], np.polymul(mode, yielding).tolist(), frequency)
+    return np.asarray(signal - passed)
+
+
+def _filtered(
+    signal: NDArray[np.float64],
+    numerator: list[float],
+    denominator: list[float],
+    frequency: float,
+) -> NDArray[np.float64]:
+    """Filter by a quotient of polynomials in s / omega."""
+    b, a = bilinear(numerator, denominator, fs=0.5 / math.tan(math.pi * frequency))
+    filtered, _ = lfilter(b, a, signal, zi=lfilter_zi(b, a) * signal[0])
+    return np.asarray(filtered)
+
+
+EFFECT = Effect(
+    name="mount_resonance",
+    stage=Stage.MEASUREMENT,
+    forms=("single", "roll_off", "double"),
+    parameters={
+        "amount": Parameter(1.0, "", 0.0, 1.0, "participation of the mount in what is read"),
+        "frequency": Parameter(6e3, "Hz", 200.0, 30e3, "of the sensor on its mount"),
+        "damping_ratio": Parameter(0.03, "", 1e-3, 1.0, "of that resonance"),
+        "acceleration": Parameter(1.0, "", 0.0, 1.0, "share of the amount on accelerations"),
+        "pressure": Parameter(0.0, "", 0.0, 1.0, "share of the amount on pressures"),
+        "torque": Parameter(0.0, "", 0.0, 1.0, "share of the amount on torques"),
+    },
+    strength="amount",
+    sensors=_sensors,
+)

@@ -1,0 +1,91 @@
+r"""The shaft is no rigid drive: its end turns on a torsional spring.
+
+.. math::
+    J \ddot\lambda = J \dot\omega_s + T - T_s(\lambda, \dot\lambda), \qquad
+    T_s = \frac{\lambda}{\kappa} + c \dot\lambda, \quad
+    \frac{\lambda}{\kappa} \left[1 + \left(\frac{\lambda}{\kappa T_r}\right)^2\right]
+    + c \dot\lambda, \quad \frac{\lambda}{\kappa} + c_2 |\dot\lambda| \dot\lambda
+
+lambda is the angle by which the end lags, T the friction torque, kappa the compliance. Forms
+linear, stiffening, and quadratic_damping, whose c_2 dissipates what c does in a vibration of the
+shaft's own frequency that swings its torque by T_r to each side.
+
+Defaults: a half-inch schedule 80 pipe of stainless steel (3.1.1; outer diameter 21.3 mm, inner
+13.9 mm) whose free-free mode at 8131 Hz (Table 3.1) makes it 0.19 m long: 6750 Nm/rad. The inertia
+is what gives the fixed-free 1568 Hz with that: the end piece's, J_o of (A15), and a third of the
+pipe's. So the rig as built is nearly rigid, while a vehicle's stabilizer bar is not.
+
+Limits: kappa = 0 is the rigid drive. Where the end alone would vibrate above 8 kHz, its inertia is
+raised to stay there, which the integration can resolve; its motion is then quasi-static anyway.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from sim.contact import HOOK_SIGNATURE, SHAFT_INERTIA, SHAFT_LAG, SHAFT_LAG_RATE, SHAFT_TORQUE
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = ["EFFECT"]
+
+_FORMS = ("linear", "stiffening", "quadratic_damping")
+
+_HIGHEST = 2.0 * math.pi * 8e3
+"""[rad/s]"""
+
+
+def _pack(
+    form: str,
+    values: Mapping[str, float],
+    rng: np.random.Generator,  # noqa: ARG001
+) -> NDArray[np.float64]:
+    stiffness = 1.0 / values["compliance"]
+    inertia = max(values["inertia"], stiffness / _HIGHEST**2)
+    damping = 2.0 * values["damping_ratio"] * math.sqrt(stiffness * inertia)
+    cubic = quadratic = 0.0
+    reference = values["reference_torque"] / stiffness  # of the lag [rad]
+    if form == "stiffening":
+        cubic = stiffness / reference**2
+    elif form == "quadratic_damping":
+        swing = reference * math.sqrt(stiffness / inertia)  # of its rate [rad/s]
+        quadratic = 3.0 * math.pi / 8.0 * damping / swing
+        damping = 0.0
+    return np.array([inertia, stiffness, cubic, damping, quadratic])
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
+    lag, rate = context[SHAFT_LAG], context[SHAFT_LAG_RATE]
+    contact[SHAFT_INERTIA] = values[0]
+    contact[SHAFT_TORQUE] = (values[1] + values[2] * lag * lag) * lag + (
+        values[3] + values[4] * abs(rate)
+    ) * rate
+
+
+EFFECT = Effect(
+    name="shaft_compliance",
+    stage=Stage.DRIVE,
+    forms=_FORMS,
+    parameters={
+        "compliance": Parameter(1.48e-4, "rad/Nm", 0.0, 0.1, "kappa: of the shaft in torsion"),
+        "inertia": Parameter(6.96e-5, "kg m2", 1e-6, 1e-1, "J: of the shaft's end"),
+        "damping_ratio": Parameter(0.02, "", 0.0, 2.0, "of the shaft's end on its own"),
+        "reference_torque": Parameter(
+            20.0, "Nm", 0.1, 1e3, "T_r: at which the forms' non-linear parts count"
+        ),
+    },
+    strength="compliance",
+    contact=_contact,
+    pack=_pack,
+)
+"""Shaft's end on a torsional spring."""

@@ -1,0 +1,101 @@
+"""The shaft does not turn evenly.
+
+The speed becomes Omega(t) (1 + d q(t)), where d is the depth and q has the rms of a sine of
+amplitude one, whatever the form, so that one depth means one degree of irregularity; that of a
+sine, (max - min) / mean, is 2 d. Being relative, it leaves the turning points of a shaft that
+swings where they are, and at depth zero the speed itself.
+
+- sine: q = sin(phi + phi_0), from an eccentric coupling or a belt. phi is `order` times the angle
+  of the even motion, so that it follows run-ups and reversals; with a `frequency` above zero,
+  phi = 2 pi frequency t, as of a motor that is fed from the mains.
+- harmonics: sum of sin(h phi + phi_h) / h over h = 1 ... 4, as of gears and poles.
+- random: an Ornstein-Uhlenbeck process, dq = -q dt / tau + sqrt(1 / tau) dW with tau = 1 / (2 pi
+  bandwidth), stationary from the start, as of a controller that hunts (Uhlenbeck & Ornstein 1930;
+  stepped without error by Gillespie 1996, Phys. Rev. E 54, 2084). Its acceleration grows with the
+  root of the rate: 2 % of 5 rad/s at 10 Hz give 0.004 Nm rms on the elastomer's inertia at 90 kHz.
+
+Phases are those of the generator, as a recording starts anywhere. What the thesis's motor did is
+not known; all is assumed.
+
+>>> even = np.full(90_000, 5.0)
+>>> uneven = _drive(even, 90e3, "sine", {"depth": 0.1, "order": 1.0, "frequency": 10.0,
+...                 "bandwidth": 10.0}, np.random.default_rng(0))
+>>> round(float(uneven.min()), 3), round(float(uneven.max()), 3)
+(4.5, 5.5)
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import lfilter
+
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.effects.effect import Values
+
+__all__ = ["EFFECT"]
+
+_HARMONICS = 4
+
+
+def _drive(
+    speed: NDArray[np.float64],
+    rate: float,
+    form: str,
+    values: Values,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    if form == "random":
+        course = _random(speed.size, values["bandwidth"] / rate, rng)
+    else:
+        phase = _phase(speed, rate, values)
+        course = _harmonics(phase, _HARMONICS if form == "harmonics" else 1, rng)
+    return speed * (1.0 + values["depth"] * course)
+
+
+def _phase(speed: NDArray[np.float64], rate: float, values: Values) -> NDArray[np.float64]:
+    if values["frequency"] > 0.0:
+        return np.arange(speed.size, dtype=float) * (2.0 * math.pi * values["frequency"] / rate)
+    return values["order"] / rate * np.cumsum(speed)
+
+
+def _harmonics(
+    phase: NDArray[np.float64], count: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Sum of harmonics with the rms of a sine of amplitude one."""
+    course = np.zeros_like(phase)
+    for h in range(1, count + 1):
+        course += np.sin(h * phase + rng.uniform(0.0, 2.0 * math.pi)) / h
+    return course / math.sqrt(sum(h**-2 for h in range(1, count + 1)))
+
+
+def _random(n: int, bandwidth: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Ornstein-Uhlenbeck process with the rms of a sine of amplitude one."""
+    decay = math.exp(-2.0 * math.pi * bandwidth)
+    kicks = rng.standard_normal(n) * math.sqrt(1.0 - decay**2)
+    kicks[0] = rng.standard_normal()
+    return np.asarray(lfilter([math.sqrt(0.5)], [1.0, -decay], kicks))
+
+
+EFFECT = Effect(
+    name="speed_fluctuation",
+    stage=Stage.DRIVE,
+    forms=("sine", "harmonics", "random"),
+    parameters={
+        "depth": Parameter(0.02, "", 0.0, 0.3, "amplitude of the sine of equal rms, over speed"),
+        "order": Parameter(1.0, "", 0.1, 200.0, "periods in a turn; of sine and harmonics"),
+        "frequency": Parameter(
+            0.0, "Hz", 0.0, 500.0, "fixed, of sine and harmonics; 0 follows the shaft by the order"
+        ),
+        "bandwidth": Parameter(10.0, "Hz", 0.05, 500.0, "3 dB corner of the random form"),
+    },
+    strength="depth",
+    drive=_drive,
+)

@@ -1,0 +1,97 @@
+r"""The contact grows stronger the longer it sticks.
+
+.. math::
+    T_{crit}(t) &= T_{kin} + (T_{crit} - T_{kin}) \, [1 - s + s f(x)], \quad
+    x = t_{stick} / \tau \\
+    f &= 1 - e^{-x}, \quad \min\left(\frac{\ln(1 + x)}{\ln 11}, 1\right), \quad
+    1 - (1 + x)^{-1/2}
+
+Forms exponential, logarithmic (Dieterich 1979), complete at 10 tau, and power. Rabinowicz and
+Brockley hold ageing necessary for stick-slip (Section 2): the faster the shaft, the shorter the
+stick and the smaller the drop, so that stick-slip ends at a lower speed.
+
+Where a law has an inner state there are no instants at which stick begins. Then the age grows with
+time and shrinks as the contact is renewed by sliding, d(age)/dt = 1 - |v| age / D (Ruina 1983),
+and takes the place of t_stick; from rest on and in true stick the two are the same.
+
+Limits: s = 0 is the plain model; s = 1 breaks at T_kin at once and at T_crit after long stick.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from sim.contact import (
+    CRITICAL,
+    HOOK_SIGNATURE,
+    KINETIC,
+    SLIDING_SPEED,
+    STICK_TIME,
+    STICKS,
+    TIME,
+)
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = ["EFFECT"]
+
+_FORMS = ("exponential", "logarithmic", "power")
+
+
+def _pack(
+    form: str,
+    values: Mapping[str, float],
+    rng: np.random.Generator,  # noqa: ARG001
+) -> NDArray[np.float64]:
+    return np.array(
+        [_FORMS.index(form), values["share"], values["ageing_time"], values["renewal_angle"]]
+    )
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def _contact(context, values, state, state_rates, contact):
+    if context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]:
+        # Not yet slipped since the start, or a law that knows no slips.
+        age = max(state[0], 0.0)
+        state_rates[0] = 1.0 - abs(context[SLIDING_SPEED]) * age / values[3]
+    else:
+        age = max(context[STICK_TIME], 0.0)
+        state_rates[0] = 0.0
+    x = age / values[2]
+    if values[0] == 0.0:
+        f = -math.expm1(-x)
+    elif values[0] == 1.0:
+        f = min(math.log1p(x) / math.log(11.0), 1.0)
+    else:
+        f = 1.0 - 1.0 / math.sqrt(1.0 + x)
+    contact[CRITICAL] -= values[1] * (1.0 - f) * (contact[CRITICAL] - contact[KINETIC])
+
+
+EFFECT = Effect(
+    name="static_ageing",
+    stage=Stage.FRICTION,
+    forms=_FORMS,
+    parameters={
+        "share": Parameter(
+            1.0, "", 0.0, 1.0, "s: of T_crit - T_kin that must be regained in each stick"
+        ),
+        "ageing_time": Parameter(1e-3, "s", 1e-6, 10.0, "tau: stick in which it is regained"),
+        "renewal_angle": Parameter(
+            4e-4, "rad", 1e-4, 1.0, "D: sliding that renews the contact, for laws with inner state"
+        ),
+    },
+    strength="share",
+    contact=_contact,
+    pack=_pack,
+    n_states=1,
+)
+"""Critical torque that grows with the time of stick."""

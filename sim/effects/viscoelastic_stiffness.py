@@ -1,0 +1,82 @@
+r"""The elastomer is stiffer, and damps, the faster it is deformed.
+
+.. math::
+    T_E = k_E \theta + c\dot\theta + \sum_i k_i (\theta - z_i), \qquad
+    \tau_i \dot z_i = \theta - z_i, \qquad \sum_i k_i = s k_E
+
+Maxwell branches beside the spring (Wiechert's model; Ferry, *Viscoelastic Properties of Polymers*).
+Forms one_branch (Zener's solid, tau); two_branches of equal stiffness, a factor `spread` apart
+about tau; fractional, four branches a factor `spread` apart whose stiffness goes as tau_i^-alpha,
+so that over their range the stiffness rises as frequency^alpha and the loss factor is nearly
+constant, as a rubber's is in its transition. theta is the twist, z_i that of a branch's dashpot.
+
+Limits: s = 0 is the plain model; slowly deformed, the elastomer is a spring k_E; far above
+1 / (2 pi tau) one of k_E (1 + s). A branch never gives more than it has stored. Relaxation times
+below 20 us, shorter than the integration resolves, are raised to that.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from sim.contact import ELASTOMER_TORQUE, HOOK_SIGNATURE, STIFFNESS, TWIST
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = ["EFFECT"]
+
+_BRANCHES = {"one_branch": 1, "two_branches": 2, "fractional": 4}
+_MOST_BRANCHES = max(_BRANCHES.values())
+_SHORTEST = 20e-6
+"""[s]"""
+
+
+def _pack(
+    form: str,
+    values: Mapping[str, float],
+    rng: np.random.Generator,  # noqa: ARG001
+) -> NDArray[np.float64]:
+    n = _BRANCHES[form]
+    times = values["relaxation_time"] * values["spread"] ** (np.arange(n) - 0.5 * (n - 1))
+    shares = times ** -values["exponent"] if form == "fractional" else np.ones(n)
+    shares *= values["stiffening"] / shares.sum()
+    return np.concatenate([[n], shares, 1.0 / np.maximum(times, _SHORTEST)])
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def _contact(context, values, state, state_rates, contact):
+    n = int(values[0])
+    share = 0.0
+    for i in range(n):
+        stretch = context[TWIST] - state[i]
+        share += values[1 + i] * stretch
+        state_rates[i] = stretch * values[1 + n + i]
+    contact[ELASTOMER_TORQUE] += contact[STIFFNESS] * share
+
+
+EFFECT = Effect(
+    name="viscoelastic_stiffness",
+    stage=Stage.FRICTION,
+    forms=tuple(_BRANCHES),
+    parameters={
+        "stiffening": Parameter(
+            0.3, "", 0.0, 5.0, "s: stiffness gained at high frequency, over the static one"
+        ),
+        "relaxation_time": Parameter(5e-4, "s", 2e-5, 1.0, "tau: of the branches, in the middle"),
+        "spread": Parameter(4.0, "", 1.0, 10.0, "from one branch's time to the next"),
+        "exponent": Parameter(0.3, "", 0.0, 1.0, "alpha: of the frequency; of fractional alone"),
+    },
+    strength="stiffening",
+    contact=_contact,
+    pack=_pack,
+    n_states=_MOST_BRANCHES,
+)
+"""Stiffness and damping of the elastomer that rise with frequency."""
