@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -31,7 +32,7 @@ __all__ = [
     "third_octave_levels",
 ]
 
-REFERENCES = {"pressure": 2e-5, "acceleration": 1e-6, "force": 1e-6}
+REFERENCES = {"pressure": REFERENCE_PRESSURE, "acceleration": 1e-6, "force": 1e-6}
 """Reference values of levels by kind of channel [Pa, m/s2, N] (ISO 1683)."""
 
 NOMINAL_THIRD_OCTAVES = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from models.errors import ParameterError
@@ -47,7 +48,10 @@ def a_number(
     value = table.get(key)
     if value is None:
         raise ParameterError(f"{where}: {key} is missing")
-    number = float(value) if isinstance(value, (int, float)) and value is not True else math.nan
+    number = math.nan
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        with suppress(OverflowError):
+            number = float(value)
     inside = low <= number <= high if closed else low < number <= high
     if not (math.isfinite(number) and inside):
         least = "at least" if closed else "above"

@@ -25,7 +25,12 @@ if TYPE_CHECKING:
 
     from models.rig import Microphone, Plate
 
-__all__ = ["PlateModes", "acceleration_model", "plate_modes", "pressure_response"]
+__all__ = [
+    "PlateModes",
+    "acceleration_model",
+    "plate_modes",
+    "pressure_response",
+]
 
 GRID_STEP = 3e-3
 """Largest surface element: a seventh of the wavelength in air at 16 kHz [m]."""

@@ -32,7 +32,11 @@ from models.beams import (
     beam_structure,
 )
 from models.errors import ParameterError
-from models.plate import acceleration_model, plate_modes, pressure_response
+from models.plate import (
+    acceleration_model,
+    plate_modes,
+    pressure_response,
+)
 from models.response import (
     FrequencyResponse,
     Response,
@@ -40,7 +44,7 @@ from models.response import (
     frequency_response,
     radiate,
 )
-from models.rig import Beams, Microphone, Plate, Rig, damping_at
+from models.rig import HIGHEST_PLATE_FREQUENCY, Beams, Microphone, Plate, Rig, damping_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,9 +52,6 @@ if TYPE_CHECKING:
     from models.plate import PlateModes
 
 __all__ = ["FrequencyResponse", "Response", "frequency_response", "radiate", "response"]
-
-HIGHEST_PLATE_FREQUENCY = 16e3
-"""Plate modes are kept up to it [Hz]: measured creaks fill the band to 15 kHz."""
 
 HIGHEST_BEAM_FREQUENCY = 40e3
 """Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""

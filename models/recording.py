@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["CHANNEL_UNITS", "Channel", "Recording"]
+__all__ = ["CHANNEL_UNITS", "REFERENCE_PRESSURE", "Channel", "Recording"]
+
+REFERENCE_PRESSURE = 20e-6
+"""Of sound pressure levels [Pa]."""
 
 CHANNEL_UNITS = {
     "torque": "N m",
@@ -106,6 +110,19 @@ class Recording:
     calibrated: bool = True
     name: str = ""
 
+    def __post_init__(self) -> None:
+        if self.samples.ndim != 2 or len(self.samples) != len(self.channels):
+            raise ParameterError(
+                f"recording {self.name!r}: samples of shape {self.samples.shape} do not fit "
+                f"{len(self.channels)} channels; give one row a channel"
+            )
+        if len(set(self.channel_names)) < len(self.channels):
+            raise ParameterError(f"recording {self.name!r}: two channels have the same name")
+        if not 0.0 < self.rate < math.inf:
+            raise ParameterError(
+                f"recording {self.name!r}: rate = {self.rate!r} Hz must be a positive number"
+            )
+
     @property
     def duration(self) -> float:
         """Length [s]."""
@@ -115,6 +132,11 @@ class Recording:
     def channel_names(self) -> tuple[str, ...]:
         """Names of the channels in the order of the samples."""
         return tuple(channel.name for channel in self.channels)
+
+    def first(self, kind: str) -> int | None:
+        """Row of the first channel of a kind; ``None`` where there is none."""
+        rows = (row for row, channel in enumerate(self.channels) if channel.kind == kind)
+        return next(rows, None)
 
     def __contains__(self, name: object) -> bool:
         return name in self.channel_names

@@ -17,9 +17,12 @@ from typing import Any
 
 from models.checks import a_number, a_table, a_text, a_vector, refuse_unknown
 from models.errors import ParameterError
-from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
+from models.rig import HIGHEST_PLATE_FREQUENCY, Beams, Fit, LawSpec, Microphone, Plate, Rig
 
 __all__ = ["load_material_rig", "load_rig", "material_names", "parse_spec"]
+
+_FEWEST_MODES, _MOST_MODES = 5, 5000
+"""Of the plate: fewer radiate no band, more take minutes."""
 
 _DATA = resources.files("models") / "data"
 
@@ -146,6 +149,8 @@ def _material(name: str) -> dict[str, Any]:
 
 
 def _build(merged: Mapping[str, Any], where: str) -> Rig:
+    if not isinstance(merged["fit"], list):
+        raise ParameterError(f"{where}: fit must be given as [[fit]] tables")
     fits = tuple(
         sorted(
             (_fit(table, f"{where}, fit {i + 1}") for i, table in enumerate(merged["fit"])),
@@ -177,8 +182,14 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
         beams=_beams(merged["beams"], f"{where}, beams"),
         plate=_plate(merged["plate"], f"{where}, plate"),
         microphone=_microphone(merged["microphone"], f"{where}, microphone"),
-        assumed=tuple(str(key) for key in merged.get("assumed", [])),
+        assumed=_texts(merged.get("assumed", []), "assumed", where),
     )
+
+
+def _texts(value: Any, key: str, where: str) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise ParameterError(f"{where}: {key} must be a list of texts")
+    return tuple(a_text(item, key, where) for item in value)
 
 
 def _fit(table: Any, where: str) -> Fit:
@@ -253,7 +264,14 @@ def _plate(table: Mapping[str, Any], where: str) -> Plate:
     x, y = a_vector(table, "clamp_position_m", 2, where)
     if abs(x) >= 0.5 * values["length"] or abs(y) >= 0.5 * values["width"]:
         raise ParameterError(f"{where}: clamp_position_m = [{x:g}, {y:g}] lies off the plate")
-    return Plate(**values, clamp_position=(x, y))
+    plate = Plate(**values, clamp_position=(x, y))
+    modes = plate.expected_modes(HIGHEST_PLATE_FREQUENCY)
+    if not _FEWEST_MODES <= modes <= _MOST_MODES:
+        raise ParameterError(
+            f"{where}: a plate of {plate.length:g} x {plate.width:g} x {plate.thickness:g} m has "
+            f"about {modes:.3g} modes up to 16 kHz; it must have {_FEWEST_MODES} to {_MOST_MODES}"
+        )
+    return plate
 
 
 def _microphone(table: Mapping[str, Any], where: str) -> Microphone:

@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.recording import REFERENCE_PRESSURE
 from noise.atomic import atomic
-from noise.recordings.full_scale import REFERENCE_PRESSURE
 from noise.recordings.sidecar import sidecar_text
 
 if TYPE_CHECKING:

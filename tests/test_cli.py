@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import subprocess
 import sys
 import warnings
@@ -45,6 +46,7 @@ def test_the_package_runs_as_a_module_and_tells_the_installed_version():
     assert done.stdout == f"bushing-noise {version('bushing-noise')}\n"
 
 
+@pytest.mark.skipif(os.name == "nt", reason="pipes close otherwise on Windows")
 def test_a_reader_that_goes_away_is_no_error():
     program = subprocess.Popen(
         [sys.executable, "-c", "from noise.cli import main; import sys; sys.stdin.read();"

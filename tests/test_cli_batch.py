@@ -59,8 +59,8 @@ def read_table(path):
 def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
     assert main(["features", "runs", "--out", "new/features.csv"]) == 1
     out, err = capsys.readouterr()
-    assert out == "new/features.csv\n"
-    assert "refused: runs/b.wav: is damaged or no sound file" in err
+    assert out == f"{Path('new/features.csv')}\n"
+    assert f"refused: {Path('runs/b.wav')}: is damaged or no sound file" in err
     assert "3 recordings, 1 refused" in err
     rows = read_table("new/features.csv")
     assert [row["file"] for row in rows] == ["a.wav", "b.wav", "c.wav"]
@@ -154,7 +154,8 @@ def test_labels_are_linked_to_conditions_and_bad_files_to_reasons(runs, labelled
     assert list(rows[0]) == list(COLUMNS)
     assert [row["label"] for row in rows] == ["squeal", "", "squeal"]
     assert rows[0]["speed_rad_s"] == "5.0"
-    assert rows[1]["error"] == "runs/b.wav: is damaged or no sound file (Format not recognised)"
+    reason = "is damaged or no sound file (Format not recognised)"
+    assert rows[1]["error"] == f"{Path('runs/b.wav')}: {reason}"
     assert labelled.classifiers == [None]
 
 

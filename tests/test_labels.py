@@ -109,3 +109,34 @@ def test_a_refused_file_has_a_row_with_the_reason():
     row = error_row("bad.wav", "empty")
     assert tuple(row) == COLUMNS
     assert (row["file"], row["error"], row["label"]) == ("bad.wav", "empty", None)
+
+
+@pytest.mark.parametrize("rate", [1.0, 2.0, 200.0, 350.0])
+def test_what_is_sampled_too_slowly_to_tell_is_unknown(rate):
+    noise = np.random.default_rng(0).normal(size=400)
+    (segment,) = label_recording(sound(noise, rate=rate), CLASSIFIER)
+    assert segment.label == "unknown"
+
+
+def test_channels_that_carry_no_noise_are_unknown():
+    angle = Recording(np.linspace(0.0, 5.0, 30_000)[None], 30e3, (Channel("angle"),))
+    (segment,) = label_recording(angle, CLASSIFIER)
+    assert segment.label == "unknown"
+    assert segment.frequency is None
+
+
+def test_rumble_is_not_taken_for_the_tone():
+    time = np.arange(60_000) / 30e3
+    rumbling = np.sin(2 * np.pi * 2900.0 * time) + 2.0 * np.sin(2 * np.pi * 20.0 * time)
+    found = file_label(label_recording(sound(rumbling), CLASSIFIER))
+    assert found.frequency == pytest.approx(2900.0, abs=5.0)
+
+
+def test_speed_of_a_swinging_shaft_is_its_mean_magnitude():
+    time = np.arange(60_000) / 30e3
+    angle = 0.26 * np.sin(2 * np.pi * 2.0 * time)
+    angle += 1e-4 * np.random.default_rng(0).normal(size=angle.size)
+    recording = Recording(angle[None], 30e3, (Channel("angle"),))
+    segment = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
+    (row,) = label_rows("swing.wav", recording, [segment])
+    assert row["speed_rad_s"] == pytest.approx(4 * 0.26 * 2.0, rel=0.03)

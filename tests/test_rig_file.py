@@ -96,6 +96,11 @@ def test_between_fits_properties_are_interpolated_and_outside_held():
         (("[[fit]]", "[plate]\nclamp_position_m = [9, 0]\n[[fit]]"), "lies off the plate"),
         (("[[fit]]", "[microphone]\nposition_m = [0, 0, -1]\n[[fit]]"), "above the plate"),
         (("[[fit]]", "[microphone]\nposition_m = [0, 0]\n[[fit]]"), "a list of 3 numbers"),
+        (("[[fit]]", "[plate]\nlength_m = 1e6\n[[fit]]"), "modes up to 16 kHz"),
+        (("[[fit]]", "[plate]\nthickness_m = 1e3\n[[fit]]"), "modes up to 16 kHz"),
+        (("effects = []", "assumed = 3"), "assumed must be a list"),
+        (("= 665.0", "= true"), "elastomer_stiffness_Nm_rad = True"),
+        (("= 665.0", f"= {10**400}"), "elastomer_stiffness_Nm_rad"),
     ],
 )
 def test_a_rig_that_cannot_be_used_is_refused_by_key(tmp_path, change, message):
@@ -119,3 +124,8 @@ def test_a_specification_is_read_as_it_is_written():
     assert str(parse_spec("slip_pulse:amplitude=20,threshold=3.5")) == (
         "slip_pulse:amplitude=20,threshold=3.5"
     )
+
+
+def test_a_fit_that_is_no_table_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="fit must be given as"):
+        load_rig(written(tmp_path, "fit = 3"))

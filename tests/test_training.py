@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from noise.classifier import LABELS
+from noise.classifier import LABELS, load_classifier
 from noise.classifier.designs import random_design
 from noise.classifier.hearing import as_recorded, coloured_noise, resampled
 from noise.classifier.strangers import RECIPES
@@ -71,3 +71,11 @@ def test_resampling_keeps_a_tone():
     tone = resampled(np.sin(2 * np.pi * 440.0 * time), 96_000, 22_050)
     assert tone.size == 22_050
     assert np.abs(np.fft.rfft(tone)).argmax() == 440
+
+
+@pytest.mark.slow
+def test_the_shipped_classifier_is_what_training_with_seed_0_gives():
+    shipped, again = load_classifier(), train(seed=0)
+    features = [draw_sample(seed).features for seed in np.random.SeedSequence(9).spawn(20)]
+    assert again.predict_proba(features).tobytes() == shipped.predict_proba(features).tobytes()
+    assert again.card == shipped.card

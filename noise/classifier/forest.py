@@ -50,6 +50,9 @@ class Forest:
     def check(self) -> None:
         """Raise ValueError unless every way through the trees ends in a leaf."""
         n = len(self.feature)
+        lengths = {len(a) for a in (self.threshold, self.children, self.missing_left, self.votes)}
+        if lengths != {n} or self.children.shape[1:] != (2,) or not len(self.roots):
+            raise ValueError("its arrays do not fit together")
         inner = np.flatnonzero(self.feature != _LEAF)
         descends = (self.children[inner] > inner[:, None]) & (self.children[inner] < n)
         if not (descends.all() and (self.roots >= 0).all() and (self.roots < n).all()):

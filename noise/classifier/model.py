@@ -127,6 +127,9 @@ def _load(path: Path) -> Classifier:
             header = json.loads(str(file["header"]))
             forest = Forest(**{field.name: file[field.name] for field in fields(Forest)})
         forest.check()
+        highest = int(forest.feature.max(initial=-1))
+        if highest >= len(header["feature_names"]) or forest.votes.shape[1] != len(LABELS):
+            raise ValueError("its trees ask for features or labels that it does not name")
         if header["format"] != _FORMAT or tuple(header["labels"]) != LABELS:
             raise ParameterError(
                 f"classifier {path}: of format {header['format']!r}, expected {_FORMAT}; "

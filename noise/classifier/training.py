@@ -3,7 +3,7 @@
 Three sets that share no draw: one grows the forest, one calibrates its probabilities, and one is
 scored and written into the card. What
 a run is called follows from its physics (`noise.classifier.truth`), never from its features. The
-classifier has to work with whatever channels there are, so part of the samples keep pressure alone.
+classifier has to work with whatever channels there are, so the samples keep any subset of them.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _QUIET = 0.08
 """Shares of the samples that are strangers, and noise or hum alone; the others are simulated."""
 
 _PRESSURE_ALONE = 0.6
-"""Share of the simulated samples that keep the sound alone."""
+"""Share of the simulated samples that keep the sound alone; the others keep any subset."""
 
 _LEAST_TONE_TO_ROOM = -5.0
 
@@ -163,19 +163,17 @@ def _simulated(rng: np.random.Generator) -> tuple[Recording, str]:
         "acceleration": acceleration
         + 10.0 ** rng.uniform(-3.0, 0.5) * rng.standard_normal(acceleration.size),
     }
-    kept = [name for name in measured if rng.random() < 0.8]
-    rows = [heard.samples[0]] + [
-        resampled(measured[name], run.recording.rate, rate) for name in kept
-    ]
-    n = min(row.size for row in rows)
-    return (
-        replace(
-            heard,
-            samples=np.stack([row[:n] for row in rows]),
-            channels=(Channel("pressure"), *(Channel(name) for name in kept)),
-        ),
-        label,
+    rows = {"pressure": heard.samples[0]} | {
+        name: resampled(signal, run.recording.rate, rate) for name, signal in measured.items()
+    }
+    kept = [name for name in rows if rng.random() < 0.6] or [str(rng.choice(list(rows)))]
+    n = min(row.size for row in rows.values())
+    recording = replace(
+        heard,
+        samples=np.stack([rows[name][:n] for name in kept]),
+        channels=tuple(Channel(name) for name in kept),
     )
+    return recording, label
 
 
 def _stranger(rng: np.random.Generator) -> Recording:

@@ -1,7 +1,8 @@
 """What noise a simulated run makes, by its physics: the definition that the classifier learns.
 
 The thesis names the noises by what makes them (5.2.3, 6.2), and so does this page, the one place
-where they are defined; nothing here looks at a feature that the classifier sees.
+where they are defined. It looks at the motion and at the sound free of noise, room and microphone,
+none of which the classifier sees; lines are found as `features.lines` does.
 
 - *none*: the torque settles to steady sliding; or the sound drowns in a quiet room's.
 - *creak*: slips strike the plate, and the sound that those blows make through it is no more than
@@ -21,6 +22,7 @@ import numpy as np
 from features.bands import overall_level
 from features.lines import find_lines
 from features.spectra import autospectrum
+from models.recording import REFERENCE_PRESSURE
 from sim.regime import Regime, friction_regime
 
 if TYPE_CHECKING:
@@ -38,8 +40,6 @@ _CREAK_MARGIN = 10.0
 
 _LINE_RANGE = 18.0
 """Lines weaker than the strongest by more than this do not count [dB]."""
-
-_REFERENCE_PRESSURE = 20e-6
 
 
 def noise_of(run: Run) -> str:
@@ -81,4 +81,4 @@ def _level(pressure: NDArray[np.float64], rate: float) -> float:
     if not np.any(pressure):
         return -math.inf
     spectrum = autospectrum(pressure, rate)
-    return overall_level(spectrum, reference=_REFERENCE_PRESSURE, weighting="A")
+    return overall_level(spectrum, reference=REFERENCE_PRESSURE, weighting="A")

@@ -63,8 +63,9 @@ def _pitch(recording: Recording) -> dict[str, float]:
     """Pitch of the first pressure channel."""
     from features.pitch import pitch_track
 
-    if "pressure" not in recording:
+    row = recording.first("pressure")
+    if row is None:
         return {}
-    track = pitch_track(recording["pressure"], recording.rate)
+    track = pitch_track(recording.samples[row], recording.rate)
     values = (track.median, track.range, track.voiced_share)
     return dict(zip(_PITCH_COLUMNS, values, strict=True))

@@ -76,7 +76,7 @@ def _rate(text: str) -> int:
 
 
 def _summary(recording: Recording) -> dict[str, object]:
-    from noise.recordings.full_scale import REFERENCE_PRESSURE
+    from models.recording import REFERENCE_PRESSURE
     from noise.recordings.sidecar import sidecar_text
 
     torque, pressure = recording["torque"], recording["pressure"]

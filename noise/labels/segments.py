@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.conditioning import ACOUSTIC_FROM
 from features.harmonics import analyse_harmonics
-from features.registry import recording_features
+from features.registry import KINDS, recording_features
 from features.slip_pulses import acoustic_slips
+from models.recording import REFERENCE_PRESSURE
 from noise.classifier import LABELS
 
 if TYPE_CHECKING:
@@ -38,10 +40,11 @@ _SILENT_LEVEL = 10.0
 _SILENT_LEVEL_DBFS = -90.0
 """Uncalibrated sound below it is silence [dBFS]: the last bit of 16."""
 
+_LEAST_RATE = 1000.0
+"""A recording sampled more slowly shows nothing of a noise [Hz]."""
+
 _LONGEST_LOOK = 4.0
 """The frequency of a longer segment is that of so much of its middle [s]."""
-
-_REFERENCE_PRESSURE = 20e-6
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,9 @@ def file_label(segments: list[Segment]) -> Segment:
 
 
 def _label(recording: Recording, classifier: Classifier, channel: str) -> list[Segment]:
+    if recording.rate < _LEAST_RATE or all(recording.first(kind) is None for kind in KINDS):
+        nothing_to_tell = np.eye(len(LABELS))[LABELS.index("unknown")]
+        return [_segment(recording, channel, 0, recording.samples.shape[1], nothing_to_tell)]
     starts = _window_starts(recording)
     length = min(recording.samples.shape[1], round(WINDOW * recording.rate))
     windows = [_cut(recording, start, start + length) for start in starts]
@@ -180,7 +186,7 @@ def _window_probabilities(windows: list[Recording], classifier: Classifier) -> N
 
 
 def _is_silent(recording: Recording) -> bool:
-    if "pressure" not in recording:
+    if recording.first("pressure") is None:
         return not any(np.ptp(signal) > 0.0 for signal in recording.samples)
     level, level_dbfs = _levels(recording)
     if level is not None:
@@ -225,34 +231,39 @@ def _segment(
 
 def _levels(recording: Recording) -> tuple[float | None, float | None]:
     """Level of the first pressure channel, else of the first: dB re 20 uPa and dBFS."""
-    names = recording.channel_names
-    index = names.index("pressure") if "pressure" in names else 0
+    row = recording.first("pressure")
+    index = row or 0
     signal = recording.samples[index]
-    rms = float(np.sqrt(np.mean((signal - signal.mean()) ** 2)))
-    if not rms > 0.0:
+    signal = signal - signal.mean()
+    peak = float(np.abs(signal).max())
+    if not peak > 0.0:
         return None, None
+    # Scaled by the peak, whose square may overflow.
+    rms_db = 20.0 * float(np.log10(peak) + np.log10(np.sqrt(np.mean((signal / peak) ** 2))))
     full_scale = recording.channels[index].full_scale if recording.calibrated else 1.0
-    level_dbfs = 20.0 * float(np.log10(rms / full_scale))
-    if not (recording.calibrated and names[index] == "pressure"):
+    level_dbfs = rms_db - 20.0 * float(np.log10(full_scale))
+    if not recording.calibrated or row is None:
         return None, level_dbfs
-    return 20.0 * float(np.log10(rms / _REFERENCE_PRESSURE)), level_dbfs
+    return rms_db - 20.0 * float(np.log10(REFERENCE_PRESSURE)), level_dbfs
 
 
 def _frequency(recording: Recording, label: str) -> float | None:
     """Slip frequency of creak and squawk, else the strongest line: of the torque if it is there."""
-    if label == "none":
+    rows = [recording.first(kind) for kind in ("torque", "pressure", "acceleration")]
+    index = next((row for row in rows if row is not None), None)
+    if label == "none" or index is None or recording.rate < _LEAST_RATE:
         return None
-    names = recording.channel_names
-    index = next((names.index(n) for n in ("torque", "pressure", "acceleration") if n in names), 0)
     signal = recording.samples[index]
     spare = max(0, signal.size - round(_LONGEST_LOOK * recording.rate)) // 2
     signal = signal[spare : signal.size - spare]
-    if label == "creak" and names[index] != "torque":
+    torque = index == rows[0]
+    if label == "creak" and not torque:
         pulses = acoustic_slips(signal, recording.rate).rate
         if pulses > 0.0:
             return float(pulses)
     harmonics = analyse_harmonics(signal, recording.rate)
     if label in ("creak", "squawk") and np.isfinite(harmonics.fundamental):
         return float(harmonics.fundamental)
-    lines = harmonics.peaks.frequency
+    # Below lies rumble, which may be louder than any tone.
+    lines = harmonics.peaks.frequency[(harmonics.peaks.frequency >= ACOUSTIC_FROM) | torque]
     return float(lines[0]) if lines.size else None

@@ -10,10 +10,15 @@ import numpy as np
 from noise.classifier import LABELS
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from models.recording import Recording
     from noise.labels.segments import Segment
 
 __all__ = ["COLUMNS", "error_row", "label_rows"]
+
+_SPEED_BLOCK = 0.02
+"""Length over which the angle is averaged before its slope is taken [s]."""
 
 _CONDITIONS = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad")
 
@@ -91,14 +96,28 @@ def _row(name: str, recording: Recording, segment: Segment) -> dict[str, object]
 
 
 def _segment_speed(recording: Recording, segment: Segment) -> float | None:
-    """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set."""
+    """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set.
+
+    Its magnitude where the shaft swings to and fro, whose mean speed is nothing.
+    """
     first, last = round(segment.start * recording.rate), round(segment.end * recording.rate)
-    if recording.calibrated and "speed" in recording:
-        return float(np.mean(recording["speed"][first:last]))
-    if recording.calibrated and "angle" in recording and last - first > 1:
-        time = np.arange(last - first) / recording.rate
-        return float(np.polyfit(time, recording["angle"][first:last], 1)[0])
+    if recording.calibrated and recording.first("speed") is not None:
+        return _mean_speed(recording["speed"][first:last])
+    block = max(1, round(_SPEED_BLOCK * recording.rate))
+    if recording.calibrated and recording.first("angle") is not None and last - first > block:
+        angle = recording["angle"][first:last]
+        if angle.size < 3 * block:
+            time = np.arange(angle.size) / recording.rate
+            return float(np.polyfit(time, angle, 1)[0])
+        # Means of blocks first: the difference of single samples would be that of their noise.
+        whole = angle[: angle.size // block * block].reshape(-1, block).mean(axis=1)
+        return _mean_speed(np.diff(whole) * recording.rate / block)
     return recording.condition.speed
+
+
+def _mean_speed(speed: NDArray[np.float64]) -> float:
+    mean, magnitude = float(np.mean(speed)), float(np.mean(np.abs(speed)))
+    return mean if abs(mean) > 0.9 * magnitude else magnitude
 
 
 def _rounded(value: float | None, digits: int) -> float | None:

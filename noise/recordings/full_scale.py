@@ -15,10 +15,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-__all__ = ["REFERENCE_PRESSURE", "FullScale", "stated_full_scale"]
+from models.recording import REFERENCE_PRESSURE
 
-REFERENCE_PRESSURE = 20e-6
-"""Reference of sound pressure levels [Pa]."""
+__all__ = ["FullScale", "stated_full_scale"]
 
 _NUMBER = r"(-?\d{1,3}(?:[.,]\d{1,6})?)"
 _IN_NAME = re.compile(rf"(?<![a-z0-9])FS\s*{_NUMBER}\s*dB[\s_(-]*PK(?![a-z0-9])", re.I | re.A)

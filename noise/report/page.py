@@ -22,9 +22,9 @@ import soundfile
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from models.errors import ParameterError, RecordingError
+from models.recording import REFERENCE_PRESSURE
 from noise.atomic import atomic
 from noise.classifier import LABELS
-from noise.recordings.full_scale import REFERENCE_PRESSURE
 from noise.report.figures import entry_figures
 
 if TYPE_CHECKING:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.spectra import Spectrum, autospectrum
+from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -68,7 +69,9 @@ class Kind:
 KINDS = {
     "torque": Kind("Torque", "Nm", "#0072b2", 1.0, "(1 Nm)²/Hz", 0.1, -40.0),
     "acceleration": Kind("Beam acceleration", "m/s²", "#008060", 1e-6, "(1 µm/s²)²/Hz", 0.1, 80.0),
-    "pressure": Kind("Sound pressure", "Pa", "#222222", 20e-6, "(20 µPa)²/Hz", 1e-3, 40.0),
+    "pressure": Kind(
+        "Sound pressure", "Pa", "#222222", REFERENCE_PRESSURE, "(20 µPa)²/Hz", 1e-3, 40.0
+    ),
 }
 """The kinds of channel that are shown, in their order. Blue, green and near-black are told apart
 by every eye (Okabe and Ito, Color universal design, 2008)."""
