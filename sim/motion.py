@@ -16,7 +16,7 @@ from sim.parameters import resolve
 from sim.stick_slip import solve_stick_slip
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -31,6 +31,14 @@ STICK_SPEED_SHARE = 0.05
 
 LONGEST_STEP = 12e-6
 """Of the integration of a contact that truly sticks [s]."""
+
+_STEPS_TO_RATE = 1.0
+"""A step is no longer than this over the fastest rate; the method is stable to 2.8."""
+
+_FASTEST_SLIP = 60.0
+"""Sliding speeds exceed the shaft's by about so much [rad/s]; the thesis has 45 (Figure 6.7)."""
+
+_MOST_SUBSTEPS = 1000
 
 LONGEST_STEP_OF_LAWS = 5e-6
 """Of the integration of friction laws with an inner state, whose own times are shorter [s]."""
@@ -160,19 +168,26 @@ def simulate_motion(
     else:
         coefficients = law.coefficients(values)
         longest = LONGEST_STEP if law.torque is None else LONGEST_STEP_OF_LAWS
+        fastest = _fastest_rate(system, fit.kinetic_torque, values, float(np.abs(drive).max()))
+        substeps = math.ceil(step / min(longest, _STEPS_TO_RATE / fastest))
+        if substeps > _MOST_SUBSTEPS:
+            raise ParameterError(
+                f"{_what(system, rig, drive)}: some part moves {fastest:.3g} times a second, which "
+                f"no step of this solver follows; make it softer, heavier or less damped"
+            )
         states, _ = solve_contact(
             system.packed(),
             *torques,
             drive,
             step,
-            math.ceil(step / longest),
+            substeps,
             law=law.torque,
             coefficients=coefficients,
             law_state=law.state(coefficients),
             hooks=hooks,
         )
         speed = states[:, 6]
-    _refuse_overflow(states, system)
+    _refuse_overflow(states, system, rig, drive)
     return Motion(
         rate=rate,
         torque=states[:, 1],
@@ -199,11 +214,42 @@ def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
     return angle
 
 
-def _refuse_overflow(states: NDArray[np.float64], system: LumpedBushing) -> None:
+def _fastest_rate(
+    system: LumpedBushing, kinetic_torque: float, law: Mapping[str, float], speed: float
+) -> float:
+    """Estimate of the fastest rate that a step has to follow [1/s]."""
+    contact = law.get("contact_stiffness_per_torque", 0.0)
+    damping = system.elastomer_damping
+    damping += law.get("contact_damping_per_torque", 0.0) * kinetic_torque
+    sliding = speed + _FASTEST_SLIP
+    rates = [
+        math.sqrt(
+            (contact * kinetic_torque + system.elastomer_stiffness) / system.elastomer_inertia
+        ),
+        damping / system.elastomer_inertia,
+        contact * sliding,
+        sliding / law["renewal_angle"] if "renewal_angle" in law else 0.0,
+    ]
+    if not system.clamp_is_fixed:
+        stiffness = system.elastomer_stiffness + system.support_stiffness
+        rates += [
+            math.sqrt(stiffness / system.clamp_inertia),
+            (damping + system.support_damping) / system.clamp_inertia,
+        ]
+    return max(rates)
+
+
+def _refuse_overflow(
+    states: NDArray[np.float64], system: LumpedBushing, rig: Rig, drive: NDArray[np.float64]
+) -> None:
     if not np.isfinite(states[-1]).all():
-        raise ParameterError(
-            "the motion grows without bound with these parameters; check inertia "
-            f"({system.elastomer_inertia:g}, {system.clamp_inertia:g} kg m2), stiffness "
-            f"({system.elastomer_stiffness:g} Nm/rad) and damping "
-            f"({system.elastomer_damping:g} Nm s/rad)"
-        )
+        raise ParameterError(f"{_what(system, rig, drive)}: the motion grows without bound")
+
+
+def _what(system: LumpedBushing, rig: Rig, drive: NDArray[np.float64]) -> str:
+    return (
+        f"with speeds up to {np.abs(drive).max():g} rad/s, friction {rig.friction}, inertia "
+        f"{system.elastomer_inertia:g} and {system.clamp_inertia:g} kg m2, stiffness "
+        f"{system.elastomer_stiffness:g} and {system.support_stiffness:g} Nm/rad, damping "
+        f"{system.elastomer_damping:g} and {system.support_damping:g} Nm s/rad"
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +35,9 @@ DEFAULT_SETTLING = 0.5
 
 _LEAST_SOUND_RATE = 90e3
 """Motion and sound are computed at a multiple of the sampling rate no lower than this [Hz]."""
+
+_ABSOLUTE_ZERO = 273.15
+"""Below 0 degree Celsius [K]."""
 
 _LONGEST_RUN = 600.0
 """[s]; the whole run is held in memory."""
@@ -118,12 +122,14 @@ def simulate(
     acquisition = acquisition or Acquisition()
     # Two streams, so that an effect that scatters leaves the sensors' noise as it is.
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
-    if isinstance(shaft, (int, float)):
+    if isinstance(shaft, Real):
         shaft = ConstantSpeed(float(shaft))
+    if not hasattr(shaft, "speed"):
+        raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
     constant = isinstance(shaft, ConstantSpeed)
     if settling is None:
         settling = DEFAULT_SETTLING if constant else 0.0
-    _check(seconds, acquisition.rate, interference)
+    _check(seconds, settling, acquisition.rate, interference, temperature)
 
     decimation = math.ceil(_LEAST_SOUND_RATE / acquisition.rate)
     rate = decimation * acquisition.rate
@@ -189,11 +195,20 @@ def _channels(rig: Rig) -> tuple[Channel, ...]:
     )
 
 
-def _check(seconds: float, rate: float, interference: float) -> None:
-    if not 0.0 < seconds <= _LONGEST_RUN:
-        raise ParameterError(f"seconds = {seconds:g} must be above 0 and at most {_LONGEST_RUN:g}")
+def _check(
+    seconds: float, settling: float, rate: float, interference: float, temperature: float
+) -> None:
+    if not (0.0 < seconds <= _LONGEST_RUN and 0.0 <= settling <= _LONGEST_RUN):
+        raise ParameterError(
+            f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "
+            f"most {_LONGEST_RUN:g}"
+        )
     if not 1e3 <= rate <= 400e3:
         raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
+    if round(seconds * rate) < 2:
+        raise ParameterError(f"seconds = {seconds:g} holds no two samples at {rate:g} Hz")
+    if not -_ABSOLUTE_ZERO <= temperature < 1e4:
+        raise ParameterError(f"temperature = {temperature:g} degree Celsius is none")
     if not 0.0 < interference < 1e-2:
         raise ParameterError(
             f"interference = {1e3 * interference:g} mm must be above 0 and below 10"

@@ -10,7 +10,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.effects.slip_pulse import torque_drops
 from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
+from sim.shaft import ConstantSpeed, Oscillation
 
 RIG = load_material_rig("fluorocarbon")
 
@@ -75,3 +75,22 @@ def test_every_form_of_a_blow_has_the_peak_that_the_drop_gives_it(form):
     drops = torque_drops(motion.torque, 5.2)[1]
     peak = 60.0 * np.sqrt((drops.max() - 5.2) / (6.94 - 5.2))
     assert np.abs(force(motion, form=form)).max() == pytest.approx(peak, rel=0.2)
+
+
+def test_turning_back_is_no_slip():
+    swing = simulate_motion(
+        RIG, Oscillation(np.deg2rad(15.0), 2.0), interference=0.279e-3, support_stiffness=2214.0,
+        seconds=0.5, rate=96e3,
+    )  # fmt: skip
+    assert np.ptp(swing.torque) > 15.0
+    assert not force(swing).any()
+
+
+@pytest.mark.parametrize("form", EFFECTS["slip_pulse"].forms)
+@pytest.mark.parametrize("duration", [1e-5, 2e-5, 1e-4])
+def test_impulse_of_a_blow_goes_with_its_duration(form, duration):
+    motion = run()
+    long = force(motion, form=form, duration=1e-3).sum()
+    assert force(motion, form=form, duration=duration).sum() == pytest.approx(
+        long * duration / 1e-3, rel=0.05
+    )

@@ -43,7 +43,7 @@ __all__ = ["EFFECT"]
 
 _FORMS = ("normal", "uniform", "correlated")
 _N_DRAWS = 4096
-_HEADER = 2
+_HEADER = 1
 
 
 def _pack(form: str, values: Mapping[str, float], rng: np.random.Generator) -> NDArray[np.float64]:
@@ -57,23 +57,21 @@ def _pack(form: str, values: Mapping[str, float], rng: np.random.Generator) -> N
         for i in range(1, _N_DRAWS):
             z[i] = rho * z[i - 1] + fresh * z[i]
     share = np.maximum(0.0, 1.0 + values["scatter"] * z)
-    return np.concatenate([[values["patch_angle"], _N_DRAWS], share])
+    return np.concatenate([[values["patch_angle"]], share])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):
-    n = int(values[1])
-    if context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]:
-        # Not yet slipped since the start, or a law that knows no slips.
-        state_rates[0] = abs(context[SLIDING_SPEED])
-        place = state[0] / values[0]
-        i = int(place)
-        x = place - i
-        x = x * x * (3.0 - 2.0 * x)
-        share = (1.0 - x) * values[_HEADER + i % n] + x * values[_HEADER + (i + 1) % n]
-    else:
-        state_rates[0] = 0.0
-        share = values[_HEADER + int(context[STICKS]) % n]
+    sticks, patches = context[STICKS], state[0] / values[0]
+    speed = abs(context[SLIDING_SPEED])
+    # Not yet slipped since the start, or a law that knows no slips.
+    unslipped = sticks == 0.0 and context[STICK_TIME] == context[TIME]
+    state_rates[0] = speed if unslipped else 0.0
+    place = patches if unslipped else sticks
+    i = int(place)
+    x = place - i
+    x = x * x * (3.0 - 2.0 * x)
+    share = (1.0 - x) * values[_HEADER + i % _N_DRAWS] + x * values[_HEADER + (i + 1) % _N_DRAWS]
     contact[CRITICAL] = contact[KINETIC] + share * (contact[CRITICAL] - contact[KINETIC])
 
 

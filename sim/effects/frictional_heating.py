@@ -9,7 +9,7 @@ sum of exponentials, each with one state:
 
 - half_space: G = 1 / (A e sqrt(pi t)), the two half-spaces of Appendix G with the effusivities
   k / sqrt(alpha) of steel and rubber together, e = 8116 W s^(1/2) / (m2 K). Eight exponentials,
-  fitted to the step response, match it within 1 % from 1 ms to a minute; later they saturate.
+  fitted to the step response, match it within 1 % from 2 ms to a minute; later they saturate.
 - lumped: G = (R / tau) exp(-t / tau), one heat capacity.
 - two_layer: half_space, and in series the paint of the shaft, which the appendix leaves out: for
   the steel's share of the heat, d / (k A) more, within 4 d2 / (pi2 alpha), its slowest mode.

@@ -12,6 +12,7 @@ makes none.
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
@@ -101,27 +102,37 @@ def torque_drops(
 
 
 def _force(motion: Motion, form: str, values: Mapping[str, float]) -> NDArray[np.float64]:
-    turning = np.sign(np.where(motion.shaft_speed == 0.0, 1.0, motion.shaft_speed))
     force = np.zeros_like(motion.torque)
-    threshold, duration = values["threshold"], values["duration"]
-    where, drops = torque_drops(motion.torque * turning, max(threshold, 1e-6))
-    excess = (drops - threshold) / (_REFERENCE_DROP - threshold)
-    peaks = values["amplitude"] * np.sqrt(np.maximum(excess, 0.0))
-    shape = _shape(form, duration, motion.rate)
-    for start, peak in zip(where, peaks, strict=True):
-        stop = min(start + shape.size, force.size)
-        force[start:stop] += turning[start] * peak * shape[: stop - start]
+    threshold = values["threshold"]
+    shape = _shape(form, values["duration"], motion.rate)
+    # Each stretch of one direction on its own: where the shaft turns back the torque turns too,
+    # and that is no slip.
+    turns = np.flatnonzero(np.diff(np.signbit(motion.shaft_speed))) + 1
+    edges = [0, *turns, force.size]
+    for first, last in itertools.pairwise(edges):
+        way = -1.0 if motion.shaft_speed[first] < 0.0 else 1.0
+        where, drops = torque_drops(way * motion.torque[first:last], max(threshold, 1e-6))
+        excess = (drops - threshold) / (_REFERENCE_DROP - threshold)
+        peaks = values["amplitude"] * np.sqrt(np.maximum(excess, 0.0))
+        for start, peak in zip(first + where, peaks, strict=True):
+            stop = min(start + shape.size, force.size)
+            force[start:stop] += way * peak * shape[: stop - start]
     return force
 
 
 def _shape(form: str, duration: float, rate: float) -> NDArray[np.float64]:
-    """Course of a pulse with unit peak, by its samples after the slip."""
-    if form == "exponential":
-        return np.exp(-np.arange(1, math.ceil(6.0 * duration * rate) + 1) / (duration * rate))
-    x = np.arange(1, math.ceil(duration * rate) + 1) / (duration * rate)
-    if form == "triangle":
-        return np.clip(1.0 - np.abs(2.0 * x - 1.0), 0.0, None)
-    return np.clip(np.sin(np.pi * x), 0.0, None)
+    """Course of a pulse with unit peak: its mean over each sample, so that none is lost between."""
+    length = 6.0 if form == "exponential" else 1.0
+    x = np.arange(math.ceil(length * duration * rate) + 1) / (duration * rate)
+    return np.diff(_IMPULSE[form](np.minimum(x, length))) * duration * rate
+
+
+_IMPULSE: dict[str, Callable[[NDArray[np.float64]], NDArray[np.float64]]] = {
+    "half_sine": lambda x: (1.0 - np.cos(np.pi * x)) / np.pi,
+    "exponential": lambda x: 1.0 - np.exp(-x),
+    "triangle": lambda x: np.where(x < 0.5, x**2, 2.0 * x - x**2 - 0.5),
+}
+"""Integral of each form of unit peak from its start to x durations."""
 
 
 EFFECT = Effect(

@@ -59,13 +59,12 @@ def _pack(
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):
-    if context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]:
-        # Not yet slipped since the start, or a law that knows no slips.
-        age = max(state[0], 0.0)
-        state_rates[0] = 1.0 - abs(context[SLIDING_SPEED]) * age / values[3]
-    else:
-        age = max(context[STICK_TIME], 0.0)
-        state_rates[0] = 0.0
+    stick_time, own_age = max(context[STICK_TIME], 0.0), max(state[0], 0.0)
+    # Not yet slipped since the start, or a law that knows no slips.
+    unslipped = context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]
+    age = own_age if unslipped else stick_time
+    renewal = 1.0 - abs(context[SLIDING_SPEED]) * own_age / values[3]
+    state_rates[0] = renewal if unslipped else 0.0
     x = age / values[2]
     if values[0] == 0.0:
         f = -math.expm1(-x)

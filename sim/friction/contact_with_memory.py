@@ -14,7 +14,7 @@ whose ageing here saturates. Stiffness and damping of the contact go with the re
 contact, hence with T_kin.
 
 Limits: steady sliding at speed v gives T = g(D/|v|, v); tau -> infinity and beta = 0 give a
-constant T_kin; at rest for long, T may rise to T_crit.
+constant T_kin; at rest for long, T may rise to T_crit and the share beta of T_kin.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ if TYPE_CHECKING:
 __all__ = ["LAW"]
 
 _LONG_REST = 1.0
-"""Age of the contact at the start [s], long against any tau."""
+"""Age of the contact at the start [s]."""
 
 _PARAMETERS = {
     "contact_stiffness_per_torque": Parameter(
-        1700.0, "1/rad", 1.0, 1e5, "K / T_kin: shear stiffness of the contact"
+        1700.0, "1/rad", 1.0, 5e3, "K / T_kin: shear stiffness of the contact"
     ),
     "contact_damping_per_torque": Parameter(
         9e-5, "s/rad", 0.0, 1e-2, "sigma / T_kin: damping of the contact's shear"
     ),
     "renewal_angle": Parameter(
-        4e-4, "rad", 1e-7, 1.0, "D: sliding distance over which the contact is renewed"
+        4e-4, "rad", 2e-5, 1.0, "D: sliding distance over which the contact is renewed"
     ),
     "ageing_time": Parameter(4e-4, "s", 1e-7, 1e3, "tau: time in which strength is regained"),
     "weakening_share": Parameter(

@@ -1,0 +1,60 @@
+r"""The elastic contact that friction laws without true stick have in common.
+
+.. math::
+    \dot z = w - K |w| z / g, \qquad T = K z + \sigma \dot z, \qquad
+    w = v / \sqrt{1 + (K v / (\lambda g))^2}
+
+z is the shear of the contact [rad], g its strength [Nm]: Dahl (1968), with the strength that
+varies of Canudas de Wit et al. (1995), where w is the sliding speed v itself. There the shear
+settles within g / (K |v|), which no step is short enough for at any stiffness and speed. Here it
+settles within 1 / lambda, half of the longest step, at the fastest: steady sliding, where T = g, is
+untouched, and w differs from v only where the contact follows its strength at once anyway.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["BRISTLE_PARAMETERS", "FASTEST", "shear_speed", "unbent"]
+
+FASTEST = 4e5
+"""Rate lambda beyond which a contact follows at once [1/s]; stable at steps up to 6 us."""
+
+BRISTLE_PARAMETERS = {
+    "contact_stiffness_per_torque": Parameter(
+        1700.0, "1/rad", 1.0, 1e4, "K / T_kin: shear stiffness of the contact"
+    ),
+    "contact_damping_per_torque": Parameter(
+        9e-5, "s/rad", 0.0, 1e-2, "sigma / T_kin: damping of the contact's shear"
+    ),
+}
+"""The first two of each such law."""
+
+
+def unbent(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
+    """Return the state of a contact at rest: no shear.
+
+    Examples
+    --------
+    >>> unbent(np.ones(5))
+    array([0.])
+    """
+    return np.zeros(1)
+
+
+def _shear_speed(v: float, slip_shear: float) -> float:
+    """Return w [rad/s] at the sliding speed v, where `slip_shear` is g / K [rad]."""
+    ratio = v / (FASTEST * slip_shear)
+    return v / math.sqrt(1.0 + ratio * ratio)
+
+
+shear_speed = njit(cache=True, error_model="numpy")(_shear_speed)

@@ -1,0 +1,83 @@
+r"""Maxwell-slip (Iwan) friction: sixteen elastic-plastic elements in parallel.
+
+.. math::
+    \dot z_i &= w [1 - \alpha(x_i) x_i], \qquad x_i = K z_i \operatorname{sgn}(v) / (s_i g(v)) \\
+    T &= \frac{1}{16} \sum_i (K z_i + \sigma \dot z_i), \qquad
+    g = T_{kin} + (T_{crit} - T_{kin}) e^{-|v| / v_s}
+
+Iwan (1966); with a strength that falls with speed, Al-Bender, Lampaert and Swevers (2004). The
+thresholds s_i g / 16 are spread evenly between 1 - spread and 1 + spread about their mean, so the
+contact gives way element by element while it is loaded, and remembers where it was turned back.
+alpha rises smoothly from zero at x = 0.5 to one at x = 1: an element that yields at once would cost
+the solver its order. The elements do not pull at each other. w is that of `sim.bristle`.
+
+Limits: steady sliding gives T = g(v); slow loading from rest is nearly the sum of elements that
+each hold up to their threshold, linear at first and settling at T_crit beyond
+(1 + spread) T_crit / K; a small loop during loading closes to about 1 %, by which the smooth yield
+creeps; equal torques give a constant friction.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from sim.bristle import shear_speed
+from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
+from sim.friction.law import FrictionLaw
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["LAW", "N_ELEMENTS"]
+
+N_ELEMENTS = 16
+
+_YIELD = 0.5
+"""Share of its threshold up to which an element does not slip."""
+
+_PARAMETERS = {
+    "contact_stiffness_per_torque": Parameter(
+        1700.0, "1/rad", 1.0, 1e4, "K / T_kin: shear stiffness of the contact"
+    ),
+    "contact_damping_per_torque": Parameter(
+        9e-5, "s/rad", 0.0, 1e-2, "sigma / T_kin: damping of the contact's shear"
+    ),
+    "spread": Parameter(0.5, "", 0.0, 0.8, "of the elements' thresholds about their mean"),
+    "stribeck_speed": Parameter(1.0, "rad/s", 1e-2, 1e4, "v_s: speed over which torque falls"),
+}
+
+
+def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
+    return np.zeros(N_ELEMENTS)
+
+
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):
+    kinetic = contact[KINETIC]
+    stiffness = c[0] * kinetic
+    strength = kinetic + (contact[CRITICAL] - kinetic) * math.exp(-abs(v) / c[3])
+    total, total_rate = 0.0, 0.0
+    forward = math.copysign(stiffness / strength, v)
+    weakest = 1.0 - c[2] * (1.0 - 1.0 / N_ELEMENTS)
+    w = shear_speed(v, weakest * strength / stiffness)
+    for i in range(N_ELEMENTS):
+        threshold = 1.0 + c[2] * ((2 * i + 1) / N_ELEMENTS - 1.0)
+        load = forward * state[i] / threshold
+        rise = min(max((load - _YIELD) / (1.0 - _YIELD), 0.0), 1.0)
+        state_rates[i] = w * (1.0 - rise * rise * (3.0 - 2.0 * rise) * load)
+        total += state[i]
+        total_rate += state_rates[i]
+    return (stiffness * total + c[1] * kinetic * total_rate) / N_ELEMENTS
+
+
+LAW = FrictionLaw(
+    name="maxwell_slip",
+    parameters=_PARAMETERS,
+    torque=_torque,
+    initial_state=_initial_state,
+)

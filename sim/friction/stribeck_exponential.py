@@ -1,0 +1,40 @@
+r"""Friction that falls with speed over one or two scales, exponentially.
+
+.. math::
+    g = T_{kin} + (T_{crit} - T_{kin}) [(1 - s) f(v / v_1) + s f(v / v_2)], \qquad
+        f(x) = e^{-|x|}
+
+Bo and Pavelescu (1982), exponent one: it falls steepest at rest. The elastic contact and what the
+scales share are those of `sim.stribeck`.
+
+Limits: steady sliding gives T = g(v), which is T_crit at rest and T_kin at high speed; equal
+torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from sim.bristle import unbent
+from sim.contact import LAW_SIGNATURE
+from sim.friction.law import FrictionLaw
+from sim.stribeck import STRIBECK_PARAMETERS, stribeck_torque
+
+__all__ = ["LAW"]
+
+
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):
+    first = math.exp(-abs(v) / c[2])
+    second = math.exp(-abs(v) / c[4])
+    return stribeck_torque(v, first, second, c, contact, state, state_rates)
+
+
+LAW = FrictionLaw(
+    name="stribeck_exponential",
+    parameters=STRIBECK_PARAMETERS,
+    torque=_torque,
+    initial_state=unbent,
+)

@@ -1,0 +1,41 @@
+r"""Friction that falls with speed over one or two scales, as a Gaussian.
+
+.. math::
+    g = T_{kin} + (T_{crit} - T_{kin}) [(1 - s) f(v / v_1) + s f(v / v_2)], \qquad
+        f(x) = e^{-x^2}
+
+Bo and Pavelescu (1982), exponent two: flat at rest, steepest at 0.7 of its speed, and over soon
+after. The elastic contact and what the scales share are those of `sim.stribeck`.
+
+Limits: steady sliding gives T = g(v), which is T_crit at rest and T_kin at high speed; equal
+torques give a constant friction; s = 0 is one scale, LuGre without its viscous part, and so is
+v_1 = v_2 with any s.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from sim.bristle import unbent
+from sim.contact import LAW_SIGNATURE
+from sim.friction.law import FrictionLaw
+from sim.stribeck import STRIBECK_PARAMETERS, stribeck_torque
+
+__all__ = ["LAW"]
+
+
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):
+    first = math.exp(-((v / c[2]) ** 2))
+    second = math.exp(-((v / c[4]) ** 2))
+    return stribeck_torque(v, first, second, c, contact, state, state_rates)
+
+
+LAW = FrictionLaw(
+    name="stribeck_gaussian",
+    parameters=STRIBECK_PARAMETERS,
+    torque=_torque,
+    initial_state=unbent,
+)

@@ -1,0 +1,38 @@
+r"""Friction that falls with speed over one or two scales, as a Lorentzian.
+
+.. math::
+    g = T_{kin} + (T_{crit} - T_{kin}) [(1 - s) f(v / v_1) + s f(v / v_2)], \qquad
+        f(x) = 1 / (1 + x^2)
+
+Hess and Soom (1990): flat at rest, with a tail that still weakens at many times its speed. The
+elastic contact and what the scales share are those of `sim.stribeck`.
+
+Limits: steady sliding gives T = g(v), which is T_crit at rest and falls to T_kin as 1/v^2; equal
+torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from sim.bristle import unbent
+from sim.contact import LAW_SIGNATURE
+from sim.friction.law import FrictionLaw
+from sim.stribeck import STRIBECK_PARAMETERS, stribeck_torque
+
+__all__ = ["LAW"]
+
+
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):
+    first = 1.0 / (1.0 + (v / c[2]) ** 2)
+    second = 1.0 / (1.0 + (v / c[4]) ** 2)
+    return stribeck_torque(v, first, second, c, contact, state, state_rates)
+
+
+LAW = FrictionLaw(
+    name="stribeck_lorentzian",
+    parameters=STRIBECK_PARAMETERS,
+    torque=_torque,
+    initial_state=unbent,
+)

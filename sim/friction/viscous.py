@@ -1,0 +1,46 @@
+r"""Friction that rises in proportion to speed, on an elastic contact.
+
+.. math::
+    T = K z + \sigma \dot z + T_{kin} v / v_0, \qquad g = T_{kin}
+
+The textbook's sum of Coulomb and viscous friction, whose jump at rest the elastic contact of Dahl
+(1968), with the shear z of `sim.bristle`, makes smooth. There is no strength beyond T_kin: T_crit
+has no part in it.
+
+Limits: steady sliding gives T = T_kin (1 + v / v_0) along v; v_0 -> infinity gives constant
+friction; the torque never falls with speed, so that sliding is stable at any.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from sim.bristle import BRISTLE_PARAMETERS, shear_speed, unbent
+from sim.contact import KINETIC, LAW_SIGNATURE
+from sim.friction.law import FrictionLaw
+from sim.parameters import Parameter
+
+__all__ = ["LAW"]
+
+_PARAMETERS = {
+    **BRISTLE_PARAMETERS,
+    "doubling_speed": Parameter(
+        8.3, "rad/s", 5.0, 1e9, "v_0: speed at which the torque is twice T_kin"
+    ),
+}
+
+
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):
+    kinetic = contact[KINETIC]
+    w = shear_speed(v, 1.0 / c[0])
+    state_rates[0] = w - c[0] * abs(w) * state[0]
+    return kinetic * (c[0] * state[0] + c[1] * state_rates[0] + v / c[2])
+
+
+LAW = FrictionLaw(
+    name="viscous",
+    parameters=_PARAMETERS,
+    torque=_torque,
+    initial_state=unbent,
+)
