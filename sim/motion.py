@@ -222,10 +222,9 @@ def _fastest_rate(
     damping = system.elastomer_damping
     damping += law.get("contact_damping_per_torque", 0.0) * kinetic_torque
     sliding = speed + _FASTEST_SLIP
+    stiffness = contact * kinetic_torque + system.elastomer_stiffness
     rates = [
-        math.sqrt(
-            (contact * kinetic_torque + system.elastomer_stiffness) / system.elastomer_inertia
-        ),
+        math.sqrt(stiffness / system.elastomer_inertia),
         damping / system.elastomer_inertia,
         contact * sliding,
         sliding / law["renewal_angle"] if "renewal_angle" in law else 0.0,

@@ -17,7 +17,7 @@ from sim.acquisition import Acquisition, sample
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import Motion, simulate_motion
-from sim.shaft import ConstantSpeed
+from sim.shaft import ConstantSpeed, ShaftMotion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
     from sim.effects.effect import Effect
-    from sim.shaft import ShaftMotion
 
 __all__ = ["DEFAULT_SETTLING", "Run", "simulate"]
 
@@ -124,7 +123,7 @@ def simulate(
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
     if isinstance(shaft, Real):
         shaft = ConstantSpeed(float(shaft))
-    if not hasattr(shaft, "speed"):
+    if not isinstance(shaft, ShaftMotion):
         raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
     constant = isinstance(shaft, ConstantSpeed)
     if settling is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["ConstantSpeed", "LoggedSpeed", "Oscillation", "ShaftMotion", "SpeedRamp"]
 
 
+@runtime_checkable
 class ShaftMotion(Protocol):
     """Anything that knows the shaft's angular speed at given times."""
 

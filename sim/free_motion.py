@@ -1,0 +1,158 @@
+# mypy: allow-untyped-defs, allow-untyped-calls, allow-untyped-decorators
+# ruff: noqa: ANN001, ANN202
+"""The lumped model between events, where it is linear: as a Taylor series, and as one matrix.
+
+A whole step needs only the matrix of that step, which is fast; a part of one, up to an event,
+needs the series, which is exact at any time within. Both come from the same recurrence, so they
+agree to rounding. A step is cut up until the series converges fast and no quantity turns twice
+within a part.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = [
+    "ORDER",
+    "SLIP",
+    "STICK",
+    "count_parts",
+    "extended",
+    "fill_matrices",
+    "fill_series",
+    "order_for",
+    "parts_of_a_step",
+]
+
+ORDER = 17
+"""Most terms of the series: 0.7^18 / 18! is below rounding."""
+
+_LONGEST_PART = 0.7
+"""Of the reciprocal of the fastest rate."""
+
+_MOST_PARTS = 100_000
+
+SLIP, STICK = 0, 20
+"""Where the matrices start: slip (4 x 5: state, torque), stick (2 x 5: theta1, speed, rate of the
+speed, theta2, theta2')."""
+
+_INVERSE = 1.0 / np.arange(1.0, ORDER + 2.0)
+
+
+def parts_of_a_step(system: NDArray[np.float64], step: float) -> int:
+    """Into how many parts a step is cut.
+
+    The fastest rate of M x'' + C x' + K x = 0 is at most tr(C/M) + sqrt(tr(K/M)).
+
+    Parameters
+    ----------
+    system : ndarray, shape (6,)
+        `sim.bushing.LumpedBushing.packed`.
+    step : float
+        [s]
+
+    Raises
+    ------
+    ParameterError
+        If it were more than 100,000 parts, or the system is not finite.
+
+    Examples
+    --------
+    >>> parts_of_a_step(np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0425, 0.0425]), 1e-3)
+    15
+    """
+    parts = count_parts(np.asarray(system, dtype=np.float64), step)
+    if parts == 0:
+        raise ParameterError(
+            f"a step of {step:g} s is too long for inertia {system[0]:g} and {system[1]:g} kg m2, "
+            f"stiffness {system[2]:g} Nm/rad and damping {system[4]:g} Nm s/rad"
+        )
+    return parts
+
+
+@njit(cache=True, error_model="numpy")
+def _fastest_rate(system):
+    j_e, j_c, k_e, k_b, c_e, c_b = system
+    stiffness, damping = k_e / j_e, c_e / j_e
+    if k_b >= 0.0:
+        stiffness += (k_e + k_b) / j_c
+        damping += (c_e + c_b) / j_c
+    return damping + math.sqrt(stiffness)
+
+
+@njit(cache=True, error_model="numpy")
+def count_parts(system, step):
+    """Parts of a step; 0 where there is no number of them that would do."""
+    parts = np.ceil(_fastest_rate(system) * step / _LONGEST_PART)
+    if not (step > 0.0 and system[0] > 0.0 and system[1] > 0.0 and parts <= _MOST_PARTS):
+        return 0
+    return max(1, int(parts))
+
+
+@njit(cache=True, error_model="numpy")
+def extended(system):
+    """Append the inertias' reciprocals, none for a fixed clamp, and the longest part's own."""
+    s = np.empty(9)
+    s[:6] = system
+    s[6] = 1.0 / system[0]
+    s[7] = 0.0 if system[3] < 0.0 else 1.0 / system[1]
+    s[8] = _fastest_rate(system) / _LONGEST_PART
+    return s
+
+
+@njit(cache=True, error_model="numpy")
+def order_for(share):
+    """Order that the series needs over this share of the longest part: it loses below 1e-17."""
+    return min(ORDER, 9 + int(np.ceil(8.0 * share)))
+
+
+@njit(cache=True, error_model="numpy")
+def fill_series(c, order, x0, x1, x2, x3, torque, acceleration, stuck, s):
+    """Fill `c[k]` with the coefficients of theta1, theta1', theta2, theta2' and T_E."""
+    k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[2], s[3], s[4], s[5], s[6], s[7]
+    drive = acceleration if stuck else torque * j_e_inverse
+    pull = 0.0 if stuck else j_e_inverse
+    for k in range(order):
+        elastomer = k_e * (x0 - x2) + c_e * (x1 - x3)
+        c[k, 0], c[k, 1], c[k, 2], c[k, 3], c[k, 4] = x0, x1, x2, x3, elastomer
+        w = _INVERSE[k]
+        x0, x1, x2, x3 = (
+            w * x1,
+            w * (drive - pull * elastomer),
+            w * x3,
+            w * (elastomer - k_b * x2 - c_b * x3) * j_c_inverse,
+        )
+        drive = 0.0
+    c[order, 0], c[order, 1], c[order, 2], c[order, 3] = x0, x1, x2, x3
+    c[order, 4] = k_e * (x0 - x2) + c_e * (x1 - x3)
+
+
+@njit(cache=True, error_model="numpy")
+def fill_matrices(matrices, c, h, s):
+    """Fill the matrices of a step of length `h`, from the series of unit states."""
+    for column in range(5):
+        one = np.zeros(5)
+        one[column] = 1.0
+        fill_series(c, ORDER, one[0], one[1], one[2], one[3], one[4], 0.0, False, s)
+        for row in range(4):
+            matrices[SLIP + 5 * row + column] = _sum(c, row, h)
+        fill_series(c, ORDER, one[0], one[1], one[3], one[4], 0.0, one[2], True, s)
+        for row in range(2):
+            matrices[STICK + 5 * row + column] = _sum(c, row + 2, h)
+
+
+@njit(cache=True, error_model="numpy")
+def _sum(c, column, t):
+    y = c[ORDER, column]
+    for k in range(ORDER - 1, -1, -1):
+        y = y * t + c[k, column]
+    return y
