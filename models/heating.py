@@ -157,7 +157,9 @@ def interface_rise(
     92
     """
     if not (area > 0.0 and seconds > 0.0):
-        raise ParameterError(f"heating: area = {area:g} m2 and seconds = {seconds:g} must be positive")
+        raise ParameterError(
+            f"heating: area = {area:g} m2 and seconds = {seconds:g} must be positive"
+        )
     a, b = shaft.resistance(seconds), bushing.resistance(seconds)
     if layer is not None:
         a += layer.thickness / layer.conductivity
@@ -165,7 +167,7 @@ def interface_rise(
 
 
 def contact_area(power: float, rise: float, seconds: float) -> float:
-    """Area of contact [m2] of painted-free steel and rubber at which the interface warms by `rise`.
+    """Area of contact [m2] at which steel without paint and rubber warm by `rise` [K].
 
     Examples
     --------

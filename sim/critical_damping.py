@@ -36,9 +36,7 @@ def with_damping(rig: Rig, damping: float) -> Rig:
     >>> sorted({c for fit in rig.fits for c in fit.damping.values()})
     [0.05]
     """
-    return replace(
-        rig, fits=tuple(replace(fit, damping={math.inf: damping}) for fit in rig.fits)
-    )
+    return replace(rig, fits=tuple(replace(fit, damping={math.inf: damping}) for fit in rig.fits))
 
 
 def critical_damping(
@@ -127,7 +125,8 @@ def largest_sticking(sticks: Callable[[float], bool], highest: float, tolerance:
     """
     if not (highest > 0.0 and tolerance > 0.0):
         raise ParameterError(
-            f"critical damping: highest = {highest:g} and tolerance = {tolerance:g} must be positive"
+            f"critical damping: highest = {highest:g} and tolerance = {tolerance:g} must be "
+            "positive"
         )
     if sticks(highest):
         return math.inf

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -200,6 +201,6 @@ def stick_slip_ranges(
 
 
 def _check(speeds: Sequence[float]) -> None:
-    rising = all(a < b for a, b in zip(speeds, speeds[1:], strict=False))
+    rising = all(a < b for a, b in pairwise(speeds))
     if not (speeds and speeds[0] > 0.0 and rising):
         raise ParameterError("critical speeds: the speeds to try must rise from above 0 rad/s")

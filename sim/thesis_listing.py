@@ -107,7 +107,8 @@ def run_listing(
     --------
     The decimal point of the published critical damping, "0.7599", is misplaced:
 
-    >>> [bool(run_listing(7.5, damping=c, seconds=0.3).stuck[-5000:].any()) for c in (0.0759, 0.0761)]
+    >>> runs = [run_listing(7.5, damping=c, seconds=0.3) for c in (0.0759, 0.0761)]
+    >>> [bool(run.stuck[-5000:].any()) for run in runs]
     [True, False]
     """
     given = {
@@ -124,7 +125,9 @@ def run_listing(
             raise ParameterError(f"listing: {name} = {value:g} must be positive and finite")
     n = round(seconds / STEP)
     if n < 2:
-        raise ParameterError(f"listing: seconds = {seconds:g} is shorter than two steps of {STEP:g}")
+        raise ParameterError(
+            f"listing: seconds = {seconds:g} is shorter than two steps of {STEP:g}"
+        )
     rows, stuck = np.empty((n, 5)), np.empty(n, dtype=np.bool_)
     _program(
         speed,
@@ -165,7 +168,7 @@ def _listing(
             stuck[written] = True
             written += 1
             T = T + H  # 340
-            X2, Y2, F2 = T2, T2D, T2DD  # 350-370
+            Y2, F2 = T2D, T2DD  # 360-370
             X2_2 = T2 + HH * Y2  # 380
             Y2_2 = T2D + HH * F2  # 390
             F2_2 = 1 / JC * (CE * (0.5 * W - Y2_2) + KE * ((HH * W + T * W) - X2_2) - KB * X2_2)
@@ -194,7 +197,7 @@ def _listing(
             rows[written] = TIME, TORQUE, T1, T1D, T1D - W  # 650
             stuck[written] = False
             written += 1
-            X1, X2, Y1, Y2, F1, F2 = T1, T2, T1D, T2D, T1DD, T2DD  # 670-720
+            Y1, Y2, F1, F2 = T1D, T2D, T1DD, T2DD  # 690-720
             X1_2, X2_2 = T1 + HH * Y1, T2 + HH * Y2  # 730-740
             Y1_2, Y2_2 = T1D + HH * F1, T2D + HH * F2  # 750-760
             F1_2 = 1 / JE * (TK - CE / 2 * (Y1_2 - Y2_2) - KE * (X1_2 - X2_2))  # 770

@@ -45,6 +45,9 @@ COMMANDS = {
     "features": Entry("noise.commands.features", "recordings -> a table of features"),
     "label": Entry("noise.commands.label", "recordings -> a table of labelled segments"),
     "train": Entry("noise.commands.train", "build the classifier again from simulation"),
+    "thesis": Entry(
+        "noise.commands.thesis", "the published numbers beside what the program computes"
+    ),
 }
 """Name -> entry, in the order of the help."""
 

@@ -1,0 +1,152 @@
+"""Modes of the rig: lumped model, beams with a rigid clamp on the bushing, and the elastomer's own.
+
+The thesis computed the modes of Figure 3.3 by transfer matrices on its five assumptions (3.1.1).
+They are computed here with beam elements on the same assumptions; mass and inertia of
+the clamp, which it does not give, are those that meet 140 and 250 Hz with the long beams.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg import eigh
+
+from models.beam_elements import half_structure
+from models.beams import beam_structure
+from noise.thesis.row import Row, number
+from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, strongest_line
+from sim.bushing import lumped_bushing
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Beams
+
+__all__ = ["beam_modes", "clamp_modes", "squeal", "torsional_modes"]
+
+_LATERAL_STIFFNESS = 3500.0 * 4.4482216 / 0.0254
+"""Of the bushing, 3500 lb/in [N/m]."""
+
+_TORSIONAL_STIFFNESS = 750.0
+"""Of the bushing [Nm/rad]."""
+
+_CLAMP_MASS, _CLAMP_INERTIA = 0.96, 1 / 1050
+"""Assumed [kg], [kg m2]."""
+
+_FAR = 1e6
+"""Lever of a clamp that moves sideways instead of turning [m]."""
+
+_MODE_TOLERANCE = 0.05
+
+
+def torsional_modes() -> list[Row]:
+    """First torsional mode of the lumped model, measured 250 and 310 Hz (5.2.2)."""
+    rows = []
+    for support, measured in ((LONG, 250.0), (SHORT, 310.0)):
+        for state, stuck in (("sliding", False), ("stuck", True)):
+            exact, calibrated = (
+                float(
+                    lumped_bushing(rig_of(material), 0.279e-3, support).natural_frequencies(
+                        stuck=stuck
+                    )[0]
+                )
+                for material in (THESIS, CALIBRATED)
+            )
+            rows.append(
+                Row(
+                    "first_torsional_mode", f"{Case(1.0, 0.279, support).place()}, {state}", "Hz",
+                    number(measured), exact=exact, calibrated=calibrated, measured=True,
+                    tolerance=_MODE_TOLERANCE,
+                )
+            )  # fmt: skip
+    return rows
+
+
+def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
+    """Modes of beams of one length [m] with the clamp on the bushing, rigidly anchored [Hz].
+
+    Examples
+    --------
+    >>> clamp_modes(rig_of(THESIS).beams, 0.123)[:4].round()
+    array([ 140.,  250., 1094., 1152.])
+    """
+    found = []
+    for lever, stiffness, inertia in (
+        (beams.lever, _TORSIONAL_STIFFNESS, _CLAMP_INERTIA),
+        (_FAR, _LATERAL_STIFFNESS * _FAR**2, _CLAMP_MASS * _FAR**2),
+    ):
+        half = half_structure(
+            bending_stiffness=beams.youngs_modulus * beams.width * beams.thickness**3 / 12,
+            mass_per_length=beams.density * beams.width * beams.thickness,
+            length=length,
+            lever=lever,
+        )
+        k, m = 2.0 * half.stiffness, 2.0 * half.mass
+        k[0, 0] += stiffness
+        m[0, 0] += inertia
+        # Unit diagonal of the mass: a far lever makes the first coordinate tiny.
+        scale = 1.0 / np.sqrt(np.diag(m))
+        values = eigh(k * np.outer(scale, scale), m * np.outer(scale, scale), eigvals_only=True)
+        found.append(np.sqrt(values) / (2.0 * math.pi))
+    return np.sort(np.concatenate(found))
+
+
+def beam_modes() -> list[Row]:
+    """Modes that 3.1.1 computes and 5.2.2 measures."""
+    beams = rig_of(THESIS).beams
+    long, short = clamp_modes(beams, 0.123), clamp_modes(beams, 0.092)
+    rows = [
+        Row(
+            "beam_mode", "12.3 cm, lowest of 140-2100 Hz", "Hz", number(140.0),
+            exact=float(long[0]), tolerance=_MODE_TOLERANCE,
+        ),
+        Row(
+            "beam_mode", "9.2 cm, highest of 140-2100 Hz", "Hz", number(2100.0),
+            exact=float(short[3]), tolerance=_MODE_TOLERANCE,
+        ),
+    ]  # fmt: skip
+    for text, support, modes, measured, k in (
+        ("12.3 cm, first torsional", LONG, long, 250.0, 1),
+        ("9.2 cm, first torsional", SHORT, short, 310.0, 1),
+        ("12.3 cm, first bending", LONG, long, 900.0, 2),
+        ("9.2 cm, first bending", SHORT, short, 1375.0, 2),
+    ):
+        rows.append(
+            Row(
+                "beam_mode", text, "Hz", number(measured), exact=float(modes[k]),
+                calibrated=_shipped_mode(support, k - 1), measured=True,
+                tolerance=_MODE_TOLERANCE,
+            )
+        )  # fmt: skip
+    for measured in (4500.0, 6000.0):
+        nearest = float(long[np.abs(long - measured).argmin()])
+        rows.append(
+            Row(
+                "beam_mode", f"12.3 cm, nearest to {measured:g} Hz", "Hz", number(measured),
+                exact=nearest, measured=True, tolerance=_MODE_TOLERANCE,
+            )
+        )  # fmt: skip
+    return rows
+
+
+def _shipped_mode(support: float, index: int) -> float:
+    """Of the structure that the calibrated rig sounds through; it turns only [Hz]."""
+    rig = rig_of(CALIBRATED)
+    structure = beam_structure(rig.beams, support, rig.clamp_inertia, 0.01, 10e3)
+    return float(structure.frequencies[index])
+
+
+def squeal() -> list[Row]:
+    """6570 Hz of the squeal: most likely rad/s read as Hz."""
+    fit = rig_of(THESIS).fit(0.279e-3)
+    mode = math.sqrt(fit.elastomer_stiffness / rig_of(THESIS).elastomer_inertia) / (2.0 * math.pi)
+    case = Case(10.0, 0.279, SHORT)
+    return [
+        Row(
+            "squeal_frequency", f"{case}; sqrt(k_E / J_E) is 6575 rad/s", "Hz", number(6570.0),
+            exact=mode, calibrated=strongest_line(CALIBRATED, case), measured=True,
+            meant=number(6570.0 / (2.0 * math.pi)), tolerance=0.01,
+        )
+    ]  # fmt: skip

@@ -1,0 +1,82 @@
+"""The table as a page of Markdown, with what its columns and verdicts mean."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from noise.thesis.row import COLUMNS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from noise.thesis.row import Row
+
+__all__ = ["thesis_page", "verdict_counts"]
+
+_TEXT = """\
+# The thesis's numbers, checked
+
+Written by `bushing-noise thesis --out tests/thesis.md`; do not edit. Numbers of R. S. De Togni,
+*The Role of System Dynamics on the Behavior of Elastomeric Friction*, beside what the program
+computes:
+
+- **listing**: the program of Appendix F run literally, errors included
+- **exact**: the thesis's equations, solved exactly (material `fluorocarbon-thesis`)
+- **calibrated**: the calibrated material (`fluorocarbon`, or PDMS where it says so)
+
+V_crit1 is the last speed with stick, V_crit2 the last with an oscillation of the torque above 1 %
+of its mean, both from rest, over 1 s, at speeds 0.25 rad/s apart up to 13 rad/s; 0 is no speed.
+
+Verdicts follow from the numbers and from each row's tolerance. **holds**: within it. **off by
+N %**: beyond it, up to 25 %. **fails**: further. **misprint**: wrong as printed, right as it must
+have been meant. **refuted**: the thesis's equations contradict its own measurement by more than
+25 %. **not checkable**: nothing to compare with. What was measured is judged on the calibrated
+material too; what follows a semicolon is that, where it does not hold.
+"""
+
+
+def verdict_counts(rows: Sequence[Row]) -> dict[str, int]:
+    """Count the verdicts, all that are off as one.
+
+    Examples
+    --------
+    >>> from noise.thesis.misprints import misprints
+    >>> verdict_counts(misprints())
+    {'misprint': 5, 'not checkable': 1}
+    """
+    words = Counter(
+        part if not part.removeprefix("calibrated ").startswith("off by") else _off(part)
+        for row in rows
+        for part in row.verdict.split("; ")
+    )
+    return dict(words.most_common())
+
+
+def _off(part: str) -> str:
+    return "calibrated off" if part.startswith("calibrated ") else "off"
+
+
+def thesis_page(rows: Sequence[Row]) -> str:
+    """Return the page.
+
+    Examples
+    --------
+    >>> from noise.thesis.misprints import misprints
+    >>> print(thesis_page(misprints()[:1]))
+    # The thesis's numbers, checked
+    ...
+    | wlf_constant | (2.1), first | 1 | 8.88 |  | 8.860 |  | misprint |
+    <BLANKLINE>
+    """
+    counts = ", ".join(f"{word} {count}" for word, count in verdict_counts(rows).items())
+    lines = [
+        _TEXT,
+        f"{len(rows)} rows: {counts}.",
+        "",
+        "| " + " | ".join(COLUMNS) + " |",
+        "|" + " --- |" * len(COLUMNS),
+        *("| " + " | ".join(row.cells()[column] for column in COLUMNS) + " |" for row in rows),
+        "",
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,209 @@
+"""One published number beside the computed ones, and what is to be said of it.
+
+The verdict follows from numbers alone, by the tolerance that a row states: nobody's opinion is in
+it. A row says which of its columns is judged. What was measured is judged on the calibrated column
+as well, so that a calibrated rig which misses a measurement is told even where the thesis's
+equations meet it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+__all__ = ["COLUMNS", "Column", "Published", "Row", "above", "below", "between", "number"]
+
+COLUMNS = (
+    "item",
+    "condition",
+    "unit",
+    "published",
+    "listing",
+    "exact",
+    "calibrated",
+    "verdict",
+)
+
+_OFF_AT_MOST = 0.25
+"""A value that is further off fails."""
+
+
+class Column(Enum):
+    """What computes a value: the listing, the equations solved exactly, the calibrated rig."""
+
+    LISTING = "listing"
+    EXACT = "exact"
+    CALIBRATED = "calibrated"
+
+
+@dataclass(frozen=True)
+class Published:
+    """What the thesis prints, as text and as the values that it admits.
+
+    Parameters
+    ----------
+    text : str
+    low, high : float
+        Equal for a number.
+    """
+
+    text: str
+    low: float
+    high: float
+
+    def gap(self, value: float, scale: float | None = None) -> float:
+        """Distance from `value` to what is admitted, relative to that or to `scale`.
+
+        Examples
+        --------
+        >>> number(10.0).gap(12.0), below(250.0).gap(200.0), between(10.0, 25.0).gap(50.0)
+        (0.2, 0.0, 1.0)
+        """
+        nearest = min(max(value, self.low), self.high)
+        if value == nearest:
+            return 0.0
+        base = abs(nearest) if scale is None else scale
+        return abs(value - nearest) / base if base > 0.0 else math.inf
+
+
+def number(value: float, text: str | None = None) -> Published:
+    """Return a published number."""
+    return Published(f"{value:g}" if text is None else text, value, value)
+
+
+def below(limit: float) -> Published:
+    """Return a published upper limit."""
+    return Published(f"< {limit:g}", -math.inf, limit)
+
+
+def above(limit: float) -> Published:
+    """Return a published lower limit."""
+    return Published(f"> {limit:g}", limit, math.inf)
+
+
+def between(low: float, high: float, text: str | None = None) -> Published:
+    """Return a published range."""
+    return Published(f"{low:g} to {high:g}" if text is None else text, low, high)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the table.
+
+    Parameters
+    ----------
+    item, condition, unit : str
+    published : Published
+    listing, exact, calibrated : float, optional
+        Computed values; infinite is beyond `limit`.
+    judged : Column
+        Which of them the verdict is on.
+    tolerance : float
+        Relative, within which a value holds.
+    measured : bool
+        Whether the thesis measured it. The calibrated column is then judged as well, and equations
+        that fail are refuted.
+    meant : Published, optional
+        What must have been meant, if the print is wrong.
+    as_printed : float, optional
+        What a formula gives as it is printed, where `exact` is what it gives put right.
+    scale : float, optional
+        What deviations are relative to, where the published value is zero.
+    limit : float, optional
+        The last value tried, where a search may end without a result.
+    digits : int
+        Significant digits that are shown.
+    """
+
+    item: str
+    condition: str
+    unit: str
+    published: Published
+    listing: float | None = None
+    exact: float | None = None
+    calibrated: float | None = None
+    judged: Column = Column.EXACT
+    tolerance: float = 0.01
+    measured: bool = False
+    meant: Published | None = None
+    as_printed: float | None = None
+    scale: float | None = None
+    limit: float | None = None
+    digits: int = 4
+
+    @property
+    def verdict(self) -> str:
+        """``holds``, ``off by N %``, ``misprint``, ``fails``, ``refuted`` or ``not checkable``.
+
+        Examples
+        --------
+        >>> Row("v_crit2", "0.279 mm", "rad/s", number(12.5), calibrated=9.75,
+        ...     judged=Column.CALIBRATED, measured=True).verdict
+        'off by 22 %'
+        >>> Row("critical_damping", "7.5 rad/s", "Nm s/rad", number(0.7599), listing=0.07598,
+        ...     judged=Column.LISTING, meant=number(0.07599)).verdict
+        'misprint'
+        """
+        value = {
+            Column.LISTING: self.listing,
+            Column.EXACT: self.exact,
+            Column.CALIBRATED: self.calibrated,
+        }[self.judged]
+        if value is None:
+            return "not checkable"
+        word = self._word(value, self.published)
+        if word == "holds":
+            if self.as_printed is not None and self._word(self.as_printed, self.published) != word:
+                word = "misprint"
+        elif self.meant is not None and self._word(value, self.meant) == "holds":
+            word = "misprint"
+        elif word == "fails" and self.measured and self.judged is not Column.CALIBRATED:
+            word = "refuted"
+        if self.measured and self.judged is not Column.CALIBRATED and self.calibrated is not None:
+            calibrated = self._word(self.calibrated, self.meant or self.published)
+            if calibrated != "holds":
+                word += f"; calibrated {calibrated}"
+        return word
+
+    def _word(self, value: float, published: Published) -> str:
+        gap = published.gap(value, self.scale)
+        if gap <= self.tolerance:
+            return "holds"
+        return f"off by {_percent(gap)} %" if gap <= _OFF_AT_MOST else "fails"
+
+    def cells(self) -> dict[str, str]:
+        """Return the row as texts by column; a value that there is none of is empty."""
+        return {
+            "item": self.item,
+            "condition": self.condition,
+            "unit": self.unit,
+            "published": self.published.text,
+            "listing": self._shown(self.listing),
+            "exact": self._shown(self.exact),
+            "calibrated": self._shown(self.calibrated),
+            "verdict": self.verdict,
+        }
+
+    def _shown(self, value: float | None) -> str:
+        if value is None:
+            return ""
+        if math.isinf(value):
+            return f"> {self.limit:g}"
+        return _short(value, self.digits)
+
+
+def _percent(gap: float) -> str:
+    percent = 100.0 * gap
+    return f"{percent:.1f}" if percent < 9.95 else f"{percent:.0f}"
+
+
+def _short(value: float, digits: int) -> str:
+    """Return a number with so many significant digits, without an exponent where that is short."""
+    if value == 0.0:
+        return "0"
+    order = math.floor(math.log10(abs(value)))
+    if not -5 <= order < 7:
+        return f"{value:.{digits - 1}e}"
+    decimals = max(digits - 1 - order, 0)
+    return f"{round(value, digits - 1 - order):.{decimals}f}"

@@ -1,0 +1,240 @@
+"""Runs of the three models at a condition, reduced to the numbers that the thesis reports.
+
+A slip of the constant-torque model is an event: stick ends. The calibrated contact never sticks
+truly, and chatters within one slip, so its slips are counted as a reader of the torque counts them:
+sudden drops, or else the period of the torque.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.harmonics import analyse_harmonics
+from features.lines import find_lines
+from features.slip_drops import torque_slips
+from features.spectra import autospectrum
+from models.condition import FIXED
+from models.rig_file import load_material_rig
+from sim.critical_damping import with_damping
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.motion import simulate_motion
+from sim.regime import LEAST_OSCILLATION, Regime, friction_regime
+from sim.shaft import ConstantSpeed
+from sim.thesis_listing import STEP, run_listing
+
+if TYPE_CHECKING:
+    from models.rig import Rig
+    from sim.motion import Motion
+    from sim.thesis_listing import ListingRun
+
+__all__ = [
+    "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "listing_peak_speed",
+    "listing_run", "listing_slip_frequency", "listing_stick_share", "mean_torque", "motion",
+    "oscillation", "peak_speed", "repetition_rate", "rig_of", "slip_frequency", "stick_share",
+    "strongest_line", "third_over_second",
+]  # fmt: skip
+
+THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
+"""Materials of the columns `exact` and `calibrated`."""
+
+LONG, SHORT = 2214.0, 3745.0
+"""Support stiffness with beams of 12.3 and 9.2 cm (Table 3.2) [Nm/rad]."""
+
+RATE = 30e3
+"""Of the output [Hz], that of the rig's data acquisition."""
+
+_LINES = (20.0, 8e3)
+"""Where lines of the torque are sought [Hz]."""
+
+_NEAR = 8.0
+"""How far a peak may lie from a harmonic of the mean slip frequency [Hz]."""
+
+_SECONDS = {THESIS: 4.0}
+_OTHER_SECONDS = 1.5
+"""Length of a run, of which the last three quarters are looked at [s]. Slips of the thesis's model
+can be chaotic, so that their mean rate needs many; it is cheap to run."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One operating condition.
+
+    Parameters
+    ----------
+    speed : float
+        [rad/s]
+    interference_mm : float
+    support_stiffness : float
+        [Nm/rad]
+    damping : float, optional
+        c_E of the thesis's models, where it is not that of Table 5.5 [Nm s/rad].
+    """
+
+    speed: float
+    interference_mm: float = 0.279
+    support_stiffness: float = LONG
+    damping: float | None = None
+
+    @property
+    def interference(self) -> float:
+        """Of the fit [m]."""
+        return 1e-3 * self.interference_mm
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the clamp is bolted down."""
+        return self.support_stiffness == FIXED
+
+    def at(self, speed: float) -> Case:
+        """Return the case at another speed."""
+        return replace(self, speed=speed)
+
+    def place(self) -> str:
+        """Interference and support as the table names them.
+
+        Examples
+        --------
+        >>> Case(1.0, 0.381, FIXED).place()
+        '0.381 mm, fixed clamp'
+        """
+        support = "fixed clamp" if self.fixed else f"{self.support_stiffness:g} Nm/rad"
+        damped = "" if self.damping is None else f", c_E {self.damping:g}"
+        return f"{self.interference_mm:g} mm, {support}{damped}"
+
+    def __str__(self) -> str:
+        return f"{self.place()}, {self.speed:g} rad/s"
+
+
+@cache
+def rig_of(material: str) -> Rig:
+    """Return the bench with a bushing of a material."""
+    return load_material_rig(material)
+
+
+@lru_cache(maxsize=4)
+def motion(material: str, case: Case) -> Motion:
+    """Simulate a case from rest; another damping is for the thesis's material alone."""
+    rig = rig_of(material)
+    if case.damping is not None and material == THESIS:
+        rig = with_damping(rig, case.damping)
+    return simulate_motion(
+        rig,
+        ConstantSpeed(case.speed),
+        interference=case.interference,
+        support_stiffness=case.support_stiffness,
+        seconds=_SECONDS.get(material, _OTHER_SECONDS),
+        rate=RATE,
+        effects=activated(rig.effects, EFFECTS),
+    )
+
+
+def _settled(run: Motion) -> Motion:
+    return run.since(run.torque.size // 4)
+
+
+def oscillation(material: str, case: Case) -> float:
+    """Return the standard deviation of the torque over its mean, once the run has settled."""
+    torque = _settled(motion(material, case)).torque
+    return float(torque.std() / abs(torque.mean()))
+
+
+def mean_torque(material: str, case: Case) -> float:
+    """Mean torque [Nm]."""
+    return float(_settled(motion(material, case)).torque.mean())
+
+
+def stick_share(material: str, case: Case) -> float:
+    """Share of the time in which the contact sticks, once the run has settled."""
+    return float(_settled(motion(material, case)).stuck.mean())
+
+
+def peak_speed(material: str, case: Case) -> float:
+    """Largest sliding speed of a run from rest [rad/s]."""
+    return float(motion(material, case).sliding_speed.max())
+
+
+def strongest_line(material: str, case: Case) -> float | None:
+    """Frequency of the strongest line of the torque [Hz]."""
+    if oscillation(material, case) <= LEAST_OSCILLATION:
+        return None
+    torque = _settled(motion(material, case)).torque
+    lines = find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
+    return float(lines.frequency[0]) if lines.frequency.size else None
+
+
+def slip_frequency(material: str, case: Case) -> float | None:
+    """Slips a second [Hz]; none where the contact does not stick."""
+    if friction_regime(motion(material, case)) is not Regime.STICK_SLIP:
+        return None
+    return repetition_rate(material, case)
+
+
+def repetition_rate(material: str, case: Case) -> float | None:
+    """Slips a second, or periods of the torque where nothing slips suddenly [Hz]."""
+    if oscillation(material, case) <= LEAST_OSCILLATION:
+        return None
+    run = _settled(motion(material, case))
+    if rig_of(material).friction.name == "coulomb":
+        return _rate_of_ends(run.stuck, RATE)
+    slips = torque_slips(run.torque, RATE)
+    if math.isfinite(slips.mean_interval):
+        return 1.0 / slips.mean_interval
+    period = analyse_harmonics(run.torque, RATE).fundamental
+    return period if math.isfinite(period) else None
+
+
+def third_over_second(material: str, case: Case) -> float | None:
+    """Amplitude of the third harmonic of the slip frequency over that of the second."""
+    slips = slip_frequency(material, case)
+    if slips is None:
+        return None
+    found = autospectrum(_settled(motion(material, case)).torque, RATE)
+    second, third = (
+        float(found.density[np.abs(found.frequency - k * slips) < _NEAR].max()) for k in (2, 3)
+    )
+    return math.sqrt(third / second)
+
+
+def listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
+    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute."""
+    fit = rig_of(THESIS).fit(case.interference)
+    damping = fit.damping[case.support_stiffness] if case.damping is None else case.damping
+    return run_listing(
+        case.speed,
+        support_stiffness=case.support_stiffness,
+        damping=damping,
+        elastomer_stiffness=fit.elastomer_stiffness,
+        critical_torque=fit.critical_torque,
+        kinetic_torque=fit.kinetic_torque,
+        seconds=seconds,
+    )
+
+
+def listing_slip_frequency(case: Case) -> float | None:
+    """Slips a second of the listing [Hz]."""
+    if case.fixed:
+        return None
+    stuck = listing_run(case).stuck
+    return _rate_of_ends(stuck[stuck.size // 4 :], 1.0 / STEP)
+
+
+def listing_stick_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
+    """Share of the last half of a run in which the listing sticks."""
+    stuck = listing_run(case, seconds).stuck
+    return float(stuck[stuck.size // 2 :].mean())
+
+
+def listing_peak_speed(case: Case) -> float:
+    """Largest sliding speed of a run of the listing [rad/s]."""
+    return float(-listing_run(case).relative_speed.min())
+
+
+def _rate_of_ends(stuck: np.ndarray[tuple[int], np.dtype[np.bool_]], rate: float) -> float | None:
+    ends = np.flatnonzero(stuck[:-1] & ~stuck[1:])
+    return float((ends.size - 1) * rate / (ends[-1] - ends[0])) if ends.size > 1 else None

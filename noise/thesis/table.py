@@ -1,0 +1,69 @@
+"""The whole table: groups of rows in their order."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from noise.thesis import (
+    acquisition,
+    calibrations,
+    critical_velocities,
+    damping,
+    heat,
+    misprints,
+    modes,
+    slip_frequencies,
+    stiffness,
+    torques,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from noise.thesis.row import Row
+
+__all__ = ["GROUPS", "thesis_rows"]
+
+GROUPS: tuple[Callable[[], list[Row]], ...] = (
+    calibrations.potentiometer,
+    calibrations.torque_cell,
+    calibrations.transducers,
+    acquisition.converter,
+    acquisition.lengths,
+    stiffness.shaft,
+    stiffness.beams,
+    stiffness.series,
+    modes.torsional_modes,
+    modes.beam_modes,
+    heat.heating,
+    misprints.misprints,
+    modes.squeal,
+    damping.critical,
+    damping.measured,
+    critical_velocities.simulated,
+    *(partial(critical_velocities.transitions, case) for case in critical_velocities.MEASURED),
+    critical_velocities.contradiction,
+    torques.peaks,
+    torques.first_slip,
+    torques.friction,
+    torques.silicone,
+    torques.creak,
+    slip_frequencies.at_fixed_clamp,
+    *(partial(slip_frequencies.bounded, *where) for where in slip_frequencies.BOUNDED),
+    slip_frequencies.rising,
+    slip_frequencies.harmonics,
+    slip_frequencies.falling_with_interference,
+)
+"""All groups, in the order of the table."""
+
+
+def thesis_rows(groups: Iterable[Callable[[], list[Row]]]) -> list[Row]:
+    """Compute the rows of groups.
+
+    Examples
+    --------
+    >>> [row.verdict for row in thesis_rows([misprints.misprints])][:2]
+    ['misprint', 'misprint']
+    """
+    return [row for group in groups for row in group()]
