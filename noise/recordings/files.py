@@ -250,10 +250,6 @@ def _wav_path(path: Path) -> Path:
 
 def _check_writable(target: Path, recording: Recording) -> None:
     shape, rate = recording.samples.shape, recording.rate
-    if len(shape) != 2 or shape[0] != len(recording.channels) or shape[0] == 0:
-        raise ParameterError(
-            f"{target}: samples have shape {shape}, expected ({len(recording.channels)}, n_samples)"
-        )
     if shape[1] < MIN_SAMPLES:
         raise ParameterError(f"{target}: {shape[1]} samples, expected at least {MIN_SAMPLES}")
     if not (1 <= rate < 1 << 31 and float(rate).is_integer()):
