@@ -215,7 +215,6 @@ def test_what_is_written_is_read_back(names, condition, position):
 @pytest.mark.parametrize(
     ("channels", "condition"),
     [
-        ((Channel("torque"), Channel("torque")), Condition()),
         ((Channel("torque"),), Condition(speed=math.nan)),
         ((Channel("torque"),), Condition(speed=math.inf)),
         ((Channel("torque"),), Condition(interference=-1e-4)),
