@@ -33,7 +33,17 @@ if TYPE_CHECKING:
 
     from models.recording import Channel, Recording
 
-__all__ = ["BITS", "audible", "common_full_scale", "least_full_scale", "write_audio"]
+__all__ = [
+    "BITS",
+    "QUIETEST_FULL_SCALE",
+    "audible",
+    "common_full_scale",
+    "least_full_scale",
+    "write_audio",
+]
+
+QUIETEST_FULL_SCALE = 0.1
+"""By default no calibrated sound is amplified beyond this full scale [Pa]: silence stays silent."""
 
 BITS = (16, 24, 32)
 """Sizes of a sample: integer, integer, floating point."""

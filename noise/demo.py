@@ -13,7 +13,7 @@ import numpy as np
 
 from features.registry import recording_feature_names, recording_features
 from models.rig_file import load_material_rig
-from noise.audio import audible, common_full_scale, write_audio
+from noise.audio import QUIETEST_FULL_SCALE, audible, common_full_scale, write_audio
 from noise.classifier import load_classifier
 from noise.labels.segments import file_label, label_recording
 from noise.labels.table import COLUMNS, label_rows
@@ -43,19 +43,44 @@ class Case:
 
 
 CASES = (
-    Case("creak", "fluorocarbon", 1.0, 0.381e-3, 2214.0, "the condition of Figure 5.21"),
-    Case("squawk", "fluorocarbon", 5.0, 0.279e-3, 2214.0, "the condition of Figure 5.22"),
-    Case("squeal", "fluorocarbon", 10.0, 0.279e-3, 3745.0, "the condition of Figure 5.24"),
-    Case("none", "PDMS", 5.0, 0.381e-3, 2214.0, "silent at every speed (5.1.2)"),
+    Case(
+        "creak",
+        "fluorocarbon",
+        1.0,
+        0.381e-3,
+        2214.0,
+        "the condition of Figure 5.21",
+    ),
+    Case(
+        "squawk",
+        "fluorocarbon",
+        5.0,
+        0.279e-3,
+        2214.0,
+        "the condition of Figure 5.22",
+    ),
+    Case(
+        "squeal",
+        "fluorocarbon",
+        10.0,
+        0.279e-3,
+        3745.0,
+        "the condition of Figure 5.24",
+    ),
+    Case(
+        "none",
+        "PDMS",
+        5.0,
+        0.381e-3,
+        2214.0,
+        "silent at every speed (Section 5.1.2)",
+    ),
 )
 
 _SECONDS = 2.0
 
 _RATE = 48_000
 """Of the sounds for listening [Hz]."""
-
-_QUIETEST_FULL_SCALE = 0.1
-"""No sound is amplified beyond this full scale [Pa], so that silence stays silent."""
 
 
 def run_demo(out: Path, *, seed: int = 0) -> None:
@@ -110,13 +135,13 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
 
 def _entry(case: Case, recording: Recording, segments: list[Segment], audio: Path) -> ReportEntry:
     sound = audible(recording, _RATE)
-    full_scale = max(_QUIETEST_FULL_SCALE, common_full_scale([sound]))
+    full_scale = max(QUIETEST_FULL_SCALE, common_full_scale([sound]))
     write_audio(audio, sound, _RATE, full_scale=full_scale, recording=recording)
     return ReportEntry(
         title=case.name.capitalize() if case.name != "none" else "Silence",
         recording=recording,
         segment=file_label(segments),
         audio=audio,
-        note=f"Simulated: {case.source}.",
+        note=f"Simulated: {case.source} of De Togni's thesis.",
         full_scale=full_scale,
     )

@@ -87,7 +87,7 @@ def test_the_shaft_turns_either_way_on_a_ramp_or_to_and_fro(simulated, given, sh
         "0,1\n1,3\n",
         "time_s,speed_rad_s\n0,1\n1,3\n",
         "\ufeffspeed_rad_s, temperature_C, time_s\n1,20,0\n\n3,21,1\n",
-        "t,omega\r\n0,1\r\n1,3\r\n",
+        "time_s,speed_rad_s\r\n0,1\r\n1,3\r\n",
     ],
 )
 def test_a_log_gives_the_speed_with_or_without_header(simulated, tmp_path, text):
@@ -112,7 +112,8 @@ def test_a_log_that_does_not_fit_the_run_is_noted(simulated, tmp_path, capsys, l
     ("log", "said"),
     [
         (b"0,1\n1,x\n", "line 2 is '1,x'"),
-        (b"0;1\n1;2\n", "line 2 is '1;2'"),
+        (b"0;1\n1;2\n", "has the columns 0;1"),
+        (b"time_s,speed_rpm\n0,1\n1,2\n", "expected time_s and speed_rad_s"),
         (b"0,1\n0,2\n", "time does not rise"),
         (b"0,1\n1,nan\n", "no finite number"),
         (b"", "two or more samples"),

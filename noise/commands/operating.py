@@ -211,8 +211,11 @@ def _read_log(path: Path) -> tuple[list[float], list[float]]:
                 continue
             if header_possible and not any(map(_is_number, cells)):
                 header_possible = False
-                if "time_s" in cells and "speed_rad_s" in cells:
-                    columns = (cells.index("time_s"), cells.index("speed_rad_s"))
+                if not {"time_s", "speed_rad_s"} <= set(cells):
+                    raise ParameterError(
+                        f"has the columns {', '.join(cells)}, expected time_s and speed_rad_s"
+                    )
+                columns = (cells.index("time_s"), cells.index("speed_rad_s"))
                 continue
             header_possible = False
             try:

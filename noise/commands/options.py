@@ -146,7 +146,8 @@ def add_condition(parser: ArgumentParser) -> None:
         "--temperature",
         type=number(least=_ABSOLUTE_ZERO),
         metavar="C",
-        help=f"ambient temperature in degree Celsius (default: {DEFAULT_TEMPERATURE:g})",
+        help="ambient temperature in degree Celsius; recorded, but the shipped materials do not "
+        f"depend on it (default: {DEFAULT_TEMPERATURE:g})",
     )
     group.add_argument(
         "--seconds",

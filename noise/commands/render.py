@@ -72,7 +72,13 @@ def run(options: Namespace) -> int:
         out = out.with_name(out.name + ".wav")
     check_target(out)
     recording = _recording(options, out)
-    from noise.audio import audible, common_full_scale, least_full_scale, write_audio
+    from noise.audio import (
+        QUIETEST_FULL_SCALE,
+        audible,
+        common_full_scale,
+        least_full_scale,
+        write_audio,
+    )
 
     full_scale = options.pascal_per_full_scale
     if full_scale is not None and not recording.calibrated:
@@ -83,6 +89,8 @@ def run(options: Namespace) -> int:
     sound = audible(recording, options.rate)
     if full_scale is None:
         full_scale = common_full_scale([sound])
+        if recording.calibrated:  # so that silence is not made loud
+            full_scale = max(full_scale, QUIETEST_FULL_SCALE)
     elif full_scale < (least := least_full_scale(sound, options.bits)):
         raise ParameterError(
             f"--pascal-per-full-scale {full_scale:g} would clip; the smallest that does not is "

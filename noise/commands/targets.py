@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+from tempfile import TemporaryFile
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -32,5 +32,8 @@ def check_target(path: Path) -> None:
         raise ParameterError(f"--out {path}: cannot be written ({error.strerror})") from None
     if not above.is_dir():
         raise ParameterError(f"--out {path}: {above} is a file, not a folder")
-    if not os.access(above, os.W_OK | os.X_OK):
-        raise ParameterError(f"--out {path}: the folder {above} may not be written to")
+    try:
+        with TemporaryFile(dir=above):  # what counts is not the permission but whether it works
+            pass
+    except OSError:
+        raise ParameterError(f"--out {path}: the folder {above} may not be written to") from None

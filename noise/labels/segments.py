@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -146,6 +147,8 @@ def _label(recording: Recording, classifier: Classifier, channel: str) -> list[S
     windows = [_cut(recording, start, start + length) for start in starts]
     probabilities = _window_probabilities(windows, classifier)
     cells, cell_probabilities = _on_cells(starts, length, recording, probabilities)
+    silent = [_is_silent(_cut(recording, *edges)) for edges in pairwise(cells)]
+    cell_probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
     labels = cell_probabilities.argmax(axis=1)
     edges = [0, *(np.flatnonzero(np.diff(labels)) + 1), len(labels)]
     return [
@@ -230,19 +233,20 @@ def _segment(
 
 
 def _levels(recording: Recording) -> tuple[float | None, float | None]:
-    """Level of the first pressure channel, else of the first: dB re 20 uPa and dBFS."""
+    """Level of the first pressure channel: dB re 20 uPa and dBFS."""
     row = recording.first("pressure")
-    index = row or 0
-    signal = recording.samples[index]
+    if row is None:
+        return None, None
+    signal = recording.samples[row]
     signal = signal - signal.mean()
     peak = float(np.abs(signal).max())
     if not peak > 0.0:
         return None, None
     # Scaled by the peak, whose square may overflow.
     rms_db = 20.0 * float(np.log10(peak) + np.log10(np.sqrt(np.mean((signal / peak) ** 2))))
-    full_scale = recording.channels[index].full_scale if recording.calibrated else 1.0
+    full_scale = recording.channels[row].full_scale if recording.calibrated else 1.0
     level_dbfs = rms_db - 20.0 * float(np.log10(full_scale))
-    if not recording.calibrated or row is None:
+    if not recording.calibrated:
         return None, level_dbfs
     return rms_db - 20.0 * float(np.log10(REFERENCE_PRESSURE)), level_dbfs
 
