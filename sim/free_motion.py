@@ -1,4 +1,5 @@
-# mypy: allow-untyped-defs, allow-untyped-calls, allow-untyped-decorators
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
+# mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001, ANN202
 """The lumped model between events, where it is linear: as a Taylor series, and as one matrix.
 
@@ -70,7 +71,7 @@ def parts_of_a_step(system: NDArray[np.float64], step: float) -> int:
     >>> parts_of_a_step(np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0425, 0.0425]), 1e-3)
     15
     """
-    parts = count_parts(np.asarray(system, dtype=np.float64), step)
+    parts: int = count_parts(np.asarray(system, dtype=np.float64), step)
     if parts == 0:
         raise ParameterError(
             f"a step of {step:g} s is too long for inertia {system[0]:g} and {system[1]:g} kg m2, "
@@ -90,7 +91,7 @@ def _fastest_rate(system):
 
 
 @njit(cache=True, error_model="numpy")
-def count_parts(system, step):
+def count_parts(system, step) -> int:
     """Parts of a step; 0 where there is no number of them that would do."""
     parts = np.ceil(_fastest_rate(system) * step / _LONGEST_PART)
     if not (step > 0.0 and system[0] > 0.0 and system[1] > 0.0 and parts <= _MOST_PARTS):
@@ -99,7 +100,7 @@ def count_parts(system, step):
 
 
 @njit(cache=True, error_model="numpy")
-def extended(system):
+def extended(system) -> NDArray[np.float64]:
     """Append the inertias' reciprocals, none for a fixed clamp, and the longest part's own."""
     s = np.empty(9)
     s[:6] = system
@@ -110,13 +111,13 @@ def extended(system):
 
 
 @njit(cache=True, error_model="numpy")
-def order_for(share):
+def order_for(share) -> int:
     """Order that the series needs over this share of the longest part: it loses below 1e-17."""
     return min(ORDER, 9 + int(np.ceil(8.0 * share)))
 
 
 @njit(cache=True, error_model="numpy")
-def fill_series(c, order, x0, x1, x2, x3, torque, acceleration, stuck, s):
+def fill_series(c, order, x0, x1, x2, x3, torque, acceleration, stuck, s) -> None:
     """Fill `c[k]` with the coefficients of theta1, theta1', theta2, theta2' and T_E."""
     k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[2], s[3], s[4], s[5], s[6], s[7]
     drive = acceleration if stuck else torque * j_e_inverse
@@ -137,7 +138,7 @@ def fill_series(c, order, x0, x1, x2, x3, torque, acceleration, stuck, s):
 
 
 @njit(cache=True, error_model="numpy")
-def fill_matrices(matrices, c, h, s):
+def fill_matrices(matrices, c, h, s) -> None:
     """Fill the matrices of a step of length `h`, from the series of unit states."""
     for column in range(5):
         one = np.zeros(5)

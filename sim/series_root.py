@@ -1,4 +1,5 @@
-# mypy: allow-untyped-defs, allow-untyped-calls, allow-untyped-decorators
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
+# mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001, ANN202
 """Where a power series first comes down to zero: how the ends of stick and slip are found.
 
@@ -17,14 +18,14 @@ _ROUNDING = 4.0e-16
 
 
 @njit(cache=True, error_model="numpy")
-def turns_within(start, end, slope, end_slope, length):
+def turns_within(start, end, slope, end_slope, length) -> bool:
     """Whether the cubic through these values and slopes turns, by its slope at ends and middle."""
     middle = 1.5 * (end - start) / length - 0.25 * (slope + end_slope)
     return (slope < 0.0) != (end_slope < 0.0) or (slope < 0.0) != (middle < 0.0)
 
 
 @njit(cache=True, error_model="numpy")
-def first_crossing(p, order, end):
+def first_crossing(p, order, end) -> float:
     """First t in (0, end] where sum(p[k] t^k) comes from above zero to zero or below; else -1."""
     value, slope = _value_and_slope(p, order, end)
     if turns_within(p[0], value, p[1], slope, end):

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -69,8 +69,8 @@ class Sweep:
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> runs = Sweep(rig, [1.0, 5.0, 12.0], support_stiffness=[[2214.0], [3745.0]], settling=1.0)
     >>> runs.features()["slip_frequency"].round()
-    array([[149., 251.,  nan],
-           [150., 318.,  nan]])
+    array([[152., 640.,  nan],
+           [150., 613.,  nan]])
     """
 
     rig: Rig | Sequence[Rig]
@@ -110,7 +110,9 @@ class Sweep:
                 features[runs] = self._plain_features(rig, *where)
                 rest[runs] = False
         positions = np.flatnonzero(rest).tolist()
-        for i, found in zip(positions, self._each(columns, positions, motion_features), strict=True):
+        for i, found in zip(
+            positions, self._each(columns, positions, motion_features), strict=True
+        ):
             features[i] = found
         return {name: features[:, i].reshape(columns[0].shape) for i, name in enumerate(FEATURES)}
 
@@ -150,7 +152,7 @@ class Sweep:
         rows = self._each(columns, range(columns[0].size), decimated)
         return np.array(rows, dtype=np.float32).reshape(*columns[0].shape, -1)
 
-    def _columns(self) -> tuple[NDArray[np.object_], ...]:
+    def _columns(self) -> tuple[NDArray[Any], ...]:
         """Rig, speed, interference and support stiffness of all runs, as arrays of one shape."""
         if not (self.seconds > 0.0 and self.rate > 0.0 and self.settling >= 0.0):
             raise ParameterError(
@@ -200,16 +202,14 @@ class Sweep:
 
     def _each(
         self,
-        columns: tuple[NDArray[np.object_], ...],
+        columns: tuple[NDArray[Any], ...],
         positions: Iterable[int],
         keep: Callable[[Motion], NDArray[np.floating]],
     ) -> list[NDArray[np.floating]]:
         n_settling, n_samples = self._samples()
 
         def run(position: int) -> NDArray[np.floating]:
-            rig, speed, interference, support_stiffness = (
-                column.flat[position] for column in columns
-            )
+            rig, speed, interference, support_stiffness = (c.flat[position] for c in columns)
             motion = simulate_motion(
                 rig,
                 ConstantSpeed(speed) if isinstance(speed, float) else speed,
@@ -229,13 +229,15 @@ class Sweep:
         return found
 
 
-def _objects(values: object) -> NDArray[np.object_]:
+def _objects(values: object) -> NDArray[Any]:
     """Array of numbers, rigs or shaft motions, of which there may be one or a sequence."""
     if isinstance(values, Rig) or hasattr(values, "speed"):
         one = np.empty((), dtype=object)
         one[()] = values
         return one
-    if isinstance(values, Sequence) and any(isinstance(v, Rig) or hasattr(v, "speed") for v in values):
+    if isinstance(values, Sequence) and any(
+        isinstance(v, Rig) or hasattr(v, "speed") for v in values
+    ):
         several = np.empty(len(values), dtype=object)
         several[:] = values
         return several

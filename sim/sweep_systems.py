@@ -97,4 +97,4 @@ def _damping(
 ) -> NDArray[np.float64]:
     given = sorted((1.0 / stiffness, damping) for stiffness, damping in by_support.items())
     x, y = np.array(given).T
-    return np.interp(compliance, x, y)
+    return np.asarray(np.interp(compliance, x, y))

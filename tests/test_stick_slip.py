@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.integrate import solve_ivp
 
+from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from sim.bushing import LumpedBushing
 from sim.motion import simulate_motion
@@ -182,9 +183,9 @@ def test_the_contact_sticks_around_each_reversal_of_an_oscillating_shaft():
     assert run.torque.min() < -8.0
 
 
-def test_steps_too_long_for_the_series_are_refused():
-    with pytest.raises(ValueError, match="too long"):
-        solve_stick_slip(packed(), 10.7, 8.0, constant(1.0, 1.0, 1e-3), 1e-3)
+def test_a_step_beyond_any_cutting_up_is_refused():
+    with pytest.raises(ParameterError, match="too long"):
+        solve_stick_slip(packed(), 10.7, 8.0, constant(1.0, 100.0, 10.0), 10.0)
 
 
 def test_steady_sliding_holds_the_kinetic_torque():

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["write_float_wav"]
+__all__ = ["float_wav_header", "write_float_wav"]
 
 _IEEE_FLOAT = 3
 _BYTES = 4
@@ -54,6 +54,26 @@ def write_float_wav(path: Path, samples: NDArray[np.float64], rate: int) -> None
     (b'RIFF', 122)
     """
     n_channels, n_samples = samples.shape
+    header = float_wav_header(n_channels, n_samples, rate)
+    with path.open("wb") as file:
+        file.write(header)
+        for start in range(0, n_samples, _BLOCK):
+            file.write(samples[:, start : start + _BLOCK].T.astype("<f4").tobytes())
+
+
+def float_wav_header(n_channels: int, n_samples: int, rate: int) -> bytes:
+    """Header of a WAV file; the samples follow it, interleaved, as little-endian 32-bit floats.
+
+    Raises
+    ------
+    ParameterError
+        The samples are more than a WAV file can hold, or the header's numbers do not fit.
+
+    Examples
+    --------
+    >>> len(float_wav_header(4, 3600 * 30000, 30000))
+    58
+    """
     frame = n_channels * _BYTES
     size = n_samples * frame
     if max(size + _HEADER, rate * frame) >= 1 << 32 or frame >= 1 << 16:
@@ -68,7 +88,4 @@ def write_float_wav(path: Path, samples: NDArray[np.float64], rate: int) -> None
     )
     header += struct.pack("<4sII", b"fact", 4, n_samples)
     header += struct.pack("<4sI", b"data", size)
-    with path.open("wb") as file:
-        file.write(header)
-        for start in range(0, n_samples, _BLOCK):
-            file.write(samples[:, start : start + _BLOCK].T.astype("<f4").tobytes())
+    return header

@@ -1,0 +1,111 @@
+"""Linear filters that go on from block to block: convolution by overlap-add, and decimation.
+
+Both carry what the next block needs, so that the blocks joined are what one call over the whole
+signal gives, to rounding.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+from scipy.signal import firwin, upfirdn
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+__all__ = ["Convolution", "Decimation"]
+
+_HALF_LENGTH = 10
+"""Of the anti-alias filter, in samples kept; that of `scipy.signal.resample_poly`."""
+
+
+class Convolution:
+    """Causal convolution of one signal with several impulse responses.
+
+    Parameters
+    ----------
+    responses : sequence of ndarray, shape (m,)
+
+    Examples
+    --------
+    >>> echo = Convolution([np.array([3.0, 1.0])])
+    >>> [echo(np.array(block))[0].round(9).tolist() for block in ([1.0, 0.0, 2.0], [0.0, 0.0])]
+    [[3.0, 1.0, 6.0], [2.0, 0.0]]
+    """
+
+    def __init__(self, responses: Sequence[NDArray[np.float64]]) -> None:
+        self._responses = [np.asarray(response) for response in responses]
+        self._tails = [np.zeros(response.size - 1) for response in self._responses]
+        self._spectra: dict[int, list[NDArray[np.complex128]]] = {}
+
+    def __call__(self, block: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        """Return the next samples of each output, as many as `block` has."""
+        n = block.size
+        size = next_fast_len(n + max(tail.size for tail in self._tails), real=True)
+        if size not in self._spectra:
+            self._spectra = {size: [rfft(response, size) for response in self._responses]}
+        spectrum = rfft(block, size)
+        outputs = []
+        for i, response in enumerate(self._spectra[size]):
+            tail = self._tails[i]
+            full = irfft(spectrum * response, size)[: n + tail.size]
+            full[: tail.size] += tail
+            self._tails[i] = full[n:]
+            outputs.append(full[:n])
+        return outputs
+
+
+class Decimation:
+    """Anti-alias filter and decimation as `sim.acquisition.sample` does them.
+
+    What it returns lags behind what it is given by half the filter's length. Before its first
+    sample the signal is taken to go on straight, by its first two.
+
+    Parameters
+    ----------
+    factor : int
+        Every so many samples one is kept.
+    skip : int
+        Samples at the start that only the filter is to see.
+
+    Examples
+    --------
+    >>> third = Decimation(3)
+    >>> [third(np.full(60, 2.0)).size for _ in range(3)]
+    [10, 20, 20]
+    """
+
+    def __init__(self, factor: int, skip: int = 0) -> None:
+        self._factor, self._skip = factor, skip
+        self._half = _HALF_LENGTH * factor if factor > 1 else 0
+        self._filter = np.ones(1)
+        if factor > 1:
+            self._filter = firwin(2 * self._half + 1, 1.0 / factor, window=("kaiser", 5.0))
+        self._held: NDArray[np.float64] | None = None
+
+    @property
+    def lookahead(self) -> int:
+        """Samples that it must be given after the last that is to be kept."""
+        return self._half
+
+    def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return those of the next samples that are known by now."""
+        if self._held is None:
+            before = np.arange(-self._half, 0)
+            self._held = block[0] + before * (block[1:2] - block[:1])
+        held = np.concatenate([self._held, block])
+        dropped = min(self._skip, held.size)
+        held, self._skip = held[dropped:], self._skip - dropped
+        count = (held.size - 2 * self._half - 1) // self._factor + 1
+        if count <= 0 or self._skip > 0:
+            self._held = held
+            return np.empty(0)
+        used = held[: (count - 1) * self._factor + 2 * self._half + 1]
+        kept = upfirdn(self._filter, used, 1, self._factor)
+        first = 2 * self._half // self._factor
+        self._held = held[count * self._factor :]
+        return np.asarray(kept[first : first + count])
