@@ -246,3 +246,13 @@ def test_a_target_below_a_file_is_refused_before_the_work(simulated, capsys, tmp
     line = refusal(capsys, "simulate", "--speed", "1", "--out", f"{tmp_path}/file.txt/{inside}")
     assert "--out" in line
     assert simulated == []
+
+
+def test_a_long_run_is_written_in_blocks(tmp_path, monkeypatch):
+    from noise.commands import operating
+
+    monkeypatch.setattr(operating, "_LONG", 0.1)
+    monkeypatch.setattr("sim.run.simulate", None)  # held in memory it would be
+    run = ["simulate", "--speed", "5", "--seconds", "0.3", "--out", str(tmp_path / "run")]
+    assert main(run) == 0
+    assert read_recording(tmp_path / "run.wav").duration == 0.3

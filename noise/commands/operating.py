@@ -6,7 +6,7 @@ import csv
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.commands import options as opt
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-__all__ = ["CONDITION_OPTIONS", "given_options", "simulated_run"]
+__all__ = ["CONDITION_OPTIONS", "given_options", "is_long", "run_arguments", "simulated_run"]
 
 CONDITION_OPTIONS = (
     "speed",
@@ -51,6 +51,33 @@ def given_options(options: Namespace) -> list[str]:
 
 def simulated_run(options: Namespace, rate: float) -> Run:
     """Simulate the run that the options of a condition describe.
+
+    Parameters and errors are those of `run_arguments`.
+    """
+    from sim.run import simulate
+
+    return simulate(**run_arguments(options, rate))
+
+
+def is_long(arguments: Mapping[str, Any]) -> bool:
+    """Whether a run is better written in blocks than held in memory."""
+    from sim.effects.effect import activated
+    from sim.motion_blocks import whole_run_effects
+
+    effects = activated(arguments["rig"].effects, arguments["library"])
+    seconds = arguments["seconds"]
+    return bool(seconds > _MOST_SECONDS or (seconds > _LONG and not whole_run_effects(effects)))
+
+
+_LONG = 60.0
+"""Longer runs are written in blocks, unless an effect needs them whole [s]."""
+
+_MOST_SECONDS = 600.0
+"""What can be held in memory at all."""
+
+
+def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:
+    """Arguments of `sim.run.simulate` for the run that the options of a condition describe.
 
     Parameters
     ----------
@@ -92,19 +119,18 @@ def simulated_run(options: Namespace, rate: float) -> Run:
     import numpy as np
 
     from sim.acquisition import Acquisition
-    from sim.run import simulate
 
-    return simulate(
-        rig,
-        shaft,
-        interference=interference_mm / 1e3,
-        support_stiffness=stiffness,
-        temperature=_or(options.temperature, opt.DEFAULT_TEMPERATURE),
-        seconds=seconds,
-        acquisition=Acquisition(rate=rate, converter=bool(options.converter)),
-        library=library,
-        rng=np.random.default_rng(options.seed),
-    )
+    return {
+        "rig": rig,
+        "shaft": shaft,
+        "interference": interference_mm / 1e3,
+        "support_stiffness": stiffness,
+        "temperature": _or(options.temperature, opt.DEFAULT_TEMPERATURE),
+        "seconds": seconds,
+        "acquisition": Acquisition(rate=rate, converter=bool(options.converter)),
+        "library": library,
+        "rng": np.random.default_rng(options.seed),
+    }
 
 
 _LEAST_SAMPLES = 16

@@ -151,7 +151,7 @@ def add_condition(parser: ArgumentParser) -> None:
     )
     group.add_argument(
         "--seconds",
-        type=number(above=0.0, most=600.0),
+        type=number(above=0.0, most=20000.0),
         metavar="S",
         help=f"length of the recording in s (default: {DEFAULT_SECONDS:g})",
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.commands import options as opt
-from noise.commands.operating import simulated_run
+from noise.commands.operating import is_long, run_arguments
 from noise.commands.targets import check_target
 from sim.effects import EFFECTS
 
@@ -56,13 +56,21 @@ def run(options: Namespace) -> int:
     """Simulate; write the recording, or print its summary."""
     if options.out is not None:
         check_target(options.out)
-    recording = simulated_run(options, options.rate).recording
-    if options.out is None:
-        print(json.dumps(_summary(recording)))
-        return 0
-    from noise.recordings import write_recording
+    arguments = run_arguments(options, options.rate)
+    if options.out is not None and is_long(arguments):
+        from noise.long_run import simulate_to_file
 
-    path = write_recording(options.out, recording)
+        path = simulate_to_file(options.out, **arguments)
+    else:
+        from sim.run import simulate
+
+        recording = simulate(**arguments).recording
+        if options.out is None:
+            print(json.dumps(_summary(recording)))
+            return 0
+        from noise.recordings import write_recording
+
+        path = write_recording(options.out, recording)
     print(path)
     print(path.with_suffix(".json"))
     return 0
