@@ -55,7 +55,6 @@ N_MOTION = 10
 _TIME_TOLERANCE = 1e-14
 """To which the ends of stick and slip are found [s]."""
 
-
 _HOOK = types.FunctionType(HOOK_SIGNATURE)
 _LAW = types.FunctionType(LAW_SIGNATURE)
 _VECTOR = float64[::1]
@@ -67,9 +66,7 @@ _MATRIX = float64[:, ::1]
         _VECTOR, _VECTOR, _LAW, boolean, _VECTOR, _HOOK, _HOOK, _HOOK, _HOOK, int64, _MATRIX,
         int64[::1], _VECTOR, float64, int64, _VECTOR, _VECTOR, _VECTOR, _MATRIX, int64[::1],
     ),
-    cache=True,
-    error_model="numpy",
-    nogil=True,
+    cache=True, error_model="numpy", nogil=True,
 )  # fmt: skip
 def run_contact(
     s, torques, law, has_law, coefficients, h0, h1, h2, h3, n_hooks, values, offsets,
@@ -82,11 +79,9 @@ def run_contact(
     j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
     t_crit, t_kin = torques[0], torques[1]
     m = inner.size
-    trial_inner = np.zeros(m)
-    inner_rates = np.zeros(m)
+    trial_inner, inner_rates = np.zeros(m), np.zeros(m)
     inner_start = np.zeros(m)  # rates at the start of a step
-    inner_sum = np.zeros(m)
-    inner_beyond = np.zeros(m)
+    inner_sum, inner_beyond = np.zeros(m), np.zeros(m)
     o0, o1, o2, o3, o4 = offsets[0], offsets[1], offsets[2], offsets[3], offsets[4]
     values0, values1, values2, values3 = values[0], values[1], values[2], values[3]
     inner0, inner1 = trial_inner[o0:o1], trial_inner[o1:o2]
@@ -99,10 +94,8 @@ def run_contact(
     h = step / substeps
     last_stage = 3 if has_law else 4
     x0, x1, x2, x3, x4, x5 = motion[0], motion[1], motion[2], motion[3], motion[4], motion[5]
-    mode = int(motion[MODE])
-    stick_start = motion[STICK_START]
-    angle = motion[ANGLE]
-    first = int(motion[SAMPLE])
+    mode, first = int(motion[MODE]), int(motion[SAMPLE])
+    stick_start, angle = motion[STICK_START], motion[ANGLE]
     acceleration = 0.0
     started = False  # whether the rates at the start of the step are known already
     q0, q1, q2, q3, q4, q5, friction, torque, holding, critical = (

@@ -37,7 +37,16 @@ if TYPE_CHECKING:
     from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
-__all__ = ["motion_blocks", "refuse_whole_run_effects"]
+__all__ = ["motion_blocks", "refuse_whole_run_effects", "whole_run_effects"]
+
+
+def whole_run_effects(effects: Sequence[ActiveEffect]) -> list[str]:
+    """Names of the effects that need the whole run at once: those of drive and sensors."""
+    return [
+        active.effect.name
+        for active in effects
+        if active.effect.drive is not None or active.effect.sensors is not None
+    ]
 
 
 def refuse_whole_run_effects(effects: Sequence[ActiveEffect]) -> None:
@@ -48,11 +57,7 @@ def refuse_whole_run_effects(effects: Sequence[ActiveEffect]) -> None:
     ParameterError
         Naming them.
     """
-    names = [
-        active.effect.name
-        for active in effects
-        if active.effect.drive is not None or active.effect.sensors is not None
-    ]
+    names = whole_run_effects(effects)
     if names:
         raise ParameterError(
             f"effect {', '.join(names)}: acts on a run as a whole, so it cannot act on one that "

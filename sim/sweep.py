@@ -192,7 +192,7 @@ class Sweep:
         parts = np.array([parts_of_a_step(system, step) for system in systems[:, :6]])
         features = np.empty((speed.size, len(FEATURES)))
         chunks = (slice(i, i + _CHUNK) for i in range(0, speed.size, _CHUNK))
-        Parallel(n_jobs=self.workers, prefer="threads")(
+        Parallel(n_jobs=self.workers, prefer="threads", batch_size=1)(
             delayed(plain_features)(
                 systems[runs], speed[runs], step, parts[runs], *self._samples(), features[runs]
             )
