@@ -127,7 +127,8 @@ def test_stick_slip_is_described_by_its_rate_drop_and_slope(frequency, drop, kin
     assert found.mean_drop == pytest.approx(drop, rel=0.1)
     assert found.drop_variation < 0.05
     assert found.stick_slope == pytest.approx(drop * frequency / 0.9, rel=0.02)
-    assert found.stick_fraction == pytest.approx(0.9, abs=0.05)
+    # The torque is smoothed to 2 kHz, which rounds up to a quarter of a millisecond at each slip.
+    assert found.stick_fraction == pytest.approx(0.9, abs=0.02 + 0.25e-3 * frequency)
     assert found.stick_curvature == pytest.approx(1.0, abs=0.03)
     assert found.asymmetry < -1.0
 
