@@ -23,7 +23,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import Motion
 from sim.motion_blocks import motion_blocks, refuse_whole_run_effects
-from sim.run import _LEAST_SOUND_RATE, DEFAULT_SETTLING, _channels, _check
+from sim.run import _LEAST_SOUND_RATE, _channels, _check, motion_and_settling
 from sim.shaft import ConstantSpeed
 from sim.streams import Convolution, Decimation
 
@@ -111,9 +111,7 @@ def simulate_blocks(
     """
     acquisition = acquisition or Acquisition()
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
-    shaft = ConstantSpeed(float(shaft)) if isinstance(shaft, (int, float)) else shaft
-    if settling is None:
-        settling = DEFAULT_SETTLING if isinstance(shaft, ConstantSpeed) else 0.0
+    shaft, settling = motion_and_settling(shaft, settling)
     _check(min(seconds, 1.0), settling, acquisition.rate, interference, temperature)
     if not 0.0 < block_seconds < math.inf or not seconds < math.inf:
         raise ParameterError(

@@ -121,13 +121,7 @@ def simulate(
     acquisition = acquisition or Acquisition()
     # Two streams, so that an effect that scatters leaves the sensors' noise as it is.
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
-    if isinstance(shaft, Real):
-        shaft = ConstantSpeed(float(shaft))
-    if not isinstance(shaft, ShaftMotion):
-        raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
-    constant = isinstance(shaft, ConstantSpeed)
-    if settling is None:
-        settling = DEFAULT_SETTLING if constant else 0.0
+    shaft, settling = motion_and_settling(shaft, settling)
     _check(seconds, settling, acquisition.rate, interference, temperature)
 
     decimation = math.ceil(_LEAST_SOUND_RATE / acquisition.rate)
@@ -183,6 +177,30 @@ def simulate(
         pressure=pressure[kept],
         pulse_pressure=pulse_pressure[kept],
     )
+
+
+def motion_and_settling(
+    shaft: ShaftMotion | float, settling: float | None
+) -> tuple[ShaftMotion, float]:
+    """Return the shaft's motion, a number being a constant speed, and how long it settles [s].
+
+    Raises
+    ------
+    ParameterError
+        If the shaft is neither a number nor a motion.
+
+    Examples
+    --------
+    >>> motion_and_settling(5, None)
+    (ConstantSpeed(value=5.0), 0.5)
+    """
+    if isinstance(shaft, Real):
+        shaft = ConstantSpeed(float(shaft))
+    if not isinstance(shaft, ShaftMotion):
+        raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
+    if settling is None:
+        settling = DEFAULT_SETTLING if isinstance(shaft, ConstantSpeed) else 0.0
+    return shaft, settling
 
 
 def _channels(rig: Rig) -> tuple[Channel, ...]:
