@@ -16,6 +16,12 @@ from .harmonics import (
     Harmonics as Harmonics,
     analyse_harmonics as analyse_harmonics,
 )
+from .levels import (
+    SoundLevels as SoundLevels,
+    a_weighted as a_weighted,
+    fast_levels as fast_levels,
+    sound_levels as sound_levels,
+)
 from .lines import (
     Lines as Lines,
     find_lines as find_lines,
@@ -39,6 +45,10 @@ from .slip_drops import (
 from .slip_pulses import (
     Pulses as Pulses,
     acoustic_slips as acoustic_slips,
+)
+from .sound_quality import (
+    SoundQuality as SoundQuality,
+    sound_quality_of as sound_quality_of,
 )
 from .spectra import (
     SpectralShape as SpectralShape,

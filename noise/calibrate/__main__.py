@@ -28,6 +28,7 @@ from noise.calibrate.unknowns import rig_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from noise.calibrate.cells import Cell
     from noise.calibrate.search import Found
 
 
@@ -74,7 +75,7 @@ def _run(options: argparse.Namespace) -> None:
     print(speeds_page("A hint to the search, at 0.178 mm", hints))
     print(noises_page(rig))
     if options.leave_out:
-        predicted = {}
+        predicted: dict[Cell, float] = {}
         for cell in CELLS:
             rest = tuple(other for other in CELLS if other != cell)
             found = search(

@@ -1,43 +1,81 @@
-"""``bushing-noise render``: a recording or a condition into an audible WAV."""
+"""``bushing-noise render``: recordings or conditions into audible WAV files."""
 
 from __future__ import annotations
 
+from argparse import ArgumentTypeError
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from models.errors import ParameterError
+from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.commands import options as opt
-from noise.commands.operating import given_options, simulated_run
 from noise.commands.targets import check_target
-from noise.progress import note, say
+from noise.progress import counted, note, say, track
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
     from models.recording import Recording
+    from noise.audio.rendering import Survey
+    from noise.commands.render_sources import Source
 
 __all__ = ["configure", "run"]
 
 _RATES = (44100, 48000)
 _BITS = (16, 24, 32)
+_LONG_ENOUGH = 2.0  # s, to be judged by ear
 
 
 def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
-        "Make the sound pressure of a recording, or of a run simulated for the purpose, audible: "
-        "a WAV file for headphones or a listening room, without offset, faded in and out over "
-        "10 ms, never clipped. A sidecar beside it keeps its calibration."
+        "Make the sound pressure of recordings, or of runs simulated for the purpose, audible: "
+        "WAV files for headphones or a listening room, without offset, faded in and out, never "
+        "clipped, not even between two samples. Several inputs make a set in a folder, at one "
+        "gain, so that the louder one stays louder. A sidecar beside each keeps its calibration "
+        "and its levels: overall, A-weighted, largest fast level, one-third octaves. Repeated "
+        "strokes and run-ups are simulated for as long as --seconds says, never looped."
     )
     parser.epilog = (
         "examples: bushing-noise render run07.wav --out run07-audio.wav; "
-        "bushing-noise render --speed 5 --out squawk.wav"
+        "bushing-noise render --speed 0..10 --seconds 8 --out run-up.wav; "
+        "bushing-noise render old.toml new.toml --speed 5 --seconds 4 --ab --out old-new.wav; "
+        'bushing-noise render "--interference 0.279" "--interference 0.381" --speed 5 --out set'
     )
     parser.add_argument(
-        "recording", nargs="?", type=Path, metavar="INPUT", help="recording to make audible"
+        "inputs",
+        nargs="*",
+        metavar="INPUT",
+        help="recording, folder of recordings, rig file (RIG.toml) to simulate, or options of a "
+        'condition to simulate in quotes, such as "--speed 5 --interference 0.381"; what the '
+        "last two leave out is as the other options say",
     )
     parser.add_argument(
-        "--out", type=Path, required=True, metavar="AUDIO.wav", help="WAV file to write (required)"
+        "--out",
+        type=Path,
+        required=True,
+        metavar="AUDIO.wav|FOLDER",
+        help="WAV file to write; for several sounds a folder, which gets a table levels.csv as "
+        "well (required)",
+    )
+    parser.add_argument(
+        "--ab",
+        action="store_true",
+        help="put the inputs behind one another into one file, at the same gain",
+    )
+    parser.add_argument(
+        "--gap",
+        type=opt.number(least=0.0, most=60.0),
+        default=0.5,
+        metavar="S",
+        help="silence between two of them in s (default: 0.5)",
+    )
+    parser.add_argument(
+        "--repeats",
+        type=_repeats,
+        default=1,
+        metavar="N",
+        help="simulate each run N times, with random numbers of its own, one behind the other; "
+        "with --ab: A B A B ... (default: 1, at most 20)",
     )
     parser.add_argument(
         "--rate",
@@ -51,89 +89,210 @@ def configure(parser: ArgumentParser) -> None:
         type=int,
         choices=_BITS,
         default=24,
-        help="size of a sample in bit; 32 is floating point (default: 24)",
+        help="size of a sample in bit; 16 is dithered, 32 is floating point (default: 24)",
     )
     parser.add_argument(
+        "--fade",
+        type=opt.number(least=0.0, most=60.0),
+        default=0.010,
+        metavar="S",
+        help="length of the fades in and out in s (default: 0.01)",
+    )
+    gain = parser.add_mutually_exclusive_group()
+    gain.add_argument(
         "--pascal-per-full-scale",
         type=opt.number(above=0.0),
         metavar="PA",
         help="sound pressure in Pa of a full-scale sample of the output, for a listening room "
-        "that is calibrated to it (default: what puts the peak 3 dB below full scale)",
+        "that is calibrated to it (default: what puts the largest peak of all 3 dB below full "
+        "scale)",
+    )
+    gain.add_argument(
+        "--match-loudness",
+        action="store_true",
+        help="give each sound the same loudness instead (ITU-R BS.1770): -23 LUFS, or what its "
+        "peaks allow below -1 dB true peak (EBU R 128)",
+    )
+    parser.add_argument(
+        "--sound-quality",
+        action="store_true",
+        help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
+        "needs the extra sound-quality, and some seconds a second of sound",
     )
     opt.add_full_scale(parser)
     opt.add_condition(parser)
-    opt.add_seed(parser, "seed of the sensors' noise in a simulated run")
+    opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
+
+
+def _repeats(text: str) -> int:
+    value = opt.number(least=1.0, most=20.0)(text)
+    if not value.is_integer():
+        raise ArgumentTypeError(f"is {text!r}, expected a whole number from 1 to 20")
+    return int(value)
+
+
+class _Plan(NamedTuple):
+    """One file to be: what it is called, and the runs that are heard in it."""
+
+    name: str
+    target: Path
+    runs: tuple[tuple[Source, int], ...]
+
+    def recordings(self) -> list[Recording]:
+        return [source.recording(number) for source, number in self.runs]
 
 
 def run(options: Namespace) -> int:
-    """Write the sound."""
-    out = options.out
-    if out.suffix.lower() != ".wav":
-        out = out.with_name(out.name + ".wav")
-    check_target(out)
-    recording = _recording(options, out)
-    from noise.audio import (
-        QUIETEST_FULL_SCALE,
-        audible,
-        common_full_scale,
-        least_full_scale,
-        write_audio,
-    )
+    """Write the sounds."""
+    from noise.commands.render_sources import sources_of
 
-    full_scale = options.pascal_per_full_scale
-    if full_scale is not None and not recording.calibrated:
+    if options.sound_quality:
+        from features.sound_quality import check_available
+
+        check_available()
+    if options.ab and options.match_loudness:
+        raise ParameterError("--ab plays all parts at the same gain; leave --match-loudness out")
+    sources = sources_of(options)
+    if options.ab and len(sources) * options.repeats < 2:
+        raise ParameterError("--ab puts two or more inputs behind one another; give a second one")
+    folder = _folder(options, sources)
+    check_target(options.out)
+    plans = _plans(options, sources, folder)
+    _keep_inputs(options.out, sources, plans)
+    return _rendered(options, plans, folder)
+
+
+def _folder(options: Namespace, sources: list[Source]) -> Path | None:
+    """Where a set goes; None where there is one file."""
+    named: Path = options.out
+    several = len(sources) > 1 or any(Path(text).is_dir() for text in options.inputs)
+    if options.ab or not (several or named.is_dir()):
+        return None
+    if named.suffix.lower() == ".wav":
         raise ParameterError(
-            f"--pascal-per-full-scale needs a calibrated input, and {recording.name} is not; "
-            "--full-scale gives its calibration"
+            f"--out {named}: {counted(len(sources), 'sound')} are no single file; name a folder, "
+            "or put them into one with --ab"
         )
-    sound = audible(recording, options.rate)
-    if full_scale is None:
-        full_scale = common_full_scale([sound])
-        if recording.calibrated:  # so that silence is not made loud
-            full_scale = max(full_scale, QUIETEST_FULL_SCALE)
-    elif full_scale < (least := least_full_scale(sound, options.bits)):
-        raise ParameterError(
-            f"--pascal-per-full-scale {full_scale:g} would clip; the smallest that does not is "
-            f"{least:g}"
-        )
-    write_audio(
-        out, sound, options.rate, full_scale=full_scale, bits=options.bits, recording=recording
-    )
-    if recording.calibrated:
-        say(f"full scale is {full_scale:.4g} Pa")
-    else:
-        note(f"{recording.name} is not calibrated, so the level of the sound is not known")
-    print(out)
-    print(out.with_suffix(".json"))
-    return 0
+    if named.exists() and not named.is_dir():
+        raise ParameterError(f"--out {named}: is a file; name a folder")
+    return named
 
 
-def _recording(options: Namespace, out: Path) -> Recording:
-    given = given_options(options)
-    if options.recording is None:
-        if not given:
-            raise ParameterError(
-                "render needs a recording, or a condition such as --speed 5 to simulate"
+def _plans(options: Namespace, sources: list[Source], folder: Path | None) -> list[_Plan]:
+    from noise.audio.files import audio_path
+
+    numbers = range(options.repeats)
+    if folder is not None:
+        return [
+            _Plan(one.name, audio_path(folder / one.name), tuple((one, n) for n in numbers))
+            for one in sources
+        ]
+    target = audio_path(options.out)
+    runs = tuple((source, number) for number in numbers for source in sources)
+    return [_Plan(target.stem if options.ab else sources[0].name, target, runs)]
+
+
+def _keep_inputs(out: Path, sources: list[Source], plans: list[_Plan]) -> None:
+    """Refuse to write over a recording or its sidecar."""
+    from noise.commands.render_sources import RecordedSource
+
+    read = [source.path for source in sources if isinstance(source, RecordedSource)]
+    stems = {path.parent.resolve() / path.stem for path in read}
+    files = {(path.stat().st_dev, path.stat().st_ino) for path in read}
+    for plan in plans:
+        target = plan.target
+        same = target.parent.resolve() / target.stem in stems
+        if not same and target.exists():
+            same = (target.stat().st_dev, target.stat().st_ino) in files
+        if same:
+            raise ParameterError(f"--out {out} would overwrite the recording or its sidecar")
+
+
+def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> int:
+    from noise.audio.rendering import COLUMNS, render, survey
+    from noise.commands.render_gain import full_scales
+    from noise.tables import write_table
+
+    surveys: dict[str, Survey] = {}
+    refused: dict[str, str] = {}
+    shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
+    for plan in track(plans, "measuring", unit="sound"):
+        try:
+            surveys[plan.name] = survey(
+                plan.recordings(),
+                **shape,
+                quality=options.sound_quality,
+                loudness=options.match_loudness,
             )
-        if options.full_scale is not None:
-            raise ParameterError("--full-scale is the calibration of a recording; none is given")
-        # At the rate of the sound: the rig's own rate would cut the creak off at 15 kHz.
-        return simulated_run(options, options.rate).recording
-    if given:
-        raise ParameterError(
-            f"{given[0]} describes a run to simulate, but {options.recording} is already recorded; "
-            "give one or the other"
+        except BushingNoiseError as error:
+            if folder is None and not isinstance(error, RecordingError):
+                raise
+            refused[plan.name] = str(error)
+            say(f"bushing-noise: refused: {_naming(plan.name, str(error))}")
+    scales = full_scales(
+        surveys, pascal=options.pascal_per_full_scale, matched=options.match_loudness
+    )
+    _notes(options, plans, surveys)
+    rows: list[dict[str, object]] = []
+    for index, plan in enumerate(plans):
+        if plan.name not in surveys:
+            rows.append({"file": plan.target.name, "error": refused[plan.name]})
+            continue
+        survey_of, scale = surveys[plan.name], scales[plan.name]
+        written = render(
+            plan.target,
+            plan.recordings(),
+            survey_of,
+            scale,
+            **shape,
+            bits=options.bits,
+            seed=(options.seed, index),
         )
-    if _same_recording(options.recording, out):
-        raise ParameterError(f"--out {options.out} would overwrite the recording or its sidecar")
-    from noise.recordings import read_recording
+        name = plan.target.name if folder is None else plan.target.relative_to(folder).as_posix()
+        rows += [{"file": name, **row} for row in written.rows]
+        _tell(plan, survey_of, scale.value, written.summary, alone=folder is None)
+        print(plan.target)
+        print(plan.target.with_suffix(".json"))
+    if folder is not None:
+        write_table(folder / "levels.csv", ("file", *COLUMNS, "error"), rows)
+        print(folder / "levels.csv")
+    return 1 if refused else 0
 
-    say(f"reading {options.recording}")
-    return read_recording(options.recording, full_scale=options.full_scale)
+
+def _tell(plan: _Plan, survey: Survey, full_scale: float, summary: str, *, alone: bool) -> None:
+    if survey.calibrated:
+        say(f"{plan.name}: full scale is {full_scale:.4g} Pa; in the file {summary}")
+    else:
+        say(f"{plan.name}: in the file {summary}")
+    several = len(survey.assessments) > 1
+    for part, assessment in zip(survey.parts, survey.assessments, strict=True):
+        lead = f"{plan.name}: {part.name}" if several else plan.name
+        for line in assessment.words(full_scale, bands=alone and not several):
+            say(f"{lead}: {line}")
 
 
-def _same_recording(one: Path, other: Path) -> bool:
-    """Whether two files share their sidecar, or are one."""
-    if one.parent.resolve() / one.stem == other.parent.resolve() / other.stem:
-        return True
-    return one.exists() and other.exists() and one.samefile(other)
+def _notes(options: Namespace, plans: list[_Plan], surveys: dict[str, Survey]) -> None:
+    """Say what the user should know of."""
+    from noise.commands.render_sources import SimulatedSource
+
+    unknown = [of.name for of in surveys.values() if not of.calibrated]
+    if unknown:
+        more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
+        note(
+            f"{unknown[0]}{more}: not calibrated, so how loud it was is not known; levels are in "
+            "dBFS only (--full-scale gives a calibration)"
+        )
+    for of in surveys.values():
+        for line in of.untold:
+            note(line)
+    short = any(
+        isinstance(source, SimulatedSource) and source.arguments["seconds"] < _LONG_ENOUGH
+        for plan in plans
+        for source, _ in plan.runs
+    )
+    if short and options.seconds is None:
+        note("a sound of 2 to 10 s is easier to judge by ear; --seconds simulates for longer")
+
+
+def _naming(name: str, message: str) -> str:
+    return message if Path(name).name in message else f"{name}: {message}"

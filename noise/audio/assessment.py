@@ -1,0 +1,164 @@
+"""What is told of a sound beside the sound: levels in the air, and in the file.
+
+Levels in the air are those of the recording before it is faded and resampled, so that they are
+the measurement's and a gain does not change them. Without a calibration there is no level in the
+air, and all levels are told re full scale of the file that is written.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+from features.bands import NOMINAL_THIRD_OCTAVES
+from features.levels import SoundLevels, sound_levels
+from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
+from models.errors import ParameterError
+from models.recording import REFERENCE_PRESSURE
+from noise.audio.sound import pressure_channel, resampled
+
+if TYPE_CHECKING:
+    from models.recording import Recording
+
+__all__ = ["COLUMNS", "Assessment", "assess"]
+
+_QUALITY_COLUMNS = {
+    "loudness": "loudness_sone",
+    "loudness_n5": "loudness_n5_sone",
+    "loudness_n10": "loudness_n10_sone",
+    "sharpness": "sharpness_acum",
+    "roughness": "roughness_asper",
+    "tone_to_noise": "tone_to_noise_db",
+    "prominence": "prominence_db",
+    "tone_frequency": "tone_frequency_hz",
+}
+
+COLUMNS = (
+    *("level_db", "level_dba", "level_afmax_dba", "level_dbfs"),
+    *(f"third_octave_{band}_hz_db" for band in NOMINAL_THIRD_OCTAVES),
+    *_QUALITY_COLUMNS.values(),
+)
+"""Of a table of levels, in the order of a sound level meter's."""
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """What a recording sounds like, in numbers.
+
+    Parameters
+    ----------
+    levels : SoundLevels
+        Re 20 uPa where `calibrated`, otherwise re full scale of the recording.
+    calibrated : bool
+    quality : SoundQuality, optional
+    """
+
+    levels: SoundLevels
+    calibrated: bool
+    quality: SoundQuality | None = None
+
+    def in_file(self, full_scale: float) -> SoundLevels:
+        """Return levels re full scale [unit of the recording] of the file that is written."""
+        reference = REFERENCE_PRESSURE if self.calibrated else 1.0
+        return self.levels.raised(20.0 * math.log10(reference / full_scale))
+
+    def row(self, full_scale: float) -> dict[str, object]:
+        """Return cells by `COLUMNS`; those that are not known are left out."""
+        row: dict[str, object] = {"level_dbfs": _told(self.in_file(full_scale).level)}
+        if self.calibrated:
+            row |= {
+                "level_db": _told(self.levels.level),
+                "level_dba": _told(self.levels.level_a),
+                "level_afmax_dba": _told(self.levels.level_af_max),
+            }
+            for band, level in self.levels.third_octaves.items():
+                row[f"third_octave_{band}_hz_db"] = _told(level)
+        if self.quality is not None:
+            for name, value in asdict(self.quality).items():
+                row[_QUALITY_COLUMNS[name]] = _told(value, 4)
+        return row
+
+    def entry(self, full_scale: float) -> dict[str, object]:
+        """Return the same for a sidecar, with the one-third octaves as an object."""
+        row = self.row(full_scale)
+        entry = {key: row[key] for key in COLUMNS if key in row and "third_octave" not in key}
+        levels, unit = self.levels, "db"
+        if not self.calibrated:
+            levels, unit = self.in_file(full_scale), "dbfs"
+            entry["level_dbfs_a"] = _told(levels.level_a)
+            entry["level_afmax_dbfs"] = _told(levels.level_af_max)
+        entry[f"third_octaves_{unit}"] = {
+            band: _told(level) for band, level in levels.third_octaves.items()
+        }
+        return entry
+
+    def words(self, full_scale: float, *, bands: bool) -> list[str]:
+        """Return lines that say the same, with the one-third octaves where `bands`."""
+        levels = self.levels if self.calibrated else self.in_file(full_scale)
+        unit = "dB" if self.calibrated else "dBFS"
+        re = " re 20 uPa" if self.calibrated else ""
+        lines = [
+            f"{levels.level:.1f} {unit}, {levels.level_a:.1f} {unit}(A), L_AFmax "
+            f"{levels.level_af_max:.1f} {unit}{re}"
+        ]
+        if bands:
+            measured = {k: v for k, v in levels.third_octaves.items() if not math.isnan(v)}
+            listed = ", ".join(f"{band} Hz {level:.1f}" for band, level in measured.items())
+            lines.append(f"one-third octaves in {unit}{re}: {listed or 'none is measured'}")
+        if (heard := self.quality) is not None:
+            tone = "no prominent tone"
+            if not math.isnan(heard.tone_frequency):
+                tone = (
+                    f"tone at {heard.tone_frequency:.0f} Hz, prominence {heard.prominence:.1f} dB"
+                )
+            lines.append(
+                f"loudness {heard.loudness:.2f} sone (N5 {heard.loudness_n5:.2f}, "
+                f"N10 {heard.loudness_n10:.2f}), sharpness {heard.sharpness:.2f} acum, "
+                f"roughness {heard.roughness:.2f} asper, {tone}"
+            )
+        return lines
+
+
+def assess(recording: Recording, *, quality: bool = False) -> Assessment:
+    """Measure the sound of a recording's first pressure channel.
+
+    Parameters
+    ----------
+    recording : Recording
+    quality : bool
+        Whether loudness, sharpness, roughness and tonality are told as well.
+
+    Returns
+    -------
+    Assessment
+
+    Raises
+    ------
+    ParameterError
+        There is no pressure channel, or it can't be analysed; with `quality` also where it is
+        not calibrated, or `features.sound_quality.sound_quality_of` refuses it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)
+    >>> of = assess(Recording(tone[np.newaxis], 48e3, (Channel("pressure"),)))
+    >>> of.row(full_scale=2.0)["level_db"], of.row(full_scale=2.0)["level_dbfs"]
+    (93.98, -6.02)
+    """
+    signal = recording[pressure_channel(recording).name]
+    reference = REFERENCE_PRESSURE if recording.calibrated else 1.0
+    levels = sound_levels(signal, recording.rate, reference=reference)
+    heard = None
+    if quality:
+        if not recording.calibrated:
+            raise ParameterError("sound quality needs a calibrated recording")
+        at_rate = resampled(signal - signal.mean(), recording.rate, SOUND_QUALITY_RATE)
+        heard = sound_quality_of(at_rate, SOUND_QUALITY_RATE)
+    return Assessment(levels, recording.calibrated, heard)
+
+
+def _told(value: float, digits: int = 2) -> float | None:
+    return round(value, digits) if math.isfinite(value) else None

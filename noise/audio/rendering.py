@@ -1,0 +1,267 @@
+"""From recordings to audio files that belong together.
+
+Twice over: first every sound is measured, then the gain is chosen that suits them all, then each
+is written. What is kept between is a few numbers a sound, so that a set may be larger than memory.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from noise.audio.assessment import COLUMNS as LEVEL_COLUMNS, assess
+from noise.audio.files import write_audio
+from noise.audio.gain import (
+    CEILING,
+    LOUDNESS_BLOCK,
+    loudness as loudness_of,
+    matched_full_scale,
+    true_peak,
+)
+from noise.audio.sequence import GAP, Part, back_to_back
+from noise.audio.sound import FADE
+from noise.recordings.sidecar import sidecar_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from models.recording import Recording
+    from noise.audio.assessment import Assessment
+
+__all__ = ["COLUMNS", "FullScale", "Rendered", "Survey", "render", "survey"]
+
+COLUMNS = (
+    *("part", "start_s", "end_s", "calibrated", "gain", "full_scale_Pa"),
+    *("true_peak_dbtp", "loudness_lufs"),
+    *LEVEL_COLUMNS,
+)
+"""Of the table of levels, one row a part of a file."""
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What has to be known of a sound before it is written.
+
+    Parameters
+    ----------
+    name : str
+    calibrated : bool
+    true_peak : float
+        In the sound's unit.
+    loudness : float or None
+        With the true peak at full scale [LUFS]; None where it was not asked for.
+    parts : tuple of Part
+    assessments : tuple of Assessment
+        One a part.
+    untold : tuple of str
+        Why the sound quality of a part is not told, though it was asked for.
+    """
+
+    name: str
+    calibrated: bool
+    true_peak: float
+    loudness: float | None
+    parts: tuple[Part, ...]
+    assessments: tuple[Assessment, ...]
+    untold: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class FullScale:
+    """A gain: value of a sample at full scale, how it was chosen, loudness aimed at [LUFS]."""
+
+    value: float
+    gain: str
+    target: float | None = None
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """What was written: rows by `COLUMNS`, and a line about the file."""
+
+    rows: list[dict[str, object]]
+    summary: str
+
+
+def survey(
+    recordings: Sequence[Recording],
+    *,
+    rate: int = 48000,
+    gap: float = GAP,
+    fade: float = FADE,
+    quality: bool = False,
+    loudness: bool = False,
+) -> Survey:
+    """Measure the sound that recordings make back to back.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    rate, gap, fade
+        As for `noise.audio.sequence.back_to_back`.
+    quality : bool
+        Whether its sound quality is told as well, where that can be.
+    loudness : bool
+        Whether it has to have a loudness.
+
+    Raises
+    ------
+    ParameterError
+        A recording has no sound, or with `loudness` none that can be matched.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> tone = np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)[np.newaxis]
+    >>> of = survey([Recording(tone, 48e3, (Channel("pressure"),), name="tone")])
+    >>> of.calibrated, round(of.true_peak, 3)
+    (True, 1.0)
+    """
+    sequel = back_to_back(recordings, rate, gap=gap, fade=fade)
+    peak = true_peak(sequel.samples, rate)
+    assessments, untold = [], []
+    for recording in recordings:
+        try:
+            assessments.append(assess(recording, quality=quality))
+        except ParameterError as error:
+            if not quality:
+                raise
+            assessments.append(assess(recording))
+            untold.append(f"{recording.name}: {error}")
+    first = recordings[0]
+    reached = None
+    if loudness:
+        reached = _loudness_at_full_scale(first.name, sequel.samples, rate, peak)
+    return Survey(
+        first.name, first.calibrated, peak, reached, sequel.parts, tuple(assessments), tuple(untold)
+    )
+
+
+def render(
+    path: Path,
+    recordings: Sequence[Recording],
+    of: Survey,
+    full_scale: FullScale,
+    *,
+    rate: int = 48000,
+    gap: float = GAP,
+    fade: float = FADE,
+    bits: int = 24,
+    seed: int | Sequence[int] = 0,
+) -> Rendered:
+    """Write one file of a set.
+
+    Parameters
+    ----------
+    path : Path
+    recordings : sequence of Recording
+    of : Survey
+        Of these recordings.
+    full_scale : FullScale
+    rate, gap, fade
+        As in the survey.
+    bits : int
+        One of `noise.audio.wav.BITS`; 16 is dithered.
+    seed : int or sequence of int
+        Of the dither.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from models.recording import Channel, Recording
+    >>> tone = np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)[np.newaxis]
+    >>> runs = [Recording(tone, 48e3, (Channel("pressure"),), name="tone")]
+    >>> of = survey(runs)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     target = Path(folder) / "tone.wav"
+    ...     render(target, runs, of, FullScale(2.0, "calibrated")).summary
+    'true peak -6.0 dBTP, loudness -9.0 LUFS'
+    """
+    sequel = back_to_back(recordings, rate, gap=gap, fade=fade)
+    value = full_scale.value
+    if full_scale.target is not None:  # the gate of the loudness has moved with the gain
+        value = matched_full_scale(sequel.samples, rate, full_scale.target, start=value)
+        value = max(value, of.true_peak / CEILING)
+    fractions = sequel.samples / value
+    file: dict[str, object] = {
+        "gain": full_scale.gain,
+        "full_scale_Pa": value if of.calibrated else None,
+        "true_peak_dbtp": _level(of.true_peak / value),
+        "loudness_lufs": _loudness(fractions, rate),
+    }
+    dithered = bits == 16
+    entries = [
+        {
+            "name": part.name,
+            "start_s": part.start,
+            "end_s": part.end,
+            "conditions": json.loads(sidecar_text(recording))["conditions"],
+            **assessment.entry(value),
+        }
+        for part, recording, assessment in zip(of.parts, recordings, of.assessments, strict=True)
+    ]
+    made = {**file, "dither": "triangular" if dithered else None}
+    write_audio(
+        path,
+        sequel.samples,
+        rate,
+        full_scale=value,
+        bits=bits,
+        recording=sequel.recording,
+        dither=np.random.default_rng(seed) if dithered else None,
+        about={"render": made, "parts": entries},
+    )
+    rows = [
+        {
+            "part": part.name,
+            "start_s": part.start,
+            "end_s": part.end,
+            "calibrated": of.calibrated,
+            **file,
+            **assessment.row(value),
+        }
+        for part, assessment in zip(of.parts, of.assessments, strict=True)
+    ]
+    return Rendered(rows, _summary(file))
+
+
+def _loudness_at_full_scale(name: str, sound: NDArray[np.float64], rate: int, peak: float) -> float:
+    try:
+        if peak == 0.0:
+            raise ParameterError("a silent sound has no loudness to be matched")
+        return loudness_of(sound / peak, rate)
+    except ParameterError as error:
+        raise ParameterError(f"{name}: {error}") from None
+
+
+def _loudness(fractions: NDArray[np.float64], rate: int) -> float | None:
+    if fractions.size < LOUDNESS_BLOCK * rate:
+        return None
+    reached = loudness_of(fractions, rate)
+    return round(reached, 2) if math.isfinite(reached) else None
+
+
+def _level(fraction: float) -> float | None:
+    return round(20.0 * math.log10(fraction), 2) if fraction > 0.0 else None
+
+
+def _summary(file: Mapping[str, object]) -> str:
+    peak, reached = file["true_peak_dbtp"], file["loudness_lufs"]
+    words = ["silent" if peak is None else f"true peak {peak:.1f} dBTP"]
+    if reached is not None:
+        words.append(f"loudness {reached:.1f} LUFS")
+    return ", ".join(words)

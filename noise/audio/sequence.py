@@ -1,0 +1,144 @@
+"""Recordings behind one another in one sound: A and B of a comparison, or several runs.
+
+All parts have the same gain, each is faded by itself, and there is silence between them. What is
+said of the whole is what holds for every part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.recording import Recording
+from noise.audio.sound import FADE, audible, pressure_channel
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+__all__ = ["GAP", "Part", "Sequel", "back_to_back"]
+
+GAP = 0.5
+"""Silence between two parts [s]."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One recording's place in a sound: its name, start and end [s]."""
+
+    name: str
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class Sequel:
+    """A sound of one or more recordings.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n_samples,)
+        As `noise.audio.sound.audible` gives them.
+    recording : Recording
+        The same as a recording, with what is known of all parts.
+    parts : tuple of Part
+        In their order.
+    """
+
+    samples: NDArray[np.float64]
+    recording: Recording
+    parts: tuple[Part, ...]
+
+
+def back_to_back(
+    recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
+) -> Sequel:
+    """Put the sounds of recordings behind one another, at the same gain.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        One or more; their names become those of the parts.
+    rate : int
+        Sampling rate of the result [Hz].
+    gap : float
+        Silence between two of them [s].
+    fade : float
+        Length of the fades of each [s].
+
+    Returns
+    -------
+    Sequel
+
+    Raises
+    ------
+    ParameterError
+        A recording has no pressure channel, or some are calibrated and others are not.
+
+    Examples
+    --------
+    >>> from models.recording import Channel
+    >>> runs = [Recording(np.ones((1, 48)), 48e3, (Channel("pressure"),), name=n) for n in "AB"]
+    >>> pair = back_to_back(runs, gap=0.001)
+    >>> pair.samples.size, [(part.name, part.start) for part in pair.parts]
+    (144, [('A', 0.0), ('B', 0.002)])
+    """
+    check_same_calibration(recordings)
+    silence = np.zeros(round(gap * rate))
+    pieces: list[NDArray[np.float64]] = []
+    parts: list[Part] = []
+    position = 0
+    for recording in recordings:
+        if pieces:
+            pieces.append(silence)
+            position += silence.size
+        sound = audible(recording, rate, fade=fade)
+        pieces.append(sound)
+        end = position + sound.size
+        parts.append(Part(recording.name, position / rate, end / rate))
+        position = end
+    samples = np.concatenate(pieces)
+    whole = Recording(
+        samples[np.newaxis],
+        float(rate),
+        (pressure_channel(recordings[0]),),
+        _common(recordings),
+        recordings[0].calibrated,
+        recordings[0].name,
+    )
+    return Sequel(samples, whole, tuple(parts))
+
+
+def check_same_calibration(recordings: Sequence[Recording]) -> None:
+    """Refuse recordings whose levels cannot be compared.
+
+    Raises
+    ------
+    ParameterError
+        Some are calibrated and others are not.
+
+    Examples
+    --------
+    >>> check_same_calibration([])
+    """
+    known = next((one.name for one in recordings if one.calibrated), None)
+    unknown = next((one.name for one in recordings if not one.calibrated), None)
+    if known is not None and unknown is not None:
+        raise ParameterError(
+            f"{known} is calibrated and {unknown} is not, so one gain cannot keep how loud they "
+            "are to each other; give its calibration"
+        )
+
+
+def _common(recordings: Sequence[Recording]) -> Condition:
+    conditions = [recording.condition for recording in recordings]
+    values = {name: {getattr(c, name) for c in conditions} for name in _FIELDS}
+    return Condition(**{name: of.pop() for name, of in values.items() if len(of) == 1})
+
+
+_FIELDS = [field.name for field in fields(Condition)]

@@ -1,0 +1,114 @@
+"""The sound of a recording: its pressure at a rate that is played, without offset, faded.
+
+Sound is resampled by a polyphase filter whose stop band begins where the lower of both rates folds
+back: images and alias, which an ear would take for a squeal of the bushing, lie 100 dB down, and
+the filter's phase is linear, so that a slip stays a click.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.recording import Channel, Recording
+
+__all__ = ["FADE", "audible", "pressure_channel", "resampled"]
+
+FADE = 0.010
+"""Half a Hann window at either end [s]."""
+
+_STOP_BAND = 100.0  # dB
+_PASS_BAND = 0.95  # of the lower Nyquist frequency
+_FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right within 1e-6
+
+
+def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> NDArray[np.float64]:
+    """Return the sound of a recording's first pressure channel, ready to be listened to.
+
+    Parameters
+    ----------
+    recording : Recording
+    rate : int
+        Sampling rate of the result [Hz].
+    fade : float
+        Length of the fades in and out [s]; half of the sound at most.
+
+    Returns
+    -------
+    ndarray, shape (n_samples,)
+        Sound pressure [Pa], or in fractions of full scale where the recording is not calibrated;
+        without its mean.
+
+    Raises
+    ------
+    ParameterError
+        The recording has no pressure channel.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> run = Recording(np.ones((1, 3000)), 30e3, (Channel("pressure"),))
+    >>> audible(run).shape, audible(run, 44100).shape
+    ((4800,), (4410,))
+    """
+    signal = recording[pressure_channel(recording).name]
+    sound = resampled(signal - signal.mean(), recording.rate, rate)
+    n = min(round(fade * rate), sound.size // 2)
+    flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
+    sound[:n] *= flank
+    sound[sound.size - n :] *= flank[::-1]
+    return sound
+
+
+def pressure_channel(recording: Recording) -> Channel:
+    """Return the channel that is heard: the first of sound pressure.
+
+    Raises
+    ------
+    ParameterError
+        There is none.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> run = Recording(np.ones((2, 16)), 30e3, (Channel("torque"), Channel("pressure_2")))
+    >>> pressure_channel(run).name
+    'pressure_2'
+    """
+    for channel in recording.channels:
+        if channel.kind == "pressure":
+            return channel
+    have = ", ".join(recording.channel_names)
+    raise ParameterError(
+        f"recording {recording.name!r} has no pressure channel to be heard; it has {have}"
+    )
+
+
+def resampled(signal: NDArray[np.float64], rate: float, new_rate: float) -> NDArray[np.float64]:
+    """Return a signal at another sampling rate [Hz].
+
+    Examples
+    --------
+    >>> resampled(np.zeros(441), 44100.0, 48000.0).shape
+    (480,)
+    """
+    from scipy.signal import firwin, kaiser_beta, resample_poly
+
+    ratio = Fraction(new_rate / rate).limit_denominator(_FINEST_RATIO)
+    if ratio == 1:
+        return np.array(signal, dtype=float)
+    up, down = ratio.numerator, ratio.denominator
+    # Frequencies relative to the Nyquist frequency of the rate that both are divisors of.
+    stop = 1.0 / max(up, down)
+    n_taps = math.ceil((_STOP_BAND - 7.95) / (2.285 * math.pi * (1.0 - _PASS_BAND) * stop)) | 1
+    window = ("kaiser", kaiser_beta(_STOP_BAND))
+    taps = firwin(n_taps, 0.5 * (1.0 + _PASS_BAND) * stop, window=window)
+    return np.asarray(resample_poly(signal, up, down, window=taps))

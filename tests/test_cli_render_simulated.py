@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from scipy.signal import correlate
+
+from models.recording import Channel, Recording
+from noise.cli import main
+from noise.recordings import read_recording, write_recording
+
+PLAIN_RIG = """
+name = "plain"
+material = "our rubber"
+elastomer_inertia_kgm2 = 1.538e-5
+clamp_inertia_kgm2 = 8.333e-4
+[[fit]]
+interference_mm = 0.279
+elastomer_stiffness_Nm_rad = 665.0
+critical_torque_Nm = {torque}
+kinetic_torque_Nm = 8.0
+damping_Nms_rad = 0.09
+"""
+
+
+def rendered(*arguments):
+    assert main(["render", *map(str, arguments)]) == 0
+
+
+def test_two_rig_files_are_heard_back_to_back_at_one_gain(tmp_path):
+    for name, torque in (("old", 10.7), ("new", 8.5)):
+        (tmp_path / f"{name}.toml").write_text(PLAIN_RIG.format(torque=torque))
+    out = tmp_path / "ab.wav"
+    rigs = [tmp_path / "old.toml", tmp_path / "new.toml"]
+    given = ["--speed", "2", "--seconds", "0.5", "--gap", "0.25"]
+    rendered("--ab", *rigs, *given, "--out", out)
+    about = json.loads(out.with_suffix(".json").read_text())
+    assert [part["name"] for part in about["parts"]] == ["old", "new"]
+    assert [part["start_s"] for part in about["parts"]] == [0.0, 0.75]
+    assert [part["conditions"]["material"] for part in about["parts"]] == ["our rubber"] * 2
+    heard = read_recording(out)
+    assert heard.duration == pytest.approx(1.25)
+    assert heard.condition.speed == 2.0
+    parts = heard["pressure"][:24000], heard["pressure"][36000:]
+    told = about["parts"][0]["level_db"] - about["parts"][1]["level_db"]
+    found = 20 * np.log10(parts[0].std() / parts[1].std())
+    assert found == pytest.approx(told, abs=0.1)
+    assert abs(told) > 1.0
+
+
+def test_recordings_and_conditions_in_quotes_can_be_compared(tmp_path):
+    tone = 0.1 * np.sin(2 * np.pi * 1000 * np.arange(24000) / 48e3)[np.newaxis]
+    write_recording(tmp_path / "measured", Recording(tone, 48e3, (Channel("pressure"),)))
+    out = tmp_path / "ab"
+    condition = "--interference 0.381 --material PDMS"
+    given = ["--speed", "5", "--seconds", "0.2", "--repeats", "2"]
+    rendered("--ab", tmp_path / "measured.wav", condition, *given, "--out", out)
+    parts = json.loads((tmp_path / "ab.json").read_text())["parts"]
+    simulated = "interference-0.381-material-PDMS"
+    assert [part["name"] for part in parts] == ["measured.wav", simulated] * 2
+
+
+def test_repeats_are_simulated_anew(tmp_path):
+    out = tmp_path / "runs.wav"
+    given = ["--speed", "5", "--material", "PDMS", "--interference", "0.381", "--seconds", "0.2"]
+    rendered(*given, "--repeats", "2", "--gap", "0.1", "--out", out)
+    sound = read_recording(out)["pressure"]
+    one, other = sound[480:9120], sound[14400 + 480 : 14400 + 9120]
+    assert abs(np.corrcoef(one, other)[0, 1]) < 0.9
+
+
+def largest_likeness(sound, rate, piece=0.4):
+    """How alike any piece of a sound is to what follows it, 1 being the same."""
+    n = round(piece * rate)
+    worst = 0.0
+    for start in range(0, sound.size - 2 * n, n):
+        one, rest = sound[start : start + n], sound[start + n :]
+        energy = np.concatenate([[0.0], np.cumsum(rest**2)])
+        norm = np.sqrt(np.maximum(energy[n:] - energy[:-n], 1e-30)) * np.linalg.norm(one)
+        worst = max(worst, float((correlate(rest, one, "valid", "fft") / norm).max()))
+    return worst
+
+
+def test_a_run_up_glides_and_is_no_loop(tmp_path):
+    out = tmp_path / "up.wav"
+    rendered("--speed", "0.5..6", "--seconds", "3", "--out", out)
+    read = read_recording(out)
+    sound, rate = read["pressure"], int(read.rate)
+    assert read.duration == 3.0
+    pitch = []
+    for block in np.split(sound, 6):
+        spectrum = np.abs(np.fft.rfft(block * np.hanning(block.size)))
+        low = slice(round(100 / 2), round(300 / 2))  # 2 Hz a bin: around the slip frequency
+        pitch.append(100 + 2 * int(spectrum[low].argmax()))
+    assert pitch[-1] > pitch[0] + 30
+    assert np.all(np.diff(pitch) >= -8)
+    looped = np.tile(sound[: rate // 2], 6)
+    assert largest_likeness(looped, rate) > 0.999
+    assert largest_likeness(sound, rate) < 0.99

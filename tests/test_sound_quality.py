@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+import math
+import sys
+
+import numpy as np
+import pytest
+
+from features.sound_quality import check_available, sound_quality_of
+from models.errors import ParameterError
+
+RATE = 48000
+
+
+def at_level(sound, level):
+    return sound * 2e-5 * 10 ** (level / 20) / sound.std()
+
+
+def tone(frequency, level, seconds=0.5):
+    return at_level(np.sin(2 * np.pi * frequency * np.arange(round(seconds * RATE)) / RATE), level)
+
+
+@pytest.fixture
+def _library():
+    pytest.importorskip("mosqito")
+
+
+def test_the_missing_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mosqito", None)
+    with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[sound-quality\]"'):
+        check_available()
+
+
+def test_looking_at_the_module_does_not_load_the_library(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mosqito", None)
+    with pytest.raises(ParameterError, match="too short"):
+        sound_quality_of(tone(1000, 40, 0.3), RATE)
+
+
+@pytest.mark.usefixtures("_library")
+def test_a_kilohertz_of_40_decibels_is_one_sone():
+    # ISO 532-1, 4.3: a loudness is right within 5 % or 0.1 sone.
+    heard = sound_quality_of(tone(1000, 40), RATE)
+    assert heard.loudness == pytest.approx(1.0, abs=0.05)
+    assert heard.loudness_n5 == pytest.approx(1.0, abs=0.05)
+    assert heard.loudness_n10 == pytest.approx(1.0, abs=0.05)
+    assert heard.tone_frequency == pytest.approx(1000, abs=5)
+
+
+@pytest.mark.usefixtures("_library")
+def test_ten_decibels_more_are_twice_as_loud():
+    assert sound_quality_of(tone(1000, 50), RATE).loudness == pytest.approx(2.0, rel=0.05)
+
+
+@pytest.mark.usefixtures("_library")
+def test_noise_of_one_critical_band_at_60_decibels_is_one_acum():
+    noise = np.random.default_rng(0).standard_normal(RATE // 2)
+    bins, frequency = np.fft.rfft(noise), np.fft.rfftfreq(RATE // 2, 1 / RATE)
+    bins[(frequency < 920) | (frequency > 1080)] = 0
+    heard = sound_quality_of(at_level(np.fft.irfft(bins), 60), RATE)
+    assert heard.sharpness == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.usefixtures("_library")
+def test_a_kilohertz_modulated_70_times_a_second_at_60_decibels_is_one_asper():
+    time = np.arange(RATE // 2) / RATE
+    rough = (1 + np.sin(2 * np.pi * 70 * time)) * np.sin(2 * np.pi * 1000 * time)
+    assert sound_quality_of(at_level(rough, 60), RATE).roughness == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.usefixtures("_library")
+def test_a_tone_in_noise_stands_out_and_noise_alone_does_not():
+    noise = at_level(np.random.default_rng(0).standard_normal(RATE // 2), 50)
+    heard = sound_quality_of(noise + tone(2000, 55), RATE)
+    assert heard.tone_frequency == pytest.approx(2000, abs=5)
+    assert heard.tone_to_noise > 15
+    assert heard.prominence > 15
+    assert math.isnan(sound_quality_of(noise, RATE).tone_frequency)
+
+
+@pytest.mark.usefixtures("_library")
+def test_silence_is_not_loud_and_has_no_tone():
+    heard = sound_quality_of(np.zeros(RATE // 2), RATE)
+    assert heard.loudness == heard.loudness_n5 == heard.roughness == 0
+    assert math.isnan(heard.sharpness)
+    assert math.isnan(heard.prominence)
+
+
+@pytest.mark.parametrize(
+    ("sound", "rate", "said"),
+    [
+        (np.zeros(4800), 48000, "0.1 s is too short"),
+        (np.zeros(51200), 51200, "48000 Hz"),
+        (np.full(48000, np.nan), 48000, "finite"),
+    ],
+)
+def test_sounds_it_would_be_wrong_for_are_refused(sound, rate, said):
+    with pytest.raises(ParameterError, match=said):
+        sound_quality_of(sound, rate)
