@@ -59,8 +59,8 @@ class Motion:
         Torque in the contact [Nm]; differs from `torque` by the inertia of the elastomer.
     shaft_angle, shaft_speed : ndarray
         [rad], [rad/s]
-    interface_speed : ndarray
-        Angular speed of the bushing's surface [rad/s].
+    interface_angle, interface_speed : ndarray
+        Of the bushing's surface: how far it has been carried along [rad], [rad/s].
     clamp_angle, clamp_speed : ndarray
         [rad], [rad/s]
     """
@@ -70,6 +70,7 @@ class Motion:
     friction_torque: NDArray[np.float64]
     shaft_angle: NDArray[np.float64]
     shaft_speed: NDArray[np.float64]
+    interface_angle: NDArray[np.float64]
     interface_speed: NDArray[np.float64]
     clamp_angle: NDArray[np.float64]
     clamp_speed: NDArray[np.float64]
@@ -194,6 +195,7 @@ def simulate_motion(
         friction_torque=states[:, 0],
         shaft_angle=_integral(drive, step),
         shaft_speed=speed,
+        interface_angle=states[:, 2],
         interface_speed=states[:, 3],
         clamp_angle=states[:, 4],
         clamp_speed=states[:, 5],

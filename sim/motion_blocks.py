@@ -150,6 +150,7 @@ def motion_blocks(
             friction_torque=states[:, 0],
             shaft_angle=angles[:-1],
             shaft_speed=speed,
+            interface_angle=states[:, 2],
             interface_speed=states[:, 3],
             clamp_angle=states[:, 4],
             clamp_speed=states[:, 5],

@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from models.errors import ParameterError
 from noise.commands import options as opt
 from noise.commands.operating import is_long, run_arguments
 from noise.commands.targets import check_target
@@ -21,15 +22,17 @@ if TYPE_CHECKING:
 __all__ = ["configure", "run"]
 
 _DEFAULT_RATE = 30000
+_MOST_DRAWN = 60.0
+"""Longest run that is drawn [s]; longer ones are written in blocks."""
 
 
 def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
         "Simulate one run of the rig and record torque [N m], acceleration [m/s^2], pressure [Pa] "
-        "and angle [rad]. With --out the names of the files are printed, without it a summary as "
-        "one line of JSON: conditions, mean of the torque and its rms about the mean, peak and "
-        "level (dB re 20 uPa) of the sound pressure."
+        "and angle [rad], or draw it. The names of the files are printed; without --out and --plot "
+        "a summary as one line of JSON: conditions, mean of the torque and its rms about the mean, "
+        "peak and level (dB re 20 uPa) of the sound pressure."
     )
     parser.epilog = (
         "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07; effects: "
@@ -49,31 +52,65 @@ def configure(parser: ArgumentParser) -> None:
         metavar="RUN",
         help="write RUN.wav (32-bit float, in the units above) and RUN.json",
     )
+    parser.add_argument(
+        "--plot",
+        type=Path,
+        metavar="FILE",
+        help="draw the run into FILE, .png, .svg or .pdf: torque, displacement and sliding speed "
+        "over time, phase plane, torque against sliding speed, autospectra; of runs up to 60 s",
+    )
     opt.add_seed(parser, "seed of the sensors' noise")
 
 
 def run(options: Namespace) -> int:
-    """Simulate; write the recording, or print its summary."""
+    """Simulate; write the recording and the picture, or print the summary."""
     if options.out is not None:
         check_target(options.out)
+    if options.plot is not None:
+        _check_plot(options.plot, options.seconds)
     arguments = run_arguments(options, options.rate)
     if options.out is not None and is_long(arguments):
         from noise.long_run import simulate_to_file
 
-        path = simulate_to_file(options.out, **arguments)
-    else:
-        from sim.run import simulate
+        _print_names(simulate_to_file(options.out, **arguments))
+        return 0
+    from sim.run import simulate
 
-        recording = simulate(**arguments).recording
-        if options.out is None:
-            print(json.dumps(_summary(recording)))
-            return 0
+    simulated = simulate(**arguments)
+    if options.out is None and options.plot is None:
+        print(json.dumps(_summary(simulated.recording)))
+    if options.out is not None:
         from noise.recordings import write_recording
 
-        path = write_recording(options.out, recording)
+        _print_names(write_recording(options.out, simulated.recording))
+    if options.plot is not None:
+        from noise.pictures.files import write_picture
+        from noise.pictures.run import plot_run
+
+        write_picture(options.plot, plot_run(simulated))
+        print(options.plot)
+    return 0
+
+
+def _check_plot(path: Path, seconds: float | None) -> None:
+    """Refuse a picture that cannot be drawn, before the run that it shows."""
+    from noise.pictures.files import check_picture_path
+
+    try:
+        check_picture_path(path)
+    except ParameterError as error:
+        raise ParameterError(f"--plot {error}") from None
+    check_target(path, "--plot")
+    if seconds is not None and seconds > _MOST_DRAWN:
+        raise ParameterError(
+            f"--plot takes the whole run in memory, for which --seconds {seconds:g} is too long; "
+            f"give {_MOST_DRAWN:g} or less"
+        )
+
+
+def _print_names(path: Path) -> None:
     print(path)
     print(path.with_suffix(".json"))
-    return 0
 
 
 def _rate(text: str) -> int:

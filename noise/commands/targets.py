@@ -13,8 +13,10 @@ if TYPE_CHECKING:
 __all__ = ["check_target"]
 
 
-def check_target(path: Path) -> None:
+def check_target(path: Path, option: str = "--out") -> None:
     """Refuse a file, or folder, that cannot be made because of what stands above it.
+
+    `option` is the one that names it.
 
     Raises
     ------
@@ -29,11 +31,11 @@ def check_target(path: Path) -> None:
     try:
         above = next(parent for parent in path.absolute().parents if parent.exists())
     except OSError as error:
-        raise ParameterError(f"--out {path}: cannot be written ({error.strerror})") from None
+        raise ParameterError(f"{option} {path}: cannot be written ({error.strerror})") from None
     if not above.is_dir():
-        raise ParameterError(f"--out {path}: {above} is a file, not a folder")
+        raise ParameterError(f"{option} {path}: {above} is a file, not a folder")
     try:
         with TemporaryFile(dir=above):  # what counts is not the permission but whether it works
             pass
     except OSError:
-        raise ParameterError(f"--out {path}: the folder {above} may not be written to") from None
+        raise ParameterError(f"{option} {path}: the folder {above} may not be written to") from None

@@ -24,8 +24,8 @@ def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
         "Compute every checkable number of the thesis: from its program as it is listed, from its "
-        "equations exactly, and with the calibrated material; with a verdict each. It takes less "
-        "than a minute."
+        "equations exactly, and with the calibrated material; with a verdict each. With --plots, "
+        "draw its figures instead, with --out as well. Each takes less than a minute."
     )
     parser.epilog = "example: bushing-noise thesis --out thesis.csv"
     parser.add_argument(
@@ -35,12 +35,30 @@ def configure(parser: ArgumentParser) -> None:
         help="file for the table, .csv, .jsonl, .parquet, or .md for a page to read (default: CSV "
         "on standard output)",
     )
+    parser.add_argument(
+        "--plots",
+        type=Path,
+        metavar="FOLDER",
+        help="folder for Figures 5.3, 5.14 to 5.18 and 6.1 to 6.10 as simulated here, "
+        "figure-5.3.png and so on, and torque and frequency against speed for each fit, "
+        "speeds-0.279mm.png and so on; their names are printed",
+    )
     opt.add_seed(parser, "accepted as by every command; nothing here is random")
 
 
 def run(options: Namespace) -> int:
+    """Compute and write the table, or draw the figures, or both."""
+    if options.plots is not None:
+        _check_folder(options.plots)
+    if options.out is not None or options.plots is None:
+        _write_table(options.out)
+    if options.plots is not None:
+        _draw(options.plots)
+    return 0
+
+
+def _write_table(out: Path | None) -> None:
     """Compute, write, and tell how many rows hold."""
-    out: Path | None = options.out
     is_page = out is not None and out.suffix.lower() == _PAGE_ENDING
     _check(out, is_page=is_page)
     say("preparing")
@@ -58,7 +76,23 @@ def run(options: Namespace) -> int:
     say(f"{len(rows)} rows: {counts}")
     if out is not None:
         print(out)
-    return 0
+
+
+def _draw(folder: Path) -> None:
+    say("preparing")
+    from noise.pictures.files import write_picture
+    from noise.pictures.thesis import N_PICTURES, thesis_pictures
+
+    for name, figure in track(thesis_pictures(), "drawing", total=N_PICTURES, unit="picture"):
+        path = folder / f"{name}.png"
+        write_picture(path, figure)
+        print(path)
+
+
+def _check_folder(folder: Path) -> None:
+    if folder.is_file():
+        raise ParameterError(f"--plots {folder}: is a file; name a folder")
+    check_target(folder / "figure-5.3.png", "--plots")
 
 
 def _check(out: Path | None, *, is_page: bool) -> None:

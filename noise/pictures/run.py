@@ -1,0 +1,276 @@
+"""One run in one picture: what moved, how it slipped, and what could be heard of it.
+
+Time histories and phase planes show the motion as it was computed, which no sensor sees;
+autospectra show what the sensors recorded, up to half the sampling rate. A linear axis would hide
+the slips' harmonics below 2 kHz or a creak's rattle above, so frequencies are on a logarithmic one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.spectra import autospectrum
+from noise.pictures.axes import (
+    BLUE,
+    GREY,
+    ORANGE,
+    frequency_axis,
+    levels,
+    new_figure,
+    padded,
+    styled,
+    thinned,
+)
+from noise.pictures.window import Window, run_window
+from noise.report.traces import KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+    from models.recording import Recording
+    from sim.motion import Motion
+    from sim.run import Run
+
+__all__ = ["condition_words", "plot_run"]
+
+_LOWEST = 20.0
+"""Left end of the frequency axes [Hz]."""
+
+_DYNAMIC_RANGE = 120.0
+"""Of a spectrum's axis at most [dB]."""
+
+_WHOLE_ALONE = 1.5
+"""A run that is no longer than so many windows is shown once."""
+
+_ORBIT = 20_000
+"""Samples of the motion in the background of the phase planes."""
+
+_LEAST_TORQUE, _LEAST_ANGLE, _LEAST_SPEED = 0.1, 0.1, 0.1
+"""What an axis spans at least [Nm], [mrad], [rad/s]."""
+
+_Curve = tuple["NDArray[np.float64]", str, str, float]
+"""Values, colour, label (empty for none) and line width."""
+
+
+def plot_run(run: Run) -> Figure:
+    """Draw a simulated run.
+
+    Parameters
+    ----------
+    run : Run
+        Of any material, law, effect and motion of the shaft.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Torque, displacements and sliding speed over time, the whole run and beside it a few slips;
+        of these the phase plane, and torque against sliding speed; autospectra of torque,
+        acceleration and sound pressure, one-sided, as levels in dB. It belongs to no window and
+        to no pyplot; ``figure.savefig("run.png")`` writes it.
+
+    Notes
+    -----
+    After Figures 5.1, 5.21 to 5.24, and 6.1 to 6.9.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> figure = plot_run(simulate(load_material_rig("fluorocarbon-thesis"), 1.0, seconds=0.2))
+    >>> figure.get_suptitle()
+    'fluorocarbon-thesis, 0.279 mm, 2214 Nm/rad, 1 rad/s'
+    """
+    window = run_window(run)
+    with styled():
+        figure = new_figure(17.0, condition_words(run.recording.condition, run.motion))
+        parts = figure.subfigures(3, 1, squeeze=False, height_ratios=(6.6, 4.0, 6.4))[:, 0]
+        _histories(parts[0], run.motion, window)
+        _planes(parts[1], run.motion, window)
+        _spectra(parts[2], run, window)
+    return figure
+
+
+def condition_words(condition: Condition, motion: Motion) -> str:
+    """Material, fit, support and speed in one line, for a title.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> from sim.shaft import SpeedRamp
+    >>> run = simulate(load_material_rig("PDMS"), SpeedRamp(0.0, 5.0, 0.1), seconds=0.1)
+    >>> condition_words(run.recording.condition, run.motion)
+    'PDMS, 0.279 mm, 2214 Nm/rad, 0 to 5 rad/s'
+    """
+    words = []
+    if condition.material is not None:
+        words.append(condition.material)
+    if condition.interference is not None:
+        words.append(f"{1e3 * condition.interference:.4g} mm")
+    if condition.support_stiffness is not None:
+        fixed = math.isinf(condition.support_stiffness)
+        words.append("clamp fixed" if fixed else f"{condition.support_stiffness:g} Nm/rad")
+    if condition.speed is not None:
+        words.append(f"{condition.speed:g} rad/s")
+    else:
+        low, high = float(motion.shaft_speed.min()), float(motion.shaft_speed.max())
+        words.append(f"{low:.3g} to {high:.3g} rad/s")
+    return ", ".join(words)
+
+
+def _histories(figure: SubFigure, motion: Motion, window: Window) -> None:
+    """Torque, displacement and sliding speed over time: the whole run, and a few slips."""
+    n, rate = motion.torque.size, motion.rate
+    whole = slice(0, n)
+    zoom = slice(window.first, window.last)
+    both = n > _WHOLE_ALONE * (window.last - window.first)
+    columns = (whole, zoom) if both else (whole,)
+    axes = figure.subplots(3, len(columns), sharex="col", sharey="row", squeeze=False)
+    for column, part in zip(axes.T, columns, strict=True):
+        in_detail = part is zoom or not both
+        seconds = np.arange(part.start, part.stop) / rate
+        unit = "s" if seconds[-1] > 1.0 and not in_detail else "ms"
+        # A window late in a long run is told from where it begins.
+        start = part.start / rate if in_detail else 0.0
+        time = (seconds - start) * (1.0 if unit == "s" else 1e3)
+        for row, curves in zip(column, _motion_curves(motion, part), strict=True):
+            for values, colour, label, width in curves:
+                row.plot(*thinned(time, values), color=colour, linewidth=width, label=label or None)
+        column[-1].set_xlim(time[0], time[-1])
+        column[0].set_title("Whole run" if not in_detail else _cycles_title(window, both=both))
+        column[-1].set_xlabel(
+            f"Time [{unit}]" if start == 0 else f"Time from {start:.4g} s [{unit}]"
+        )
+        if both and not in_detail:
+            factor = 1.0 if unit == "s" else 1e3
+            for row in column:
+                row.axvspan(
+                    factor * window.first / rate, factor * window.last / rate,
+                    color="black", alpha=0.3, linewidth=0, zorder=3,
+                )  # fmt: skip
+    names = ("Torque [Nm]", "Displacement [mrad]", "Speed [rad/s]")
+    least = (_LEAST_TORQUE, _LEAST_ANGLE, _LEAST_SPEED)
+    for row, name, smallest, curves in zip(
+        axes, names, least, _motion_curves(motion, whole), strict=True
+    ):
+        row[0].set_ylabel(name)
+        row[0].set_ylim(_limits([values for values, *_ in curves], smallest))
+        _legend_above(row[0])
+    figure.align_ylabels(axes[:, 0])
+
+
+def _cycles_title(window: Window, *, both: bool) -> str:
+    name = "Part of it" if both else "Whole run"
+    return name if window.frequency is None else f"{name}, {window.frequency:.4g} cycles a second"
+
+
+def _motion_curves(motion: Motion, part: slice) -> tuple[list[_Curve], ...]:
+    """Curves of the three time histories, the more important ones later and so on top."""
+    displacements: list[_Curve] = [
+        (1e3 * motion.interface_angle[part], BLUE, "elastomer's surface", 1.3)
+    ]
+    if np.any(motion.clamp_angle):
+        displacements.append((1e3 * motion.clamp_angle[part], ORANGE, "clamp", 1.3))
+    return (
+        [
+            (motion.friction_torque[part], ORANGE, "contact", 0.9),
+            (motion.torque[part], BLUE, "elastomer", 1.3),
+        ],
+        displacements,
+        [
+            (motion.sliding_speed[part], BLUE, "sliding (shaft - surface)", 1.3),
+            (motion.shaft_speed[part], GREY, "shaft", 1.0),
+        ],
+    )
+
+
+def _planes(figure: SubFigure, motion: Motion, window: Window) -> None:
+    """Phase plane of the elastomer's surface, and torque against sliding speed."""
+    left, right = figure.subplots(1, 2)
+    spare = max(0, _ORBIT - (window.last - window.first)) // 2
+    around = slice(max(0, window.first - spare), window.last + spare)
+    zoom = slice(window.first, window.last)
+    angle, surface = 1e3 * motion.interface_angle, motion.interface_speed
+    sliding = motion.sliding_speed
+    pale = {"color": BLUE, "linewidth": 0.5, "alpha": 0.25}
+    left.plot(angle[around], surface[around], **pale)
+    left.plot(angle[zoom], surface[zoom], color=BLUE)
+    if np.ptp(motion.shaft_speed[zoom]) < 1e-3:
+        speed = float(motion.shaft_speed[window.first])
+        left.axhline(speed, color=GREY, linestyle="--", label="speed of the shaft", zorder=1)
+        _legend_above(left)
+    left.set_title("Phase plane of the elastomer's surface")
+    left.set_xlabel("Displacement [mrad]")
+    left.set_ylabel("Speed of the surface [rad/s]")
+    left.set_xlim(_limits([angle[around]], _LEAST_ANGLE))
+    left.set_ylim(_limits([surface[around], motion.shaft_speed[around]], _LEAST_SPEED))
+    right.plot(sliding[around], motion.torque[around], **pale)
+    right.plot(
+        sliding[zoom], motion.friction_torque[zoom],
+        color=ORANGE, linewidth=1.0, label="contact",
+    )  # fmt: skip
+    right.plot(sliding[zoom], motion.torque[zoom], color=BLUE, label="elastomer")
+    right.set_title("Torque against sliding speed")
+    right.set_xlabel("Sliding speed [rad/s]")
+    right.set_ylabel("Torque [Nm]")
+    right.set_xlim(_limits([sliding[around]], _LEAST_SPEED))
+    torques = [motion.torque[around], motion.friction_torque[zoom]]
+    right.set_ylim(_limits(torques, _LEAST_TORQUE))
+    _legend_above(right)
+    if np.ptp(sliding[around]) < _LEAST_SPEED:  # an orbit that is a point
+        left.plot(angle[zoom][-1:], surface[zoom][-1:], "o", color=BLUE)
+        right.plot(sliding[zoom][-1:], motion.torque[zoom][-1:], "o", color=BLUE)
+
+
+def _spectra(figure: SubFigure, run: Run, window: Window) -> None:
+    """Autospectra of what the sensors recorded."""
+    recording = run.recording
+    rows = figure.subplots(len(KINDS), 1, sharex=True)
+    cycles = window.frequency if recording.condition.speed is not None else None
+    title = "Autospectra: one-sided power spectral density, Hann window, "
+    for axes, kind in zip(rows, KINDS, strict=True):
+        words = _spectrum(axes, recording, kind)
+        if cycles is not None:
+            axes.axvline(cycles, color=GREY, linestyle="--", linewidth=1.0, zorder=1)
+    if cycles is not None:
+        words += f"; dashed: {cycles:.4g} cycles a second"
+    rows[0].set_title(title + words)
+    rows[-1].set_xlabel("Frequency [Hz]")
+    figure.align_ylabels(rows)
+
+
+def _spectrum(axes: Axes, recording: Recording, name: str) -> str:
+    """Draw a channel's autospectrum; return how it was computed."""
+    kind = KINDS[name]
+    spectrum = autospectrum(recording[name], recording.rate)
+    shown = spectrum.frequency >= max(_LOWEST, spectrum.spacing)
+    frequency, level = spectrum.frequency[shown], levels(spectrum.density[shown], kind.reference)
+    axes.plot(
+        *thinned(frequency, level, position=np.log(frequency)), color=kind.colour, linewidth=1.0
+    )
+    top = 10.0 * math.ceil((float(level.max()) + 3.0) / 10.0)
+    bottom = 10.0 * math.floor((float(level.min()) - 3.0) / 10.0)
+    axes.set_ylim(max(bottom, top - _DYNAMIC_RANGE), top)
+    frequency_axis(axes, float(min(frequency[0], recording.rate / 4)), recording.rate / 2)
+    axes.set_ylabel(f"{kind.name}\n[dB re {kind.density}]")
+    return f"bins of {spectrum.spacing:.4g} Hz, mean of {spectrum.n_segments}"
+
+
+def _limits(curves: Sequence[NDArray[np.float64]], least: float) -> tuple[float, float]:
+    low, high = min(float(c.min()) for c in curves), max(float(c.max()) for c in curves)
+    return padded(low, high, least)
+
+
+def _legend_above(axes: Axes) -> None:
+    """Put the legend where no curve runs: on top of the axes, right of the title."""
+    axes.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.1, columnspacing=1.0
+    )

@@ -1,0 +1,139 @@
+"""Torque against speed and frequency against speed, over a sweep of speeds.
+
+Of a sweep only the torque is kept, at a rate that holds all its lines; means, extremes and lines
+follow from it for any friction law in the same way. Slips of true stick are counted exactly by the
+sweep itself; elsewhere a slip is a sudden drop of the torque.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.lines import find_lines
+from features.spectra import autospectrum
+from noise.pictures.window import oscillates, repetition_rate
+from sim.sweep import Sweep
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+
+__all__ = ["SweptTorque", "sweep_torque"]
+
+_SECONDS, _SETTLING = 1.0, 0.5
+"""[s]; the first torsional mode dies in 0.1 s or so."""
+
+_RATE, _EVERY = 30e3, 3
+"""Of the simulation [Hz], and how many of its samples make one of the torque that is kept."""
+
+_LOWEST, _HIGHEST = 20.0, 4e3
+"""Where lines are sought [Hz]: the torque has little above 2 kHz (5.2.3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class SweptTorque:
+    """Torques of one rig over speeds and supports; arrays have shape (n_supports, n_speeds).
+
+    Parameters
+    ----------
+    speed : ndarray, shape (n_speeds,)
+        [rad/s]
+    support_stiffness : tuple of float, length n_supports
+        [Nm/rad]
+    mean, low, high : ndarray
+        Mean torque, and the lowest and highest [Nm].
+    slip_frequency : ndarray
+        Slips, or periods of the torque, a second [Hz]; NaN where it does not oscillate.
+    strongest_line : ndarray
+        Of the torque [Hz]; NaN likewise.
+    """
+
+    speed: NDArray[np.float64]
+    support_stiffness: tuple[float, ...]
+    mean: NDArray[np.float64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    slip_frequency: NDArray[np.float64]
+    strongest_line: NDArray[np.float64]
+
+
+def sweep_torque(
+    rig: Rig,
+    speed: Sequence[float] | NDArray[np.float64],
+    *,
+    interference: float,
+    support_stiffness: Sequence[float],
+) -> SweptTorque:
+    """Simulate a rig at all speeds on all supports, for `noise.pictures.speeds.plot_sweep`.
+
+    Parameters
+    ----------
+    rig : Rig
+    speed : array_like, shape (n_speeds,)
+        [rad/s]
+    interference : float
+        [m]
+    support_stiffness : sequence of float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+
+    Raises
+    ------
+    ParameterError
+        A condition that cannot be simulated.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> sweep = sweep_torque(rig, [1.0, 2.5], interference=0.279e-3, support_stiffness=[3745.0])
+    >>> sweep.slip_frequency.round(), sweep.mean.round(1)
+    (array([[150., 307.]]), array([[8.7, 8.6]]))
+    """
+    speeds = np.asarray(speed, dtype=np.float64)
+    supports = np.array(support_stiffness, dtype=np.float64)
+    runs = Sweep(
+        rig,
+        speeds[None, :],
+        interference=interference,
+        support_stiffness=supports[:, None],
+        seconds=_SECONDS,
+        settling=_SETTLING,
+        rate=_RATE,
+    )
+    torque = runs.torque(every=_EVERY).astype(np.float64)
+    if rig.friction.name == "coulomb":
+        slips = runs.features()["slip_frequency"]
+    else:
+        slips = _each(torque, lambda one: repetition_rate(one, _RATE / _EVERY))
+    return SweptTorque(
+        speed=speeds,
+        support_stiffness=tuple(map(float, supports)),
+        mean=torque.mean(axis=-1),
+        low=torque.min(axis=-1),
+        high=torque.max(axis=-1),
+        slip_frequency=slips,
+        strongest_line=_each(torque, _strongest_line),
+    )
+
+
+def _strongest_line(torque: NDArray[np.float64]) -> float | None:
+    if not oscillates(torque):
+        return None
+    rate = _RATE / _EVERY
+    found = find_lines(autospectrum(torque, rate), low=_LOWEST, high=_HIGHEST)
+    return float(found.frequency[0]) if found.frequency.size else None
+
+
+def _each(
+    torque: NDArray[np.float64], of: Callable[[NDArray[np.float64]], float | None]
+) -> NDArray[np.float64]:
+    found = [of(one) for one in torque.reshape(-1, torque.shape[-1])]
+    numbers = [math.nan if value is None else value for value in found]
+    return np.array(numbers).reshape(torque.shape[:-1])

@@ -1,0 +1,116 @@
+"""Which part of a run is shown enlarged: a few slips, where the run is at its liveliest.
+
+At constant speed any part is as good, and the middle is taken. A shaft that swings or runs up is
+quiet for most of the time; there it is the part about the largest acceleration of the beam.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.harmonics import analyse_harmonics
+from features.slip_drops import torque_slips
+from sim.regime import LEAST_OSCILLATION
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.run import Run
+
+__all__ = ["Window", "oscillates", "repetition_rate", "run_window"]
+
+_CYCLES = 6
+_SHORTEST, _LONGEST = 2e-3, 0.1
+_WITHOUT_CYCLES = 0.04
+"""Length of a window [s]."""
+
+_AROUND = 0.25
+"""How much of the run on either side the period is taken from [s]."""
+
+_LEAST_SAMPLES = 1000
+"""In which a period is sought."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """A part of a motion.
+
+    Parameters
+    ----------
+    first, last : int
+        Samples of the motion, `last` being the first one after it.
+    frequency : float, optional
+        Repetition rate of slips, or of the oscillation, thereabouts [Hz].
+    """
+
+    first: int
+    last: int
+    frequency: float | None
+
+
+def run_window(run: Run) -> Window:
+    """Choose the part of a run that is shown enlarged.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> run = simulate(load_material_rig("fluorocarbon-thesis"), 1.0, support_stiffness=3745.0)
+    >>> window = run_window(run)
+    >>> round(window.frequency), round((window.last - window.first) / run.motion.rate, 3)
+    (150, 0.04)
+    """
+    motion, recording = run.motion, run.recording
+    n, rate = motion.torque.size, motion.rate
+    middle = n // 2
+    if recording.condition.speed is None:
+        loudest = int(np.argmax(np.abs(recording["acceleration"])))
+        middle = min(round(loudest * rate / recording.rate), n - 1)
+    reach = round(_AROUND * rate)
+    frequency = repetition_rate(motion.torque[max(0, middle - reach) : middle + reach], rate)
+    seconds = _WITHOUT_CYCLES
+    if frequency is not None:
+        seconds = min(max(_CYCLES / frequency, _SHORTEST), _LONGEST)
+    size = min(n, round(seconds * rate))
+    first = min(max(0, middle - size // 2), n - size)
+    return Window(first, first + size, frequency)
+
+
+def repetition_rate(torque: NDArray[np.floating], rate: float) -> float | None:
+    """Slips a second, or periods of the torque where nothing slips suddenly [Hz].
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n_samples,)
+        [Nm]
+    rate : float
+        [Hz]
+
+    Returns
+    -------
+    float or None
+        None where the torque does not oscillate, or not regularly.
+
+    Examples
+    --------
+    >>> t = np.arange(6000) / 30e3
+    >>> round(repetition_rate(8.0 + np.sin(2 * np.pi * 300.0 * t), 30e3))
+    300
+    >>> repetition_rate(np.full(6000, 8.0), 30e3) is None
+    True
+    """
+    if torque.size < _LEAST_SAMPLES or not oscillates(torque):
+        return None
+    slips = torque_slips(torque, rate)
+    if np.isfinite(slips.mean_interval):
+        return 1.0 / slips.mean_interval
+    period = analyse_harmonics(torque, rate).fundamental
+    return float(period) if np.isfinite(period) else None
+
+
+def oscillates(torque: NDArray[np.floating]) -> bool:
+    """Whether a torque oscillates, as `sim.regime` has it."""
+    return bool(np.std(torque) > LEAST_OSCILLATION * abs(np.mean(torque)))
