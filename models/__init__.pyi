@@ -1,6 +1,20 @@
-from .beams import (
+from .beams_exact import (
+    BeamResponse as BeamResponse,
+    forced_response as forced_response,
+    mode_shape as mode_shape,
+    natural_frequencies as natural_frequencies,
+)
+from .beams_fit import (
+    AnchorFit as AnchorFit,
+    fit_anchors as fit_anchors,
+)
+from .beams_stiffness import (
     beam_length as beam_length,
     torsional_stiffness as torsional_stiffness,
+)
+from .beams_waves import (
+    ClampOnBeams as ClampOnBeams,
+    RootMotion as RootMotion,
 )
 from .condition import (
     FIXED as FIXED,

@@ -1,4 +1,4 @@
-"""One beam between a rigid, turning clamp and a rigid anchor, in Hermite finite elements.
+"""One beam between a rigid, turning clamp and its anchor, in Hermite finite elements.
 
 Consistent mass matrices, so that the reaction at the anchor, stiffness times displacements plus
 mass times accelerations, is as accurate as the motion itself.
@@ -6,6 +6,7 @@ mass times accelerations, is as accurate as the motion itself.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,19 +20,26 @@ __all__ = ["N_ELEMENTS", "HalfStructure", "deflection_row", "half_structure"]
 N_ELEMENTS = 24
 """Of a beam: 0.3 % in the frequency of its ninth mode, which is at 35 kHz for 12.3 cm."""
 
+_RIGID = 1e4
+"""An anchor so many times as stiff as the element beside it is rigid to 1e-5 of the beam's own
+stiffness; a larger number would cost the eigenvalues their digits."""
+
 
 @dataclass(frozen=True, eq=False)
 class HalfStructure:
     """A beam on the coordinates theta, then deflection and slope of each inner node.
 
+    Deflection and slope at the anchor follow where the anchor is not rigid.
+
     Parameters
     ----------
     stiffness, mass : ndarray, shape (n, n)
-        Of this one beam [SI units of the coordinates].
+        Of this one beam with the springs of its anchor [SI units of the coordinates].
     expansion : ndarray, shape (2 n_nodes, n)
         To deflection [m] and slope of every node from the clamp to the anchor.
     anchor_stiffness, anchor_mass : ndarray, shape (2, n)
-        Force [N] and moment [Nm] that the anchor must exert, by displacements and accelerations.
+        Force [N] and moment [Nm] that the anchor must exert on the beam, by displacements and
+        accelerations.
     """
 
     stiffness: NDArray[np.float64]
@@ -42,7 +50,13 @@ class HalfStructure:
 
 
 def half_structure(
-    *, bending_stiffness: float, mass_per_length: float, length: float, lever: float
+    *,
+    bending_stiffness: float,
+    mass_per_length: float,
+    length: float,
+    lever: float,
+    anchor_translation: float = math.inf,
+    anchor_rotation: float = math.inf,
 ) -> HalfStructure:
     """Assemble the beam.
 
@@ -54,6 +68,8 @@ def half_structure(
         [kg/m]
     length, lever : float
         Of the beam, and from the axis of rotation to its root [m].
+    anchor_translation, anchor_rotation : float, optional
+        Stiffness of the anchor against deflection [N/m] and slope [Nm/rad].
 
     Returns
     -------
@@ -97,11 +113,16 @@ def half_structure(
         nodes = slice(2 * element, 2 * element + 4)
         stiffness[nodes, nodes] += element_stiffness
         mass[nodes, nodes] += element_mass
-    expansion = np.zeros((size, size - 3))
+    springs = np.array([anchor_translation, anchor_rotation])
+    yielding = np.flatnonzero(springs < _RIGID * np.diag(element_stiffness)[2:])
+    free = np.array([*range(2, size - 2), *(size - 2 + yielding)])
+    expansion = np.zeros((size, 1 + free.size))
     expansion[:2, 0] = lever, 1.0
-    expansion[2:-2, 1:] = np.eye(size - 4)
+    expansion[free, 1 + np.arange(free.size)] = 1.0
+    held = stiffness.copy()
+    held[size - 2 + yielding, size - 2 + yielding] += springs[yielding]
     return HalfStructure(
-        stiffness=expansion.T @ stiffness @ expansion,
+        stiffness=expansion.T @ held @ expansion,
         mass=expansion.T @ mass @ expansion,
         expansion=expansion,
         anchor_stiffness=stiffness[-2:] @ expansion,

@@ -1,10 +1,10 @@
-"""The beams that carry the clamp: their stiffness, and what passes from the clamp to the plate.
+"""The beams that carry the clamp, by their modes: what passes from the clamp to the plate.
 
-Clamp and beams turn about the shaft's axis, so by symmetry one beam stands for both: fixed at
-its anchor, which is taken as rigid, and following the rigid clamp at its root, where the
-deflection is lever times theta and the slope is theta (Section 4.3, equations 4.6 and 4.7).
-Bernoulli beams in Hermite finite elements with consistent mass: the anchor's force and moment
-are then exact reactions rather than derivatives of a deflection.
+Clamp and beams turn about the shaft's axis, so by symmetry one beam stands for both: held at
+its anchor, rigidly or by springs, and following the rigid clamp at its root, where the deflection
+is lever times theta and the slope is theta (Section 4.3, equations 4.6 and 4.7). Bernoulli beams
+in Hermite finite elements with consistent mass: the anchor's force and moment are then exact
+reactions rather than derivatives of a deflection.
 
 The simulator integrates a lumped clamp, J_C on k_B. J_C "includes clamp, elastomer and beam"
 (Chapter 4), so the rigid clamp's own inertia is smaller. It is chosen such that the first
@@ -12,23 +12,32 @@ torsional mode of beams and clamp has exactly the lumped model's sqrt(k_B / J_C)
 with the damping passed in, the lumped model's damping: the two agree where both apply, and the
 beams add what the lumped model lacks, their bending modes from about 1 kHz upwards.
 
-A beam as a radiator of its own is not here, nor are translations of the clamp, which a torque
-does not drive on a symmetric rig.
+Translations of the clamp, which a torque does not drive on a symmetric rig, are not here but in
+`models.beams_exact`; the sound of the beams themselves is in `models.beams_sound`.
 """
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import eigh
 
 from models.beam_elements import HalfStructure, deflection_row, half_structure
+from models.beams_stiffness import (
+    beam_length,
+    bending_stiffness,
+    mass_per_length,
+    torsional_stiffness,
+)
 from models.errors import ParameterError
 from models.modal import ModalModel
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
     from models.rig import Beams
 
 __all__ = [
@@ -37,84 +46,15 @@ __all__ = [
     "ANCHOR_MOMENT",
     "PULSE",
     "TORQUE",
-    "beam_length",
     "beam_structure",
     "rigid_clamp_inertia",
-    "torsional_stiffness",
 ]
 
 TORQUE, PULSE = 0, 1
 """Inputs of `beam_structure`."""
 
 ACCELERATION, ANCHOR_FORCE, ANCHOR_MOMENT = 0, 1, 2
-"""Outputs of `beam_structure`."""
-
-
-def torsional_stiffness(beams: Beams, length: float) -> float:
-    """Torsional stiffness k_B of clamp and two beams, equation (4.11).
-
-    Parameters
-    ----------
-    beams : Beams
-    length : float
-        Of each beam, from the anchor to the clamp [m].
-
-    Returns
-    -------
-    float
-        [Nm/rad]
-
-    Examples
-    --------
-    The thesis rounds the first one to 2214:
-
-    >>> from models.rig import Beams
-    >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
-    >>> [round(torsional_stiffness(steel, length), 1) for length in (0.123, 0.092)]
-    [2198.6, 3745.1]
-    """
-    lever = beams.lever
-    return 24 * _bending_stiffness(beams) / length**2 * (lever**2 / length + lever + length / 3)
-
-
-def beam_length(beams: Beams, stiffness: float) -> float:
-    """Beam length at which the beams have a given torsional stiffness.
-
-    Equation (4.11) is a cubic in the length with exactly one positive root, by Descartes' rule
-    of signs; the other two are no larger in modulus.
-
-    Parameters
-    ----------
-    beams : Beams
-    stiffness : float
-        [Nm/rad]
-
-    Returns
-    -------
-    float
-        [m]
-
-    Raises
-    ------
-    ParameterError
-        If the stiffness is not positive and finite.
-
-    Examples
-    --------
-    >>> from models.rig import Beams
-    >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
-    >>> round(beam_length(steel, 2214.0), 4)
-    0.1225
-    """
-    if not 0 < stiffness < math.inf:
-        raise ParameterError(
-            f"support stiffness {stiffness:g} Nm/rad belongs to no beam; "
-            f"give a positive, finite one"
-        )
-    scale = 24 * _bending_stiffness(beams) / stiffness
-    lever = beams.lever
-    roots = np.roots([1.0, -scale / 3, -scale * lever, -scale * lever**2])
-    return float(roots.real.max())
+"""First outputs of `beam_structure`."""
 
 
 def rigid_clamp_inertia(beams: Beams, length: float, clamp_inertia: float) -> float:
@@ -167,6 +107,7 @@ def beam_structure(
     clamp_inertia: float,
     damping_ratio: float,
     highest_frequency: float,
+    stations: Sequence[float] = (),
 ) -> ModalModel:
     """Modes of clamp and beams, from the bushing's torque to accelerometer and anchors.
 
@@ -181,17 +122,20 @@ def beam_structure(
         Of the first torsional mode; the others have that of `beams`.
     highest_frequency : float
         Modes above it act on the anchors by their static part alone [Hz].
+    stations : sequence of float, optional
+        Distances from the shaft's axis, on the clamp or the right beam, of which the
+        acceleration is wanted as well [m].
 
     Returns
     -------
     ModalModel
         Inputs: `TORQUE` of the bushing on the clamp [Nm]; `PULSE`, a normal force by which the
         anchor of the right beam pushes the plate up and that of the left one pulls it down [N].
-        The beams take the opposite force, one element from their anchors.
+        The beams take the opposite force, beside their anchors.
         Outputs: `ACCELERATION` of the right beam at the accelerometer [m/s2];
         `ANCHOR_FORCE` [N] and `ANCHOR_MOMENT` [Nm] of the right anchor on the plate, the moment
         such that it works on the slope dw/dx. The left anchor passes the opposite force and
-        the same moment.
+        the same moment. Then the acceleration of each station, up [m/s2].
 
     Raises
     ------
@@ -220,19 +164,21 @@ def beam_structure(
 
     inputs = np.zeros((mass.shape[0], 2))
     inputs[0, TORQUE] = 1.0
-    inputs[-2, PULSE] = -2.0  # both beams, each working on its own deflection
+    # Both beams, each working on its own deflection.
+    inputs[:, PULSE] = -2.0 * deflection_row(1.0 - beams.strike, length) @ half.expansion
     reaction_stiffness, reaction_mass = -half.anchor_stiffness, -half.anchor_mass
-    static = np.zeros((3, 2))
-    static[1:] = reaction_stiffness @ np.linalg.solve(stiffness, inputs)
+    static = np.zeros((3 + len(stations), 2))
+    static[1:3] = reaction_stiffness @ np.linalg.solve(stiffness, inputs)
 
     kept = np.sqrt(omega2) / (2 * np.pi) <= highest_frequency
     omega2, shapes = omega2[kept], shapes[:, kept]
     ratios = np.full(omega2.size, beams.damping_ratio)
     ratios[:1] = damping_ratio
-    none = np.zeros((1, omega2.size))
-    displacements = np.concatenate([none, reaction_stiffness @ shapes])
-    sensor = deflection_row(beams.accelerometer, length) @ half.expansion
-    accelerations = np.concatenate([(sensor @ shapes)[None], reaction_mass @ shapes])
+    displacements = np.zeros((3 + len(stations), omega2.size))
+    displacements[1:3] = reaction_stiffness @ shapes
+    sensor = beams.lever + beams.accelerometer * length
+    deflections = _deflection_rows(half, beams.lever, length, [sensor, *stations]) @ shapes
+    accelerations = np.concatenate([deflections[:1], reaction_mass @ shapes, deflections[1:]])
     modal_inputs = shapes.T @ inputs
     return ModalModel(
         frequencies=np.sqrt(omega2) / (2 * np.pi),
@@ -246,12 +192,26 @@ def beam_structure(
 
 def _half_structure(beams: Beams, length: float) -> HalfStructure:
     return half_structure(
-        bending_stiffness=_bending_stiffness(beams),
-        mass_per_length=beams.density * beams.width * beams.thickness,
+        bending_stiffness=bending_stiffness(beams),
+        mass_per_length=mass_per_length(beams),
         length=length,
         lever=beams.lever,
+        anchor_translation=beams.anchor_translation,
+        anchor_rotation=beams.anchor_rotation,
     )
 
 
-def _bending_stiffness(beams: Beams) -> float:
-    return beams.youngs_modulus * beams.width * beams.thickness**3 / 12
+def _deflection_rows(
+    half: HalfStructure, lever: float, length: float, distances: Sequence[float]
+) -> NDArray[np.float64]:
+    """Rows that take the coordinates to the deflection at distances from the axis."""
+    turning = np.zeros(half.expansion.shape[1])
+    turning[0] = 1.0
+    return np.array(
+        [
+            d * turning
+            if d < lever
+            else deflection_row(min((d - lever) / length, 1.0), length) @ half.expansion
+            for d in distances
+        ]
+    )

@@ -10,8 +10,8 @@ beams are taken to pass nothing else on to the plate. With the clamp bolted to t
 neither beam nor joint: the torque is a moment on the plate, the pulse is without effect, and the
 acceleration is that of the plate at the clamp's edge.
 
-Only the plate's direct sound is modelled. Room, and beams and clamp as radiators, are left out;
-the plate does not act back on the beams, whose anchors are rigid.
+Beams and clamp are heard as well where the rig says so (`models.beams_sound`). Only direct sound is
+modelled, and the plate does not act back on the beams.
 """
 
 from __future__ import annotations
@@ -28,9 +28,10 @@ from models.beams import (
     ANCHOR_MOMENT,
     PULSE,
     TORQUE,
-    beam_length,
     beam_structure,
 )
+from models.beams_sound import beams_pressure
+from models.beams_stiffness import beam_length
 from models.errors import ParameterError
 from models.plate import (
     acceleration_model,
@@ -155,13 +156,24 @@ def _beam_response(
     model = beam_structure(beams, support_stiffness, clamp_inertia, damping_ratio, highest)
     structure = model.impulse_response(rate, n_samples)
     force, moment = _anchors_to_pressure(plate, microphone, arm, rate, n_samples)
+    pressure = np.stack(
+        [
+            convolve(structure[ANCHOR_FORCE, TORQUE], force)
+            + convolve(structure[ANCHOR_MOMENT, TORQUE], moment),
+            force,
+        ]
+    )
+    if beams.radiating:
+        pressure += beams_pressure(
+            beams, support_stiffness, clamp_inertia, damping_ratio, plate.clamp_position,
+            microphone, rate, n_samples, highest,
+        )  # fmt: skip
     return _faded(
         rate,
         structure[ACCELERATION, TORQUE],
-        convolve(structure[ANCHOR_FORCE, TORQUE], force)
-        + convolve(structure[ANCHOR_MOMENT, TORQUE], moment),
+        pressure[TORQUE],
         structure[ACCELERATION, PULSE],
-        force,
+        pressure[PULSE],
     )
 
 

@@ -83,6 +83,19 @@ class Beams:
         Of the beams' bending modes above the first torsional one.
     accelerometer : float
         Where on the beam it sits, as a fraction of the length from the clamp.
+    anchor_rotation : float, optional
+        Stiffness of an anchor against the slope of its beam [Nm/rad]; rigid as in 3.1.1.
+    anchor_translation : float, optional
+        Stiffness of an anchor against the deflection of its beam [N/m]; rigid as in 3.1.1.
+    strike : float, optional
+        Where the reaction of a blow in the anchor's joint strikes the beam, as a fraction of the
+        length from the anchor.
+    radiating : bool, optional
+        Whether beams and clamp are heard as well, not the plate alone.
+    height : float, optional
+        Of beams and shaft over the plate [m]; for their sound.
+    clamp_width : float, optional
+        Of the clamp along the shaft, and its height [m]; for its sound.
     """
 
     width: float
@@ -92,6 +105,12 @@ class Beams:
     density: float
     damping_ratio: float
     accelerometer: float
+    anchor_rotation: float = math.inf
+    anchor_translation: float = math.inf
+    strike: float = 1 / 24
+    radiating: bool = False
+    height: float = 0.06
+    clamp_width: float = 0.04
 
 
 @dataclass(frozen=True)

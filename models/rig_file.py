@@ -15,9 +15,10 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from models.beams_file import read_beams
 from models.checks import a_number, a_table, a_text, a_vector, refuse_unknown
 from models.errors import ParameterError
-from models.rig import HIGHEST_PLATE_FREQUENCY, Beams, Fit, LawSpec, Microphone, Plate, Rig
+from models.rig import HIGHEST_PLATE_FREQUENCY, Fit, LawSpec, Microphone, Plate, Rig
 
 __all__ = ["load_material_rig", "load_rig", "material_names", "parse_spec"]
 
@@ -179,7 +180,7 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
             merged, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True
         ),
         effects=tuple(parse_spec(a_text(e, "effects", where), f"{where}, effect") for e in effects),
-        beams=_beams(merged["beams"], f"{where}, beams"),
+        beams=read_beams(merged["beams"], f"{where}, beams"),
         plate=_plate(merged["plate"], f"{where}, plate"),
         microphone=_microphone(merged["microphone"], f"{where}, microphone"),
         assumed=_texts(merged.get("assumed", []), "assumed", where),
@@ -228,23 +229,6 @@ def _fit(table: Any, where: str) -> Fit:
             for key, value in by_support.items()
         },
     )
-
-
-def _beams(table: Mapping[str, Any], where: str) -> Beams:
-    fields = {
-        "width": "width_m",
-        "thickness": "thickness_m",
-        "lever": "lever_m",
-        "youngs_modulus": "youngs_modulus_Pa",
-        "density": "density_kgm3",
-        "damping_ratio": "damping_ratio",
-        "accelerometer": "accelerometer",
-    }
-    refuse_unknown(table, set(fields.values()), where)
-    values = {field: a_number(table, key, where) for field, key in fields.items()}
-    a_number(table, "damping_ratio", where, high=1.0)
-    a_number(table, "accelerometer", where, high=1.0, closed=True)
-    return Beams(**values)
 
 
 def _plate(table: Mapping[str, Any], where: str) -> Plate:

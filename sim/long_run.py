@@ -19,6 +19,7 @@ from models.condition import Condition
 from models.errors import ParameterError
 from models.radiation import response
 from sim.acquisition import Acquisition, sample
+from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import Motion
@@ -136,7 +137,9 @@ def simulate_blocks(
     )
     signals = _signals(
         _with_force(motions, [a for a in effects if a.effect.force is not None], rate),
-        response(rig, interference, support_stiffness, rate),
+        changed_chain(
+            response(rig, interference, support_stiffness, rate), effects, effect_rng.spawn(1)[0]
+        ),
         n_settling,
     )
     return BlockRun(

@@ -14,6 +14,7 @@ from models.errors import ParameterError
 from models.radiation import radiate, response
 from models.recording import Channel, Recording
 from sim.acquisition import Acquisition, sample
+from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import Motion, simulate_motion
@@ -143,7 +144,9 @@ def simulate(
     for active in effects:
         if active.effect.force is not None:
             force += active.effect.force(motion, active.form, active.values)
-    paths = response(rig, interference, support_stiffness, rate)
+    paths = changed_chain(
+        response(rig, interference, support_stiffness, rate), effects, effect_rng.spawn(1)[0]
+    )
     acceleration, pressure = radiate(paths, motion.torque, force)
     _, pulse_pressure = radiate(paths, np.zeros_like(force), force)
 

@@ -13,11 +13,10 @@ from models.beams import (
     ANCHOR_MOMENT,
     PULSE,
     TORQUE,
-    beam_length,
     beam_structure,
     rigid_clamp_inertia,
-    torsional_stiffness,
 )
+from models.beams_stiffness import beam_length, torsional_stiffness
 from models.errors import ParameterError
 from models.rig import Beams
 

@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from models.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
+from models.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
+from models.beams_stiffness import beam_length
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.plate import plate_modes, pressure_response
@@ -176,3 +177,18 @@ def test_anchors_off_the_plate_are_refused():
     narrow = dataclasses.replace(BENCH, plate=dataclasses.replace(BENCH.plate, length=0.4))
     with pytest.raises(ParameterError, match="off the plate"):
         response(narrow, SQUEAKY, 2214.0, RATE)
+
+
+def test_at_the_same_support_stiffness_yielding_anchors_mean_shorter_beams_that_ring_higher():
+    soft = dataclasses.replace(BENCH, beams=dataclasses.replace(BENCH.beams, anchor_rotation=155.0))
+    frequency = np.arange(100.0, 5000.0, 4.0)
+    found = []
+    for rig in (BENCH, soft):
+        paths = response(rig, SQUEAKY, 2214.0, RATE, seconds=0.3)
+        spectrum = np.abs(frequency_response(paths, frequency).torque_to_acceleration)
+        inner = spectrum[1:-1]
+        peaks = np.flatnonzero((inner > spectrum[:-2]) & (inner > spectrum[2:]))
+        found.append(frequency[1 + peaks])
+    rigid, yielding = found
+    assert yielding[0] == rigid[0] == pytest.approx(259.4, abs=4.0)
+    assert np.all(yielding[1:3] > 1.15 * rigid[1:3])

@@ -1,8 +1,9 @@
 """Modes of the rig: lumped model, beams with a rigid clamp on the bushing, and the elastomer's own.
 
 The thesis computed the modes of Figure 3.3 by transfer matrices on its five assumptions (3.1.1).
-They are computed here with beam elements on the same assumptions; mass and inertia of
-the clamp, which it does not give, are those that meet 140 and 250 Hz with the long beams.
+They are computed here exactly on the same assumptions; mass and inertia of the clamp, which it
+does not give, are those that meet 140 and 250 Hz with the long beams. Anchors that are not rigid
+are in `noise.thesis.anchors`.
 """
 
 from __future__ import annotations
@@ -11,10 +12,10 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.linalg import eigh
 
-from models.beam_elements import half_structure
 from models.beams import beam_structure
+from models.beams_exact import natural_frequencies
+from models.beams_waves import ClampOnBeams, RootMotion
 from noise.thesis.row import Row, number
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, strongest_line
 from sim.bushing import lumped_bushing
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from models.rig import Beams
 
-__all__ = ["beam_modes", "clamp_modes", "squeal", "torsional_modes"]
+__all__ = ["beam_modes", "clamp_modes", "clamp_on_beams", "squeal", "torsional_modes"]
 
 _LATERAL_STIFFNESS = 3500.0 * 4.4482216 / 0.0254
 """Of the bushing, 3500 lb/in [N/m]."""
@@ -35,8 +36,8 @@ _TORSIONAL_STIFFNESS = 750.0
 _CLAMP_MASS, _CLAMP_INERTIA = 0.96, 1 / 1050
 """Assumed [kg], [kg m2]."""
 
-_FAR = 1e6
-"""Lever of a clamp that moves sideways instead of turning [m]."""
+_HIGHEST = 12e3
+"""[Hz]"""
 
 _MODE_TOLERANCE = 0.05
 
@@ -64,6 +65,13 @@ def torsional_modes() -> list[Row]:
     return rows
 
 
+def clamp_on_beams(beams: Beams, length: float) -> ClampOnBeams:
+    """Clamp, bushing and beams of one length [m] on the assumptions of 3.1.1."""
+    return ClampOnBeams(
+        beams, length, _CLAMP_MASS, _CLAMP_INERTIA, _LATERAL_STIFFNESS, _TORSIONAL_STIFFNESS
+    )
+
+
 def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
     """Modes of beams of one length [m] with the clamp on the bushing, rigidly anchored [Hz].
 
@@ -72,24 +80,11 @@ def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
     >>> clamp_modes(rig_of(THESIS).beams, 0.123)[:4].round()
     array([ 140.,  250., 1094., 1152.])
     """
-    found = []
-    for lever, stiffness, inertia in (
-        (beams.lever, _TORSIONAL_STIFFNESS, _CLAMP_INERTIA),
-        (_FAR, _LATERAL_STIFFNESS * _FAR**2, _CLAMP_MASS * _FAR**2),
-    ):
-        half = half_structure(
-            bending_stiffness=beams.youngs_modulus * beams.width * beams.thickness**3 / 12,
-            mass_per_length=beams.density * beams.width * beams.thickness,
-            length=length,
-            lever=lever,
-        )
-        k, m = 2.0 * half.stiffness, 2.0 * half.mass
-        k[0, 0] += stiffness
-        m[0, 0] += inertia
-        # Unit diagonal of the mass: a far lever makes the first coordinate tiny.
-        scale = 1.0 / np.sqrt(np.diag(m))
-        values = eigh(k * np.outer(scale, scale), m * np.outer(scale, scale), eigvals_only=True)
-        found.append(np.sqrt(values) / (2.0 * math.pi))
+    structure = clamp_on_beams(beams, length)
+    found = [
+        natural_frequencies(structure, _HIGHEST, motion)
+        for motion in (RootMotion.TURNING, RootMotion.SIDEWAYS)
+    ]
     return np.sort(np.concatenate(found))
 
 

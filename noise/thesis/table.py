@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from noise.thesis import (
     acquisition,
+    anchors,
     calibrations,
     critical_velocities,
     damping,
@@ -36,6 +37,7 @@ GROUPS: tuple[Callable[[], list[Row]], ...] = (
     stiffness.series,
     modes.torsional_modes,
     modes.beam_modes,
+    *(partial(anchors.fitted, kind) for kind in anchors.KINDS),
     heat.heating,
     misprints.misprints,
     modes.squeal,

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from models.response import Response
     from models.rig import LawSpec
     from sim.motion import Motion
     from sim.parameters import Parameter
@@ -34,6 +35,7 @@ DriveFunction = Callable[
 ]
 ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
 SensorFunction = Callable[[Signals, float, str, Values, "np.random.Generator"], Signals]
+ChainFunction = Callable[["Response", str, Values, "np.random.Generator"], "Response"]
 PackFunction = Callable[[str, Values, "np.random.Generator"], "NDArray[np.float64]"]
 
 
@@ -70,6 +72,9 @@ class Effect:
         Inner states of `contact`, zero at the start.
     force : callable, optional
         ``force(motion, form, values)``: force of blows in the anchors' joint [N].
+    chain : callable, optional
+        ``chain(response, form, values, rng)``: other impulse responses from torque and blows to
+        acceleration and pressure; they may be longer.
     sensors : callable, optional
         ``sensors(signals, rate, form, values, rng)``: other signals, by name of the channel.
     """
@@ -84,6 +89,7 @@ class Effect:
     pack: PackFunction | None = None
     n_states: int = 0
     force: ForceFunction | None = None
+    chain: ChainFunction | None = None
     sensors: SensorFunction | None = None
 
     def active(self, given: Mapping[str, float | str]) -> ActiveEffect:

@@ -1,0 +1,106 @@
+"""Further modes of clamp, beams and anchors, from the torque to the acceleration.
+
+The model has the modes in which clamp and beams turn. A real structure has more: sideways motion,
+twisting beams, anchors that ring. Each adds r q'' to the acceleration, where
+
+    q'' + 2 zeta omega q' + omega**2 q = T,
+
+r being its modal constant. Its anchors push on the plate with the force m r omega**2 q, m being the
+mass that the anchors feel for what the accelerometer sees, and so each mode is heard too:
+
+- single: one mode.
+- pair: a second one a third higher in frequency, in the opposite sense; 4500 and 6000 Hz are what
+  the thesis measured with 12.3 cm (5.2.2).
+- ladder: the bending modes of a beam that is clamped at both ends, omega rising as (2 n + 1)**2,
+  up to 20 kHz, in alternating senses and with r falling as 1 / n.
+
+At amount zero there is none of them. The torque is what it was: the contact does not feel them.
+With the clamp bolted to the baseplate there are no beams, and nothing changes. The defaults of r
+and m are assumed: a third of the first torsional mode's constant, half of a beam's mass.
+
+>>> from models.response import Response
+>>> none, one = np.zeros(1), np.ones(1)
+>>> values = {"amount": 1.0, "frequency": 4500.0, "damping_ratio": 0.01, "constant": 2.0,
+...           "anchor_mass": 0.04}
+>>> rung = _chain(Response(96e3, none, none, one, one), "single", values, np.random.default_rng(0))
+>>> tone = np.exp(-2j * np.pi * 4500.0 / 96e3 * np.arange(rung.torque_to_acceleration.size))
+>>> round(float(abs(rung.torque_to_acceleration @ tone)), 1)  # constant / (2 zeta)
+100.0
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import fftconvolve
+
+from sim.chain import HIGHEST_SHARE, resonance, total
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from models.response import Response
+    from sim.effects.effect import Values
+
+__all__ = ["EFFECT"]
+
+_SECOND = 4.0 / 3.0
+"""Frequency of the second mode of a pair over the first: 6000 over 4500 Hz."""
+
+_HIGHEST = 20e3
+"""Of a ladder [Hz]."""
+
+_LONGEST_LADDER = 12
+
+
+def _chain(paths: Response, form: str, values: Values, _rng: np.random.Generator) -> Response:
+    if not np.any(paths.pulse_to_acceleration):
+        return paths  # the clamp is bolted down
+    accelerations, forces = [paths.torque_to_acceleration], []
+    for frequency, sense in _modes(form, values["frequency"]):
+        if frequency > HIGHEST_SHARE * paths.rate:
+            continue
+        constant = values["amount"] * values["constant"] * sense
+        mode = frequency, values["damping_ratio"], paths.rate
+        accelerations.append(constant * resonance([1.0, 0.0, 0.0], *mode))
+        forces.append(values["anchor_mass"] * constant * resonance([0.0, 0.0, 1.0], *mode))
+    if not forces:
+        return paths
+    heard = fftconvolve(total(forces), paths.pulse_to_pressure)
+    return replace(
+        paths,
+        torque_to_acceleration=total(accelerations),
+        torque_to_pressure=total([paths.torque_to_pressure, heard]),
+    )
+
+
+def _modes(form: str, first: float) -> list[tuple[float, float]]:
+    """Frequency [Hz] of each mode, and its sense and weight."""
+    if form == "single":
+        return [(first, 1.0)]
+    if form == "pair":
+        return [(first, 1.0), (_SECOND * first, -1.0)]
+    ladder = [(first * ((2 * n + 1) / 3) ** 2, n) for n in range(1, _LONGEST_LADDER + 1)]
+    return [(f, -((-1.0) ** n) / n) for f, n in ladder if f <= max(_HIGHEST, first)]
+
+
+EFFECT = Effect(
+    name="beam_modes",
+    stage=Stage.STRUCTURE,
+    forms=("single", "pair", "ladder"),
+    parameters={
+        "amount": Parameter(1.0, "", 0.0, 100.0, "factor on the modal constants"),
+        "frequency": Parameter(4500.0, "Hz", 50.0, 20e3, "of the first further mode"),
+        "damping_ratio": Parameter(0.01, "", 1e-3, 0.5, "of each further mode"),
+        "constant": Parameter(
+            5.0, "m/s2 per Nm", 0.0, 1e3, "modal constant at the accelerometer for the torque"
+        ),
+        "anchor_mass": Parameter(
+            0.04, "kg", 0.0, 10.0, "force on an anchor over acceleration at the accelerometer"
+        ),
+    },
+    strength="amount",
+    chain=_chain,
+)

@@ -1,0 +1,147 @@
+"""Sound that reaches the microphone by way of the room.
+
+The model has the direct sound alone. A room adds reflections, which follow from its size, its
+reverberation time T and the distance r of the microphone. Walls reflect 1 - alpha of the energy,
+alpha = 1 - exp(-0.161 V / (T S)) (Eyring 1930, J. Acoust. Soc. Am. 1, 217), at all frequencies:
+
+- floor: one reflection, a comb in the spectrum; the source stands 0.9 m above the floor and the
+  microphone hangs straight above it.
+- shoebox: all reflections of a rectangular room within 0.1 s, by image sources (Allen and Berkley
+  1979, J. Acoust. Soc. Am. 65, 943).
+- diffuse: a tail of noise that decays by 60 dB in T, after the mean time between reflections,
+  4 V / (S c); 16 pi r**2 / A times the energy of the direct sound, A = 0.161 V / T (Kuttruff, *Room
+  Acoustics*, chapter 5). The noise differs from seed to seed.
+
+Levels are relative to the direct sound as it is, which neither its directivity nor its distance in
+the rig changes: `distance` is the room's own. At amount zero there is no room.
+
+>>> from models.response import Response
+>>> one = np.ones(1)
+>>> values = {name: parameter.default for name, parameter in EFFECT.parameters.items()}
+>>> heard = _chain(Response(96e3, one, one, one, one), "floor", values, np.random.default_rng(0))
+>>> float(heard.torque_to_pressure[0]), int(heard.torque_to_pressure[1:].argmax()) + 1
+(1.0, 503)
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.rayleigh import SOUND_SPEED
+from sim.chain import through
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.response import Response
+    from sim.effects.effect import Values
+
+__all__ = ["EFFECT"]
+
+_SOURCE_HEIGHT = 0.9
+"""Of the rig on its bench over the floor [m]; assumed."""
+
+_ALONG, _ACROSS = 0.42, 0.37
+"""Where the rig stands, as shares of length and width; out of the middle, as rigs do; assumed."""
+
+_EARLY = 0.1
+"""Reflections of the shoebox are followed so long after the direct sound [s]."""
+
+
+def _chain(paths: Response, form: str, values: Values, rng: np.random.Generator) -> Response:
+    if form == "diffuse":
+        reflections = _tail(values, paths.rate, rng)
+    else:
+        length, gain = _floor(values) if form == "floor" else _images(values)
+        reflections = _echoes(length - values["distance"], gain, paths.rate)
+    reflections *= values["amount"]
+    reflections[0] += 1.0
+    return through(paths, reflections)
+
+
+def _surface(values: Values) -> tuple[float, float, float]:
+    """Volume [m3], surface [m2], and the walls' reflection of the pressure."""
+    x, y, z = values["length"], values["width"], values["height"]
+    volume, surface = x * y * z, 2.0 * (x * y + y * z + z * x)
+    absorption = 0.161 * volume / (values["reverberation_time"] * surface)
+    return volume, surface, math.exp(-0.5 * absorption)
+
+
+def _floor(values: Values) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Way [m] of the reflection, and its gain over the direct sound."""
+    way = values["distance"] + 2.0 * _SOURCE_HEIGHT
+    return np.array([way]), np.array([_surface(values)[2] * values["distance"] / way])
+
+
+def _images(values: Values) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Way [m] of each reflection in the shoebox, and its gain."""
+    sides = np.array([values["length"], values["width"], values["height"]])
+    source = np.array([_ALONG * sides[0], _ACROSS * sides[1], _SOURCE_HEIGHT])
+    microphone = source + np.array([0.0, 0.0, values["distance"]])
+    farthest = SOUND_SPEED * _EARLY + values["distance"]
+    offsets, bounces = [], []
+    for side, at, ear in zip(sides, source, microphone, strict=True):
+        n = np.arange(-math.ceil(farthest / side) - 1, math.ceil(farthest / side) + 2)
+        # Image n lies in the n-th room along this side, behind |n| walls.
+        place = np.where(n % 2 == 0, n * side + at, (n + 1) * side - at)
+        offsets.append((place - ear) ** 2)
+        bounces.append(np.abs(n))
+    way = np.sqrt(offsets[0][:, None, None] + offsets[1][:, None] + offsets[2]).ravel()
+    walls = (bounces[0][:, None, None] + bounces[1][:, None] + bounces[2]).ravel()
+    kept = (walls > 0) & (way < farthest)
+    return way[kept], _surface(values)[2] ** walls[kept] * values["distance"] / way[kept]
+
+
+def _echoes(
+    detour: NDArray[np.float64], gain: NDArray[np.float64], rate: float
+) -> NDArray[np.float64]:
+    """Taps of echoes that come later by a detour [m], between samples by Lagrange's cubic."""
+    time = detour * (rate / SOUND_SPEED)
+    # The cubic needs a sample before; the direct sound, at the first one, stays first.
+    sample = np.maximum(np.floor(time).astype(np.int64), 2)
+    f = np.maximum(time - sample, 0.0)
+    taps = np.zeros(int(sample.max()) + 3)
+    for offset, weight in (
+        (-1, -f * (1 - f) * (2 - f) / 6),
+        (0, (1 + f) * (1 - f) * (2 - f) / 2),
+        (1, (1 + f) * f * (2 - f) / 2),
+        (2, -(1 + f) * f * (1 - f) / 6),
+    ):
+        np.add.at(taps, sample + offset, gain * weight)
+    return taps
+
+
+def _tail(values: Values, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    volume, surface, _ = _surface(values)
+    lasting = values["reverberation_time"]
+    energy = 16.0 * np.pi * values["distance"] ** 2 * lasting / (0.161 * volume)
+    start = max(1, round(4.0 * volume / (surface * SOUND_SPEED) * rate))
+    decay = math.log(1e6) / (lasting * rate)  # of energy, a sample
+    time = np.arange(start, start + round(lasting * rate))
+    taps = np.zeros(time[-1] + 1)
+    # The energy is that of a decay which begins with the direct sound.
+    taps[time] = np.sqrt(energy * decay) * np.exp(-0.5 * decay * time)
+    taps[time] *= rng.standard_normal(time.size)
+    return taps
+
+
+EFFECT = Effect(
+    name="room_reflections",
+    stage=Stage.RADIATION,
+    forms=("floor", "shoebox", "diffuse"),
+    parameters={
+        "amount": Parameter(1.0, "", 0.0, 10.0, "factor on all reflected pressure"),
+        "distance": Parameter(0.6, "m", 0.05, 1.2, "of the microphone from the source"),
+        "length": Parameter(6.0, "m", 2.0, 50.0, "of the room"),
+        "width": Parameter(5.0, "m", 2.0, 50.0, "of the room"),
+        "height": Parameter(3.0, "m", 2.2, 20.0, "of the room"),
+        "reverberation_time": Parameter(0.4, "s", 0.05, 3.0, "for 60 dB"),
+    },
+    strength="amount",
+    chain=_chain,
+)
