@@ -7,7 +7,7 @@ r"""The elastic contact that friction laws without true stick have in common.
 z is the shear of the contact [rad], g its strength [Nm]: Dahl (1968), with the strength that
 varies of Canudas de Wit et al. (1995), where w is the sliding speed v itself. There the shear
 settles within g / (K |v|), which no step is short enough for at any stiffness and speed. Here it
-settles within 1 / lambda, half of the longest step, at the fastest: steady sliding, where T = g, is
+settles within 1 / lambda at the fastest: steady sliding, where T = g, is
 untouched, and w differs from v only where the contact follows its strength at once anyway.
 """
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["BRISTLE_PARAMETERS", "FASTEST", "shear_speed", "unbent"]
 
 FASTEST = 4e5
-"""Rate lambda beyond which a contact follows at once [1/s]; stable at steps up to 6 us."""
+"""Rate lambda beyond which a contact follows at once [1/s], as steps of 8 us can."""
 
 BRISTLE_PARAMETERS = {
     "contact_stiffness_per_torque": Parameter(

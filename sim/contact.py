@@ -24,11 +24,13 @@ SHAFT_ANGLE = 1
 SHAFT_SPEED = 2
 """At the bushing [rad/s]."""
 SLIDING_SPEED = 3
-"""Of the shaft over the bushing's surface [rad/s]."""
+"""Of the shaft over the bushing's surface [rad/s]; in stick that of the creep."""
 STICK_TIME = 4
-"""Since the contact began to stick [s]; that of the last stick while it slides."""
+"""Since the contact began to stick [s]; that of the last stick while it slides. With a law that has
+an inner state nothing begins to stick, and this is `TIME`: such laws carry the age of their contact
+as a state, and effects that need one have their own for them, as `static_ageing` does."""
 STICKS = 5
-"""How often the contact has begun to stick."""
+"""How often the contact has begun to stick; 0 throughout with a law that has an inner state."""
 TWIST = 6
 """Of the elastomer, theta1 - theta2 [rad]."""
 TWIST_RATE = 7

@@ -1,59 +1,55 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001
-"""The compiled loop of `sim.contact_solver`.
-
-One function, because what it calls through pointers makes every variable go through memory at each
-call, and a further layer would do so twice. What each hook reads of the inner states is a view made
-once, since making one costs more than the call.
-"""
+"""The compiled loop of `sim.contact_solver`: steps, their errors, their events, and the outputs."""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import boolean, float64, int64, njit, types
 
-from sim.contact import (
-    CREEP,
-    CRITICAL,
-    ELASTOMER_TORQUE,
-    HOOK_SIGNATURE,
-    KINETIC,
-    LAW_SIGNATURE,
-    N_CONTACT,
-    SHAFT_ANGLE,
-    SHAFT_INERTIA,
-    SHAFT_LAG,
-    SHAFT_LAG_RATE,
-    SHAFT_SPEED,
-    SHAFT_TORQUE,
-    SLIDING_SPEED,
-    STICK_TIME,
-    STICKS,
-    STIFFNESS,
-    TIME,
-    TORQUE,
-    TWIST,
-    TWIST_RATE,
+from sim import contact_state as at
+from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE, STICKS
+from sim.contact_rates import contact_rates
+from sim.dormand_prince import (
+    N_MOTION,
+    N_STAGES,
+    NODES,
+    UNCOUNTED,
+    fill_dense,
+    fill_stage,
+    step_error,
+    vertex,
 )
 
-__all__ = ["ANGLE", "MODE", "N_MOTION", "SAMPLE", "STICK_START", "run_contact"]
+__all__ = ["SHORTEST_STEP", "run_contact"]
 
-# Motion that is carried on: theta1, theta1', theta2, theta2', the shaft's lag and its rate, then
-MODE = 6
-"""+1 or -1 while it slides, 0 in stick."""
-STICK_START = 7
-"""When the last stick began [s]."""
-ANGLE = 8
-"""Of the drive [rad]."""
-SAMPLE = 9
-"""The next one."""
-N_MOTION = 10
+SHORTEST_STEP = 1e-7
+"""Average over a run, below which it is given up [s]."""
+
+_GRACE = 2e-3
+"""Time that is granted to what has just begun [s]."""
+
+_LEAST_STEP = 1e-10
+"""At which an error is accepted: something jumps [s]."""
 
 _TIME_TOLERANCE = 1e-14
-"""To which the ends of stick and slip are found [s]."""
+"""[s]"""
+
+_EVENT_TOLERANCE = 1e-11
+"""Of torque and speed where stick and slip end, over their scales."""
+
+_TURN_TOLERANCE = 1e-7
+"""Of the speed at which a law's sliding turns, over its scale."""
+
+_GRAZE = 2e-3
+"""How near an end may come within a step that is not looked at more closely, over its scale."""
+
+_KINK = 1e-7
+"""Of the torque that the drive's acceleration takes, over the kinetic one: a step ends there."""
+
+_SAFETY, _LEAST_FACTOR, _MOST_FACTOR = 0.9, 0.2, 4.0
 
 _HOOK = types.FunctionType(HOOK_SIGNATURE)
 _LAW = types.FunctionType(LAW_SIGNATURE)
@@ -63,238 +59,236 @@ _MATRIX = float64[:, ::1]
 
 @njit(
     types.void(
-        _VECTOR, _VECTOR, _LAW, boolean, _VECTOR, _HOOK, _HOOK, _HOOK, _HOOK, int64, _MATRIX,
-        int64[::1], _VECTOR, float64, int64, _VECTOR, _VECTOR, _VECTOR, _MATRIX, int64[::1],
+        _VECTOR, _LAW, boolean, _VECTOR, _HOOK, _HOOK, _HOOK, _HOOK, int64, _MATRIX, int64[::1],
+        _VECTOR, float64, float64, float64, _VECTOR, _MATRIX, _VECTOR, _VECTOR, _MATRIX, _MATRIX,
+        int64[::1],
     ),
-    cache=True, error_model="numpy", nogil=True,
+    cache=True, nogil=True, **UNCOUNTED,
 )  # fmt: skip
 def run_contact(
-    s, torques, law, has_law, coefficients, h0, h1, h2, h3, n_hooks, values, offsets,
-    shaft_speed, step, substeps, motion, inner, context, out, direction_out,
+    s, law, has_law, coefficients, h0, h1, h2, h3, n_hooks, values, offsets,
+    shaft_speed, step, longest, tolerance, carried, rows, context, contact, along, out,
+    direction_out,
 ) -> None:  # fmt: skip
-    """Write the columns of `out` and go on to the sample after them, if there is a speed for it.
+    """Write the columns of `out`; `carried`, `rows` and `context` are carried on.
 
-    `motion`, `inner` (the states of law and effects) and `context` are carried on.
+    The drive may be known beyond the outputs, as far as steps may reach; where it is not, it goes
+    on as it did. `along` has room for its slope and angle.
     """
-    j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
-    t_crit, t_kin = torques[0], torques[1]
-    m = inner.size
-    trial_inner, inner_rates = np.zeros(m), np.zeros(m)
-    inner_start = np.zeros(m)  # rates at the start of a step
-    inner_sum, inner_beyond = np.zeros(m), np.zeros(m)
-    o0, o1, o2, o3, o4 = offsets[0], offsets[1], offsets[2], offsets[3], offsets[4]
-    values0, values1, values2, values3 = values[0], values[1], values[2], values[3]
-    inner0, inner1 = trial_inner[o0:o1], trial_inner[o1:o2]
-    inner2, inner3 = trial_inner[o2:o3], trial_inner[o3:o4]
-    rates0, rates1 = inner_rates[o0:o1], inner_rates[o1:o2]
-    rates2, rates3 = inner_rates[o2:o3], inner_rates[o3:o4]
-    contact = np.zeros(N_CONTACT)
+    n, n_known, d = direction_out.size, shaft_speed.size, rows.shape[1]
+    k, start, end = rows[:N_STAGES], rows[N_STAGES], rows[N_STAGES + 1]
+    u, p, q = rows[N_STAGES + 2], rows[N_STAGES + 3], rows[N_STAGES + 4 :]
+    slope, angle = along[0], along[1]
+    # What each hook and the law see of the inner states and their rates.
+    o0, o1, o2 = N_MOTION + offsets[0], N_MOTION + offsets[1], N_MOTION + offsets[2]
+    o3, o4 = N_MOTION + offsets[3], N_MOTION + offsets[4]
+    inner = u[o0:o1], u[o1:o2], u[o2:o3], u[o3:o4], u[N_MOTION:]
+    rates = p[o0:o1], p[o1:o2], p[o2:o3], p[o3:o4], p[N_MOTION:]
+    numbers = values[0], values[1], values[2], values[3]
+    drive = shaft_speed, slope, angle
+    t_crit, t_kin = s[8], s[9]
     contact[CRITICAL], contact[KINETIC] = t_crit, t_kin
-    n = direction_out.size
-    h = step / substeps
-    last_stage = 3 if has_law else 4
-    x0, x1, x2, x3, x4, x5 = motion[0], motion[1], motion[2], motion[3], motion[4], motion[5]
-    mode, first = int(motion[MODE]), int(motion[SAMPLE])
-    stick_start, angle = motion[STICK_START], motion[ANGLE]
-    acceleration = 0.0
-    started = False  # whether the rates at the start of the step are known already
-    q0, q1, q2, q3, q4, q5, friction, torque, holding, critical = (
-        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-    )  # fmt: skip
-    for i in range(n):
-        goes_on = i + 1 < shaft_speed.size
-        previous = acceleration
-        acceleration = (shaft_speed[i + 1] - shaft_speed[i]) / step if goes_on else 0.0
-        if acceleration != previous:
-            started = False
-        done = 0.0  # since the start of this output step
-        written = False
-        sub = 0
-        # Where the phase ends, once that is bracketed, and how far from it the brackets are.
-        low, high, far_low, far_high, high_holding, side = 0.0, -1.0, 0.0, 0.0, 0.0, 0
-        b0, b2, b3, b4, b5 = 0.0, 0.0, 0.0, 0.0, 0.0  # the state just beyond
-        trial = h
-        while sub < substeps:
-            drive = shaft_speed[i] + acceleration * done
-            time = (first + i) * step + done
-            if started:
-                for j in range(m):
-                    inner_rates[j] = inner_start[j]
-                    inner_sum[j] = inner_start[j]
-            p0, p1, p2, p3, p4, p5 = q0, q1, q2, q3, q4, q5
-            t0, t1, t2, t3, t4, t5 = q0, q1, q2, q3, q4, q5
-            w0, w1, w2, w3, w4, w5 = x0, x1, x2, x3, x4, x5
-            f, e, g, c = friction, torque, holding, critical
-            for stage in range(1 if started else 0, last_stage + 1):
-                offset = 0.0
-                if stage == 0:
-                    for j in range(m):
-                        trial_inner[j] = inner[j]
-                elif stage < 4:
-                    offset = trial if stage == 3 else 0.5 * trial
-                    w0, w1, w2 = x0 + offset * p0, x1 + offset * p1, x2 + offset * p2
-                    w3, w4, w5 = x3 + offset * p3, x4 + offset * p4, x5 + offset * p5
-                    for j in range(m):
-                        trial_inner[j] = inner[j] + offset * inner_rates[j]
-                else:
-                    offset = trial
-                    third = trial / 6.0
-                    w0, w1, w2 = x0 + third * t0, x1 + third * t1, x2 + third * t2
-                    w3, w4, w5 = x3 + third * t3, x4 + third * t4, x5 + third * t5
-                    for j in range(m):
-                        trial_inner[j] = inner[j] + third * inner_sum[j]
-                shaft = drive + acceleration * offset - w5
-                surface = shaft if mode == 0 and not has_law else w1
-                twist = w0 - w2
-                twist_rate = surface - w3
-                e = k_e * twist + c_e * twist_rate
-                c, kinetic, creep, mobility, shaft_torque = t_crit, t_kin, 0.0, 0.0, 0.0
-                if n_hooks > 0:
-                    context[TIME] = time + offset
-                    since = done + offset
-                    context[SHAFT_ANGLE] = angle + since * (
-                        shaft_speed[i] + 0.5 * acceleration * since
-                    )
-                    if mode == 0:
-                        context[STICK_TIME] = time + offset - stick_start
-                    context[SHAFT_SPEED], context[SLIDING_SPEED] = shaft, shaft - surface
-                    context[TWIST], context[TWIST_RATE], context[TORQUE] = twist, twist_rate, e
-                    context[SHAFT_LAG], context[SHAFT_LAG_RATE] = w4, w5
-                    contact[CRITICAL], contact[KINETIC] = t_crit, t_kin
-                    contact[STIFFNESS], contact[ELASTOMER_TORQUE] = k_e, 0.0
-                    contact[CREEP], contact[SHAFT_TORQUE] = 0.0, 0.0
-                    contact[SHAFT_INERTIA] = math.inf
-                    h0(context, values0, inner0, rates0, contact)
-                    if n_hooks > 1:
-                        h1(context, values1, inner1, rates1, contact)
-                    if n_hooks > 2:
-                        h2(context, values2, inner2, rates2, contact)
-                    if n_hooks > 3:
-                        h3(context, values3, inner3, rates3, contact)
-                    e += (contact[STIFFNESS] - k_e) * twist + contact[ELASTOMER_TORQUE]
-                    kinetic = contact[KINETIC]
-                    # What slides at a torque can be held by it, whatever an effect says.
-                    c = max(contact[CRITICAL], kinetic)
-                    creep = contact[CREEP]
-                    if contact[SHAFT_INERTIA] != math.inf:
-                        mobility = 1.0 / contact[SHAFT_INERTIA]
-                        shaft_torque = contact[SHAFT_TORQUE]
-                # What holds the surfaces together, on a shaft whose end yields to the same torque.
-                if mobility == 0.0:
-                    g = e + j_e * acceleration
-                else:
-                    g = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
-                if has_law:
-                    # Laws have the first of the inner states, effects those after.
-                    f = law(shaft - surface, coefficients, contact, trial_inner, inner_rates)
-                elif mode == 0:
-                    f = g
-                else:
-                    f = mode * kinetic
-                if mode == 0 and not has_law:
-                    p0, p1 = shaft * (1.0 - creep), 0.0
-                else:
-                    p0, p1 = w1, (f - e) * j_e_inverse
-                p2, p4 = w3, w5
-                p3 = (e - k_b * w2 - c_b * w3) * j_c_inverse
-                # The lag is that of the shaft's end behind its drive.
-                p5 = 0.0 if mobility == 0.0 else acceleration - (shaft_torque - f) * mobility
-                if stage == 0:
-                    q0, q1, q2, q3, q4, q5 = p0, p1, p2, p3, p4, p5
-                    t0, t1, t2, t3, t4, t5 = p0, p1, p2, p3, p4, p5
-                    friction, torque, holding, critical = f, e, g, c
-                    for j in range(m):
-                        inner_start[j] = inner_rates[j]
-                        inner_sum[j] = inner_rates[j]
-                elif stage < 4:
-                    weight = 1.0 if stage == 3 else 2.0
-                    t0, t1, t2 = t0 + weight * p0, t1 + weight * p1, t2 + weight * p2
-                    t3, t4, t5 = t3 + weight * p3, t4 + weight * p4, t5 + weight * p5
-                    for j in range(m):
-                        inner_sum[j] += weight * inner_rates[j]
-            started = True
-            if not written:
-                out[0, i], out[1, i] = friction, torque
-                out[2, i], out[3, i], out[4, i], out[5, i] = x0, x1, x2, x3
-                out[6, i] = drive - x5
-                direction_out[i] = mode
-                written = True
-                if not goes_on:
-                    break
-            if has_law:
-                third = trial / 6.0
-                x0, x1, x2 = x0 + third * t0, x1 + third * t1, x2 + third * t2
-                x3, x4, x5 = x3 + third * t3, x4 + third * t4, x5 + third * t5
-                for j in range(m):
-                    inner[j] += third * inner_sum[j]
-                sub += 1
-                done = sub * h
-                started = False
-                continue
-            if mode == 0 and critical < abs(holding):
-                # It cannot hold from the start: it slides on, or back.
-                mode = 1 if holding > 0.0 else -1
-                started = False
-                continue
+    angle[0] = carried[at.ANGLE]
+    for i in range(n_known - 1):
+        slope[i] = (shaft_speed[i + 1] - shaft_speed[i]) / step
+        angle[i + 1] = angle[i] + 0.5 * step * (shaft_speed[i] + shaft_speed[i + 1])
+    last = max(n_known - 2, 0)  # segment of the drive
+    for i in range(last + 1, slope.size):
+        slope[i] = slope[last]
+    kink = _KINK * t_kin * s[6]
+    # The twist at the critical torque, and the speed that it becomes when released.
+    twist_scale = max(t_crit, t_kin) / s[2]
+    speed_scale = twist_scale * math.sqrt(s[2] * s[6])
+    mode, next_mode = int(carried[at.MODE]), int(carried[at.NEXT_MODE])
+    slide, first = int(carried[at.SLIDE]), carried[at.FIRST]
+    stick_start, stick_length = carried[at.STICK_START], carried[at.STICK_LENGTH]
+    t0, t1 = carried[at.STEP_START], carried[at.STEP_END]
+    step_of_stick, step_of_slip = carried[at.STEP_OF_STICK], carried[at.STEP_OF_SLIP]
+    fresh, n_done = carried[at.FRESH] != 0.0, carried[at.DONE]
+    sample, i0 = 0, 0
+    friction, e, holding, critical, caught, shaft = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    far_start, far, far_early, far_late = carried[at.FAR], 0.0, 0.0, 0.0
+    if t1 <= _TIME_TOLERANCE:  # the drive may have a kink here
+        fresh = True
+    while True:
+        dense = False
+        while sample < n and sample * step < t1:
+            length = t1 - t0
+            if not dense:
+                dense = True
+                fill_dense(q, k, length)
+            x = (sample * step - t0) / length
+            for j in range(d):
+                u[j] = start[j] + x * (q[0, j] + x * (q[1, j] + x * (q[2, j] + x * q[3, j])))
+            time = (first + sample) * step
+            i = min(sample, last)
+            stick_time = time - stick_start if mode == 0 else stick_length
+            friction, e, holding, critical, caught, shaft = contact_rates(
+                (sample - i) * step, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
+                h0, h1, h2, h3, n_hooks, numbers, inner, rates, drive, context, contact,
+            )  # fmt: skip
+            out[0, sample], out[1, sample] = friction, e
+            out[2, sample], out[3, sample], out[4, sample] = u[0], p[0], u[2]
+            out[5, sample], out[6, sample] = u[3], shaft
+            direction_out[sample] = mode
+            sample += 1
+        if sample == n:
+            break
+        if n_done * SHORTEST_STEP > _GRACE + first * step + t1:
+            carried[at.DONE] = -1.0
+            return
+        # The next step, on a stretch of the drive without a kink.
+        t0 = t1
+        if next_mode != mode:
             if mode == 0:
-                w1 = p0
-                far = c - abs(g)
+                stick_length = first * step + t0 - stick_start
             else:
-                far = mode * (drive + acceleration * trial - w5 - w1)
-            if high < 0.0 and far >= 0.0:  # the phase outlasts the step, whose end starts the next
-                x0, x1, x2, x3, x4, x5 = w0, w1, w2, w3, w4, w5
-                q0, q1, q2, q3, q4, q5 = p0, p1, p2, p3, p4, p5
-                friction, torque, holding, critical = f, e, g, c
-                for j in range(m):
-                    inner[j] = trial_inner[j]
-                    inner_start[j] = inner_rates[j]
-                sub += 1
-                done = sub * h
-                trial = h
+                stick_start = first * step + t0
+                context[STICKS] += 1.0
+            mode, fresh = next_mode, True
+        for j in range(d):
+            start[j] = end[j]
+            k[0, j] = k[N_STAGES - 1, j]
+        while i0 < last and (i0 + 1) * step <= t0 + _TIME_TOLERANCE:
+            i0 += 1
+            if abs(slope[i0] - slope[i0 - 1]) > kink:
+                fresh = True
+        aim = min(longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
+        i_last, limit = i0, math.inf
+        while (i_last + 1) * step < t0 + aim:
+            if i_last == last:
+                if n_known > n:
+                    limit = (last + 1) * step
+                break
+            i_last += 1
+            if abs(slope[i_last] - slope[i_last - 1]) > kink:
+                limit = i_last * step
+                i_last -= 1
+                break
+        h = min(aim, limit - t0)
+        # Whether stick or slip ends in it: brackets of that, and how far from it they are.
+        low, high, far_low, far_high, side = 0.0, -1.0, far_start, 0.0, 0
+        begin = 0 if fresh else 1
+        ends = False
+        while True:
+            n_done += 1.0
+            for stage in range(begin, N_STAGES):
+                fill_stage(u, start, k, stage, h)
+                t = t0 + NODES[stage] * h
+                i = min(max(int(t / step), i0), i_last)
+                time = first * step + t
+                stick_time = time - stick_start if mode == 0 else stick_length
+                friction, e, holding, critical, caught, shaft = contact_rates(
+                    t - i * step, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
+                    h0, h1, h2, h3, n_hooks, numbers, inner, rates, drive, context, contact,
+                )  # fmt: skip
+                for j in range(d):
+                    k[stage, j] = p[j]
+                if has_law:
+                    far = slide * (shaft - u[1])
+                elif mode == 0:
+                    far = critical - abs(holding)
+                else:
+                    far = mode * (caught - u[1])
+                if stage == 2:
+                    far_early = far
+                elif stage == 3:
+                    far_late = far
+                elif stage == 0:
+                    far_start = far_low = far
+                    if mode == 0 and not has_law and far < 0.0:
+                        break
+            if begin == 0 and mode == 0 and not has_law and far_start < 0.0:
+                # It cannot hold from the start: it slides on, or back.
+                mode = next_mode = 1 if holding > 0.0 else -1
+                stick_length = first * step + t0 - stick_start
                 continue
-            if high < 0.0:
-                far_low = critical - abs(holding) if mode == 0 else mode * (drive - x5 - x1)
-                side = 0
+            begin = 1
+            error = step_error(k, h, start, u, twist_scale, speed_scale) / tolerance
+            factor = _MOST_FACTOR
+            if error > 0.0:
+                factor = min(max(_SAFETY * error**-0.2, _LEAST_FACTOR), _MOST_FACTOR)
+            if far < 0.0 and high < 0.0 and far_low <= 0.0 and error < math.inf:
+                if has_law:  # turned already
+                    slide, far, far_low, far_start = -slide, -far, -far_low, -far_start
+                elif h > _LEAST_STEP:
+                    h *= _LEAST_FACTOR
+                    continue
+            if high < 0.0 and not (far < 0.0 and error < math.inf):
+                if error > 1.0 and h > _LEAST_STEP:
+                    h *= min(factor, _SAFETY)
+                    aim = h
+                    continue
+                # Nor may it end within the step and begin again: the vertex of a parabola tells.
+                x, least = 1.0, math.inf
+                if not has_law:
+                    x, least = vertex(0.0, far_start, NODES[2], far_early, NODES[3], far_late)
+                    if least == math.inf:
+                        x, least = vertex(NODES[2], far_early, NODES[3], far_late, 1.0, far)
+                if x > 0.99 or least > _GRAZE * (t_crit if mode == 0 else speed_scale):
+                    break
+                h *= x
+                continue
             # Regula falsi; the end that stays twice counts for half (the Illinois algorithm).
             if far < 0.0:
                 if side > 0:
                     far_low *= 0.5
                 side = 1
-                high, far_high, high_holding = trial, far, g
-                b0, b2, b3, b4, b5 = w0, w2, w3, w4, w5
-                for j in range(m):
-                    inner_beyond[j] = trial_inner[j]
+                high, far_high = h, far
             else:
                 if side < 0:
                     far_high *= 0.5
                 side = -1
-                low, far_low = trial, far
-            trial = 0.5 * (low + high)
-            if far_low > 0.0:
-                secant = low + (high - low) * far_low / (far_low - far_high)
-                margin = 0.4 * _TIME_TOLERANCE
-                trial = min(max(secant, low + margin), high - margin)
-            if high - low > _TIME_TOLERANCE and low < trial < high:
-                continue
-            done += high
-            x0, x2, x3, x4, x5 = b0, b2, b3, b4, b5
-            x1 = shaft_speed[i] + acceleration * done - x5
-            for j in range(m):
-                inner[j] = inner_beyond[j]
-            if mode == 0:
-                mode = 1 if high_holding > 0.0 else -1
+                low, far_low = h, far
+            if has_law:
+                near = abs(far) <= _TURN_TOLERANCE * speed_scale
+            elif mode == 0:
+                near = abs(far) <= _EVENT_TOLERANCE * t_crit
             else:
-                stick_start = (first + i) * step + done
-                context[STICKS] += 1.0
-                mode = 0
-            low, high = 0.0, -1.0
-            started = False
-            trial = (sub + 1) * h - done
-            if trial <= _TIME_TOLERANCE:
-                sub += 1
-                done = sub * h
-                trial = h
-        angle += step * (shaft_speed[i] + 0.5 * acceleration * step)
-    motion[0], motion[1], motion[2], motion[3], motion[4], motion[5] = x0, x1, x2, x3, x4, x5
-    motion[MODE], motion[STICK_START], motion[ANGLE] = mode, stick_start, angle
-    motion[SAMPLE] = first + n
+                near = abs(far) <= _EVENT_TOLERANCE * speed_scale
+            if near or high - low <= _TIME_TOLERANCE:
+                if error > 1.0 and h > _LEAST_STEP:
+                    h *= min(factor, _SAFETY)
+                    aim = h
+                    low, high, far_low, side = 0.0, -1.0, far_start, 0
+                    continue
+                ends = True
+                break
+            h = 0.5 * (low + high)
+            if far_low > 0.0:
+                margin = 0.4 * _TIME_TOLERANCE
+                secant = low + (high - low) * far_low / (far_low - far_high)
+                h = min(max(secant, low + margin), high - margin)
+        if not math.isfinite(error):
+            for i in range(sample, n):
+                for j in range(out.shape[0]):
+                    out[j, i] = math.nan
+                direction_out[i] = 0
+            return
+        t1 = t0 + h
+        for j in range(d):
+            end[j] = u[j]
+        follows = h * factor if h == aim else max(aim, h * factor)
+        far_start, fresh = far, False
+        if has_law or mode != 0:
+            step_of_slip = min(follows, longest)
+        else:
+            step_of_stick = min(follows, longest)
+            end[1] = p[0]
+        if has_law:
+            if ends:
+                slide, far_start = -slide, -far
+            elif slide == 0 and shaft != u[1]:
+                slide = 1 if shaft > u[1] else -1
+        elif ends and mode == 0:
+            next_mode = 1 if holding > 0.0 else -1
+        elif ends:
+            next_mode = 0
+            end[1] = caught
+    carried[at.MODE], carried[at.NEXT_MODE], carried[at.SLIDE] = mode, next_mode, slide
+    carried[at.FIRST] = first + n
+    carried[at.STICK_START], carried[at.STICK_LENGTH] = stick_start, stick_length
+    carried[at.ANGLE], carried[at.DONE], carried[at.FAR] = angle[n], n_done, far_start
+    carried[at.STEP_START], carried[at.STEP_END] = t0 - n * step, t1 - n * step
+    carried[at.STEP_OF_STICK], carried[at.STEP_OF_SLIP] = step_of_stick, step_of_slip
+    carried[at.FRESH] = 1.0 if fresh else 0.0

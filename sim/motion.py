@@ -29,19 +29,11 @@ __all__ = ["STICK_SPEED_SHARE", "Motion", "simulate_motion"]
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""
 
-LONGEST_STEP = 12e-6
-"""Of the integration of a contact that truly sticks [s]."""
-
-_STEPS_TO_RATE = 1.0
-"""A step is no longer than this over the fastest rate; the method is stable to 2.8."""
-
 _FASTEST_SLIP = 60.0
 """Sliding speeds exceed the shaft's by about so much [rad/s]; the thesis has 45 (Figure 6.7)."""
 
-_MOST_SUBSTEPS = 1000
-
-LONGEST_STEP_OF_LAWS = 5e-6
-"""Of the integration of friction laws with an inner state, whose own times are shorter [s]."""
+_FASTEST_RATE = 3e7
+"""That the solver of contacts follows in a bearable time [1/s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,26 +159,12 @@ def simulate_motion(
         states, _, _ = solve_stick_slip(system.packed(), *torques, drive, step)
         speed = drive
     else:
+        _refuse_fast(system, rig, fit.kinetic_torque, values, drive)
         coefficients = law.coefficients(values)
-        longest = LONGEST_STEP if law.torque is None else LONGEST_STEP_OF_LAWS
-        fastest = _fastest_rate(system, fit.kinetic_torque, values, float(np.abs(drive).max()))
-        substeps = math.ceil(step / min(longest, _STEPS_TO_RATE / fastest))
-        if substeps > _MOST_SUBSTEPS:
-            raise ParameterError(
-                f"{_what(system, rig, drive)}: some part moves {fastest:.3g} times a second, which "
-                f"no step of this solver follows; make it softer, heavier or less damped"
-            )
         states, _ = solve_contact(
-            system.packed(),
-            *torques,
-            drive,
-            step,
-            substeps,
-            law=law.torque,
-            coefficients=coefficients,
-            law_state=law.state(coefficients),
-            hooks=hooks,
-        )
+            system.packed(), *torques, drive, step, law=law.torque, coefficients=coefficients,
+            law_state=law.state(coefficients), hooks=hooks, name=_friction(law.name, effects),
+        )  # fmt: skip
         speed = states[:, 6]
     _refuse_overflow(states, system, rig, drive)
     return Motion(
@@ -210,20 +188,29 @@ def _hook(active: ActiveEffect, rng: np.random.Generator) -> Hook:
     return Hook(effect.contact, values, effect.n_states)
 
 
+def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:
+    names = [active.effect.name for active in effects if active.effect.contact is not None]
+    return f"friction law {law!r}" + (f" with {', '.join(names)}" if names else "")
+
+
 def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
     angle = np.zeros_like(speed)
     np.cumsum(0.5 * step * (speed[1:] + speed[:-1]), out=angle[1:])
     return angle
 
 
-def _fastest_rate(
-    system: LumpedBushing, kinetic_torque: float, law: Mapping[str, float], speed: float
-) -> float:
-    """Estimate of the fastest rate that a step has to follow [1/s]."""
+def _refuse_fast(
+    system: LumpedBushing,
+    rig: Rig,
+    kinetic_torque: float,
+    law: Mapping[str, float],
+    drive: NDArray[np.float64],
+) -> None:
+    """Refuse what no bearable number of steps follows, by an estimate of the fastest rate."""
     contact = law.get("contact_stiffness_per_torque", 0.0)
     damping = system.elastomer_damping
     damping += law.get("contact_damping_per_torque", 0.0) * kinetic_torque
-    sliding = speed + _FASTEST_SLIP
+    sliding = float(np.abs(drive).max()) + _FASTEST_SLIP
     stiffness = contact * kinetic_torque + system.elastomer_stiffness
     rates = [
         math.sqrt(stiffness / system.elastomer_inertia),
@@ -237,7 +224,12 @@ def _fastest_rate(
             math.sqrt(stiffness / system.clamp_inertia),
             (damping + system.support_damping) / system.clamp_inertia,
         ]
-    return max(rates)
+    fastest = max(rates)
+    if fastest > _FASTEST_RATE:
+        raise ParameterError(
+            f"{_what(system, rig, drive)}: some part moves {fastest:.3g} times a second, which "
+            f"no step of this solver follows; make it softer, heavier or less damped"
+        )
 
 
 def _refuse_overflow(

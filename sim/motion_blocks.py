@@ -14,17 +14,9 @@ import numpy as np
 
 from models.errors import ParameterError
 from sim.bushing import lumped_bushing
-from sim.contact_solver import MOST_HOOKS, ContactRun
+from sim.contact_solver import LONGEST_STEP, MOST_HOOKS, ContactRun
 from sim.friction import friction_law
-from sim.motion import (
-    LONGEST_STEP,
-    LONGEST_STEP_OF_LAWS,
-    Motion,
-    _fastest_rate,
-    _hook,
-    _integral,
-    _refuse_overflow,
-)
+from sim.motion import Motion, _friction, _hook, _integral, _refuse_fast, _refuse_overflow
 from sim.parameters import resolve
 from sim.stick_slip import advance_stick_slip, rest_state
 
@@ -124,12 +116,11 @@ def motion_blocks(
     state, contact = rest_state(start_speed), None
     if law.torque is not None or hooks:
         coefficients = law.coefficients(values)
-        longest = LONGEST_STEP if law.torque is None else LONGEST_STEP_OF_LAWS
         top = max(float(np.abs(_speed(shaft, i, block, step)).max()) for i in starts)
-        longest = min(longest, 1.0 / _fastest_rate(system, fit.kinetic_torque, values, top))
+        _refuse_fast(system, rig, fit.kinetic_torque, values, np.array([top]))
         contact = ContactRun(
-            packed, *torques, start_speed, step, math.ceil(step / longest), law=law.torque,
-            coefficients=coefficients, law_state=law.state(coefficients), hooks=hooks,
+            packed, *torques, start_speed, step, law=law.torque, coefficients=coefficients,
+            law_state=law.state(coefficients), hooks=hooks, name=_friction(law.name, effects),
         )  # fmt: skip
     angle = 0.0
     for start in starts:
@@ -139,7 +130,9 @@ def motion_blocks(
             states, _, _ = advance_stick_slip(packed, *torques, drive, step, state, n)
             speed = drive[:-1]
         else:
-            states, _ = contact.advance(drive, n)
+            # Steps reach beyond the block.
+            beyond = _speed(shaft, start, n + math.ceil(LONGEST_STEP / step), step)
+            states, _ = contact.advance(beyond, n)
             speed = states[:, 6]
         _refuse_overflow(states, system, rig, drive)
         angles = angle + _integral(drive, step)

@@ -50,12 +50,12 @@ def test_integration_agrees_with_a_sixteenth_of_its_step(name):
             fit.kinetic_torque,
             np.full(1800, 2.5),
             1 / 90e3,
-            substeps,
             law=law.torque,
             coefficients=coefficients,
             law_state=law.state(coefficients),
+            refined=refined,
         )[0][:, 1]
-        for substeps in (3, 48)
+        for refined in (1, 16)
     )
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
 

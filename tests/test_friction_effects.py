@@ -53,7 +53,7 @@ def hook(name, seed=0, **given):
     return Hook(active.effect.contact, values, active.effect.n_states)
 
 
-def solve(*hooks, rig=TRUE_STICK, speed=1.0, interference=0.279e-3, samples=3000, substeps=None):
+def solve(*hooks, rig=TRUE_STICK, speed=1.0, interference=0.279e-3, samples=3000, refined=1):
     """Torque and direction by the same solver, with or without effects."""
     law = friction_law(rig.friction.name)
     fit = rig.fit(interference)
@@ -64,11 +64,11 @@ def solve(*hooks, rig=TRUE_STICK, speed=1.0, interference=0.279e-3, samples=3000
         fit.kinetic_torque,
         np.full(samples, speed),
         1.0 / RATE,
-        substeps or (1 if law.torque is None else 3),
         law=law.torque,
         coefficients=coefficients,
         law_state=law.state(coefficients),
         hooks=hooks,
+        refined=refined,
     )
     return states[:, 1], direction
 
@@ -146,7 +146,7 @@ def test_reversing_the_shaft_reverses_the_torque(name, form, rig):
 def test_integration_agrees_with_a_sixteenth_of_its_step(name, form):
     effect = hook(name, form=form)
     coarse, direction = solve(effect, samples=6000)
-    fine, _ = solve(effect, samples=6000, substeps=16)
+    fine, _ = solve(effect, samples=6000, refined=16)
     assert slips(direction) >= 1
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
 
@@ -155,7 +155,7 @@ def test_integration_agrees_with_a_sixteenth_of_its_step(name, form):
 def test_integration_with_a_law_agrees_with_a_sixteenth_of_its_step(name, form):
     effect = hook(name, form=form)
     coarse, _ = solve(effect, rig=MEMORY, samples=1200)
-    fine, _ = solve(effect, rig=MEMORY, samples=1200, substeps=48)
+    fine, _ = solve(effect, rig=MEMORY, samples=1200, refined=16)
     assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
 
 

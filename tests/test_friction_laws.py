@@ -71,7 +71,7 @@ def steady(name, speed, given=None, torques=(T_CRIT, T_KIN), angle=0.05):
     return follow(name, np.full(n, speed), given, torques)[0][-1]
 
 
-def on_the_rig(name, speed, given=None, *, seconds, step=STEP, substeps=1, rig=RIG,
+def on_the_rig(name, speed, given=None, *, seconds, step=STEP, refined=1, rig=RIG,
                interference=0.279e-3, stiffness=2214.0):  # fmt: skip
     law = friction_law(name)
     coefficients = law.coefficients(resolve(name, law.parameters, given or {}))
@@ -82,10 +82,10 @@ def on_the_rig(name, speed, given=None, *, seconds, step=STEP, substeps=1, rig=R
         fit.kinetic_torque,
         np.full(round(seconds / step), float(speed)),
         step,
-        substeps,
         law=law.torque,
         coefficients=coefficients,
         law_state=law.state(coefficients),
+        refined=refined,
     )[0]
 
 
@@ -186,15 +186,15 @@ def test_sliding_one_way_never_gives_energy_back(name, data):
 @pytest.mark.parametrize("name", NAMES)
 @settings(max_examples=15, deadline=None)
 @given(data=st.data())
-def test_steps_of_five_microseconds_are_stable_with_any_parameters(name, data):
+def test_any_parameters_are_followed(name, data):
     values = data.draw(any_values(name))
     speed = data.draw(st.floats(0.25, 20.0))
     interference = data.draw(st.sampled_from([0.178e-3, 0.279e-3, 0.381e-3]))
     coarse, fine = (
         on_the_rig(
-            name, speed, values, seconds=0.01, substeps=n, rig=VIOLENT, interference=interference
+            name, speed, values, seconds=0.01, refined=n, rig=VIOLENT, interference=interference
         )
-        for n in (1, 8)
+        for n in (1, 4)
     )
     assert np.abs(coarse[:, :2]).max() < 1.2 * np.abs(fine[:, :2]).max() + 0.1
 
@@ -209,8 +209,8 @@ def test_reversing_the_shaft_reverses_everything(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_ten_slip_cycles_agree_with_a_sixteenth_of_the_step(name, stiffness):
     coarse, fine = (
-        on_the_rig(name, 2.5, seconds=0.08, step=2 * STEP, substeps=n, stiffness=stiffness)[:, 1]
-        for n in (2, 32)
+        on_the_rig(name, 2.5, seconds=0.08, step=2 * STEP, refined=n, stiffness=stiffness)[:, 1]
+        for n in (1, 16)
     )
     mean = fine.mean()
     rises = np.flatnonzero((fine[1:] > mean) & (fine[:-1] <= mean))
@@ -367,7 +367,7 @@ def test_fluorocarbon_weakens_where_silicone_strengthens(glass, rises):
 
 @pytest.mark.parametrize("speed", [0.5, 5.0, 17.0])
 def test_viscous_friction_never_sustains_a_vibration(speed):
-    torque = on_the_rig("viscous", speed, seconds=0.5, step=1 / 90e3, substeps=3)[-9000:, 1]
+    torque = on_the_rig("viscous", speed, seconds=0.5, step=1 / 90e3)[-9000:, 1]
     assert torque.std() < 1e-6 * torque.mean()
 
 

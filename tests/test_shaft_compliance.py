@@ -31,7 +31,7 @@ def hook(name="shaft_compliance", **given):
     return Hook(active.effect.contact, values, active.effect.n_states)
 
 
-def solve(*hooks, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, samples=3000, substeps=None):
+def solve(*hooks, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, samples=3000, refined=1):
     law = friction_law(rig.friction.name)
     fit = rig.fit(0.279e-3)
     coefficients = law.coefficients(resolve(law.name, law.parameters, rig.friction.parameters))
@@ -41,11 +41,11 @@ def solve(*hooks, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, samples=3000, sub
         fit.kinetic_torque,
         np.broadcast_to(speed, samples).astype(float),
         1.0 / RATE,
-        substeps or (1 if law.torque is None else 3),
         law=law.torque,
         coefficients=coefficients,
         law_state=law.state(coefficients),
         hooks=hooks,
+        refined=refined,
     )
 
 
@@ -119,7 +119,7 @@ def test_reversing_the_shaft_reverses_the_motion(form, rig):
 def test_integration_agrees_with_a_sixteenth_of_its_step(form, kappa):
     effect = hook(form=form, compliance=kappa)
     coarse, direction = solve(effect, samples=6000)
-    fine, _ = solve(effect, samples=6000, substeps=16)
+    fine, _ = solve(effect, samples=6000, refined=16)
     assert np.count_nonzero(np.diff(np.abs(direction)) > 0) >= 2
     error = np.sqrt(np.mean((coarse - fine) ** 2, axis=0)) / fine.std(axis=0)
     assert error[1] < 1e-4

@@ -13,6 +13,9 @@ without the inertia of the bushing's surface, of which it differs only while the
 
 In the third form r stops at 0.999, where its slope would become infinite.
 
+A stick breaks into a slip that starts at the speed of its creep, and a slip is caught where it has
+slowed to that: the surface's speed is continuous. The damper of the elastomer feels the creep.
+
 It acts on true stick alone: laws with an inner state release gradually themselves.
 Limits: s = 0 is true stick; s -> 1 never breaks, but passes into sliding at T_crit.
 """

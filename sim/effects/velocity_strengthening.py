@@ -10,8 +10,8 @@ Ruina 1983), all with the same gain s at the speed v_r. PDMS triples its torque 
 memory keep the part that comes with age.
 
 Limits: s = 0 is the plain model; at rest nothing changes; a linear gain acts as a viscous damping
-s T_kin / v_r [Nm s/rad] between shaft and bushing. Where dT/dv exceeds some 3 Nm s/rad, the
-surface follows the shaft faster than the integration steps, and the result is wrong.
+s T_kin / v_r [Nm s/rad] between shaft and bushing. Where dT/dv exceeds some 300 Nm s/rad, the
+surface follows the shaft faster than any bearable number of steps, and the run is refused.
 """
 
 from __future__ import annotations
