@@ -37,9 +37,6 @@ _TOLERANCE = 1e-7
 """Error of a step, over the twist at the critical torque and the speed that this may become, and
 over the inner states themselves."""
 
-_TOLERANCE_OF_LAWS = 2e-9
-"""The same with a law: an elastic contact makes most motions chaotic, and errors grow."""
-
 _FIRST_STEP = 1e-6
 """[s]"""
 
@@ -84,6 +81,8 @@ class ContactRun:
         Effects that act on the contact, in this order; at most `MOST_HOOKS`.
     name : str
         What errors call the friction.
+    tolerance : float
+        Error of a step; `sim.friction.law.FrictionLaw.tolerance` with a law.
     refined : float
         Steps are so many times shorter than by default, to tell their error.
 
@@ -109,6 +108,7 @@ class ContactRun:
         law_state: NDArray[np.float64] | None = None,
         hooks: tuple[Hook, ...] = (),
         name: str = "friction",
+        tolerance: float = _TOLERANCE,
         refined: float = 1.0,
     ) -> None:
         if len(hooks) > MOST_HOOKS:
@@ -135,7 +135,6 @@ class ContactRun:
             offsets,
         )
         # The error of a step goes with the fifth power of its length.
-        tolerance = _TOLERANCE if law is None else _TOLERANCE_OF_LAWS
         self._steps = step, LONGEST_STEP / refined, tolerance / refined**5
         self._name = name
         self._carried = np.zeros(N_CARRIED)
@@ -198,6 +197,7 @@ def solve_contact(
     law_state: NDArray[np.float64] | None = None,
     hooks: tuple[Hook, ...] = (),
     name: str = "friction",
+    tolerance: float = _TOLERANCE,
     refined: float = 1.0,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Solve the lumped model from rest.
@@ -220,6 +220,8 @@ def solve_contact(
         Effects that act on the contact, in this order; at most `MOST_HOOKS`.
     name : str
         What errors call the friction.
+    tolerance : float
+        Error of a step; `sim.friction.law.FrictionLaw.tolerance` with a law.
     refined : float
         Steps are so many times shorter than by default, to tell their error.
 
@@ -234,6 +236,6 @@ def solve_contact(
     run = ContactRun(
         system, critical_torque, kinetic_torque, float(shaft_speed[0]), step, law=law,
         coefficients=coefficients, law_state=law_state, hooks=hooks, name=name,
-        refined=refined,
+        tolerance=tolerance, refined=refined,
     )  # fmt: skip
     return run.advance(shaft_speed, shaft_speed.size)

@@ -164,6 +164,7 @@ def simulate_motion(
         states, _ = solve_contact(
             system.packed(), *torques, drive, step, law=law.torque, coefficients=coefficients,
             law_state=law.state(coefficients), hooks=hooks, name=_friction(law.name, effects),
+            tolerance=law.tolerance,
         )  # fmt: skip
         speed = states[:, 6]
     _refuse_overflow(states, system, rig, drive)

@@ -121,6 +121,7 @@ def motion_blocks(
         contact = ContactRun(
             packed, *torques, start_speed, step, law=law.torque, coefficients=coefficients,
             law_state=law.state(coefficients), hooks=hooks, name=_friction(law.name, effects),
+            tolerance=law.tolerance,
         )  # fmt: skip
     angle = 0.0
     for start in starts:

@@ -51,6 +51,7 @@ def arguments(condition, name, given=None, hooks=(), stiffness=3745.0):
         "coefficients": coefficients,
         "law_state": law.state(coefficients),
         "hooks": hooks,
+        "tolerance": law.tolerance,
     }
     return (packed, fit.critical_torque, fit.kinetic_torque), options
 

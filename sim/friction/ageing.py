@@ -80,4 +80,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     initial_state=_initial_state,
+    tolerance=1e-7,
 )

@@ -11,4 +11,4 @@ from sim.friction.law import FrictionLaw
 
 __all__ = ["LAW"]
 
-LAW = FrictionLaw(name="coulomb")
+LAW = FrictionLaw(name="coulomb", tolerance=1e-7)

@@ -39,6 +39,9 @@ class FrictionLaw:
     initial_state : callable, optional
         ``initial_state(coefficients)``: the contact's inner state after a long rest; by default
         there is none.
+    tolerance : float
+        Error of a step of the solver, over twist, speed and inner state. The default serves the
+        most chaotic; where neighbouring motions part slowly, a larger one is as good and faster.
     """
 
     name: str
@@ -46,6 +49,7 @@ class FrictionLaw:
     torque: Any = None
     pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     initial_state: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
+    tolerance: float = 2e-9
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
         """Numbers that `torque` reads, from resolved parameters."""

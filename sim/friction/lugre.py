@@ -58,4 +58,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     initial_state=_initial_state,
+    tolerance=5e-9,
 )

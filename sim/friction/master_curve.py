@@ -124,4 +124,5 @@ LAW = FrictionLaw(
     torque=_torque,
     pack=_pack,
     initial_state=unbent,
+    tolerance=5e-9,
 )

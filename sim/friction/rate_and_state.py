@@ -72,4 +72,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     initial_state=_initial_state,
+    tolerance=3e-8,
 )

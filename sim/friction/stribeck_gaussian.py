@@ -38,4 +38,5 @@ LAW = FrictionLaw(
     parameters=STRIBECK_PARAMETERS,
     torque=_torque,
     initial_state=unbent,
+    tolerance=5e-9,
 )

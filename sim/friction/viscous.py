@@ -43,4 +43,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     initial_state=unbent,
+    tolerance=1e-7,
 )
