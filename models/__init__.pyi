@@ -25,6 +25,10 @@ from .errors import (
     ParameterError as ParameterError,
     RecordingError as RecordingError,
 )
+from .plate import (
+    PlateModes as PlateModes,
+    plate_modes as plate_modes,
+)
 from .recording import (
     CHANNEL_UNITS as CHANNEL_UNITS,
     Channel as Channel,
@@ -33,6 +37,7 @@ from .recording import (
 from .rig import (
     Beams as Beams,
     Fit as Fit,
+    Floor as Floor,
     LawSpec as LawSpec,
     Microphone as Microphone,
     Plate as Plate,
@@ -42,4 +47,8 @@ from .rig_file import (
     load_material_rig as load_material_rig,
     load_rig as load_rig,
     material_names as material_names,
+)
+from .sound_power_bands import (
+    BandPower as BandPower,
+    third_octave_power as third_octave_power,
 )

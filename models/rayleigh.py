@@ -18,13 +18,22 @@ from scipy.sparse import csr_array
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["AIR_DENSITY", "SOUND_SPEED", "RayleighIntegral", "rayleigh_integral"]
+__all__ = [
+    "AIR_DENSITY",
+    "SOUND_SPEED",
+    "RayleighIntegral",
+    "rayleigh_integral",
+    "rectangle_integral",
+]
 
 AIR_DENSITY = 1.204
 """Of dry air at 20 degree Celsius and 1013 hPa [kg/m3]."""
 
 SOUND_SPEED = 343.2
 """In dry air at 20 degree Celsius [m/s]."""
+
+GRID_STEP = 3e-3
+"""Largest surface element: a seventh of the wavelength in air at 16 kHz [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,3 +128,42 @@ def rayleigh_integral(
         shape=(int(rows.max()) + 1, distance.size),
     )
     return RayleighIntegral(matrix, delay)
+
+
+def rectangle_integral(
+    length: float, width: float, microphone: tuple[float, float, float], rate: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], RayleighIntegral]:
+    """Set up Rayleigh's integral over a rectangle about the origin.
+
+    Parameters
+    ----------
+    length, width : float
+        Along x and y [m].
+    microphone, rate
+        As for `rayleigh_integral`.
+
+    Returns
+    -------
+    x, y : ndarray, shapes (n_x,) and (n_y,)
+        Lines of the grid of elements' middles [m].
+    integral : RayleighIntegral
+        Of n_x * n_y elements, y varying fastest.
+
+    Examples
+    --------
+    >>> x, y, integral = rectangle_integral(0.3, 0.2, (0.0, 0.0, 1.0), 48e3)
+    >>> x.size, y.size, integral.matrix.shape[1]
+    (100, 67, 6700)
+    """
+    x, y = _middles(length), _middles(width)
+    grid = np.meshgrid(x, y, indexing="ij")
+    area = length * width / (x.size * y.size)
+    return x, y, rayleigh_integral(grid[0].ravel(), grid[1].ravel(), area, microphone, rate)
+
+
+def _middles(length: float) -> NDArray[np.float64]:
+    n = int(np.ceil(length / GRID_STEP))
+    middles: NDArray[np.float64] = (np.arange(n, dtype=np.float64) + 0.5) * (
+        length / n
+    ) - length / 2
+    return middles

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["FrequencyResponse", "Response", "convolve", "frequency_response", "radiate"]
+
+Path = Literal[
+    "torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration", "pulse_to_pressure"
+]
 
 BLOCK = 2**18
 """Samples convolved at a time, which bounds the memory for long signals."""
@@ -104,11 +109,11 @@ def radiate(
     (array([0., 0., 2.]), array([0. , 0.5, 0.5]))
     """
     change = torque - torque[:1]
-    acceleration = convolve(change, response.torque_to_acceleration)
-    pressure = convolve(change, response.torque_to_pressure)
+    acceleration = _along(response, "torque_to_acceleration", change)
+    pressure = _along(response, "torque_to_pressure", change)
     if pulse_force is not None and np.any(pulse_force):
-        acceleration += convolve(pulse_force, response.pulse_to_acceleration)
-        pressure += convolve(pulse_force, response.pulse_to_pressure)
+        acceleration += _along(response, "pulse_to_acceleration", pulse_force)
+        pressure += _along(response, "pulse_to_pressure", pulse_force)
     return acceleration, pressure
 
 
@@ -143,7 +148,9 @@ def frequency_response(response: Response, frequency: ArrayLike) -> FrequencyRes
 
 
 def convolve(
-    signal: NDArray[np.float64], impulse_response: NDArray[np.float64]
+    signal: NDArray[np.float64],
+    impulse_response: NDArray[np.float64],
+    spectrum: NDArray[np.complex128] | None = None,
 ) -> NDArray[np.float64]:
     """Causal convolution by overlap-add, in blocks, so that long signals need little memory.
 
@@ -151,6 +158,8 @@ def convolve(
     ----------
     signal : ndarray, shape (n,)
     impulse_response : ndarray, shape (m,)
+    spectrum : ndarray, optional
+        Its transform, if kept from a signal of the same length.
 
     Returns
     -------
@@ -163,15 +172,33 @@ def convolve(
     array([3., 1., 6.])
     """
     n, overlap = signal.size, impulse_response.size - 1
-    size = next_fast_len(min(n, BLOCK) + overlap, real=True)
+    size = _transform_size(n, impulse_response.size)
     step = size - overlap
-    spectrum = rfft(impulse_response, size)
+    if spectrum is None:
+        spectrum = rfft(impulse_response, size)
     result = np.zeros(n)
     for start in range(0, n, step):
         block = irfft(rfft(signal[start : start + step], size) * spectrum, size)
         end = min(start + size, n)
         result[start:end] += block[: end - start]
     return result
+
+
+def _along(response: Response, path: Path, signal: NDArray[np.float64]) -> NDArray[np.float64]:
+    impulse_response = getattr(response, path)
+    size = _transform_size(signal.size, impulse_response.size)
+    return convolve(signal, impulse_response, _spectrum(response, path, size))
+
+
+@lru_cache(maxsize=16)
+def _spectrum(response: Response, path: Path, size: int) -> NDArray[np.complex128]:
+    spectrum: NDArray[np.complex128] = rfft(getattr(response, path), size)
+    return spectrum
+
+
+def _transform_size(signal: int, impulse_response: int) -> int:
+    size: int = next_fast_len(min(signal, BLOCK) + impulse_response - 1, real=True)
+    return size
 
 
 def _fourier_transform(

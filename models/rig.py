@@ -10,14 +10,22 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from models.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, Plate
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["HIGHEST_PLATE_FREQUENCY", "Beams", "Fit", "LawSpec", "Microphone", "Plate", "Rig"]
-
-
-HIGHEST_PLATE_FREQUENCY = 16e3
-"""Plate modes are kept up to it [Hz]: measured creaks fill the band to 15 kHz."""
+__all__ = [
+    "EDGES",
+    "HIGHEST_PLATE_FREQUENCY",
+    "Beams",
+    "Fit",
+    "Floor",
+    "LawSpec",
+    "Microphone",
+    "Plate",
+    "Rig",
+]
 
 
 @dataclass(frozen=True)
@@ -111,59 +119,6 @@ class Beams:
     radiating: bool = False
     height: float = 0.06
     clamp_width: float = 0.04
-
-
-@dataclass(frozen=True)
-class Plate:
-    """The baseplate that the beams' anchors stand on.
-
-    Parameters
-    ----------
-    length, width, thickness : float
-        Along x, y and z [m]; the origin of all positions is the middle of its upper surface.
-    youngs_modulus : float
-        [Pa]
-    density : float
-        [kg/m3]
-    poisson_ratio : float
-    loss_factor : float
-        Of all modes.
-    clamp_position : tuple of 2 floats
-        Where the middle of the clamp stands over the plate, x and y [m]; the beams lie along x.
-    """
-
-    length: float
-    width: float
-    thickness: float
-    youngs_modulus: float
-    density: float
-    poisson_ratio: float
-    loss_factor: float
-    clamp_position: tuple[float, float]
-
-    def expected_modes(self, highest_frequency: float) -> float:
-        """How many modes it has up to a frequency [Hz], by its mean modal density.
-
-        Notes
-        -----
-        N = f S / 2 sqrt(rho h / D); L. Cremer, M. Heckl, *Structure-Borne Sound*, section 4.3.
-
-        Examples
-        --------
-        >>> steel = Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.0, 0.0))
-        >>> round(steel.expected_modes(16e3))
-        345
-        """
-        stiffness = self.youngs_modulus * self.thickness**3 / (12.0 * (1.0 - self.poisson_ratio**2))
-        mass = self.density * self.thickness
-        return 0.5 * highest_frequency * self.length * self.width * math.sqrt(mass / stiffness)
-
-
-@dataclass(frozen=True)
-class Microphone:
-    """Where the sound is heard, relative to the middle of the plate's upper surface [m]."""
-
-    position: tuple[float, float, float]
 
 
 @dataclass(frozen=True)

@@ -16,14 +16,12 @@ from pathlib import Path
 from typing import Any
 
 from models.beams_file import read_beams
-from models.checks import a_number, a_table, a_text, a_vector, refuse_unknown
+from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
-from models.rig import HIGHEST_PLATE_FREQUENCY, Fit, LawSpec, Microphone, Plate, Rig
+from models.plate_file import a_microphone, a_plate
+from models.rig import Fit, LawSpec, Rig
 
 __all__ = ["load_material_rig", "load_rig", "material_names", "parse_spec"]
-
-_FEWEST_MODES, _MOST_MODES = 5, 5000
-"""Of the plate: fewer radiate no band, more take minutes."""
 
 _DATA = resources.files("models") / "data"
 
@@ -169,6 +167,7 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
     effects = merged["effects"]
     if not isinstance(effects, list):
         raise ParameterError(f'{where}: effects must be a list such as ["slip_pulse:amplitude=20"]')
+    plate = a_plate(merged["plate"], f"{where}, plate")
     return Rig(
         name=a_text(merged["name"], "name", where),
         material=a_text(merged["material"], "material", where),
@@ -181,8 +180,8 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
         ),
         effects=tuple(parse_spec(a_text(e, "effects", where), f"{where}, effect") for e in effects),
         beams=read_beams(merged["beams"], f"{where}, beams"),
-        plate=_plate(merged["plate"], f"{where}, plate"),
-        microphone=_microphone(merged["microphone"], f"{where}, microphone"),
+        plate=plate,
+        microphone=a_microphone(merged["microphone"], plate, f"{where}, microphone"),
         assumed=_texts(merged.get("assumed", []), "assumed", where),
     )
 
@@ -229,43 +228,6 @@ def _fit(table: Any, where: str) -> Fit:
             for key, value in by_support.items()
         },
     )
-
-
-def _plate(table: Mapping[str, Any], where: str) -> Plate:
-    fields = {
-        "length": "length_m",
-        "width": "width_m",
-        "thickness": "thickness_m",
-        "youngs_modulus": "youngs_modulus_Pa",
-        "density": "density_kgm3",
-        "poisson_ratio": "poisson_ratio",
-        "loss_factor": "loss_factor",
-    }
-    refuse_unknown(table, {*fields.values(), "clamp_position_m"}, where)
-    values = {field: a_number(table, key, where) for field, key in fields.items()}
-    a_number(table, "poisson_ratio", where, high=0.5)
-    a_number(table, "loss_factor", where, high=1.0)
-    x, y = a_vector(table, "clamp_position_m", 2, where)
-    if abs(x) >= 0.5 * values["length"] or abs(y) >= 0.5 * values["width"]:
-        raise ParameterError(f"{where}: clamp_position_m = [{x:g}, {y:g}] lies off the plate")
-    plate = Plate(**values, clamp_position=(x, y))
-    modes = plate.expected_modes(HIGHEST_PLATE_FREQUENCY)
-    if not _FEWEST_MODES <= modes <= _MOST_MODES:
-        raise ParameterError(
-            f"{where}: a plate of {plate.length:g} x {plate.width:g} x {plate.thickness:g} m has "
-            f"about {modes:.3g} modes up to 16 kHz; it must have {_FEWEST_MODES} to {_MOST_MODES}"
-        )
-    return plate
-
-
-def _microphone(table: Mapping[str, Any], where: str) -> Microphone:
-    refuse_unknown(table, {"position_m"}, where)
-    x, y, z = a_vector(table, "position_m", 3, where)
-    if z < 0.01:
-        raise ParameterError(
-            f"{where}: position_m has z = {z:g} m; it must be at least 0.01 m above the plate"
-        )
-    return Microphone((x, y, z))
 
 
 def _support(key: str, where: str) -> float:

@@ -84,7 +84,9 @@ def test_edges_do_not_move():
 def _single(plate, microphone, m, n, frequency=None):
     """Pressure of one mode, at its own frequency unless told, per newton of modal force."""
     modes = plate_modes(plate, 3e3)
-    one = ((modes.m == m) & (modes.n == n)).astype(float)[:, None]
+    one = ((modes.products.along == m - 1) & (modes.products.across == n - 1)).astype(float)[
+        :, None
+    ]
     response = pressure_response(modes, one, Microphone(microphone), RATE, 2**18)[0]
     frequency = frequency or modes.frequencies[np.flatnonzero(one)[0]]
     return np.exp(-2j * np.pi * frequency * np.arange(response.size) / RATE) @ response

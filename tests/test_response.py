@@ -57,3 +57,11 @@ def test_spectra_are_the_fourier_transform_of_the_impulse_responses():
     ):
         expected = np.fft.rfft(getattr(CHAIN, name))
         assert getattr(spectra, name) == pytest.approx(expected, abs=1e-9)
+
+
+def test_what_is_kept_between_signals_of_any_length_changes_nothing():
+    for n in (700, 1, 40, 3000, 700):
+        torque = np.random.default_rng(n).normal(size=n)
+        _, pressure = radiate(CHAIN, torque)
+        expected = np.convolve(torque - torque[0], CHAIN.torque_to_pressure)[:n]
+        assert pressure == pytest.approx(expected, abs=1e-9)
