@@ -12,6 +12,12 @@ from .bands import (
 from .feature import (
     Feature as Feature,
 )
+from .hammer import (
+    Hit as Hit,
+    TransferEstimate as TransferEstimate,
+    check_hit as check_hit,
+    transfer_estimate as transfer_estimate,
+)
 from .harmonics import (
     Harmonics as Harmonics,
     analyse_harmonics as analyse_harmonics,
@@ -25,6 +31,12 @@ from .levels import (
 from .lines import (
     Lines as Lines,
     find_lines as find_lines,
+)
+from .modal_fit import (
+    fit_modes as fit_modes,
+)
+from .modes import (
+    Modes as Modes,
 )
 from .pitch import (
     PitchTrack as PitchTrack,

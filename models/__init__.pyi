@@ -25,6 +25,16 @@ from .errors import (
     ParameterError as ParameterError,
     RecordingError as RecordingError,
 )
+from .frf import (
+    Frf as Frf,
+)
+from .frf_file import (
+    read_frf as read_frf,
+    write_frf as write_frf,
+)
+from .measured import (
+    MeasuredResponse as MeasuredResponse,
+)
 from .plate import (
     PlateModes as PlateModes,
     plate_modes as plate_modes,

@@ -9,7 +9,7 @@ from typing import Any
 
 from models.errors import ParameterError
 
-__all__ = ["a_number", "a_table", "a_text", "a_vector", "refuse_unknown"]
+__all__ = ["a_number", "a_support", "a_table", "a_text", "a_vector", "refuse_unknown"]
 
 
 def refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> None:
@@ -58,6 +58,21 @@ def a_number(
         most = "" if math.isinf(high) else f" and at most {high:g}"
         wanted = "a number" if math.isinf(low) else f"a number {least} {low:g}{most}"
         raise ParameterError(f"{where}: {key} = {value!r} must be {wanted}")
+    return number
+
+
+def a_support(text: str, key: str, where: str) -> float:
+    """Return the support stiffness [Nm/rad] that a text says; ``fixed`` is infinite."""
+    if text == "fixed":
+        return math.inf
+    number = math.nan
+    with suppress(ValueError):
+        number = float(text)
+    if not 0.0 < number < math.inf:
+        raise ParameterError(
+            f"{where}: {key} has the entry {text!r}; entries are support stiffnesses in Nm/rad, "
+            "or fixed"
+        )
     return number
 
 

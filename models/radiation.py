@@ -33,6 +33,7 @@ from models.beams import (
 from models.beams_sound import beams_pressure
 from models.beams_stiffness import beam_length
 from models.errors import ParameterError
+from models.measured import with_measured
 from models.plate import (
     acceleration_model,
     plate_modes,
@@ -75,7 +76,8 @@ def response(
 
     The first torsional mode has the damping that the lumped model leaves to the beams,
     (1 - share) c_E / (2 sqrt(k_B J_C)). What the interference does not change is kept, so a
-    further one of the same rig and support costs little.
+    further one of the same rig and support costs little. A response that the rig has measured with
+    this support stands in for the modelled one of the torque.
 
     Parameters
     ----------
@@ -97,7 +99,8 @@ def response(
     Raises
     ------
     ParameterError
-        If no beams of this stiffness fit between clamp and plate.
+        If no beams of this stiffness fit between clamp and plate, or a measured response cannot
+        be made causal.
 
     Examples
     --------
@@ -117,11 +120,12 @@ def response(
     """
     n_samples = round(seconds * rate)
     if math.isinf(support_stiffness):
-        return _bolted_response(rig.beams.lever, rig.plate, rig.microphone, rate, n_samples)
+        bolted = _bolted_response(rig.beams.lever, rig.plate, rig.microphone, rate, n_samples)
+        return with_measured(bolted, rig.measured, support_stiffness)
     damping = (1 - rig.elastomer_damping_share) * damping_at(
         rig.fit(interference), support_stiffness
     )
-    return _beam_response(
+    modelled = _beam_response(
         rig.beams,
         rig.plate,
         rig.microphone,
@@ -131,6 +135,7 @@ def response(
         rate,
         n_samples,
     )
+    return with_measured(modelled, rig.measured, support_stiffness)
 
 
 @lru_cache(maxsize=16)

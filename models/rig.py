@@ -15,6 +15,8 @@ from models.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from models.measured import MeasuredResponse
+
 __all__ = [
     "EDGES",
     "HIGHEST_PLATE_FREQUENCY",
@@ -142,6 +144,8 @@ class Rig:
         The structure and the sound's way.
     assumed : tuple of str
         The entries of the files that no source gives.
+    measured : tuple of MeasuredResponse
+        Responses measured on the rig, each in place of the modelled one of its support.
     """
 
     name: str
@@ -156,6 +160,7 @@ class Rig:
     plate: Plate
     microphone: Microphone
     assumed: tuple[str, ...] = ()
+    measured: tuple[MeasuredResponse, ...] = ()
 
     @property
     def interference_range(self) -> tuple[float, float]:

@@ -11,15 +11,19 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from models.beams_file import read_beams
-from models.checks import a_number, a_table, a_text, refuse_unknown
+from models.checks import a_number, a_support, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
 from models.plate_file import a_microphone, a_plate
 from models.rig import Fit, LawSpec, Rig
+
+if TYPE_CHECKING:
+    from models.measured import MeasuredResponse
 
 __all__ = ["load_material_rig", "load_rig", "material_names", "parse_spec"]
 
@@ -91,8 +95,7 @@ def load_rig(path: str | Path) -> Rig:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ParameterError(f"rig file {path}: no valid TOML: {error}") from None
     where = f"rig file {path}"
-    if "measured_response" in given:
-        raise ParameterError(f"{where}: [[measured_response]] is not supported by this version")
+    measured = _measured(given.pop("measured_response", None), path.parent, where)
     refuse_unknown(given, _KEYS, where)
     base = _bench()
     if "fit" in given:
@@ -104,7 +107,15 @@ def load_rig(path: str | Path) -> Rig:
     merged = base | bushing | given
     for table in ("beams", "plate", "microphone"):
         merged[table] = base[table] | a_table(given.get(table, {}), table, where)
-    return _build(merged, where)
+    return replace(_build(merged, where), measured=measured)
+
+
+def _measured(tables: Any, folder: Path, where: str) -> tuple[MeasuredResponse, ...]:
+    if tables is None:
+        return ()
+    from models.measured import measured_responses  # brings numpy, which help does without
+
+    return measured_responses(tables, folder, where)
 
 
 def parse_spec(text: str, where: str = "effect") -> LawSpec:
@@ -222,24 +233,9 @@ def _fit(table: Any, where: str) -> Fit:
         critical_torque=critical,
         kinetic_torque=kinetic,
         damping={
-            _support(key, where): a_number(
+            a_support(key, "damping_Nms_rad", where): a_number(
                 {"damping_Nms_rad": value}, "damping_Nms_rad", where, high=1e3, closed=True
             )
             for key, value in by_support.items()
         },
     )
-
-
-def _support(key: str, where: str) -> float:
-    if key == "fixed":
-        return math.inf
-    try:
-        stiffness = float(key)
-    except ValueError:
-        stiffness = math.nan
-    if not stiffness > 0.0:
-        raise ParameterError(
-            f"{where}: damping_Nms_rad has the entry {key!r}; entries are support stiffnesses in "
-            "Nm/rad, or fixed"
-        )
-    return stiffness

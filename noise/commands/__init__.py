@@ -44,6 +44,7 @@ COMMANDS = {
     "render": Entry("noise.commands.render", "a recording or a condition -> an audible WAV"),
     "features": Entry("noise.commands.features", "recordings -> a table of features"),
     "label": Entry("noise.commands.label", "recordings -> a table of labelled segments"),
+    "frf": Entry("noise.commands.frf", "hammer hits -> frequency response, coherence and modes"),
     "train": Entry("noise.commands.train", "build the classifier again from simulation"),
     "thesis": Entry(
         "noise.commands.thesis", "the published numbers beside what the program computes"

@@ -207,12 +207,13 @@ def _interpret(
     """Channels with the value of their full scale, and whether all of them have one."""
     texts = (raw.description, path.name, raw.comment)
     stated = next((found for text in texts if (found := stated_full_scale(text))), None)
-    channels = sidecar.channels
+    channels = sidecar.channels or raw.channels
     if channels is None:
         kind = "pressure" if stated is None or full_scale is not None else stated.kind
         numbers = range(1, len(raw.samples) + 1)
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
-    in_units = not raw.fractional and (sidecar.channels is not None or sidecar.calibrated is True)
+    named = sidecar.channels is not None or raw.channels is not None
+    in_units = not raw.fractional and (named or sidecar.calibrated is True)
     values: list[float] = []
     for channel, scale in zip(channels, sidecar.scales or (None,) * len(channels), strict=True):
         opinions = [full_scale if channel.kind == "pressure" else None]

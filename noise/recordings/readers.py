@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from models.recording import Channel
+
 __all__ = ["READERS", "RawSamples", "Reader", "read_raw"]
 
 
@@ -38,6 +40,9 @@ class RawSamples:
         as floating-point values of their own.
     description, comment : str
         Free text in the file, where meters and engineers note a calibration.
+    channels : tuple of Channel, optional
+        Where the file itself says what it measures: one a row of `samples`, which are in the
+        channels' units.
     """
 
     samples: NDArray[np.float64]
@@ -45,11 +50,13 @@ class RawSamples:
     fractional: bool
     description: str = ""
     comment: str = ""
+    channels: tuple[Channel, ...] | None = None
 
 
 Reader = Callable[[Path], RawSamples]
 
 _SOUND = "noise.recordings.sound_file:read_sound_file"
+_UNIVERSAL = "noise.recordings.universal_file:read_universal_file"
 
 READERS = {
     ".aif": _SOUND,
@@ -60,6 +67,8 @@ READERS = {
     ".ogg": _SOUND,
     ".opus": _SOUND,
     ".rf64": _SOUND,
+    ".uff": _UNIVERSAL,
+    ".unv": _UNIVERSAL,
     ".wav": _SOUND,
 }
 """Ending in lower case -> reader, as ``module:function``."""

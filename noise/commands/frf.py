@@ -1,0 +1,290 @@
+"""``bushing-noise frf``: hammer hits into a response function and its modes."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentTypeError
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError, RecordingError
+from noise.atomic import atomic
+from noise.commands import options as opt
+from noise.commands.targets import check_target
+from noise.progress import counted, note, say, track
+from noise.tables import check_table_path, write_table
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+
+    from features.hammer import Hit, TransferEstimate
+    from features.modal_fit import Modes
+    from models.frf import Frf
+
+__all__ = ["configure", "run"]
+
+_ESTIMATORS = ("H1", "H2", "Hv")
+_DEFAULT_COHERENCE = 0.8
+_MOST_BANDS = 8
+
+_MODE_COLUMNS = (
+    "frequency_hz",
+    "damping_ratio",
+    "residue_real",
+    "residue_imag",
+    "peak",
+    "coherence",
+    "orders",
+)
+
+
+def configure(parser: ArgumentParser) -> None:
+    """Declare description and options."""
+    parser.description = (
+        "Estimate the frequency response function and the coherence from hammer hits, each one "
+        "boxcar segment, and fit modes to it. Hits that are double or clipped are refused, and it "
+        "is told where the coherence is low. A response to a torque, with --arm, can stand in for "
+        "the modelled one in a rig file."
+    )
+    parser.epilog = (
+        "example: bushing-noise frf hits/*.npy --arm 0.05 --out torque_to_acceleration_2214.uff "
+        "--modes modes.csv; columns of the modes: natural frequency, fraction of critical damping, "
+        "residue (in the response's unit times rad/s), its peak, the coherence there, and through "
+        "how many orders of the fit the pole stayed"
+    )
+    parser.add_argument(
+        "hits",
+        nargs="+",
+        type=Path,
+        metavar="HIT",
+        help="one hit a file: a recording with a force channel, or .npy or .csv whose rows or "
+        "columns are time in s, force in N, response",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="file for the response function: .uff, .unv, .npz or .csv (default: CSV on standard "
+        "output, unless only --modes is given)",
+    )
+    parser.add_argument(
+        "--modes",
+        type=Path,
+        metavar="TABLE",
+        help="fit modes and write them: .csv, .jsonl or .parquet",
+    )
+    parser.add_argument(
+        "--arm",
+        type=opt.number(above=0.0, most=100.0),
+        metavar="M",
+        help="lever in m at which the hammer hits; makes a torque in N m of the force",
+    )
+    parser.add_argument(
+        "--estimator",
+        type=_estimator,
+        default=_ESTIMATORS[0],
+        metavar="H1|H2|Hv",
+        help="H1 for noise in the response, H2 for noise in the force, Hv for both (default: H1)",
+    )
+    parser.add_argument(
+        "--response",
+        type=_channel,
+        metavar="NAME",
+        help="channel to take for the response, or for a table what its response is, such as "
+        "pressure (default: acceleration, else pressure)",
+    )
+    parser.add_argument(
+        "--band",
+        type=_band,
+        metavar="LOW..HIGH",
+        help="band in Hz in which modes are fitted (default: where the coherence can be trusted)",
+    )
+    parser.add_argument(
+        "--coherence",
+        type=opt.number(least=0.0, most=1.0),
+        default=_DEFAULT_COHERENCE,
+        metavar="C",
+        help="tell the bands in which the coherence is lower than this (default: "
+        f"{_DEFAULT_COHERENCE:g})",
+    )
+    opt.add_seed(parser, "accepted as by every command; nothing here is random")
+
+
+def run(options: Namespace) -> int:
+    """Read the hits, estimate, fit, write."""
+    _check(options)
+    hits, unit, refused = _read(options)
+    say(f"{counted(len(hits), 'hit')} averaged, {refused} refused")
+    if not hits:
+        return 1
+    from features.hammer import transfer_estimate
+
+    estimate = transfer_estimate(hits)
+    frf = _chosen(estimate, options, unit)
+    _tell_coherence(frf, options.coherence)
+    modes = None
+    if options.modes is not None:
+        from features.modal_fit import fit_modes
+
+        say("fitting modes")
+        low, high = options.band or _default_band(frf)
+        modes = fit_modes(frf.frequency, frf.response, low=low, high=high, coherence=frf.coherence)
+        say(f"{counted(modes.frequency.size, 'mode')} from {low:.5g} to {high:.5g} Hz")
+    _write(options, frf, modes)
+    return 1 if refused else 0
+
+
+def _check(options: Namespace) -> None:
+    from models.frf_file import check_frf_path
+
+    for path in options.hits:
+        if not path.exists():
+            raise ParameterError(f"{path}: there is no such file")
+    if options.out is not None:
+        check_frf_path(options.out)
+        check_target(options.out)
+    if options.modes is not None:
+        check_table_path(options.modes)
+        check_target(options.modes)
+    elif options.band is not None:
+        raise ParameterError("--band is given without --modes, for which it is")
+
+
+def _read(options: Namespace) -> tuple[list[Hit], str, int]:
+    """Usable hits, cut to the same length, the unit of the response, and how many were refused."""
+    from features.hammer import Hit, check_hit
+    from noise.hits import read_hit
+
+    hits: list[Hit] = []
+    units: list[str] = []
+    refused = 0
+    for path in track(options.hits, "reading", unit="hit"):
+        try:
+            hit, unit = read_hit(path, response=options.response, arm=options.arm)
+            check_hit(hit)
+            if hits and hit.rate != hits[0].rate:
+                raise RecordingError(
+                    f"{path}: is sampled at {hit.rate:g} Hz, {hits[0].name} at {hits[0].rate:g} Hz"
+                )
+            if units and unit != units[0]:
+                raise RecordingError(
+                    f"{path}: its response is in {unit}, that of {hits[0].name} in {units[0]}"
+                )
+        except RecordingError as error:
+            say(f"bushing-noise: refused: {error}")
+            refused += 1
+            continue
+        hits.append(hit)
+        units.append(unit)
+    lengths = {hit.force.size for hit in hits}
+    if len(lengths) > 1:
+        shortest = min(lengths)
+        note(f"hits of different lengths are cut to the shortest, {shortest} samples")
+        hits = [
+            Hit(hit.force[:shortest], hit.response[:shortest], hit.rate, hit.name) for hit in hits
+        ]
+    return hits, units[0] if units else "", refused
+
+
+def _chosen(estimate: TransferEstimate, options: Namespace, unit: str) -> Frf:
+    from models.frf import Frf
+
+    return Frf(
+        estimate.frequency,
+        {"H1": estimate.h1, "H2": estimate.h2, "Hv": estimate.hv}[options.estimator],
+        estimate.coherence if estimate.n_hits > 1 else None,
+        "N" if options.arm is None else "N m",
+        unit,
+        f"response of {counted(estimate.n_hits, 'hit')}",
+    )
+
+
+def _tell_coherence(frf: Frf, least: float) -> None:
+    if frf.coherence is None:
+        note("a single hit has no coherence; hit at least three times to see what can be trusted")
+        return
+    from models.frf import bands_below
+
+    bands = bands_below(frf, least)
+    if not bands:
+        say(f"coherence is {least:g} or more throughout")
+        return
+    widest = sorted(sorted(bands, key=lambda band: band[0] - band[1])[:_MOST_BANDS])
+    told = ", ".join(f"{low:.5g}-{high:.5g}" for low, high in widest)
+    more = (
+        f" Hz, and {len(bands) - len(widest)} narrower ones" if len(bands) > len(widest) else " Hz"
+    )
+    note(f"coherence below {least:g}, not to be trusted: {told}{more}")
+
+
+def _default_band(frf: Frf) -> tuple[float, float]:
+    from models.frf import trusted_band
+
+    return trusted_band(frf)
+
+
+def _write(options: Namespace, frf: Frf, modes: Modes | None) -> None:
+    """All outputs, whole or not at all."""
+    from models.frf_file import write_frf, write_frf_csv
+
+    with ExitStack() as outputs:
+        if options.out is not None:
+            write_frf(outputs.enter_context(atomic(options.out)), frf)
+        if modes is not None:
+            table = outputs.enter_context(atomic(options.modes))
+            write_table(table, _MODE_COLUMNS, _mode_rows(modes, frf))
+    if options.out is None and options.modes is None:
+        if sys.stdout is None:
+            raise ParameterError("standard output is closed; name a file with --out")
+        write_frf_csv(sys.stdout, frf)
+    for path in (options.out, options.modes):
+        if path is not None:
+            print(path)
+
+
+def _mode_rows(modes: Modes, frf: Frf) -> list[dict[str, object]]:
+    import numpy as np
+
+    coherence = np.full(frf.frequency.size, np.nan) if frf.coherence is None else frf.coherence
+    (residues,) = modes.residues
+    return [
+        dict(zip(_MODE_COLUMNS, row, strict=True))
+        for row in zip(
+            modes.frequency,
+            modes.damping_ratio,
+            residues.real,
+            residues.imag,
+            np.abs(residues) / (2 * np.pi * modes.frequency * modes.damping_ratio),
+            np.interp(modes.frequency, frf.frequency, coherence),
+            modes.orders,
+            strict=True,
+        )
+    ]
+
+
+def _estimator(text: str) -> str:
+    for known in _ESTIMATORS:
+        if text.lower() == known.lower():
+            return known
+    raise ArgumentTypeError(f"is {text!r}, expected {', '.join(_ESTIMATORS)}")
+
+
+def _channel(text: str) -> str:
+    from models.recording import Channel
+
+    try:
+        return Channel(text).name
+    except ParameterError as error:
+        raise ArgumentTypeError(f"is {text!r}: {error}") from None
+
+
+def _band(text: str) -> tuple[float, float]:
+    low, dots, high = text.partition("..")
+    try:
+        band = float(low), float(high)
+    except ValueError:
+        band = 0.0, 0.0
+    if not dots or not 0.0 <= band[0] < band[1] < float("inf"):
+        raise ArgumentTypeError(f"is {text!r}, expected LOW..HIGH in Hz, such as 100..5000")
+    return band

@@ -1,0 +1,111 @@
+"""Universal files (UFF, UNV) as raw samples: their time functions, dataset 58.
+
+Channels follow from the units that the file labels, since its data types are often left general.
+Accelerations in g and angles in degrees are turned into SI, for the label says what they are; any
+other unit is refused, because a guess would look like a measurement.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError, RecordingError
+from models.frf import same_unit
+from models.recording import CHANNEL_UNITS, Channel
+from models.uff import TIME_RESPONSE, UffFunction, read_uff_functions
+from noise.recordings.readers import RawSamples
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["read_universal_file"]
+
+_STANDARD_GRAVITY = 9.80665  # m/s^2
+
+_OTHER_UNITS = {
+    "g": ("acceleration", _STANDARD_GRAVITY),
+    "deg": ("angle", np.pi / 180),
+    "kPa": ("pressure", 1e3),
+    "kN": ("force", 1e3),
+}
+"""Label -> kind of channel, and what a unit of it is in SI."""
+
+_UNLABELLED = {12: "acceleration", 13: "force", 15: "pressure"}
+"""Data types that stand in for a missing label, then taken to be in SI."""
+
+
+def read_universal_file(path: Path) -> RawSamples:
+    """Read all time functions of a universal file as channels.
+
+    Parameters
+    ----------
+    path : Path
+        An existing file.
+
+    Returns
+    -------
+    RawSamples
+        Channels named by their kind, in the order of the file; samples in SI.
+
+    Raises
+    ------
+    RecordingError
+        The file is damaged, holds no time functions, or these differ in rate or length, or have
+        units that are no channel's; or pyuff is not installed.
+    """
+    functions = [f for f in _functions(path) if f.kind == TIME_RESPONSE]
+    if not functions:
+        raise RecordingError(f"{path}: holds no time functions (dataset 58, function type 1)")
+    rows, channels = [], []
+    seen: Counter[str] = Counter()
+    first = functions[0]
+    for number, function in enumerate(functions, start=1):
+        kind, factor = _kind(function, f"{path}: function {number} {function.name!r}")
+        if function.y.size != first.y.size or not np.allclose(function.x, first.x, rtol=1e-9):
+            raise RecordingError(
+                f"{path}: function {number} {function.name!r} has other times than the first; "
+                "channels of a recording must be sampled together"
+            )
+        seen[kind] += 1
+        rows.append(factor * function.y.real)
+        channels.append(Channel(kind if seen[kind] == 1 else f"{kind}_{seen[kind]}"))
+    return RawSamples(
+        samples=np.array(rows, dtype=np.float64),
+        rate=_rate(path, first),
+        fractional=False,
+        channels=tuple(channels),
+    )
+
+
+def _functions(path: Path) -> list[UffFunction]:
+    try:
+        return read_uff_functions(path)
+    except ParameterError as error:
+        raise RecordingError(str(error)) from None
+
+
+def _kind(function: UffFunction, where: str) -> tuple[str, float]:
+    """Kind of channel, and the factor that turns its samples into SI."""
+    if np.iscomplexobj(function.y):
+        raise RecordingError(f"{where} is complex, expected real samples")
+    if not function.unit and function.data_type in _UNLABELLED:
+        return _UNLABELLED[function.data_type], 1.0
+    for kind, unit in CHANNEL_UNITS.items():
+        if same_unit(function.unit, unit):
+            return kind, 1.0
+    if function.unit in _OTHER_UNITS:
+        return _OTHER_UNITS[function.unit]
+    known = ", ".join([*CHANNEL_UNITS.values(), *_OTHER_UNITS])
+    raise RecordingError(f"{where} has unit {function.unit!r}, expected {known}")
+
+
+def _rate(path: Path, function: UffFunction) -> float:
+    steps = np.diff(function.x)
+    if steps.size == 0 or not np.allclose(steps, steps[0], rtol=1e-3, atol=0.0) or steps[0] <= 0:
+        raise RecordingError(f"{path}: time does not rise evenly")
+    rate = float((function.x.size - 1) / (function.x[-1] - function.x[0]))
+    whole = round(rate)
+    return float(whole) if abs(whole - rate) < 1e-6 * rate else rate
