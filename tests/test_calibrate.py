@@ -35,6 +35,7 @@ def test_the_cells_are_tables_5_1_and_5_2_at_two_interferences():
 
 def test_every_unknown_starts_inside_its_limits():
     assert all(u.low < u.start < u.high for u in UNKNOWNS.values())
+    assert all(u.low < u.round_start < u.high for u in UNKNOWNS.values())
     for (name, unknown), value in zip(UNKNOWNS.items(), values_at(start()).values(), strict=True):
         assert value == pytest.approx(unknown.start), name
 
@@ -80,7 +81,7 @@ def test_the_score_of_a_rig_depends_on_the_cells_that_count(rig):
     part = score(rig, CELLS[:5], critical_speeds_alone=True)
     assert whole.speeds == part.speeds
     assert whole.cost - part.cost == pytest.approx(
-        10.0 * (whole.log_error(CELLS) - part.log_error(CELLS[:5]))
+        20.0 * (whole.log_error(CELLS) - part.log_error(CELLS[:5]))
     )
 
 

@@ -1,7 +1,7 @@
 """``python -m noise.calibrate``: fit the fluorocarbon to the thesis's tables, and hold out.
 
 Without options it judges the shipped material. ``--generations N`` searches; ``--leave-out``
-repeats the search with each of the six critical speeds at 0.279 mm left out, from the same start.
+searches again with each of the six critical speeds at 0.279 mm left out, from round numbers.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def _run(options: argparse.Namespace) -> None:
             rest = tuple(other for other in CELLS if other != cell)
             found = search(
                 options.leave_out, options.seed, rest,
-                critical_speeds_alone=True, progress=_progress(f"without {cell}"),
+                critical_speeds_alone=True, rounded=True, progress=_progress(f"without {cell}"),
             )  # fmt: skip
             refitted = rig_of(found.values)
             if refitted is not None:

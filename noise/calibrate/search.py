@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Found", "search"]
 
-_SPREAD = 0.35
-"""First standard deviation, of the logarithms."""
+_SPREAD, _WIDE_SPREAD = 0.2, 0.35
+"""First standard deviation of the logarithms, about the start and about the round start."""
 
 _CANDIDATES = 12
 """In each generation."""
@@ -51,6 +51,7 @@ def search(
     fitted: Sequence[Cell] = CELLS,
     *,
     critical_speeds_alone: bool = False,
+    rounded: bool = False,
     progress: Callable[[int, Found], None] | None = None,
 ) -> Found:
     """Search the unknowns of the fluorocarbon.
@@ -64,6 +65,8 @@ def search(
         The critical speeds that count.
     critical_speeds_alone : bool
         As for `noise.calibrate.objective.score`.
+    rounded : bool
+        Begin at round numbers, with a wider cloud.
     progress : callable
         Called after each generation with its number, from 1 on, and the best so far.
 
@@ -89,10 +92,11 @@ def search(
             values, score(rig_of(values), fitted, critical_speeds_alone=critical_speeds_alone)
         )
 
-    best = judged(start())
+    first = start(rounded=rounded)
+    best = judged(first)
     # A seed of 0 would be taken from the clock.
     options = {"seed": seed + 1, "popsize": _CANDIDATES, "verbose": -9}
-    strategy = cma.CMAEvolutionStrategy(start(), _SPREAD, options)
+    strategy = cma.CMAEvolutionStrategy(first, _WIDE_SPREAD if rounded else _SPREAD, options)
     for generation in range(1, generations + 1):
         points = strategy.ask()
         candidates = [judged(np.asarray(point)) for point in points]

@@ -17,6 +17,9 @@ __all__ = ["Design", "random_design"]
 _MATERIALS = {"fluorocarbon": 0.8, "fluorocarbon-thesis": 0.1, "PDMS": 0.1}
 """Share of the designs that start from each."""
 
+_SHAPES = {"weakening_exponent"}
+"""Parameters that make the law what it is, and so do not differ from design to design."""
+
 _SUPPORTS = (2214.0, 3745.0, math.inf)
 """Of the thesis's rig [Nm/rad]."""
 
@@ -94,7 +97,7 @@ def _jittered(spec: LawSpec, scatter: float, rng: np.random.Generator) -> LawSpe
         spec.name,
         {
             name: value * math.exp(min(0.5, rng.normal(0.0, scatter)))
-            if isinstance(value, float)
+            if isinstance(value, float) and name not in _SHAPES
             else value
             for name, value in spec.parameters.items()
         },

@@ -4,12 +4,16 @@ The thesis names the noises by what makes them (5.2.3, 6.2), and so does this pa
 where they are defined. It looks at the motion and at the sound free of noise, room and microphone,
 none of which the classifier sees; lines are found as `features.lines` does.
 
-- *none*: the torque settles to steady sliding; or the sound drowns in a quiet room's.
+- *none*: the torque settles to steady sliding, but for changes too slow to be heard; or the sound
+  drowns in a quiet room's.
 - *creak*: slips strike the plate, and the sound that those blows make through it is no more than
   10 dB below all the rest, A-weighted. Stick-slip too weak to excite the plate is no creak.
 - *squeal*: the torque oscillates at one predominant frequency; lines more than 18 dB below it do
   not count (the third harmonic of a triangle lies 19 dB below the first, and Figure 5.1(c) is one).
-- *squawk*: it oscillates at several discrete frequencies.
+- *squawk*: it oscillates at several discrete frequencies, or sticks and slips without a period, as
+  natural rubber's chatter does, "much like squawk".
+- *creak*, too: friction that is random without stick, as on a transfer film; its sound "resembled
+  the creaking, except that it was not as loud" (6.2).
 """
 
 from __future__ import annotations
@@ -20,10 +24,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.bands import overall_level
-from features.lines import find_lines
+from features.lines import Lines, find_lines
 from features.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
-from sim.regime import Regime, friction_regime
+from sim.regime import LEAST_OSCILLATION, Regime, friction_regime
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,6 +41,9 @@ LEAST_LEVEL = 35.0
 
 _CREAK_MARGIN = 10.0
 """How far the blows' sound may lie below all the rest [dB(A)]."""
+
+_LEAST_SHARE = 0.5
+"""Of the torque's power from 20 Hz to 5 kHz in one line, for it to be predominant."""
 
 _LINE_RANGE = 18.0
 """Lines weaker than the strongest by more than this do not count [dB]."""
@@ -63,18 +70,38 @@ def noise_of(run: Run) -> str:
         _CREAK_MARGIN
     ):
         return "creak"
-    return "squeal" if len(sustained_frequencies(run)) <= 1 else "squawk"
+    lines = _torque_lines(run)
+    if _audible_oscillation(run, lines) <= LEAST_OSCILLATION:
+        return "none"
+    if _sustained(lines).size > 1:
+        return "squawk"
+    if lines.strongest_share > _LEAST_SHARE:
+        return "squeal"
+    return "squawk" if friction_regime(run.motion) is Regime.STICK_SLIP else "creak"
 
 
 def sustained_frequencies(run: Run) -> NDArray[np.float64]:
     """Frequencies of the torque's lines within 18 dB of the strongest [Hz], strongest first."""
+    return _sustained(_torque_lines(run))
+
+
+def _torque_lines(run: Run) -> Lines:
     torque = run.motion.torque
     spectrum = autospectrum(torque[torque.size // 2 :], run.motion.rate)
-    lines = find_lines(spectrum, low=20.0, high=5e3)
+    return find_lines(spectrum, low=20.0, high=5e3)
+
+
+def _sustained(lines: Lines) -> NDArray[np.float64]:
     if not lines.power.size:
         return lines.frequency
     strong = lines.power >= lines.power[0] * 10.0 ** (-_LINE_RANGE / 10.0)
     return np.asarray(lines.frequency[strong])
+
+
+def _audible_oscillation(run: Run, lines: Lines) -> float:
+    """Root mean square of the torque from 20 Hz to 5 kHz, over its mean."""
+    torque = run.motion.torque
+    return math.sqrt(lines.total) / abs(float(np.mean(torque[torque.size // 2 :])))
 
 
 def _level(pressure: NDArray[np.float64], rate: float) -> float:

@@ -4,14 +4,15 @@ r"""Elastic contact that remembers how long it has touched.
     \dot z &= v - K |v| z / g(\varphi, v), \qquad T = K z + \sigma \dot z \\
     \dot\varphi &= 1 - |v| \varphi / D \\
     g &= T_{kin} + (T_{crit} - T_{kin}) \frac{\varphi}{\varphi + \tau}
-         + \beta T_{kin} e^{-|v| / v_w}
+         + \beta T_{kin} e^{-(|v| / v_w)^n}
 
 z is the shear of the contact [rad], phi its age [s]: in stick it grows with time, in sliding it
 settles at D/|v|. So the contact gives way gradually during stick, regains strength with time, and
 its torque falls with sliding speed; without the last, nothing sustains itself. After the bristle
-contact of Canudas de Wit et al. (1995) and the rate-and-state laws of Dieterich and Ruina (1983),
-whose ageing here saturates. Stiffness and damping of the contact go with the real area of
-contact, hence with T_kin.
+contact of Canudas de Wit et al. (1995), the rate-and-state laws of Dieterich and Ruina (1983),
+whose ageing here saturates, and the falling torque of Bo and Pavelescu (1982) with exponents n up
+to 2, where it falls steepest at 0.7 of v_w. Stiffness and damping of the contact go with the real
+area of contact, hence with T_kin.
 
 Limits: steady sliding at speed v gives T = g(D/|v|, v); tau -> infinity and beta = 0 give a
 constant T_kin; at rest for long, T may rise to T_crit and the share beta of T_kin.
@@ -52,6 +53,7 @@ _PARAMETERS = {
         0.0, "", 0.0, 10.0, "beta: torque that fades with speed, over T_kin"
     ),
     "weakening_speed": Parameter(20.0, "rad/s", 1e-3, 1e4, "v_w: speed over which it fades"),
+    "weakening_exponent": Parameter(1.0, "", 1.0, 4.0, "n: 1 falls at once, 2 as a Gaussian"),
 }
 
 
@@ -65,10 +67,15 @@ def _torque(v, c, contact, state, state_rates):
     stiffness, damping = c[0] * kinetic, c[1] * kinetic
     z, age = state[0], state[1]
     speed = abs(v)
+    power = speed / c[5]
+    if c[6] == 2.0:  # a general power takes as long as all the rest
+        power *= power
+    elif c[6] != 1.0:
+        power **= c[6]
     strength = (
         kinetic
         + (contact[CRITICAL] - kinetic) * age / (age + c[3])
-        + c[4] * kinetic * math.exp(-speed / c[5])
+        + c[4] * kinetic * math.exp(-power)
     )
     state_rates[0] = v - stiffness * speed * z / strength
     state_rates[1] = 1.0 - speed * age / c[2]
