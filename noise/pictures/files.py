@@ -6,14 +6,13 @@ whenever it is written: dates and names of programs are left out.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.atomic import atomic
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.figure import Figure
 
 __all__ = ["PICTURE_ENDINGS", "check_picture_path", "write_picture"]
@@ -47,12 +46,12 @@ def check_picture_path(path: Path) -> None:
         raise ParameterError(f"{path}: is a folder; name a file to write")
 
 
-def write_picture(path: Path, figure: Figure) -> None:
+def write_picture(path: str | Path, figure: Figure) -> None:
     """Write a figure, whole or not at all.
 
     Parameters
     ----------
-    path : Path
+    path : str or Path
         Its ending says the format, see `PICTURE_ENDINGS`.
     figure : matplotlib.figure.Figure
 
@@ -72,6 +71,7 @@ def write_picture(path: Path, figure: Figure) -> None:
     ...     path.read_bytes()[1:4]
     b'PNG'
     """
+    path = Path(path)
     check_picture_path(path)
     import matplotlib.style
 
