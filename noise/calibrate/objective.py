@@ -3,14 +3,16 @@
 The measure that is reported is the root mean square of log(simulated / measured) over the critical
 speeds. It weighs most; the other terms are hinges, nil where the thesis's finding is met. Critical
 speeds are where the share of stick, or the oscillation, crosses its limit (`sim.regime`) for the
-last time on a grid of speeds 12 % apart, interpolated between its points, so that a small change
-of a parameter shows. The speeds reported afterwards are those of `sim.critical_speeds`.
+last time on a grid of speeds, fine about what was measured and coarse elsewhere, interpolated
+between its points, so that a small change of a parameter shows. The speeds reported afterwards are
+those of `sim.critical_speeds`.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,10 +33,16 @@ if TYPE_CHECKING:
 
 __all__ = ["Score", "score"]
 
-_GRID = np.geomspace(1.6, 14.4, 20)
+_COARSE = np.geomspace(1.6, 14.4, 12)
 _THIN_GRID = np.geomspace(1.0, 9.0, 10)
 
-_SECONDS = 0.7
+_FINE = {"v_crit1": 0.25, "v_crit2": 0.5}
+"""Spacing about what was measured [rad/s]."""
+
+_WINDOW = 0.8, 1.35
+"""Over what was measured: where the grid is fine."""
+
+_SECONDS = 0.8
 _RATE = 15e3
 
 _CRITICAL_SPEEDS, _THIN, _FLATNESS, _STICK, _NOISE = 20.0, 1.25, 2.0, 0.15, 0.25
@@ -116,7 +124,7 @@ def score(
     """
     if rig is None:
         return Score(_UNUSABLE, {})
-    tasks: list[Task] = [(0.279e-3, k, float(v)) for k in SUPPORTS for v in _GRID]
+    tasks: list[Task] = [(0.279e-3, k, float(v)) for k in SUPPORTS for v in _grid(k)]
     if not critical_speeds_alone:
         tasks += [(0.178e-3, k, float(v)) for k in SUPPORTS for v in _THIN_GRID]
         tasks += list(STICKING)
@@ -128,10 +136,10 @@ def score(
     except ParameterError:
         return Score(_UNUSABLE, {})
     runs = dict(zip(tasks, found, strict=True))
-    speeds = {cell: _critical_speed(cell, runs, _GRID) for cell in CELLS}
+    speeds = {cell: _critical_speed(cell, runs, _grid(cell.support_stiffness)) for cell in CELLS}
     cost = _CRITICAL_SPEEDS * Score(0.0, speeds).log_error(fitted)
     for support in SUPPORTS:
-        means = [runs[0.279e-3, support, float(v)].mean for v in _GRID]
+        means = [runs[0.279e-3, support, float(v)].mean for v in _grid(support)]
         cost += _FLATNESS * max(0.0, max(means) / min(means) - _FLAT)
     if not critical_speeds_alone:
         thin = {cell: _critical_speed(cell, runs, _THIN_GRID) for cell in THIN_CELLS}
@@ -142,6 +150,18 @@ def score(
             _HINGES[c.noise](runs[c.interference, c.support_stiffness, c.speed]) for c in NOISES
         )
     return Score(cost, speeds)
+
+
+@cache
+def _grid(support_stiffness: float) -> NDArray[np.float64]:
+    """Speeds to try at 0.279 mm."""
+    low, high = _WINDOW
+    fine = [
+        np.arange(low * cell.speed, high * cell.speed, _FINE[cell.item])
+        for cell in CELLS
+        if cell.support_stiffness == support_stiffness
+    ]
+    return np.unique(np.concatenate([_COARSE, *fine]))
 
 
 def _settled(rig: Rig, task: Task) -> _Settled:

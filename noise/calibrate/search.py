@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Found", "search"]
 
-_SPREAD, _WIDE_SPREAD = 0.2, 0.35
+_SPREAD, _WIDE_SPREAD = 0.05, 0.35
 """First standard deviation of the logarithms, about the start and about the round start."""
 
 _CANDIDATES = 12
