@@ -60,7 +60,7 @@ def test_the_models_own_response_given_as_measured_gives_the_models_sound(tmp_pa
     rig = rig_with(tmp_path, modelled, text=text)
     measured = response(rig, FIT, 2214.0, RATE, seconds=0.7)
     for found, true in zip(radiate(measured, torque()), radiate(modelled, torque()), strict=True):
-        assert np.std(found - true) < 0.01 * np.std(true)
+        assert np.std(found - true) < 0.015 * np.std(true)
 
 
 def test_what_was_not_measured_stays_modelled(tmp_path, modelled):
@@ -68,7 +68,7 @@ def test_what_was_not_measured_stays_modelled(tmp_path, modelled):
     assert measured.torque_to_pressure is modelled.torque_to_pressure
     assert measured.pulse_to_acceleration is modelled.pulse_to_acceleration
     found, true = radiate(measured, torque())[0], radiate(modelled, torque())[0]
-    assert np.std(found - 2.0 * true) < 0.02 * np.std(true)
+    assert np.std(found - 2.0 * true) < 0.015 * np.std(2.0 * true)
 
 
 def test_another_support_stays_modelled(tmp_path, modelled):
@@ -82,7 +82,7 @@ def test_a_bolted_clamp_may_be_measured_too(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled, text=ENTRY.replace("2214", '"fixed"'))
     found = radiate(response(rig, FIT, math.inf, RATE, seconds=0.7), torque())[0]
     true = radiate(modelled, torque())[0]
-    assert np.std(found - true) < 0.01 * np.std(true)
+    assert np.std(found - true) < 0.015 * np.std(true)
 
 
 def test_a_response_that_ends_below_what_is_modelled_says_what_is_missing(tmp_path, modelled):

