@@ -31,8 +31,4 @@ def misprints() -> list[Row]:
             "film_mode", "natural rubber, first, 6.2; 5.2.3 has 250 Hz", "Hz", number(25.0),
             exact=250.0, meant=number(250.0),
         ),
-        Row(
-            "mean_torque_ratio", "natural rubber, with transfer film / without", "1",
-            number(3.5, "3 to 4"),
-        ),
     ]  # fmt: skip

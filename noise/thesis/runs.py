@@ -25,6 +25,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.regime import LEAST_OSCILLATION, Regime, friction_regime
+from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from sim.thesis_listing import STEP, run_listing
 
@@ -34,10 +35,10 @@ if TYPE_CHECKING:
     from sim.thesis_listing import ListingRun
 
 __all__ = [
-    "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "listing_peak_speed",
+    "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "acceleration", "listing_peak_speed",
     "listing_run", "listing_slip_frequency", "listing_stick_share", "mean_torque", "motion",
     "oscillation", "peak_speed", "repetition_rate", "rig_of", "slip_frequency", "stick_share",
-    "strongest_line", "third_over_second",
+    "strongest_line", "strongest_share", "third_over_second",
 ]  # fmt: skip
 
 THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
@@ -166,6 +167,22 @@ def strongest_line(material: str, case: Case) -> float | None:
     torque = _settled(motion(material, case)).torque
     lines = find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
     return float(lines.frequency[0]) if lines.frequency.size else None
+
+
+def strongest_share(material: str, case: Case) -> float:
+    """Share of the torque's power that lies in its strongest line."""
+    torque = _settled(motion(material, case)).torque
+    lines = find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
+    return lines.strongest_share
+
+
+def acceleration(material: str, case: Case) -> float:
+    """Root mean square of the beam's acceleration [m/s^2]."""
+    run = simulate(
+        rig_of(material), case.speed,
+        interference=case.interference, support_stiffness=case.support_stiffness,
+    )  # fmt: skip
+    return float(np.std(run.recording["acceleration"]))
 
 
 def slip_frequency(material: str, case: Case) -> float | None:
