@@ -11,6 +11,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from joblib import Parallel, delayed
+
 from models.errors import BushingNoiseError
 from models.rig_file import load_material_rig
 from noise.atomic import atomic
@@ -75,17 +77,22 @@ def _run(options: argparse.Namespace) -> None:
     print(speeds_page("A hint to the search, at 0.178 mm", hints))
     print(noises_page(rig))
     if options.leave_out:
-        predicted: dict[Cell, float] = {}
-        for cell in CELLS:
-            rest = tuple(other for other in CELLS if other != cell)
-            found = search(
-                options.leave_out, options.seed, rest,
-                critical_speeds_alone=True, rounded=True, progress=_progress(f"without {cell}"),
-            )  # fmt: skip
-            refitted = rig_of(found.values)
-            if refitted is not None:
-                predicted |= measured_speeds(refitted, (cell,))
+        refitted = Parallel(n_jobs=-1)(
+            delayed(_predicted)(cell, options.leave_out, options.seed) for cell in CELLS
+        )
+        predicted = {cell: speed for cell, speed in refitted if speed is not None}
         print(speeds_page("Held out, each predicted by a search without it", predicted))
+
+
+def _predicted(cell: Cell, generations: int, seed: int) -> tuple[Cell, float | None]:
+    """Critical speed of a rig that is fitted to all cells but this."""
+    found = search(
+        generations, seed, tuple(other for other in CELLS if other != cell),
+        critical_speeds_alone=True, rounded=True, workers=1,
+        progress=_progress(f"without {cell}"),
+    )  # fmt: skip
+    rig = rig_of(found.values)
+    return cell, None if rig is None else measured_speeds(rig, (cell,))[cell]
 
 
 def _progress(what: str) -> Callable[[int, Found], None]:

@@ -52,6 +52,7 @@ def search(
     *,
     critical_speeds_alone: bool = False,
     rounded: bool = False,
+    workers: int = -1,
     progress: Callable[[int, Found], None] | None = None,
 ) -> Found:
     """Search the unknowns of the fluorocarbon.
@@ -67,6 +68,8 @@ def search(
         As for `noise.calibrate.objective.score`.
     rounded : bool
         Begin at round numbers, with a wider cloud.
+    workers : int
+        Threads; the result does not depend on it.
     progress : callable
         Called after each generation with its number, from 1 on, and the best so far.
 
@@ -89,7 +92,13 @@ def search(
     def judged(point: NDArray[np.float64]) -> Found:
         values = values_at(point)
         return Found(
-            values, score(rig_of(values), fitted, critical_speeds_alone=critical_speeds_alone)
+            values,
+            score(
+                rig_of(values),
+                fitted,
+                critical_speeds_alone=critical_speeds_alone,
+                workers=workers,
+            ),
         )
 
     first = start(rounded=rounded)
