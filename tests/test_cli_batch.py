@@ -69,6 +69,50 @@ def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
     assert [bool(row["pressure_level"]) for row in rows] == [True, False, True]
 
 
+def test_features_are_the_same_with_two_processes(runs):
+    assert main(["features", "runs", "--out", "one.csv"]) == 1
+    assert main(["features", "runs", "--out", "two.csv", "--workers", "2"]) == 1
+    assert Path("two.csv").read_bytes() == Path("one.csv").read_bytes()
+
+
+def test_a_recording_named_twice_is_a_row_once(runs, labelled):
+    assert main(["label", "runs/a.wav", "./runs/a.wav", "--out", "t.csv"]) == 0
+    assert [row["file"] for row in read_table("t.csv")] == ["a.wav"]
+
+
+def test_the_same_call_again_repeats_nothing_but_what_was_refused(runs, labelled, capsys):
+    for _ in range(2):
+        assert main(["label", "runs", "--out", "labels.csv"]) == 1
+        assert "refused: runs" in capsys.readouterr().err.replace("\\", "/")
+        assert [row["file"] for row in read_table("labels.csv")] == ["a.wav", "b.wav", "c.wav"]
+    assert len(labelled.recordings) == 2
+    assert main(["label", "runs", "--out", "labels.csv", "--fresh"]) == 1
+    assert len(labelled.recordings) == 4
+
+
+def test_labels_come_with_a_map_and_label_tracks(runs, labelled, capsys):
+    given = ["--map", "map.svg", "--audacity", "tracks"]
+    assert main(["label", "runs", *given]) == 1
+    out, err = capsys.readouterr()
+    assert out.startswith("file,channel,")  # standard output is the table alone
+    assert "map.svg" in err
+    assert Path("tracks/a.txt").read_text() == "0.000000\t0.100000\tsqueal\n"
+    (place,) = read_table("map.csv")
+    assert (place["speed_rad_s_from"], place["label"], place["recordings"]) == (
+        "4.9",
+        "squeal",
+        "2",
+    )
+
+
+def test_two_recordings_of_one_name_cannot_share_a_label_track(runs, labelled, capsys):
+    Path("more").mkdir()
+    Path("more/a.wav").write_bytes(Path("runs/a.wav").read_bytes())
+    assert main(["label", "runs", "more", "--audacity", "tracks"]) == 2
+    assert "two recordings are called a.wav" in capsys.readouterr().err
+    assert labelled.recordings == []
+
+
 def test_features_go_to_standard_output_as_csv(runs, capsys):
     assert main(["features", "runs/a.wav"]) == 0
     out, _ = capsys.readouterr()
@@ -136,6 +180,7 @@ def test_a_defect_in_one_file_does_not_end_the_batch(runs, monkeypatch, capsys):
         (["runs", "--out", "t.txt"], "t.txt: tables end in .csv, .jsonl or .parquet"),
         (["runs", "--out", "runs/a.wav/t.csv"], "is a file, not a folder"),
         (["runs", "--full-scale", "0"], "--full-scale"),
+        (["runs", "--workers", "0"], "--workers is '0', expected a whole number"),
         ([], "PATH"),
     ],
 )
@@ -160,6 +205,7 @@ def test_labels_are_linked_to_conditions_and_bad_files_to_reasons(runs, labelled
 
 
 def test_a_classifier_of_ones_own_is_used(runs, labelled):
+    Path("mine.npz").write_bytes(b"trained")
     assert main(["label", "runs/a.wav", "--out", "t.csv", "--classifier", "mine.npz"]) == 0
     assert labelled.classifiers == [Path("mine.npz")]
 

@@ -1,47 +1,39 @@
-"""Many recordings into one table: a bad file is a row that says so, and nothing done is lost."""
+"""Many recordings into one table: a bad file is a row that says so, and nothing done is lost.
+
+With ``--out`` a journal beside the table keeps what is done, so that the same call again goes on
+where the last one ended, however it ended; without, there is nowhere to keep it.
+"""
 
 from __future__ import annotations
 
+import signal
+import threading
+from argparse import ArgumentTypeError
+from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from models.errors import BushingNoiseError, ParameterError
+from models.errors import ParameterError
 from noise.commands.targets import check_target
 from noise.progress import counted, note, say, track
 from noise.tables import check_table_path, write_table
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
-__all__ = ["Task", "add_batch", "check_batch_out", "run_batch"]
+    from noise.batch import Done, Job, Journal, Work
+
+    Rows = list[dict[str, object]]
+
+__all__ = ["add_batch", "check_batch", "find_jobs", "run_batch"]
 
 _INTERRUPTED = 130  # 128 + SIGINT
-
-
-class Task(NamedTuple):
-    """What is done with each recording.
-
-    Parameters
-    ----------
-    doing : str
-        Such as ``"labelling"``.
-    columns : sequence of str
-        Of the table.
-    rows : callable
-        From path and name to the rows of a recording, and whether it is calibrated.
-    error_row : callable
-        From name and message to the row of a file that is refused.
-    """
-
-    doing: str
-    columns: Sequence[str]
-    rows: Callable[[Path, str], tuple[list[dict[str, object]], bool]]
-    error_row: Callable[[str, str], dict[str, object]]
+_TERMINATED = 143  # 128 + SIGTERM
 
 
 def add_batch(parser: ArgumentParser) -> None:
-    """Add the recordings and the table."""
+    """Add the recordings, the table, and who does the work."""
     parser.add_argument(
         "paths",
         nargs="+",
@@ -53,78 +45,191 @@ def add_batch(parser: ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="TABLE",
-        help="file for the table: .csv, .jsonl or .parquet (default: CSV on standard output)",
+        help="file for the table: .csv, .jsonl or .parquet (default: CSV on standard output). The "
+        "same call again goes on where the last one ended, and later does only what is new, "
+        "changed or was refused",
+    )
+    parser.add_argument(
+        "--fresh",
+        action="store_true",
+        help="do all recordings again, whatever earlier calls with the same --out did",
+    )
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers",
+        type=_count,
+        default=1,
+        metavar="N",
+        help="processes that share the work (default: 1); the table is the same",
+    )
+    where.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Dask cluster that does the work, such as tcp://10.0.0.1:8786; its machines read the "
+        "recordings under the same paths and have the same bushing-noise installed",
     )
 
 
-def check_batch_out(out: Path | None) -> None:
-    """Refuse a table that could not be written, before anything is read."""
-    check_table_path(out)
-    if out is not None:
-        check_target(out)
+def check_batch(options: Namespace) -> None:
+    """Refuse what could not be done, before anything is read."""
+    check_table_path(options.out)
+    if options.out is not None:
+        check_target(options.out)
+    if options.scheduler is not None:
+        from noise.batch.cluster import check_cluster
+
+        check_cluster()
 
 
-def run_batch(options: Namespace, task: Task) -> int:
-    """Go through the recordings, write the table, return the exit code.
-
-    On an interrupt the table holds the recordings that were done until then.
+def find_jobs(paths: Sequence[Path]) -> list[Job]:
+    """Find the recordings, each once however often it is named.
 
     Raises
     ------
     ParameterError
-        A path does not exist, there are no recordings, or the table cannot be written.
+        A path does not exist, or there are no recordings.
     """
+    from noise.batch import Job
     from noise.recordings import find_recordings
 
-    found = find_recordings(options.paths)
+    found = {(path.absolute(), name): path for path, name in find_recordings(paths)}
     if not found:
-        named = ", ".join(map(str, options.paths))
-        raise ParameterError(f"{named}: there are no recordings in it")
-    rows: list[dict[str, object]] = []
-    done = refused = uncalibrated = 0
-    interrupted = False
-    try:
-        for path, name in track(found, task.doing):
-            try:
-                of_file, calibrated = task.rows(path, name)
-                rows += of_file
-                uncalibrated += not calibrated
-            except Exception as error:  # whatever it is, the next file may be fine
-                message = _message(error)
-                rows.append(task.error_row(name, message))
-                refused += 1
-                say(f"bushing-noise: refused: {_naming(path, message)}")
-            done += 1
-    except KeyboardInterrupt:
-        interrupted = True
-    if uncalibrated:
+        raise ParameterError(f"{', '.join(map(str, paths))}: there are no recordings in it")
+    return [Job(index, path, name) for index, ((_, name), path) in enumerate(found.items())]
+
+
+def run_batch(
+    options: Namespace,
+    work: Work,
+    jobs: Sequence[Job],
+    also: Callable[[Rows], Sequence[Path]] = lambda _: (),
+) -> int:
+    """Go through the recordings, write the table, return the exit code.
+
+    On an interrupt, or when told to end, the table holds the recordings done until then.
+
+    Parameters
+    ----------
+    options : Namespace
+        Of `add_batch`.
+    work : Work
+    jobs : sequence of Job
+    also : callable
+        Writes further files from the rows of the table, and returns their paths.
+
+    Raises
+    ------
+    ParameterError
+        The table cannot be written, or the cluster not be used.
+    """
+    from noise.batch import open_journal
+
+    work.prepare()
+    outcomes: list[Done | None] = [None] * len(jobs)
+    stopped = 0
+    kept = nullcontext() if options.out is None else open_journal(
+        options.out, work, fresh=options.fresh
+    )  # fmt: skip
+    with kept as journal, _told_to_end():
+        try:
+            for job, done in _course(options, work, jobs, journal):
+                outcomes[job.index] = done
+                if done.error is not None:
+                    say(f"bushing-noise: refused: {_naming(job.path, done.error)}")
+        except KeyboardInterrupt as interrupt:
+            stopped = _exit_code(interrupt)
+        there = [done for done in outcomes if done is not None]
+        _note_uncalibrated(there)
+        try:
+            written = _write(options.out, work, there, also)
+        except KeyboardInterrupt as interrupt:
+            stopped = _exit_code(interrupt)
+            written = _write(options.out, work, there, also)
+    refused = sum(done.error is not None for done in there)
+    read = f"{len(there)} of " * bool(stopped) + counted(len(jobs), "recording")
+    say(f"{'interrupted: ' * bool(stopped)}{read}, {refused} refused")
+    for path in written:
+        if options.out is not None:
+            print(path)
+        else:  # standard output is the table
+            say(str(path))
+    return stopped or int(refused > 0)
+
+
+def _course(
+    options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal | None
+) -> Iterator[tuple[Job, Done]]:
+    """First what earlier calls did, then the rest as it is done."""
+    from noise.batch import file_identity, perform_all
+
+    left = []
+    for job in jobs:
+        done = None if journal is None else journal.find(job)
+        if done is None:
+            left.append(job)
+        else:
+            yield job, done
+    if len(left) < len(jobs):
+        say(f"{len(jobs) - len(left)} of {counted(len(jobs), 'recording')} are done already")
+    if not left:
+        return
+    identities = {job.index: file_identity(job.path) for job in left}
+    advancing = perform_all(work, left, workers=options.workers, scheduler=options.scheduler)
+    with closing(advancing):
+        for job, done in track(advancing, work.doing, total=len(left)):
+            yield job, done
+            if journal is not None:
+                journal.add(job, identities[job.index], done)
+
+
+def _write(
+    out: Path | None,
+    work: Work,
+    outcomes: Sequence[Done],
+    also: Callable[[Rows], Sequence[Path]],
+) -> list[Path]:
+    columns = work.columns
+    rows: Rows = [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
+    write_table(out, columns, rows)
+    return [*([] if out is None else [out]), *also(rows)]
+
+
+def _note_uncalibrated(outcomes: Sequence[Done]) -> None:
+    number = sum(not done.calibrated for done in outcomes)
+    if number:
         note(
-            f"{counted(uncalibrated, 'recording')} without calibration: levels in dBFS only "
+            f"{counted(number, 'recording')} without calibration: levels in dBFS only "
             "(--full-scale gives one)"
         )
+
+
+class _Terminated(KeyboardInterrupt):
+    """Told to end, as a batch system or a shutdown does: the same as Ctrl-C."""
+
+
+@contextmanager
+def _told_to_end() -> Iterator[None]:
+    def end(*_: object) -> None:
+        raise _Terminated
+
+    if threading.current_thread() is not threading.main_thread():  # signals are not for us
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, end)
     try:
-        write_table(options.out, task.columns, rows)
-    except KeyboardInterrupt:
-        interrupted = True
-        if options.out is not None:
-            write_table(options.out, task.columns, rows)
-    read = (
-        f"{done} of {counted(len(found), 'recording')}"
-        if interrupted
-        else counted(done, "recording")
-    )
-    say(f"{'interrupted: ' * interrupted}{read}, {refused} refused")
-    if options.out is not None:
-        print(options.out)
-    if interrupted:
-        return _INTERRUPTED
-    return 1 if refused else 0
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
-def _message(error: Exception) -> str:
-    if isinstance(error, BushingNoiseError):
-        return " ".join(str(error).split("\n"))
-    return f"unexpected, please report: {type(error).__name__}: {error}"
+def _exit_code(interrupt: KeyboardInterrupt) -> int:
+    return _TERMINATED if isinstance(interrupt, _Terminated) else _INTERRUPTED
+
+
+def _count(text: str) -> int:
+    if not text.strip().isdecimal() or int(text) == 0:
+        raise ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
+    return int(text)
 
 
 def _naming(path: Path, message: str) -> str:

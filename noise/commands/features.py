@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from noise.commands import options as opt
-from noise.commands.batch import Task, add_batch, check_batch_out, run_batch
+from noise.commands.batch import add_batch, check_batch, find_jobs, run_batch
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
 
-__all__ = ["configure", "run"]
+__all__ = ["Featuring", "configure", "run"]
 
 _PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_share")
 
@@ -38,25 +39,44 @@ def configure(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Compute the features and write the table."""
-    check_batch_out(options.out)
-    from features import recording_feature_names, recording_features
-    from noise.recordings import read_recording
+    check_batch(options)
+    work = Featuring(options.full_scale, options.pitch)
+    return run_batch(options, work, find_jobs(options.paths))
 
-    def rows(path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
-        recording = read_recording(path, full_scale=options.full_scale)
-        pitch = _pitch(recording) if options.pitch else {}
+
+@dataclass(frozen=True)
+class Featuring:
+    """A `noise.batch.Work`: the features of a recording."""
+
+    full_scale: float | None = None
+    pitch: bool = False
+
+    doing = "analysing"
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """File, features and reason of a refusal."""
+        from features import recording_feature_names
+
+        pitch = _PITCH_COLUMNS if self.pitch else ()
+        return ("file", *recording_feature_names(), *pitch, "error")
+
+    def prepare(self) -> None:
+        """Load the libraries."""
+        import noise.recordings  # noqa: F401
+
+    def identity(self) -> dict[str, float | None]:
+        """Return the options that decide the rows."""
+        return {"full_scale": self.full_scale}
+
+    def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
+        """Return the row of a recording, and whether it is calibrated."""
+        from features import recording_features
+        from noise.recordings import read_recording
+
+        recording = read_recording(path, full_scale=self.full_scale)
+        pitch = _pitch(recording) if self.pitch else {}
         return [{"file": name, **recording_features(recording), **pitch}], recording.calibrated
-
-    def error_row(name: str, message: str) -> dict[str, object]:
-        return {"file": name, "error": message}
-
-    columns = (
-        "file",
-        *recording_feature_names(),
-        *(_PITCH_COLUMNS if options.pitch else ()),
-        "error",
-    )
-    return run_batch(options, Task("analysing", columns, rows, error_row))
 
 
 def _pitch(recording: Recording) -> dict[str, float]:

@@ -1,17 +1,30 @@
-"""``bushing-noise label``: recordings into a table of labelled segments."""
+"""``bushing-noise label``: recordings into a table of labelled segments, and what follows from it.
+
+A label table in place of recordings is taken as it is, for a map or label tracks without labelling
+again.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from models.errors import ParameterError
 from noise.commands import options as opt
-from noise.commands.batch import Task, add_batch, check_batch_out, run_batch
+from noise.commands.batch import add_batch, check_batch, find_jobs, run_batch
+from noise.commands.targets import check_target
+from noise.pictures.files import check_picture_path
+from noise.progress import counted, note
+from noise.tables import TABLE_ENDINGS, write_table
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
-__all__ = ["configure", "run"]
+    from noise.classifier import Classifier
+
+__all__ = ["Labelling", "configure", "run"]
 
 
 def configure(parser: ArgumentParser) -> None:
@@ -20,9 +33,24 @@ def configure(parser: ArgumentParser) -> None:
         "Label recordings: one row a segment with the label creak, squawk, squeal, none or "
         "unknown, its probability, frequency in Hz and level in dB re 20 uPa (dBFS where not "
         "calibrated), and the operating condition it belongs to. A file that cannot be read has "
-        "the reason in the column error."
+        "the reason in the column error. Label tables in place of recordings are joined, for --map "
+        "and --audacity."
     )
     add_batch(parser)
+    parser.add_argument(
+        "--map",
+        type=Path,
+        metavar="PICTURE",
+        help="picture of which label is where in speed, interference and support stiffness "
+        "(.png, .svg or .pdf); the numbers go into a .csv of the same name",
+    )
+    parser.add_argument(
+        "--audacity",
+        type=Path,
+        metavar="FOLDER",
+        help="folder for label tracks, one .txt a recording, for Audacity to import; or the .txt "
+        "itself where there is one recording",
+    )
     parser.add_argument(
         "--classifier",
         type=Path,
@@ -35,20 +63,134 @@ def configure(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Label and write the table."""
-    check_batch_out(options.out)
-    from noise.classifier import load_classifier
-    from noise.labels.segments import label_recording
-    from noise.labels.table import COLUMNS, error_row, label_rows
-    from noise.recordings import read_recording
+    check_batch(options)
+    _check_exports(options)
+    if all(path.suffix.lower() in TABLE_ENDINGS for path in options.paths):
+        return _from_tables(options)
+    jobs = find_jobs(options.paths)
+    if options.audacity is not None:
+        from noise.labels.audacity import track_paths
 
-    classifier = load_classifier(options.classifier)
+        track_paths(options.audacity, [job.name for job in jobs])
+    classifier = options.classifier
+    if classifier is not None and options.scheduler is not None:
+        classifier = classifier.absolute()  # other machines have other working folders
+    work = Labelling(classifier, options.full_scale)
+    return run_batch(options, work, jobs, lambda rows: _export(options, rows))
 
-    def rows(path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
-        recording = read_recording(path, full_scale=options.full_scale)
-        segments = label_recording(recording, classifier, per_track=_names_no_channels(path))
-        return label_rows(name, recording, segments), recording.calibrated
 
-    return run_batch(options, Task("labelling", COLUMNS, rows, error_row))
+@dataclass(frozen=True)
+class Labelling:
+    """A `noise.batch.Work`: the labelled segments of a recording."""
+
+    classifier: Path | None = None
+    full_scale: float | None = None
+
+    doing = "labelling"
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Of the label table."""
+        from noise.labels.table import COLUMNS
+
+        return COLUMNS
+
+    def prepare(self) -> None:
+        """Load the classifier."""
+        import noise.labels.segments
+        import noise.recordings  # noqa: F401
+
+        _ = self._loaded
+
+    def identity(self) -> dict[str, str | float | None]:
+        """Return what decides the rows: the options, and the classifier by its content."""
+        from noise.batch import file_digest
+
+        # The shipped one is part of the program.
+        classifier = None if self.classifier is None else file_digest(self.classifier)
+        return {"classifier": classifier, "full_scale": self.full_scale}
+
+    def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
+        """Return the rows of a recording, and whether it is calibrated."""
+        from noise.labels.segments import label_recording
+        from noise.labels.table import label_rows
+        from noise.recordings import read_recording
+        from noise.recordings.blocks import open_blocks
+
+        with open_blocks(path, full_scale=self.full_scale) as blocks:
+            recording = blocks or read_recording(path, full_scale=self.full_scale)
+            segments = label_recording(recording, self._loaded, per_track=_names_no_channels(path))
+            return label_rows(name, recording, segments), recording.calibrated
+
+    @cached_property
+    def _loaded(self) -> Classifier:
+        from noise.classifier import load_classifier
+
+        return load_classifier(self.classifier)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Leave the loaded classifier here: elsewhere it is loaded again."""
+        return {"classifier": self.classifier, "full_scale": self.full_scale}
+
+
+def _check_exports(options: Namespace) -> None:
+    """Refuse what could not be written."""
+    if options.map is not None:
+        check_picture_path(options.map)
+        check_target(options.map, "--map")
+        table = options.map.with_suffix(".csv")
+        if options.out is not None and table.absolute() == options.out.absolute():
+            raise ParameterError(
+                f"--map {options.map}: its numbers would go into {table}, which --out names for "
+                "the labels; give one of them another name"
+            )
+    if options.audacity is not None:
+        file = options.audacity.suffix.lower() == ".txt"
+        check_target(options.audacity if file else options.audacity / "run.txt", "--audacity")
+
+
+def _from_tables(options: Namespace) -> int:
+    """Join label tables, and write what was asked for."""
+    from noise.labels.reading import read_label_table
+    from noise.labels.table import COLUMNS
+
+    if options.out is None and options.map is None and options.audacity is None:
+        raise ParameterError(
+            f"{options.paths[0]}: is a table; say what to make of it with --map or --audacity"
+        )
+    rows = [row for path in options.paths for row in read_label_table(path)]
+    if options.out is not None:
+        write_table(options.out, COLUMNS, rows)
+        print(options.out)
+    for path in _export(options, rows):
+        print(path)
+    return 0
+
+
+def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
+    """Write map and label tracks as asked; return their paths."""
+    written: list[Path] = []
+    if options.audacity is not None:
+        from noise.labels.audacity import write_label_tracks
+
+        write_label_tracks(options.audacity, rows)
+        written.append(options.audacity)
+    if options.map is not None:
+        from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
+        from noise.pictures.conditions import plot_conditions
+        from noise.pictures.files import write_picture
+
+        places = conditions_map(rows)
+        if not places:
+            note("no segment is labelled, so there is no map")
+            return written
+        number = len({row["file"] for row in rows if row["label"] is not None})
+        title = f"Labels by condition: {counted(number, 'recording')}"
+        write_picture(options.map, plot_conditions(places, title=title))
+        table = options.map.with_suffix(".csv")
+        write_table(table, MAP_COLUMNS, map_rows(places))
+        written += [options.map, table]
+    return written
 
 
 def _names_no_channels(path: Path) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -13,8 +13,9 @@ from features.conditioning import ACOUSTIC_FROM
 from features.harmonics import analyse_harmonics
 from features.registry import KINDS, recording_features
 from features.slip_pulses import acoustic_slips
-from models.recording import REFERENCE_PRESSURE
 from noise.classifier import LABELS
+from noise.labels.levels import block_levels
+from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,6 +47,9 @@ _LEAST_RATE = 1000.0
 
 _LONGEST_LOOK = 4.0
 """The frequency of a longer segment is that of so much of its middle [s]."""
+
+_AT_ONCE = 256
+"""Windows that are classified, and cells that are averaged, together."""
 
 
 @dataclass(frozen=True)
@@ -82,13 +86,14 @@ class Segment:
 
 
 def label_recording(
-    recording: Recording, classifier: Classifier, *, per_track: bool = False
+    recording: Recording | RecordingBlocks, classifier: Classifier, *, per_track: bool = False
 ) -> list[Segment]:
     """Label a recording.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recording or RecordingBlocks
+        What is too long to be in memory is read in blocks, with the same result.
     classifier : Classifier
     per_track : bool
         Whether each channel is labelled on its own, as the tracks of a plain sound file are.
@@ -107,21 +112,14 @@ def label_recording(
     >>> [segment.label for segment in label_recording(silent, load_classifier())]
     ['none']
     """
-    if per_track and len(recording.channels) > 1:
+    blocks = RecordingBlocks.of(recording)
+    if per_track and len(blocks.channels) > 1:
         return [
             segment
-            for i, channel in enumerate(recording.channels)
-            for segment in _label(
-                replace(
-                    recording,
-                    samples=recording.samples[i : i + 1],
-                    channels=(replace(channel, name=channel.kind),),
-                ),
-                classifier,
-                str(i + 1),
-            )
+            for row in range(len(blocks.channels))
+            for segment in _label(blocks.track(row), classifier, str(row + 1))
         ]
-    return _label(recording, classifier, "all")
+    return _label(blocks, classifier, "all")
 
 
 def file_label(segments: list[Segment]) -> Segment:
@@ -138,22 +136,21 @@ def file_label(segments: list[Segment]) -> Segment:
     return max(audible or segments, key=lambda segment: segment.end - segment.start)
 
 
-def _label(recording: Recording, classifier: Classifier, channel: str) -> list[Segment]:
-    if recording.rate < _LEAST_RATE or all(recording.first(kind) is None for kind in KINDS):
+def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
+    if blocks.rate < _LEAST_RATE or all(blocks.first(kind) is None for kind in KINDS):
         nothing_to_tell = np.eye(len(LABELS))[LABELS.index("unknown")]
-        return [_segment(recording, channel, 0, recording.samples.shape[1], nothing_to_tell)]
-    starts = _window_starts(recording)
-    length = min(recording.samples.shape[1], round(WINDOW * recording.rate))
-    windows = [_cut(recording, start, start + length) for start in starts]
-    probabilities = _window_probabilities(windows, classifier)
-    cells, cell_probabilities = _on_cells(starts, length, recording, probabilities)
-    silent = [_is_silent(_cut(recording, *edges)) for edges in pairwise(cells)]
+        return [_segment(blocks, channel, 0, blocks.n_samples, nothing_to_tell)]
+    starts = _window_starts(blocks)
+    length = min(blocks.n_samples, round(WINDOW * blocks.rate))
+    probabilities = _window_probabilities(blocks, starts, length, classifier)
+    cells, cell_probabilities = _on_cells(starts, length, blocks, probabilities)
+    silent = [_is_silent(blocks.cut(*edges)) for edges in pairwise(cells)]
     cell_probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
     labels = cell_probabilities.argmax(axis=1)
     edges = [0, *(np.flatnonzero(np.diff(labels)) + 1), len(labels)]
     return [
         _segment(
-            recording,
+            blocks,
             channel,
             cells[first],
             cells[last],
@@ -163,9 +160,9 @@ def _label(recording: Recording, classifier: Classifier, channel: str) -> list[S
     ]
 
 
-def _window_starts(recording: Recording) -> list[int]:
-    n = recording.samples.shape[1]
-    length, hop = round(WINDOW * recording.rate), round(HOP * recording.rate)
+def _window_starts(blocks: RecordingBlocks) -> list[int]:
+    n = blocks.n_samples
+    length, hop = round(WINDOW * blocks.rate), round(HOP * blocks.rate)
     if n <= length:
         return [0]
     starts = list(range(0, n - length + 1, hop))
@@ -174,11 +171,22 @@ def _window_starts(recording: Recording) -> list[int]:
     return starts
 
 
-def _cut(recording: Recording, first: int, last: int) -> Recording:
-    return replace(recording, samples=recording.samples[:, first:last])
+def _window_probabilities(
+    blocks: RecordingBlocks, starts: list[int], length: int, classifier: Classifier
+) -> NDArray[np.float64]:
+    """Return the probabilities of all windows, `_AT_ONCE` at a time."""
+    return np.concatenate(
+        [
+            _classified(
+                [blocks.cut(start, start + length) for start in starts[first : first + _AT_ONCE]],
+                classifier,
+            )
+            for first in range(0, len(starts), _AT_ONCE)
+        ]
+    )
 
 
-def _window_probabilities(windows: list[Recording], classifier: Classifier) -> NDArray[np.float64]:
+def _classified(windows: list[Recording], classifier: Classifier) -> NDArray[np.float64]:
     silent = np.array([_is_silent(window) for window in windows])
     probabilities = np.zeros((len(windows), len(LABELS)))
     probabilities[silent, LABELS.index("none")] = 1.0
@@ -191,81 +199,70 @@ def _window_probabilities(windows: list[Recording], classifier: Classifier) -> N
 def _is_silent(recording: Recording) -> bool:
     if recording.first("pressure") is None:
         return not any(np.ptp(signal) > 0.0 for signal in recording.samples)
-    level, level_dbfs = _levels(recording)
+    level, level_dbfs = block_levels(RecordingBlocks.of(recording), 0, recording.samples.shape[1])
     if level is not None:
         return level < _SILENT_LEVEL
     return level_dbfs is None or level_dbfs < _SILENT_LEVEL_DBFS
 
 
 def _on_cells(
-    starts: list[int], length: int, recording: Recording, probabilities: NDArray[np.float64]
+    starts: list[int], length: int, blocks: RecordingBlocks, probabilities: NDArray[np.float64]
 ) -> tuple[list[int], NDArray[np.float64]]:
     """Mean probabilities on cells one hop long, each of the windows about it."""
-    n = recording.samples.shape[1]
-    hop = round(HOP * recording.rate)
+    n = blocks.n_samples
+    hop = round(HOP * blocks.rate)
     edges = [*range(0, max(n - hop // 2, 1), hop), n]
     middles = 0.5 * (np.array(edges[:-1]) + np.array(edges[1:]))
     centres = np.array(starts) + 0.5 * length
-    # A triangle: windows count the less the farther their middle is from the cell.
-    distance = np.abs(middles[:, None] - centres[None, :])
-    nearest = distance.min(axis=1, keepdims=True)
-    weight = np.maximum(0.0, 1.0 - (distance - nearest) / hop)
-    weight /= weight.sum(axis=1, keepdims=True)
-    return edges, weight @ probabilities
+    means = np.empty((middles.size, len(LABELS)))
+    for first in range(0, middles.size, _AT_ONCE):
+        some = middles[first : first + _AT_ONCE]
+        # The nearest window to a cell is never farther than its own length.
+        near = slice(*np.searchsorted(centres, (some[0] - length - hop, some[-1] + length + hop)))
+        # A triangle: windows count the less the farther their middle is from the cell.
+        distance = np.abs(some[:, None] - centres[None, near])
+        nearest = distance.min(axis=1, keepdims=True)
+        weight = np.maximum(0.0, 1.0 - (distance - nearest) / hop)
+        weight /= weight.sum(axis=1, keepdims=True)
+        means[first : first + _AT_ONCE] = weight @ probabilities[near]
+    return edges, means
 
 
 def _segment(
-    recording: Recording, channel: str, first: int, last: int, probabilities: NDArray[np.float64]
+    blocks: RecordingBlocks,
+    channel: str,
+    first: int,
+    last: int,
+    probabilities: NDArray[np.float64],
 ) -> Segment:
-    part = _cut(recording, first, last)
     label = LABELS[int(probabilities.argmax())]
-    level, level_dbfs = _levels(part)
+    level, level_dbfs = block_levels(blocks, first, last)
     return Segment(
         channel=channel,
-        start=first / recording.rate,
-        end=last / recording.rate,
+        start=first / blocks.rate,
+        end=last / blocks.rate,
         label=label,
         probabilities=dict(zip(LABELS, probabilities.tolist(), strict=True)),
-        frequency=_frequency(part, label),
+        frequency=_frequency(blocks, first, last, label),
         level=level,
         level_dbfs=level_dbfs,
     )
 
 
-def _levels(recording: Recording) -> tuple[float | None, float | None]:
-    """Level of the first pressure channel: dB re 20 uPa and dBFS."""
-    row = recording.first("pressure")
-    if row is None:
-        return None, None
-    signal = recording.samples[row]
-    signal = signal - signal.mean()
-    peak = float(np.abs(signal).max())
-    if not peak > 0.0:
-        return None, None
-    # Scaled by the peak, whose square may overflow.
-    rms_db = 20.0 * float(np.log10(peak) + np.log10(np.sqrt(np.mean((signal / peak) ** 2))))
-    full_scale = recording.channels[row].full_scale if recording.calibrated else 1.0
-    level_dbfs = rms_db - 20.0 * float(np.log10(full_scale))
-    if not recording.calibrated:
-        return None, level_dbfs
-    return rms_db - 20.0 * float(np.log10(REFERENCE_PRESSURE)), level_dbfs
-
-
-def _frequency(recording: Recording, label: str) -> float | None:
+def _frequency(blocks: RecordingBlocks, first: int, last: int, label: str) -> float | None:
     """Slip frequency of creak and squawk, else the strongest line: of the torque if it is there."""
-    rows = [recording.first(kind) for kind in ("torque", "pressure", "acceleration")]
+    rows = [blocks.first(kind) for kind in ("torque", "pressure", "acceleration")]
     index = next((row for row in rows if row is not None), None)
-    if label == "none" or index is None or recording.rate < _LEAST_RATE:
+    if label == "none" or index is None or blocks.rate < _LEAST_RATE:
         return None
-    signal = recording.samples[index]
-    spare = max(0, signal.size - round(_LONGEST_LOOK * recording.rate)) // 2
-    signal = signal[spare : signal.size - spare]
+    spare = max(0, last - first - round(_LONGEST_LOOK * blocks.rate)) // 2
+    signal = blocks.read(first + spare, last - spare)[index]
     torque = index == rows[0]
     if label == "creak" and not torque:
-        pulses = acoustic_slips(signal, recording.rate).rate
+        pulses = acoustic_slips(signal, blocks.rate).rate
         if pulses > 0.0:
             return float(pulses)
-    harmonics = analyse_harmonics(signal, recording.rate)
+    harmonics = analyse_harmonics(signal, blocks.rate)
     if label in ("creak", "squawk") and np.isfinite(harmonics.fundamental):
         return float(harmonics.fundamental)
     # Below lies rumble, which may be louder than any tone.

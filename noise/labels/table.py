@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.classifier import LABELS
+from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from models.recording import Recording
@@ -19,6 +22,9 @@ __all__ = ["COLUMNS", "error_row", "label_rows"]
 
 _SPEED_BLOCK = 0.02
 """Length over which the angle is averaged before its slope is taken [s]."""
+
+_BLOCKS_AT_ONCE = 500
+"""How many of them are read together."""
 
 _CONDITIONS = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad")
 
@@ -32,14 +38,16 @@ COLUMNS = (
 """Columns of the table, all of them always there."""
 
 
-def label_rows(name: str, recording: Recording, segments: list[Segment]) -> list[dict[str, object]]:
+def label_rows(
+    name: str, recording: Recording | RecordingBlocks, segments: list[Segment]
+) -> list[dict[str, object]]:
     """Return one row for each segment.
 
     Parameters
     ----------
     name : str
         File as found, relative to the folder named.
-    recording : Recording
+    recording : Recording or RecordingBlocks
         Where the shaft's speed was recorded, each segment gets its mean over that segment.
     segments : list of Segment
 
@@ -59,7 +67,8 @@ def label_rows(name: str, recording: Recording, segments: list[Segment]) -> list
     >>> row["speed_rad_s"], row["speed_rad_s_source"], row["material_source"]
     (2.0, 'logged', 'missing')
     """
-    return [_row(name, recording, segment) for segment in segments]
+    blocks = RecordingBlocks.of(recording)
+    return [_row(name, blocks, segment) for segment in segments]
 
 
 def error_row(name: str, message: str) -> dict[str, object]:
@@ -67,8 +76,8 @@ def error_row(name: str, message: str) -> dict[str, object]:
     return {**dict.fromkeys(COLUMNS), "file": name, "error": message}
 
 
-def _row(name: str, recording: Recording, segment: Segment) -> dict[str, object]:
-    condition = recording.condition
+def _row(name: str, blocks: RecordingBlocks, segment: Segment) -> dict[str, object]:
+    condition = blocks.condition
     row: dict[str, object] = {
         **dict.fromkeys(COLUMNS),
         "file": name,
@@ -80,12 +89,12 @@ def _row(name: str, recording: Recording, segment: Segment) -> dict[str, object]
         "frequency_hz": _rounded(segment.frequency, 2),
         "level_db": _rounded(segment.level, 2),
         "level_dbfs": _rounded(segment.level_dbfs, 2),
-        "calibrated": recording.calibrated,
+        "calibrated": blocks.calibrated,
         "material": condition.material,
         "material_source": "logged" if condition.material else "missing",
     }
     logged = (
-        _segment_speed(recording, segment),
+        _segment_speed(blocks, segment),
         None if condition.interference is None else 1e3 * condition.interference,
         condition.support_stiffness,
     )
@@ -95,28 +104,40 @@ def _row(name: str, recording: Recording, segment: Segment) -> dict[str, object]
     return row
 
 
-def _segment_speed(recording: Recording, segment: Segment) -> float | None:
+def _segment_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
     """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set.
 
     Its magnitude where the shaft swings to and fro, whose mean speed is nothing.
     """
-    first, last = round(segment.start * recording.rate), round(segment.end * recording.rate)
-    if recording.calibrated and recording.first("speed") is not None:
-        return _mean_speed(recording["speed"][first:last])
-    block = max(1, round(_SPEED_BLOCK * recording.rate))
-    if recording.calibrated and recording.first("angle") is not None and last - first > block:
-        angle = recording["angle"][first:last]
-        if angle.size < 3 * block:
-            time = np.arange(angle.size) / recording.rate
-            return float(np.polyfit(time, angle, 1)[0])
+    first = round(segment.start * blocks.rate)
+    last = min(round(segment.end * blocks.rate), blocks.n_samples)
+    block = max(1, round(_SPEED_BLOCK * blocks.rate))
+    pieces = blocks.pieces(first, last, _BLOCKS_AT_ONCE * block)
+    speed, angle = blocks.first("speed"), blocks.first("angle")
+    if blocks.calibrated and speed is not None:
+        return _mean_speed(piece.samples[speed] for piece in pieces)
+    if blocks.calibrated and angle is not None and last - first > block:
+        if last - first < 3 * block:
+            time = np.arange(last - first) / blocks.rate
+            return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
         # Means of blocks first: the difference of single samples would be that of their noise.
-        whole = angle[: angle.size // block * block].reshape(-1, block).mean(axis=1)
-        return _mean_speed(np.diff(whole) * recording.rate / block)
-    return recording.condition.speed
+        means = [_block_means(piece.samples[angle], block) for piece in pieces]
+        return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
+    return blocks.condition.speed
 
 
-def _mean_speed(speed: NDArray[np.float64]) -> float:
-    mean, magnitude = float(np.mean(speed)), float(np.mean(np.abs(speed)))
+def _block_means(signal: NDArray[np.float64], block: int) -> NDArray[np.float64]:
+    whole = signal[: signal.size // block * block].reshape(-1, block)
+    return np.asarray(whole.mean(axis=1))
+
+
+def _mean_speed(pieces: Iterable[NDArray[np.float64]]) -> float:
+    n, total, travelled = 0, 0.0, 0.0
+    for speed in pieces:
+        n += speed.size
+        total += float(np.sum(speed))
+        travelled += float(np.sum(np.abs(speed)))
+    mean, magnitude = total / n, travelled / n
     return mean if abs(mean) > 0.9 * magnitude else magnitude
 
 

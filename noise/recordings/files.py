@@ -1,42 +1,34 @@
 """Recordings on disk: samples in one file and, where more is known, a sidecar of the same stem.
 
-What a sample of 1.0 is worth is decided per channel by the first of these that says something:
-
-1. the caller's `full_scale` (pressure channels only),
-2. the sidecar: its ``scale``, or, for floating-point samples, that it names the channel, since
-   such samples are then in the channel's unit; ``"calibrated": false`` silences 2 to 4,
-3. the file's description, then its name, as sound level meters write them,
-4. the file's comment.
-
-Unless every channel has its value the recording is not calibrated: its samples stay fractions of
-full scale, and levels can be told in dBFS alone. Half a calibration would only invite comparing
-what cannot be compared.
+What the samples of a file mean is decided in `noise.recordings.meaning`, once for all formats.
 """
 
 from __future__ import annotations
 
-import math
 import os
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError, RecordingError
-from models.recording import Channel, Recording
+from models.recording import Recording
 from noise.atomic import atomic
 from noise.recordings.float_wav import write_float_wav
-from noise.recordings.full_scale import stated_full_scale
+from noise.recordings.meaning import check_finite, describe
 from noise.recordings.readers import READERS, read_raw
-from noise.recordings.sidecar import Sidecar, find_sidecar, read_sidecar, sidecar_text
+from noise.recordings.sidecar import sidecar_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from noise.recordings.readers import RawSamples
 
-__all__ = ["MIN_SAMPLES", "find_recordings", "read_recording", "write_recording"]
+__all__ = [
+    "MIN_SAMPLES",
+    "find_recordings",
+    "read_recording",
+    "write_recording",
+]
 
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
@@ -71,6 +63,7 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     --------
     >>> import tempfile
     >>> from models.condition import Condition
+    >>> from models.recording import Channel, Recording
     >>> samples, channels = np.full((1, 480), 30.0), (Channel("torque"),)
     >>> torque = Recording(samples, 48e3, channels, Condition(speed=5.0))
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -79,29 +72,16 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     ('run07.wav', 30.0, 5.0)
     """
     path = Path(path)
-    if full_scale is not None and not 0 < full_scale < math.inf:
-        raise ParameterError(f"full scale is {full_scale!r} Pa, expected a positive number")
     raw = read_raw(path)
-    sidecar_path = find_sidecar(path)
-    sidecar = Sidecar() if sidecar_path is None else read_sidecar(sidecar_path)
-    n_channels, n_samples = raw.samples.shape
+    channels, condition, calibrated = describe(path, raw, full_scale)
+    n_samples = raw.samples.shape[1]
     if n_samples < MIN_SAMPLES:
         raise RecordingError(f"{path}: holds {n_samples} samples, expected at least {MIN_SAMPLES}")
-    if sidecar.channels is not None and len(sidecar.channels) != n_channels:
-        raise RecordingError(
-            f"{sidecar_path}: names {len(sidecar.channels)} channels, {path.name} has {n_channels}"
-        )
-    if not raw.fractional and any(scale is not None for scale in sidecar.scales):
-        raise RecordingError(
-            f"{sidecar_path}: gives a scale, but {path.name} holds floating-point samples, which "
-            f"are in the channel's unit; remove the scale"
-        )
-    channels, calibrated = _interpret(path, raw, sidecar, full_scale)
     with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
         for channel, row in zip(channels, raw.samples, strict=True):
             row *= channel.full_scale
-    _check_finite(path, raw, channels)
-    return Recording(raw.samples, raw.rate, channels, sidecar.condition, calibrated, path.name)
+    check_finite(path, raw.samples, raw.rate, channels)
+    return Recording(raw.samples, raw.rate, channels, condition, calibrated, path.name)
 
 
 def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
@@ -127,6 +107,7 @@ def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
     Examples
     --------
     >>> import tempfile
+    >>> from models.recording import Channel, Recording
     >>> silence = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = write_recording(Path(folder) / "runs" / "none", silence)
@@ -199,43 +180,6 @@ def _inside(folder: Path) -> Iterable[tuple[Path, str]]:
         hidden = any(part.startswith(".") for part in relative.parts)
         if not hidden and path.suffix.lower() in READERS and path.is_file():
             yield path, relative.as_posix()
-
-
-def _interpret(
-    path: Path, raw: RawSamples, sidecar: Sidecar, full_scale: float | None
-) -> tuple[tuple[Channel, ...], bool]:
-    """Channels with the value of their full scale, and whether all of them have one."""
-    texts = (raw.description, path.name, raw.comment)
-    stated = next((found for text in texts if (found := stated_full_scale(text))), None)
-    channels = sidecar.channels or raw.channels
-    if channels is None:
-        kind = "pressure" if stated is None or full_scale is not None else stated.kind
-        numbers = range(1, len(raw.samples) + 1)
-        channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
-    named = sidecar.channels is not None or raw.channels is not None
-    in_units = not raw.fractional and (named or sidecar.calibrated is True)
-    values: list[float] = []
-    for channel, scale in zip(channels, sidecar.scales or (None,) * len(channels), strict=True):
-        opinions = [full_scale if channel.kind == "pressure" else None]
-        if sidecar.calibrated is not False:
-            opinions += [scale, 1.0 if in_units else None]
-            opinions += [stated.value if stated and stated.kind == channel.kind else None]
-        values += [value for value in opinions if value is not None][:1]
-    if len(values) < len(channels):
-        return channels, False
-    pairs = zip(channels, values, strict=True)
-    return tuple(replace(channel, full_scale=value) for channel, value in pairs), True
-
-
-def _check_finite(path: Path, raw: RawSamples, channels: tuple[Channel, ...]) -> None:
-    for channel, row in zip(channels, raw.samples, strict=True):
-        finite = np.isfinite(row)
-        if not finite.all():
-            first = int(np.argmin(finite))
-            raise RecordingError(
-                f"{path}: channel {channel.name!r} is {row[first]} at sample {first} "
-                f"({first / raw.rate:.6g} s), expected finite numbers"
-            )
 
 
 def _wav_path(path: Path) -> Path:

@@ -1,0 +1,22 @@
+"""Many recordings, one result each: in this process, in several, or on a cluster.
+
+Whatever becomes of a process, nothing that was done is lost, nothing is done twice, and the table
+is the same, byte for byte, as that of one process that nobody disturbed.
+"""
+
+from noise.batch.identity import file_digest, file_identity
+from noise.batch.journal import Journal, journal_path, open_journal
+from noise.batch.run import perform_all
+from noise.batch.work import Done, Job, Work
+
+__all__ = [
+    "Done",
+    "Job",
+    "Journal",
+    "Work",
+    "file_digest",
+    "file_identity",
+    "journal_path",
+    "open_journal",
+    "perform_all",
+]

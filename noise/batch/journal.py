@@ -1,0 +1,150 @@
+"""The journal of a table: what has been done so far, on disk after each recording.
+
+It lies hidden beside the table and outlives it. A line is one recording with its rows, and is on
+the disk before the next is begun; so a process may be killed at any moment, and what it leaves
+behind is whole lines and at most one torn one, which is cut off. A line counts as long as the
+recording is the same file as then, and the same program does the same work; otherwise the recording
+is done again, and the later line stands.
+
+Refused recordings are not in it. They cost little, and what was at fault may have been put right
+since without the file changing: a share that was away, a library that was not installed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.batch.identity import file_identity, work_identity
+from noise.batch.work import Done
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from io import FileIO
+    from pathlib import Path
+
+    from noise.batch.work import Job, Work
+
+__all__ = ["Journal", "journal_path", "open_journal"]
+
+_FORMAT = 1
+
+
+class Journal:
+    """What is done of a table; see `open_journal`."""
+
+    def __init__(self, file: FileIO, entries: dict[str, tuple[list[int], Done]]) -> None:
+        self._file = file
+        self._entries = entries
+
+    def find(self, job: Job) -> Done | None:
+        """Return what came of a recording, None where it is still to be done."""
+        entry = self._entries.get(_key(job))
+        return entry[1] if entry is not None and entry[0] == file_identity(job.path) else None
+
+    def add(self, job: Job, identity: list[int] | None, done: Done) -> None:
+        """Keep what came of a recording; `identity` is the file's from before it was read."""
+        if identity is None or done.error is not None:
+            return
+        entry = [_key(job), identity, done.calibrated, done.rows]
+        self._file.write(json.dumps(entry).encode() + b"\n")
+        os.fsync(self._file.fileno())
+
+
+def journal_path(table: Path) -> Path:
+    """Where the journal of a table lies.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> journal_path(Path("runs") / "labels.csv").name
+    '.labels.csv.journal'
+    """
+    return table.with_name(f".{table.name}.journal")
+
+
+@contextmanager
+def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Journal]:
+    """Open the journal of a table, with what of this work is in it.
+
+    Parameters
+    ----------
+    table : Path
+        Parent folders are made.
+    work : Work
+    fresh : bool
+        Whether to forget what is in it.
+
+    Raises
+    ------
+    ParameterError
+        The journal cannot be written, or another process is writing it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from noise.batch.work import Job
+    >>> from noise.commands.features import Featuring
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     run = Path(folder) / "run07.wav"
+    ...     run.touch()
+    ...     job, work = Job(0, run, "run07.wav"), Featuring()
+    ...     with open_journal(Path(folder) / "t.csv", work) as journal:
+    ...         journal.add(job, file_identity(run), Done([["run07.wav", 1.5]], True))
+    ...     with open_journal(Path(folder) / "t.csv", work) as journal:
+    ...         journal.find(job)
+    Done(rows=[['run07.wav', 1.5]], calibrated=True, error=None)
+    """
+    path = journal_path(table)
+    header = json.dumps([_FORMAT, work_identity(work)]).encode() + b"\n"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = path.open("a+b", buffering=0)
+    except OSError as error:
+        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
+    with file:
+        _claim(file, table)
+        file.seek(0)
+        content = b"" if fresh else file.read()
+        # What follows the last line break was torn off when the process was killed.
+        whole = content[: content.rfind(b"\n") + 1]
+        if not whole.startswith(header):
+            file.truncate(0)
+            file.write(header)
+            whole = header
+        elif len(whole) < len(content):
+            file.truncate(len(whole))
+        yield Journal(file, _entries(whole))
+
+
+def _entries(content: bytes) -> dict[str, tuple[list[int], Done]]:
+    entries = {}
+    for line in content.splitlines()[1:]:
+        try:
+            key, identity, calibrated, rows = json.loads(line)
+        except ValueError:  # damaged on the disk: the recording is done again
+            continue
+        entries[key] = identity, Done(rows, calibrated)
+    return entries
+
+
+def _key(job: Job) -> str:
+    return f"{job.name}\n{job.path.absolute()}"
+
+
+def _claim(file: FileIO, table: Path) -> None:
+    """Keep other processes from the journal, as far as the system knows of locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise ParameterError(f"{table}: is being written by another process; wait for it") from None
+    except OSError:  # a file system without locks
+        return

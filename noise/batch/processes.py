@@ -1,0 +1,114 @@
+"""Work on several processes of this machine, any of which may die.
+
+Each process is given one recording at a time, so that when one dies it is known which recording it
+was at. That one is tried once more, in a new process; if that dies as well, the recording is
+refused. A process ends by itself when the one that feeds it is gone.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections import deque
+from multiprocessing import connection, get_context
+from typing import TYPE_CHECKING
+
+from noise.batch.work import one_thread, perform, refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+    from multiprocessing.connection import Connection
+
+    from noise.batch.work import Done, Job, Work
+
+__all__ = ["DIED", "perform_on_processes"]
+
+DIED = "the process that worked on it died, and so did a second one; is there enough memory?"
+"""Why a recording is refused that no process survives."""
+
+_ATTEMPTS = 2
+
+
+def perform_on_processes(
+    work: Work, jobs: Sequence[Job], workers: int
+) -> Generator[tuple[Job, Done]]:
+    """Do the work on `workers` processes; yields in the order in which recordings are done."""
+    waiting = deque(jobs)
+    tried = dict.fromkeys((job.index for job in jobs), 0)
+    team = [_Worker(work) for _ in range(min(workers, len(jobs)))]
+    try:
+        while waiting or any(worker.job for worker in team):
+            for place, worker in enumerate(team):
+                if waiting and worker.job is None:
+                    job = waiting.popleft()
+                    if not worker.give(job):  # it died before it was given anything
+                        worker.end()
+                        team[place] = _Worker(work)
+                        team[place].give(job)
+            ready = connection.wait([worker.link for worker in team if worker.job])
+            for place, worker in enumerate(team):
+                if worker.link not in ready or worker.job is None:
+                    continue
+                job = worker.job
+                done = worker.take()
+                if done is None:
+                    worker.end()
+                    team[place] = _Worker(work)
+                    tried[job.index] += 1
+                    if tried[job.index] < _ATTEMPTS:
+                        waiting.appendleft(job)
+                        continue
+                    done = refusal(work, job.name, DIED)
+                yield job, done
+    finally:
+        for worker in team:
+            worker.end()
+
+
+class _Worker:
+    """A process that works on one recording at a time."""
+
+    def __init__(self, work: Work) -> None:
+        # A new interpreter, not a copy of this one, whose threads a copy would lack.
+        context = get_context("spawn")
+        self.link, theirs = context.Pipe()
+        self.job: Job | None = None
+        self._process = context.Process(target=_serve, args=(theirs, work), daemon=True)
+        self._process.start()
+        theirs.close()
+
+    def give(self, job: Job) -> bool:
+        """Hand over a recording; return whether there was anyone to take it."""
+        try:
+            self.link.send(job)
+        except OSError:
+            return False
+        self.job = job
+        return True
+
+    def take(self) -> Done | None:
+        """Return what came of the recording, None where the process died at it."""
+        self.job = None
+        try:
+            done: Done = self.link.recv()
+        except (EOFError, OSError):
+            return None
+        return done
+
+    def end(self) -> None:
+        """End the process, whatever it is at."""
+        self.link.close()
+        self._process.kill()
+        self._process.join()
+
+
+def _serve(link: Connection, work: Work) -> None:
+    """Work until there is nobody left to work for."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # meant for the process that feeds this one
+    work.prepare()
+    with one_thread():
+        while True:
+            try:
+                job: Job = link.recv()
+                link.send(perform(work, job.path, job.name))
+            except (EOFError, OSError):
+                return

@@ -1,0 +1,116 @@
+"""Label tracks as Audacity imports them, one a recording: start, end and label of each segment.
+
+The format is that of Audacity's manual, "Importing and Exporting Labels": seconds with a point, tab
+between the fields.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.atomic import atomic
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+__all__ = ["label_track", "track_paths", "write_label_tracks"]
+
+
+def label_track(rows: Iterable[Mapping[str, object]]) -> str:
+    r"""Return the label track of a recording.
+
+    Parameters
+    ----------
+    rows : iterable of mapping
+        Its rows of the label table; those without a label are passed over.
+
+    Examples
+    --------
+    >>> row = {"channel": "all", "start_s": 0.5, "end_s": 2.25, "label": "creak"}
+    >>> label_track([row, row | {"channel": "2"}])
+    '0.500000\t2.250000\tcreak\n0.500000\t2.250000\ttrack 2: creak\n'
+    """
+    lines = []
+    for row in rows:
+        start, end, channel = row["start_s"], row["end_s"], row["channel"]
+        if row["label"] is None or not isinstance(start, float) or not isinstance(end, float):
+            continue
+        track = "" if channel in ("all", None) else f"track {channel}: "
+        lines.append(f"{start:.6f}\t{end:.6f}\t{track}{row['label']}\n")
+    return "".join(lines)
+
+
+def track_paths(target: Path, files: Sequence[str]) -> dict[str, Path]:
+    """Return where the label track of each recording goes.
+
+    Parameters
+    ----------
+    target : Path
+        A folder, in which they lie as the recordings do in theirs; or a file that ends in .txt,
+        for one recording.
+    files : sequence of str
+        As the label table calls them.
+
+    Raises
+    ------
+    ParameterError
+        Two recordings have the same name, or there are several for one file.
+
+    Examples
+    --------
+    >>> paths = track_paths(Path("tracks"), ["day1/run07.wav"])
+    >>> paths["day1/run07.wav"].as_posix()
+    'tracks/day1/run07.txt'
+    """
+    if target.suffix.lower() == ".txt":
+        if len(set(files)) > 1:
+            raise ParameterError(
+                f"--audacity {target}: is one file, but there are {len(set(files))} recordings; "
+                f"name a folder"
+            )
+        return dict.fromkeys(files, target)
+    times = Counter(files)
+    for file in files:
+        if times[file] > 1:
+            raise ParameterError(
+                f"--audacity {target}: two recordings are called {file}; label the folder that "
+                f"holds them both"
+            )
+        if PurePosixPath(file).is_absolute() or ".." in PurePosixPath(file).parts:
+            raise ParameterError(f"--audacity {target}: {file} lies outside of the folder labelled")
+    # Recordings that differ in the ending alone keep it.
+    short = [PurePosixPath(file).with_suffix(".txt") for file in files]
+    alike = Counter(short)
+    return {
+        file: target / (name if alike[name] == 1 else f"{file}.txt")
+        for file, name in zip(files, short, strict=True)
+    }
+
+
+def write_label_tracks(target: Path, rows: Sequence[Mapping[str, object]]) -> list[Path]:
+    """Write the label track of each recording of a table, each whole or not at all.
+
+    Parameters
+    ----------
+    target : Path
+        As for `track_paths`.
+    rows : sequence of mapping
+        Of the label table.
+
+    Returns
+    -------
+    list of Path
+        The files; a recording that was refused has none.
+    """
+    grouped: dict[str, list[Mapping[str, object]]] = {}
+    for row in rows:
+        if row["label"] is not None:
+            grouped.setdefault(str(row["file"]), []).append(row)
+    paths = track_paths(target, list(grouped))
+    for file, of_file in grouped.items():
+        with atomic(paths[file]) as temporary:
+            temporary.write_text(label_track(of_file), encoding="utf-8", newline="\n")
+    return list(paths.values())

@@ -1,0 +1,118 @@
+"""Label tables read back, from any of the formats that they are written in.
+
+A table of one's own making will do as well, as long as it has the columns ``file`` and ``label``;
+the others of the label table are empty where it has none.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from typing import TYPE_CHECKING
+
+from models.errors import RecordingError
+from noise.classifier import LABELS
+from noise.labels.table import COLUMNS
+from noise.tables import check_table_path
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["read_label_table"]
+
+_TEXTS = {
+    "file", "channel", "label", "material", "error",
+    *(column for column in COLUMNS if column.endswith("_source")),
+}  # fmt: skip
+_NEEDED = ("file", "label")
+_SUPPORT = "support_stiffness_Nm_rad"
+
+
+def read_label_table(path: Path) -> list[dict[str, object]]:
+    r"""Read a label table.
+
+    Parameters
+    ----------
+    path : Path
+        CSV, JSON Lines or Parquet, by its ending.
+
+    Returns
+    -------
+    list of dict
+        By `noise.labels.COLUMNS`; the bolted clamp's support stiffness is ``inf``.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read, or is no label table.
+    ParameterError
+        The library that reads the format is not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "labels.csv"
+    ...     _ = path.write_text("file,label,speed_rad_s\nrun07.wav,creak,5.0\n")
+    ...     row, = read_label_table(path)
+    >>> row["label"], row["speed_rad_s"], row["material"]
+    ('creak', 5.0, None)
+    """
+    check_table_path(path)
+    readers = {".csv": _read_csv, ".jsonl": _read_json_lines, ".parquet": _read_parquet}
+    try:
+        rows = readers[path.suffix.lower()](path)
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, csv.Error) as error:
+        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
+    return [_checked(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
+
+
+def _read_csv(path: Path) -> list[dict[str, object]]:
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        reader = csv.DictReader(file)
+        missing = [column for column in _NEEDED if column not in (reader.fieldnames or ())]
+        if missing:
+            raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
+        return [{str(column): value for column, value in row.items()} for row in reader]
+
+
+def _read_json_lines(path: Path) -> list[dict[str, object]]:
+    with path.open(encoding="utf-8") as file:
+        return [json.loads(line) for line in file if line.strip()]
+
+
+def _read_parquet(path: Path) -> list[dict[str, object]]:
+    from pyarrow import parquet
+
+    rows: list[dict[str, object]] = parquet.read_table(path).to_pylist()
+    return rows
+
+
+def _checked(row: object, where: str) -> dict[str, object]:
+    if not isinstance(row, dict) or any(column not in row for column in _NEEDED):
+        raise RecordingError(f"{where} lacks {' or '.join(_NEEDED)}, so this is no label table")
+    checked = {column: _value(row.get(column), column, where) for column in COLUMNS}
+    if checked["label"] not in (*LABELS, None):
+        known = ", ".join(LABELS)
+        raise RecordingError(f"{where} has label {checked['label']!r}, expected {known}")
+    if checked[_SUPPORT] is None and checked[f"{_SUPPORT}_source"] in ("logged", "inferred"):
+        checked[_SUPPORT] = math.inf  # which JSON cannot write
+    return checked
+
+
+def _value(value: object, column: str, where: str) -> object:
+    if value is None or value == "":
+        return None
+    if column in _TEXTS:
+        return str(value)
+    if column == "calibrated":
+        return value in (True, "true", "True")
+    try:
+        number = float(str(value))
+    except ValueError:
+        raise RecordingError(f"{where} has {column} {value!r}, expected a number") from None
+    return None if math.isnan(number) else number

@@ -1,0 +1,243 @@
+"""Recordings too long to be held in memory: only what is looked at is read.
+
+Reading a part gives the samples that reading the whole gives, bit for bit, so what is computed from
+parts does not depend on how long the file is. Compressed sound that cannot be entered at a given
+sample is decoded from its beginning; MP3 does not join where it is read in parts, and the formats
+of measurement systems are held by their own libraries: those are read whole.
+"""
+
+from __future__ import annotations
+
+import math
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import soundfile
+
+from models.errors import RecordingError
+from models.recording import Channel, Recording
+from noise.recordings.bext import bext_description, missing_bytes
+from noise.recordings.files import MIN_SAMPLES
+from noise.recordings.meaning import check_finite, describe
+from noise.recordings.readers import READERS, RawSamples
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+
+__all__ = ["RecordingBlocks", "open_blocks"]
+
+_LARGE = 64 << 20
+"""Recordings of fewer bytes, as 64-bit samples, are read whole."""
+
+_CHUNK = 8 << 20
+"""What is read at once [byte of 64-bit samples]."""
+
+_DENSEST = 8192  # samples a byte, as for reading the whole
+_EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
+"""Formats of the sound library that can be entered at any sample."""
+
+
+@dataclass(frozen=True, eq=False)
+class RecordingBlocks:
+    """A recording of which parts can be had.
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+    channels : tuple of Channel
+    condition : Condition
+    calibrated : bool
+    name : str
+        These as in `models.recording.Recording`.
+    n_samples : int
+        Of each channel.
+    read : callable
+        From first and last sample to the samples between them, shape (n_channels, n).
+
+    Examples
+    --------
+    >>> turning = Recording(np.array([[0.0, 1.0, 2.0, 3.0]]), 2.0, (Channel("angle"),))
+    >>> RecordingBlocks.of(turning).cut(1, 3).samples
+    array([[1., 2.]])
+    """
+
+    rate: float
+    channels: tuple[Channel, ...]
+    condition: Condition
+    calibrated: bool
+    name: str
+    n_samples: int
+    read: Callable[[int, int], NDArray[np.float64]]
+
+    @classmethod
+    def of(cls, recording: Recording | RecordingBlocks) -> RecordingBlocks:
+        """Return a recording in memory as one of which parts can be had."""
+        if isinstance(recording, RecordingBlocks):
+            return recording
+        return cls(
+            recording.rate,
+            recording.channels,
+            recording.condition,
+            recording.calibrated,
+            recording.name,
+            recording.samples.shape[1],
+            lambda first, last: recording.samples[:, first:last],
+        )
+
+    def cut(self, first: int, last: int) -> Recording:
+        """Return the part from sample `first` up to `last`."""
+        samples = self.read(first, last)
+        return Recording(
+            samples, self.rate, self.channels, self.condition, self.calibrated, self.name
+        )
+
+    def pieces(self, first: int, last: int, length: int) -> Iterator[Recording]:
+        """Go through a part in pieces of `length` samples, the last of which may be shorter."""
+        for start in range(first, last, length):
+            yield self.cut(start, min(start + length, last))
+
+    def first(self, kind: str) -> int | None:
+        """Row of the first channel of a kind; ``None`` where there is none."""
+        rows = (row for row, channel in enumerate(self.channels) if channel.kind == kind)
+        return next(rows, None)
+
+    def track(self, row: int) -> RecordingBlocks:
+        """Return one channel as a recording of its own."""
+        channel = self.channels[row]
+        return replace(
+            self,
+            channels=(replace(channel, name=channel.kind),),
+            read=lambda first, last: self.read(first, last)[row : row + 1],
+        )
+
+
+@contextmanager
+def open_blocks(
+    path: str | os.PathLike[str], *, full_scale: float | None = None
+) -> Iterator[RecordingBlocks | None]:
+    """Open a recording that is better not read whole.
+
+    Parameters
+    ----------
+    path : path-like
+    full_scale : float, optional
+        As for `noise.recordings.read_recording`.
+
+    Yields
+    ------
+    RecordingBlocks or None
+        None where it should be read whole: it is short, of a format that cannot be read in parts,
+        or to be refused. Reading raises RecordingError where samples are missing or not finite.
+
+    Raises
+    ------
+    RecordingError
+        Its sidecar cannot be read, or contradicts it.
+
+    Examples
+    --------
+    >>> with open_blocks("short.wav") as blocks:
+    ...     blocks is None
+    True
+    """
+    path = Path(path)
+    sound = _opened(path)
+    if sound is None:
+        yield None
+        return
+    with sound:
+        raw = RawSamples(
+            samples=np.empty((int(sound.channels), 0)),
+            rate=float(sound.samplerate),
+            fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
+            description=bext_description(path),
+            comment=sound.comment,
+        )
+        channels, condition, calibrated = describe(path, raw, full_scale)
+        file = _File(path, sound, channels)
+        yield RecordingBlocks(
+            raw.rate, channels, condition, calibrated, path.name, int(sound.frames), file.read
+        )
+
+
+def _opened(path: Path) -> Any:
+    """Return a large sound file that is sound, opened; None for any other."""
+    try:
+        if not READERS.get(path.suffix.lower(), "").startswith("noise.recordings.sound_file:"):
+            return None
+        if missing_bytes(path):
+            return None
+        sound = soundfile.SoundFile(path)
+        n = int(sound.frames)
+        size = 8 * n * int(sound.channels)
+        possible = MIN_SAMPLES <= n <= _DENSEST * path.stat().st_size
+        if size >= _LARGE and possible and sound.format != "MP3":
+            return sound
+        sound.close()
+    except (OSError, soundfile.LibsndfileError):
+        pass  # whoever reads it whole says what is wrong
+    return None
+
+
+class _File:
+    """Samples of a sound file, chunk by chunk."""
+
+    def __init__(self, path: Path, sound: Any, channels: tuple[Channel, ...]) -> None:
+        self._path, self._sound, self._channels = path, sound, channels
+        self._length = max(1, _CHUNK // (8 * len(channels)))
+        self._position = 0
+        self._chunk = lru_cache(maxsize=2)(self._read_chunk)
+
+    def read(self, first: int, last: int) -> NDArray[np.float64]:
+        last = min(last, int(self._sound.frames))
+        parts = []
+        for number in range(first // self._length, math.ceil(last / self._length)):
+            start = number * self._length
+            parts.append(self._chunk(number)[:, max(0, first - start) : last - start])
+        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+
+    def _read_chunk(self, number: int) -> NDArray[np.float64]:
+        start = number * self._length
+        wanted = min(self._length, int(self._sound.frames) - start)
+        try:
+            if start != self._position:
+                self._go_to(start)
+            block = self._sound.read(wanted, dtype="float64", always_2d=True)
+        except soundfile.LibsndfileError as error:
+            reason = error.error_string.rstrip(".")
+            raise RecordingError(f"{self._path}: is damaged ({reason})") from error
+        self._position = start + len(block)
+        if len(block) < wanted:
+            raise RecordingError(
+                f"{self._path}: is truncated; its header announces {self._sound.frames} samples, "
+                f"{self._position} can be read"
+            )
+        samples = np.ascontiguousarray(block.T)
+        with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
+            for channel, row in zip(self._channels, samples, strict=True):
+                row *= channel.full_scale
+        check_finite(self._path, samples, float(self._sound.samplerate), self._channels, start)
+        return samples
+
+    def _go_to(self, sample: int) -> None:
+        if self._sound.format in _EXACT:
+            self._sound.seek(sample)
+            return
+        if sample < self._position:
+            self._sound.seek(0)
+            self._position = 0
+        while self._position < sample:
+            passed = len(self._sound.read(min(1 << 16, sample - self._position)))
+            if not passed:
+                return
+            self._position += passed

@@ -1,0 +1,142 @@
+"""What the samples of a file mean: channels, condition, and what a sample of 1.0 is worth.
+
+The worth is decided per channel by the first of these that says something:
+
+1. the caller's `full_scale` (pressure channels only),
+2. the sidecar: its ``scale``, or, for floating-point samples, that it names the channel, since
+   such samples are then in the channel's unit; ``"calibrated": false`` silences 2 to 4,
+3. the file's description, then its name, as sound level meters write them,
+4. the file's comment.
+
+Unless every channel has its value the recording is not calibrated: its samples stay fractions of
+full scale, and levels can be told in dBFS alone. Half a calibration would only invite comparing
+what cannot be compared.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError, RecordingError
+from models.recording import Channel
+from noise.recordings.full_scale import stated_full_scale
+from noise.recordings.sidecar import Sidecar, find_sidecar, read_sidecar
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+    from noise.recordings.readers import RawSamples
+
+__all__ = ["check_finite", "describe"]
+
+
+def describe(
+    path: Path, raw: RawSamples, full_scale: float | None = None
+) -> tuple[tuple[Channel, ...], Condition, bool]:
+    """Decide what the samples of a file are, from all that says something about them.
+
+    Parameters
+    ----------
+    path : Path
+        The file, beside which the sidecar is sought.
+    raw : RawSamples
+        Of the samples only the number of channels counts.
+    full_scale : float, optional
+        As for `read_recording`.
+
+    Returns
+    -------
+    channels : tuple of Channel
+        With what a sample of 1.0 is worth.
+    condition : Condition
+    calibrated : bool
+
+    Raises
+    ------
+    RecordingError
+        The sidecar cannot be read, or contradicts the file.
+    ParameterError
+        `full_scale` is not a positive number.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from noise.recordings.readers import RawSamples
+    >>> raw = RawSamples(np.empty((1, 0)), 48e3, fractional=True)
+    >>> channels, _, calibrated = describe(Path("nowhere.wav"), raw, 2.0)
+    >>> channels[0].name, channels[0].full_scale, calibrated
+    ('pressure', 2.0, True)
+    """
+    if full_scale is not None and not 0 < full_scale < math.inf:
+        raise ParameterError(f"full scale is {full_scale!r} Pa, expected a positive number")
+    sidecar_path = find_sidecar(path)
+    sidecar = Sidecar() if sidecar_path is None else read_sidecar(sidecar_path)
+    n_channels = len(raw.samples)
+    if sidecar.channels is not None and len(sidecar.channels) != n_channels:
+        raise RecordingError(
+            f"{sidecar_path}: names {len(sidecar.channels)} channels, {path.name} has {n_channels}"
+        )
+    if not raw.fractional and any(scale is not None for scale in sidecar.scales):
+        raise RecordingError(
+            f"{sidecar_path}: gives a scale, but {path.name} holds floating-point samples, which "
+            f"are in the channel's unit; remove the scale"
+        )
+    channels, calibrated = _interpret(path, raw, sidecar, full_scale)
+    return channels, sidecar.condition, calibrated
+
+
+def check_finite(
+    path: Path,
+    samples: NDArray[np.float64],
+    rate: float,
+    channels: tuple[Channel, ...],
+    start: int = 0,
+) -> None:
+    """Refuse samples that are no numbers; the first of them is sample `start` of the file.
+
+    Raises
+    ------
+    RecordingError
+        Says which sample of which channel is none.
+    """
+    for channel, row in zip(channels, samples, strict=True):
+        finite = np.isfinite(row)
+        if not finite.all():
+            first = int(np.argmin(finite))
+            raise RecordingError(
+                f"{path}: channel {channel.name!r} is {row[first]} at sample {start + first} "
+                f"({(start + first) / rate:.6g} s), expected finite numbers"
+            )
+
+
+def _interpret(
+    path: Path, raw: RawSamples, sidecar: Sidecar, full_scale: float | None
+) -> tuple[tuple[Channel, ...], bool]:
+    """Channels with the value of their full scale, and whether all of them have one."""
+    texts = (raw.description, path.name, raw.comment)
+    stated = next((found for text in texts if (found := stated_full_scale(text))), None)
+    channels = sidecar.channels or raw.channels
+    if channels is None:
+        kind = "pressure" if stated is None or full_scale is not None else stated.kind
+        numbers = range(1, len(raw.samples) + 1)
+        channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
+    named = sidecar.channels is not None or raw.channels is not None
+    in_units = not raw.fractional and (named or sidecar.calibrated is True)
+    values: list[float] = []
+    for channel, scale in zip(channels, sidecar.scales or (None,) * len(channels), strict=True):
+        opinions = [full_scale if channel.kind == "pressure" else None]
+        if sidecar.calibrated is not False:
+            opinions += [scale, 1.0 if in_units else None]
+            opinions += [stated.value if stated and stated.kind == channel.kind else None]
+        values += [value for value in opinions if value is not None][:1]
+    if len(values) < len(channels):
+        return channels, False
+    pairs = zip(channels, values, strict=True)
+    return tuple(replace(channel, full_scale=value) for channel, value in pairs), True

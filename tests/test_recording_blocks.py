@@ -1,0 +1,129 @@
+"""Recordings read in parts, and labelled from them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import given, strategies as st
+
+from models.errors import RecordingError
+from models.recording import Channel, Recording
+from noise.classifier import load_classifier
+from noise.labels import label_recording, label_rows
+from noise.recordings import read_recording, write_recording
+from noise.recordings.blocks import RecordingBlocks, open_blocks
+
+RATE = 8000
+
+
+@pytest.fixture(autouse=True)
+def small_is_large(monkeypatch):
+    monkeypatch.setattr("noise.recordings.blocks._LARGE", 1)
+    monkeypatch.setattr("noise.recordings.blocks._CHUNK", 5000)
+
+
+def noise(channels, seconds, seed=0):
+    return np.random.default_rng(seed).uniform(-0.5, 0.5, (channels, round(seconds * RATE)))
+
+
+@pytest.mark.parametrize("ending", ["wav", "flac", "ogg", "aiff"])
+def test_parts_are_those_of_the_whole_in_any_order(tmp_path, ending):
+    path = tmp_path / f"run.{ending}"
+    soundfile.write(path, noise(2, 1.0).T, RATE)
+    whole = read_recording(path, full_scale=2.0)
+    with open_blocks(path, full_scale=2.0) as blocks:
+        assert blocks.n_samples == whole.samples.shape[1]
+        assert (blocks.channels, blocks.calibrated) == (whole.channels, True)
+        for first, last in [(0, 10), (300, 2000), (7000, 8000), (5, 320), (0, 8000)]:
+            np.testing.assert_array_equal(blocks.read(first, last), whole.samples[:, first:last])
+        np.testing.assert_array_equal(
+            np.concatenate([p.samples for p in blocks.track(1).pieces(10, 7990, 999)], axis=1),
+            whole.samples[1:, 10:7990],
+        )
+
+
+@given(st.integers(16, 4000), st.data())
+def test_any_part_of_any_file(tmp_path_factory, n, data):
+    path = tmp_path_factory.mktemp("any") / "run.wav"
+    samples = noise(3, 0.5)[:, :n]
+    soundfile.write(path, samples.T, RATE, subtype="DOUBLE")
+    with open_blocks(path) as blocks:
+        for _ in range(5):
+            first = data.draw(st.integers(0, n - 1))
+            last = data.draw(st.integers(first + 1, n))
+            np.testing.assert_array_equal(blocks.read(first, last), samples[:, first:last])
+
+
+@pytest.mark.parametrize("kinds", [("pressure", "angle"), ("torque", "speed"), ("acceleration",)])
+def test_labels_and_conditions_are_those_of_the_whole(tmp_path, kinds):
+    samples = noise(len(kinds), 24.0)
+    samples[0, 5 * RATE : 9 * RATE] = np.sin(2 * np.pi * 1500.0 * np.arange(4 * RATE) / RATE)
+    samples[0, 12 * RATE : 15 * RATE] = 0.0
+    samples[-1] = np.cumsum(samples[-1]) / RATE + np.arange(samples.shape[1]) / RATE
+    recording = Recording(samples, float(RATE), tuple(map(Channel, kinds)))
+    path = write_recording(tmp_path / "run", recording)
+    classifier = load_classifier()
+    whole = read_recording(path)
+    expected = label_rows("run.wav", whole, label_recording(whole, classifier))
+    with open_blocks(path) as blocks:
+        found = label_rows("run.wav", blocks, label_recording(blocks, classifier))
+    assert found == expected
+    assert len(found) > 1 or kinds != ("pressure", "angle")
+
+
+def test_tracks_of_a_long_file_are_labelled_one_by_one(tmp_path):
+    path = tmp_path / "run.flac"
+    sound = noise(2, 3.0)
+    sound[1] = 0.0
+    soundfile.write(path, sound.T, RATE)
+    classifier = load_classifier()
+    with open_blocks(path) as blocks:
+        found = label_recording(blocks, classifier, per_track=True)
+    assert found == label_recording(read_recording(path), classifier, per_track=True)
+    assert {segment.channel for segment in found} == {"1", "2"}
+
+
+def test_a_sample_that_is_no_number_is_found_where_it_is(tmp_path):
+    path = tmp_path / "run.wav"
+    samples = noise(1, 1.0)
+    samples[0, 6000] = np.nan
+    soundfile.write(path, samples.T, RATE, subtype="FLOAT")
+    with pytest.raises(RecordingError) as whole:
+        read_recording(path)
+    with open_blocks(path) as blocks, pytest.raises(RecordingError) as parts:
+        label_recording(blocks, load_classifier())
+    assert str(parts.value) == str(whole.value)
+
+
+def test_what_breaks_off_or_is_no_sound_is_left_to_the_reader_of_the_whole(tmp_path):
+    path = tmp_path / "run.wav"
+    soundfile.write(path, noise(1, 1.0).T, RATE)
+    for content in (path.read_bytes()[:-100], b"no sound", b""):
+        path.write_bytes(content)
+        with open_blocks(path) as blocks:
+            assert blocks is None
+
+
+def test_a_flac_that_breaks_off_is_refused(tmp_path):
+    path = tmp_path / "run.flac"
+    soundfile.write(path, noise(1, 20.0).T, RATE)
+    path.write_bytes(path.read_bytes()[:-40_000])
+    with pytest.raises(RecordingError), open_blocks(path) as blocks:
+        label_recording(blocks, load_classifier())
+
+
+def test_short_recordings_and_mp3_are_read_whole(tmp_path, monkeypatch):
+    soundfile.write(tmp_path / "run.mp3", noise(1, 1.0).T, RATE)
+    with open_blocks(tmp_path / "run.mp3") as blocks:
+        assert blocks is None
+    monkeypatch.setattr("noise.recordings.blocks._LARGE", 1 << 20)
+    soundfile.write(tmp_path / "run.wav", noise(1, 1.0).T, RATE)
+    with open_blocks(tmp_path / "run.wav") as blocks:
+        assert blocks is None
+
+
+def test_a_recording_in_memory_is_not_copied():
+    recording = Recording(noise(1, 1.0), float(RATE), (Channel("pressure"),))
+    part = RecordingBlocks.of(recording).cut(10, 20)
+    assert np.shares_memory(part.samples, recording.samples)
