@@ -68,3 +68,6 @@ from .spectra import (
     autospectrum as autospectrum,
     spectral_shape as spectral_shape,
 )
+from .transformer import (
+    RecordingFeatures as RecordingFeatures,
+)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ACOUSTIC_FROM",
+    "MIN_SAMPLES",
     "NOTHING",
     "USABLE_SHARE",
     "WORKING_LIMIT",
@@ -63,7 +64,8 @@ _FADE_SHARE = 0.1
 _EDGE = 0.2
 """Width of the flank below a band, as a share of the band's lower limit."""
 
-_MIN_SAMPLES = 16
+MIN_SAMPLES = 16
+"""Fewer samples than this cannot be analysed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,9 +129,9 @@ def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
     x = np.asarray(signal, dtype=np.float64)
     if x.ndim != 1:
         raise ParameterError(f"signal has shape {x.shape}; give one channel, shape (n_samples,)")
-    if x.size < _MIN_SAMPLES:
+    if x.size < MIN_SAMPLES:
         raise ParameterError(
-            f"signal has {x.size} samples; an analysis needs at least {_MIN_SAMPLES}"
+            f"signal has {x.size} samples; an analysis needs at least {MIN_SAMPLES}"
         )
     if not np.isfinite(x).all():
         bad = int(np.flatnonzero(~np.isfinite(x))[0])

@@ -37,6 +37,10 @@ class Feature:
         Whether it needs a calibrated signal; all others do not depend on the gain.
     kinds : tuple of str
         Kinds of channel it applies to.
+    tolerance : tuple of 2 floats
+        How closely values agree that come from the same sound at different sampling rates, 16 to
+        192 kHz: within this share, or within this much [unit], whichever is more. It holds for
+        what the rates have in common, so for `level` and `level_a` where nothing lies above 7 kHz.
 
     Examples
     --------
@@ -54,6 +58,7 @@ class Feature:
     silent: float | None = math.nan
     calibrated: bool = False
     kinds: tuple[str, ...] = ACOUSTIC_KINDS
+    tolerance: tuple[float, float] = (0.02, 0.01)
 
     def __call__(self, signal: Prepared) -> float:
         """Value for a signal; NaN where it is undefined."""

@@ -70,6 +70,7 @@ SPECTRAL_FEATURES = (
         _level,
         silent=None,
         calibrated=True,
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "level_a",
@@ -80,6 +81,7 @@ SPECTRAL_FEATURES = (
         silent=None,
         calibrated=True,
         kinds=("pressure",),
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "hum_share",
@@ -88,6 +90,7 @@ SPECTRAL_FEATURES = (
         _THIS,
         _hum,
         silent=None,
+        tolerance=(0.0, 0.02),
     ),
     Feature(
         "band_150_500",
@@ -95,6 +98,7 @@ SPECTRAL_FEATURES = (
         "Level from 150 to 500 Hz re that from 150 Hz to 7 kHz.",
         _THIS,
         lambda p: p.share_db(150.0, 500.0),
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "band_500_1000",
@@ -102,6 +106,7 @@ SPECTRAL_FEATURES = (
         "Level from 500 Hz to 1 kHz re that from 150 Hz to 7 kHz.",
         _THIS,
         lambda p: p.share_db(500.0, 1_000.0),
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "band_1000_2000",
@@ -109,6 +114,7 @@ SPECTRAL_FEATURES = (
         "Level from 1 to 2 kHz re that from 150 Hz to 7 kHz.",
         _THIS,
         lambda p: p.share_db(1_000.0, 2_000.0),
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "band_2000_5000",
@@ -116,6 +122,7 @@ SPECTRAL_FEATURES = (
         "Level from 2 to 5 kHz re that from 150 Hz to 7 kHz.",
         _NOISES,
         lambda p: p.share_db(2_000.0, 5_000.0),
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "band_5000_7000",
@@ -123,6 +130,7 @@ SPECTRAL_FEATURES = (
         "Level from 5 to 7 kHz re that from 150 Hz to 7 kHz.",
         _NOISES,
         lambda p: p.share_db(5_000.0, 7_000.0),
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "band_7000_13000",
@@ -130,6 +138,7 @@ SPECTRAL_FEATURES = (
         "Level from 7 to 13 kHz re that from 150 Hz to 7 kHz; needs a rate of 29.8 kHz.",
         _NOISES,
         lambda p: p.top_band(0)[0],
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "band_13000_19000",
@@ -137,6 +146,7 @@ SPECTRAL_FEATURES = (
         "Level from 13 to 19 kHz re that from 150 Hz to 7 kHz; needs a rate of 43.5 kHz.",
         _NOISES,
         lambda p: p.top_band(1)[0],
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "centroid",
@@ -180,6 +190,7 @@ SPECTRAL_FEATURES = (
         "Frequency of the strongest line.",
         _NOISES,
         _strongest_line,
+        tolerance=(0.002, 0.0),
     ),
     Feature(
         "line_share",
@@ -203,6 +214,7 @@ SPECTRAL_FEATURES = (
         "Level of the second line re the strongest, -40 if there is one only.",
         _NOISES,
         _second_line,
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "fundamental",
@@ -210,6 +222,7 @@ SPECTRAL_FEATURES = (
         "Repetition rate of the vibration, from 5 Hz on.",
         _PITCH,
         lambda p: p.harmonics.fundamental,
+        tolerance=(0.002, 0.0),
     ),
     Feature(
         "periodicity",
@@ -218,6 +231,7 @@ SPECTRAL_FEATURES = (
         _PITCH,
         lambda p: p.harmonics.strength,
         silent=0.0,
+        tolerance=(0.0, 0.02),
     ),
     Feature(
         "harmonicity",

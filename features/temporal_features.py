@@ -50,6 +50,7 @@ TEMPORAL_FEATURES = (
         "Level of the second line of each 64 ms re the strongest, at least -20, mean by energy.",
         _NOISES,
         lambda p: p.course.second_tone,
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "short_periodicity",
@@ -79,6 +80,7 @@ TEMPORAL_FEATURES = (
         "Standard deviation of the levels of 64 ms.",
         _THIS,
         lambda p: p.course.level_variation,
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "crest",
@@ -86,6 +88,7 @@ TEMPORAL_FEATURES = (
         "Peak of the envelope re the rms value; 3 for a tone.",
         _THIS,
         lambda p: 20.0 * math.log10(p.pulses.crest_factor),
+        tolerance=(0.0, 0.5),
     ),
     Feature(
         "kurtosis",
@@ -93,6 +96,7 @@ TEMPORAL_FEATURES = (
         "Fourth moment over the squared second; 1.5 for a tone, 3 for noise.",
         _THIS,
         lambda p: p.pulses.kurtosis,
+        tolerance=(0.05, 0.0),
     ),
     Feature(
         "high_kurtosis",
@@ -100,6 +104,7 @@ TEMPORAL_FEATURES = (
         "The same of the part from 2 to 7 kHz.",
         _NOISES,
         lambda p: p.pulses.high_kurtosis,
+        tolerance=(0.05, 0.0),
     ),
     Feature(
         "top_kurtosis",
@@ -107,6 +112,7 @@ TEMPORAL_FEATURES = (
         "The same of the part from 7 to 13 kHz; needs a rate of 29.8 kHz.",
         _NOISES,
         lambda p: p.top_band(0)[1],
+        tolerance=(0.05, 0.0),
     ),
     Feature(
         "burst_share",
@@ -129,6 +135,7 @@ TEMPORAL_FEATURES = (
         "Median log ratio of neighbouring intervals; 0 for a clock, 1.1 for a Poisson process.",
         _THIS,
         lambda p: p.pulses.irregularity,
+        tolerance=(0.0, 0.02),
     ),
     Feature(
         "pulse_glide",
@@ -136,6 +143,7 @@ TEMPORAL_FEATURES = (
         "Trend of the logarithm of the pulse rate.",
         _THIS,
         lambda p: p.pulses.glide,
+        tolerance=(0.0, 0.02),
     ),
     Feature(
         "modulation_rate",
@@ -143,6 +151,7 @@ TEMPORAL_FEATURES = (
         "Repetition rate of the envelope, 2 to 400 Hz.",
         _PITCH,
         lambda p: p.modulation.rate,
+        tolerance=(0.002, 0.0),
     ),
     Feature(
         "modulation_strength",
@@ -151,6 +160,7 @@ TEMPORAL_FEATURES = (
         _PITCH,
         lambda p: p.modulation.strength,
         silent=0.0,
+        tolerance=(0.0, 0.02),
     ),
     Feature(
         "modulation_depth",

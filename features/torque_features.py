@@ -80,6 +80,7 @@ TORQUE_FEATURES = (
         _PITCH,
         lambda p: p.harmonics.fundamental,
         kinds=_TORQUE,
+        tolerance=(0.002, 0.0),
     ),
     Feature(
         "periodicity",
@@ -89,6 +90,7 @@ TORQUE_FEATURES = (
         lambda p: p.harmonics.strength,
         silent=0.0,
         kinds=_TORQUE,
+        tolerance=(0.0, 0.02),
     ),
     Feature(
         "harmonicity",
@@ -124,6 +126,7 @@ TORQUE_FEATURES = (
         _SPECTRA,
         lambda p: float(p.lines.frequency[0]) if p.lines.frequency.size else math.nan,
         kinds=_TORQUE,
+        tolerance=(0.002, 0.0),
     ),
     Feature(
         "line_share",
@@ -141,6 +144,7 @@ TORQUE_FEATURES = (
         "thesis, 5.2.3",
         _high_band,
         kinds=_TORQUE,
+        tolerance=(0.0, 0.1),
     ),
     Feature(
         "kurtosis",
@@ -149,6 +153,7 @@ TORQUE_FEATURES = (
         _THIS,
         _kurtosis,
         kinds=_TORQUE,
+        tolerance=(0.05, 0.0),
     ),
     Feature(
         "asymmetry",
@@ -157,6 +162,7 @@ TORQUE_FEATURES = (
         _STICK_SLIP,
         lambda p: p.torque_slips.asymmetry,
         kinds=_TORQUE,
+        tolerance=(0.05, 0.01),
     ),
     Feature(
         "slip_rate",

@@ -98,42 +98,6 @@ def test_levels_need_calibration(kind):
     assert all(math.isnan(values[name]) for name in missing)
 
 
-DECIBELS = 0.1
-TOLERANCES = {
-    **dict.fromkeys(("second_line", "second_tone", "level_variation"), ("absolute", DECIBELS)),
-    **dict.fromkeys(("level", "level_a", "crest"), ("absolute", 0.5)),
-    **dict.fromkeys(("pulse_irregularity", "pulse_glide", "hum_share"), ("absolute", 0.02)),
-    **dict.fromkeys(("periodicity", "modulation_strength"), ("absolute", 0.02)),
-    **dict.fromkeys(("fundamental", "line_frequency", "modulation_rate"), ("relative", 0.002)),
-    **dict.fromkeys(("high_kurtosis", "top_kurtosis", "kurtosis"), ("relative", 0.05)),
-}
-"""How closely rates agree; what is not named here, within 2 % or 0.01."""
-
-BROADBAND = {"level", "level_a"}
-"""Of sounds that reach beyond 8 kHz these say so."""
-
-RHYTHM = {"pulse_rate", "pulse_irregularity", "pulse_glide"}
-"""Of sounds without pulses these describe the few maxima that noise has by chance."""
-
-
-@pytest.mark.parametrize("name", ["creak", "squawk", "squeal"])
-@pytest.mark.parametrize("seconds", [1.0, 0.25])
-@pytest.mark.parametrize("rate", RATES[:-1])
-def test_the_same_sound_has_the_same_features_at_any_rate(name, seconds, rate):
-    reference, found = vector(name, 96_000, seconds), vector(name, rate, seconds)
-    for feature, expected in reference.items():
-        if feature in (BROADBAND if name == "creak" else RHYTHM) or math.isnan(found[feature]):
-            continue
-        if feature.startswith("band_"):
-            tolerance = {"abs": DECIBELS, "rel": 0.0}
-        else:
-            way, size = TOLERANCES.get(feature, ("relative", 0.02))
-            tolerance = {"abs": size, "rel": 0.0} if way == "absolute" else {"rel": size}
-            tolerance.setdefault("abs", 0.01)
-        if expected > -50.0 or not feature.startswith("band_"):
-            assert found[feature] == pytest.approx(expected, **tolerance), feature
-
-
 @pytest.mark.parametrize("rate", RATES)
 def test_top_bands_are_missing_exactly_where_the_rate_does_not_reach_them(rate):
     found = vector("creak", rate)

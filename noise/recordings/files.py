@@ -15,7 +15,7 @@ from models.errors import ParameterError, RecordingError
 from models.recording import Recording
 from noise.atomic import atomic
 from noise.recordings.float_wav import write_float_wav
-from noise.recordings.meaning import check_finite, describe
+from noise.recordings.meaning import check_finite, chosen_rows, describe
 from noise.recordings.readers import READERS, read_raw
 from noise.recordings.sidecar import sidecar_text
 
@@ -72,7 +72,7 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     ('run07.wav', 30.0, 5.0)
     """
     path = Path(path)
-    raw = read_raw(path)
+    raw = chosen_rows(path, read_raw(path))
     channels, condition, calibrated = describe(path, raw, full_scale)
     n_samples = raw.samples.shape[1]
     if n_samples < MIN_SAMPLES:

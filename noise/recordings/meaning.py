@@ -16,7 +16,7 @@ what cannot be compared.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,7 +34,27 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from noise.recordings.readers import RawSamples
 
-__all__ = ["check_finite", "describe"]
+__all__ = ["check_finite", "chosen_rows", "describe"]
+
+
+def chosen_rows(path: Path, raw: RawSamples) -> RawSamples:
+    """Leave out rows that are no channels, unless the sidecar names them as well.
+
+    Raises
+    ------
+    RecordingError
+        The file's own words do not settle what it measures, and no sidecar does.
+    """
+    sidecar = _sidecar(path)
+    if raw.channels is None or len(sidecar.channels or ()) == len(raw.samples):
+        return raw
+    if raw.unclear and sidecar.channels is None:
+        raise RecordingError(raw.unclear)
+    keep = [row for row, channel in enumerate(raw.channels) if channel is not None]
+    if not keep or len(keep) == len(raw.channels):
+        return raw
+    channels = tuple(channel for channel in raw.channels if channel is not None)
+    return replace(raw, samples=raw.samples[keep], channels=channels)
 
 
 def describe(
@@ -76,8 +96,7 @@ def describe(
     """
     if full_scale is not None and not 0 < full_scale < math.inf:
         raise ParameterError(f"full scale is {full_scale!r} Pa, expected a positive number")
-    sidecar_path = find_sidecar(path)
-    sidecar = Sidecar() if sidecar_path is None else read_sidecar(sidecar_path)
+    sidecar_path, sidecar = find_sidecar(path), _sidecar(path)
     n_channels = len(raw.samples)
     if sidecar.channels is not None and len(sidecar.channels) != n_channels:
         raise RecordingError(
@@ -89,7 +108,7 @@ def describe(
             f"are in the channel's unit; remove the scale"
         )
     channels, calibrated = _interpret(path, raw, sidecar, full_scale)
-    return channels, sidecar.condition, calibrated
+    return channels, _united(raw.condition, sidecar.condition), calibrated
 
 
 def check_finite(
@@ -116,14 +135,26 @@ def check_finite(
             )
 
 
+def _sidecar(path: Path) -> Sidecar:
+    found = find_sidecar(path)
+    return Sidecar() if found is None else read_sidecar(found)
+
+
+def _united(stated: Condition, sidecar: Condition) -> Condition:
+    """Take the sidecar's word for the conditions, and the file's own where it has none."""
+    said = {field.name: getattr(sidecar, field.name) for field in fields(sidecar)}
+    return replace(stated, **{name: value for name, value in said.items() if value is not None})
+
+
 def _interpret(
     path: Path, raw: RawSamples, sidecar: Sidecar, full_scale: float | None
 ) -> tuple[tuple[Channel, ...], bool]:
     """Channels with the value of their full scale, and whether all of them have one."""
     texts = (raw.description, path.name, raw.comment)
     stated = next((found for text in texts if (found := stated_full_scale(text))), None)
-    channels = sidecar.channels or raw.channels
-    if channels is None:
+    own = tuple(channel for channel in raw.channels or () if channel is not None)
+    channels = sidecar.channels or own
+    if not channels:
         kind = "pressure" if stated is None or full_scale is not None else stated.kind
         numbers = range(1, len(raw.samples) + 1)
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)

@@ -9,11 +9,12 @@ file says and nothing more; what the samples mean is decided once, for all forma
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from models.condition import Condition
 from models.errors import RecordingError
 
 if TYPE_CHECKING:
@@ -40,9 +41,14 @@ class RawSamples:
         as floating-point values of their own.
     description, comment : str
         Free text in the file, where meters and engineers note a calibration.
-    channels : tuple of Channel, optional
+    channels : tuple of (Channel or None), optional
         Where the file itself says what it measures: one a row of `samples`, which are in the
-        channels' units.
+        channels' units; None for a row that is no channel of ours, as the file has it.
+    condition : Condition
+        As far as the file itself tells it.
+    unclear : str
+        Why the file's own words do not settle what it measures, where they do not: the error,
+        unless a sidecar names the channels.
     """
 
     samples: NDArray[np.float64]
@@ -50,23 +56,33 @@ class RawSamples:
     fractional: bool
     description: str = ""
     comment: str = ""
-    channels: tuple[Channel, ...] | None = None
+    channels: tuple[Channel | None, ...] | None = None
+    condition: Condition = field(default_factory=Condition)
+    unclear: str = ""
 
 
 Reader = Callable[[Path], RawSamples]
 
 _SOUND = "noise.recordings.sound_file:read_sound_file"
+_HDF5 = "noise.recordings.hdf5_file:read_hdf5_file"
+_MDF = "noise.recordings.mdf_file:read_mdf_file"
+_TDMS = "noise.recordings.tdms_file:read_tdms_file"
 _UNIVERSAL = "noise.recordings.universal_file:read_universal_file"
 
 READERS = {
     ".aif": _SOUND,
     ".aiff": _SOUND,
     ".flac": _SOUND,
+    ".h5": _HDF5,
+    ".hdf5": _HDF5,
+    ".mdf": _MDF,
+    ".mf4": _MDF,
     ".mp3": _SOUND,
     ".oga": _SOUND,
     ".ogg": _SOUND,
     ".opus": _SOUND,
     ".rf64": _SOUND,
+    ".tdms": _TDMS,
     ".uff": _UNIVERSAL,
     ".unv": _UNIVERSAL,
     ".wav": _SOUND,

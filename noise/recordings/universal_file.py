@@ -1,8 +1,8 @@
 """Universal files (UFF, UNV) as raw samples: their time functions, dataset 58.
 
 Channels follow from the units that the file labels, since its data types are often left general.
-Accelerations in g and angles in degrees are turned into SI, for the label says what they are; any
-other unit is refused, because a guess would look like a measurement.
+Units beside SI (g, degrees, kPa) are turned into it, for the label says what they are; one that is
+no channel's is refused, because a guess would look like a measurement.
 """
 
 from __future__ import annotations
@@ -13,25 +13,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError, RecordingError
-from models.frf import same_unit
-from models.recording import CHANNEL_UNITS, Channel
+from models.recording import Channel
 from models.uff import TIME_RESPONSE, UffFunction, read_uff_functions
 from noise.recordings.readers import RawSamples
+from noise.recordings.units import kind_of_unit, known_units
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 __all__ = ["read_universal_file"]
-
-_STANDARD_GRAVITY = 9.80665  # m/s^2
-
-_OTHER_UNITS = {
-    "g": ("acceleration", _STANDARD_GRAVITY),
-    "deg": ("angle", np.pi / 180),
-    "kPa": ("pressure", 1e3),
-    "kN": ("force", 1e3),
-}
-"""Label -> kind of channel, and what a unit of it is in SI."""
 
 _UNLABELLED = {12: "acceleration", 13: "force", 15: "pressure"}
 """Data types that stand in for a missing label, then taken to be in SI."""
@@ -93,13 +83,10 @@ def _kind(function: UffFunction, where: str) -> tuple[str, float]:
         raise RecordingError(f"{where} is complex, expected real samples")
     if not function.unit and function.data_type in _UNLABELLED:
         return _UNLABELLED[function.data_type], 1.0
-    for kind, unit in CHANNEL_UNITS.items():
-        if same_unit(function.unit, unit):
-            return kind, 1.0
-    if function.unit in _OTHER_UNITS:
-        return _OTHER_UNITS[function.unit]
-    known = ", ".join([*CHANNEL_UNITS.values(), *_OTHER_UNITS])
-    raise RecordingError(f"{where} has unit {function.unit!r}, expected {known}")
+    found = kind_of_unit(function.unit)
+    if found is None:
+        raise RecordingError(f"{where} has unit {function.unit!r}, expected {known_units()}")
+    return found
 
 
 def _rate(path: Path, function: UffFunction) -> float:

@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from sklearn.base import clone
+from sklearn.impute import SimpleImputer
+from sklearn.linear_model import LogisticRegression
+from sklearn.pipeline import make_pipeline
+from sklearn.utils.estimator_checks import parametrize_with_checks
+
+from features import RecordingFeatures, feature_names, feature_vector, recording_features
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+
+RATE = 16_000.0
+T = np.arange(3200) / RATE
+
+
+def hiss(seed=0, n=3200):
+    return np.random.default_rng(seed).normal(size=n)
+
+
+@parametrize_with_checks([RecordingFeatures(), RecordingFeatures(("torque",), rate=2e3)])
+def test_scikit_learn_accepts_it(estimator, check):
+    check(estimator)
+
+
+def test_a_row_is_the_feature_vector_of_the_waveform():
+    X = np.stack([hiss(), np.sin(6000 * T)])
+    transformer = RecordingFeatures(("acceleration",), rate=RATE, calibrated=True).fit(X)
+    expected = [list(feature_vector(x, RATE, "acceleration").values()) for x in X]
+    np.testing.assert_array_equal(transformer.transform(X), expected)
+    names = [f"acceleration_{name}" for name in feature_names("acceleration")]
+    assert transformer.get_feature_names_out().tolist() == names
+
+
+def test_recordings_bring_their_own_rate_length_and_channels():
+    both = (Channel("torque"), Channel("pressure"))
+    runs = [
+        Recording(np.stack([hiss(1), hiss(2)]), RATE, both),
+        Recording(hiss(3, 4800)[np.newaxis], 48e3, both[1:], calibrated=False),
+    ]
+    transformer = RecordingFeatures(("pressure", "torque"))
+    table = transformer.fit_transform(runs)
+    for row, run in zip(table, runs, strict=True):
+        expected = recording_features(run)
+        for name, value in zip(transformer.get_feature_names_out(), row, strict=True):
+            assert value == expected[name] or (math.isnan(value) and math.isnan(expected[name]))
+    assert np.isnan(table[1, len(feature_names("pressure")) :]).all()
+
+
+def test_it_stands_first_in_a_pipeline():
+    rng = np.random.default_rng(4)
+    tones = [np.sin(2 * np.pi * f * T) + 0.1 * rng.normal(size=T.size) for f in (400, 900, 2000)]
+    X, y = np.stack([*tones, hiss(1), hiss(2), hiss(3)]), [1, 1, 1, 0, 0, 0]
+    first = RecordingFeatures(rate=RATE)
+    chain = make_pipeline(first, SimpleImputer(), LogisticRegression(max_iter=5000))
+    assert clone(chain).fit(X, y).score(X, y) == 1.0
+
+
+def test_a_frame_comes_out_named_where_asked_for():
+    pytest.importorskip("pandas")
+    frame = RecordingFeatures(rate=RATE).set_output(transform="pandas").fit_transform([hiss()])
+    assert frame.columns[0] == "pressure_level"
+
+
+@pytest.mark.parametrize(
+    ("transformer", "X", "message"),
+    [
+        (RecordingFeatures(("angle",)), [hiss()], r"kinds are \('angle',\); give a tuple"),
+        (RecordingFeatures("pressure"), [hiss()], "kinds are 'pressure'; give a tuple"),
+        (RecordingFeatures(rate=0.0), [hiss()], "rate is 0.0; a sampling rate is a positive"),
+        (RecordingFeatures(("pressure", "torque")), [hiss()], "waveforms are of one kind"),
+    ],
+)
+def test_what_cannot_be_used_is_refused(transformer, X, message):
+    with pytest.raises(ParameterError, match=message):
+        transformer.fit(X).transform(X)
+
+
+def test_a_channel_that_cannot_be_analysed_is_named():
+    run = Recording(np.full((1, 400), np.nan), RATE, (Channel("pressure"),), name="run07.wav")
+    with pytest.raises(ParameterError, match=r"'run07\.wav', channel 'pressure': signal: sample 0"):
+        RecordingFeatures().fit_transform([run])
+    with pytest.raises(ParameterError, match="X mixes recordings with others"):
+        RecordingFeatures().fit([run, 1.0])
+
+
+def test_scikit_learn_is_loaded_with_the_transformer_only():
+    code = (
+        "import sys, features; features.feature_names('torque');"
+        "assert 'sklearn' not in sys.modules; features.RecordingFeatures;"
+        "assert 'sklearn' in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
