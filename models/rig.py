@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from models.errors import ParameterError
 from models.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, Plate
 
 if TYPE_CHECKING:
@@ -73,6 +74,22 @@ class Fit:
     critical_torque: float
     kinetic_torque: float
     damping: Mapping[float, float]
+
+    def __post_init__(self) -> None:
+        where = f"fit at {1e3 * self.interference:g} mm"
+        for name in ("interference", "elastomer_stiffness"):
+            _refuse_unless_positive(getattr(self, name), name, where)
+        if not 0.0 <= self.kinetic_torque <= self.critical_torque < math.inf:
+            raise ParameterError(
+                f"{where}: critical_torque = {self.critical_torque:g} and kinetic_torque = "
+                f"{self.kinetic_torque:g} Nm; a contact breaks at no less than it slides at, and "
+                "neither is negative"
+            )
+        for support, damping in self.damping.items():
+            if not 0.0 <= damping < math.inf:
+                raise ParameterError(
+                    f"{where}: damping at {support:g} Nm/rad is {damping:g}; it must be 0 or more"
+                )
 
 
 @dataclass(frozen=True)
@@ -162,6 +179,10 @@ class Rig:
     assumed: tuple[str, ...] = ()
     measured: tuple[MeasuredResponse, ...] = ()
 
+    def __post_init__(self) -> None:
+        for name in ("elastomer_inertia", "clamp_inertia"):
+            _refuse_unless_positive(getattr(self, name), name, f"rig {self.name!r}")
+
     @property
     def interference_range(self) -> tuple[float, float]:
         """Smallest and largest interference for which the bushing's properties are given [m]."""
@@ -176,6 +197,11 @@ class Rig:
                 t = (interference - left.interference) / (right.interference - left.interference)
                 return _between(left, right, t)
         return self.fits[-1]
+
+
+def _refuse_unless_positive(value: float, name: str, where: str) -> None:
+    if not 0.0 < value < math.inf:
+        raise ParameterError(f"{where}: {name} = {value:g} must be above 0 and finite")
 
 
 def damping_at(fit: Fit, support_stiffness: float) -> float:

@@ -10,7 +10,7 @@ motion sees it half a second to both sides.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +22,7 @@ from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
+from sim.friction import at_temperature
 from sim.motion import Motion
 from sim.motion_blocks import motion_blocks, refuse_whole_run_effects
 from sim.run import _LEAST_SOUND_RATE, _channels, _check, motion_and_settling
@@ -114,6 +115,7 @@ def simulate_blocks(
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
     shaft, settling = motion_and_settling(shaft, settling)
     _check(min(seconds, 1.0), settling, acquisition.rate, interference, temperature)
+    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
     if not 0.0 < block_seconds < math.inf or not seconds < math.inf:
         raise ParameterError(
             f"seconds = {seconds:g} and block_seconds = {block_seconds:g} must be above 0, finite"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
+from sim.friction import at_temperature
 from sim.motion import Motion, simulate_motion
 from sim.shaft import ConstantSpeed, ShaftMotion
 
@@ -90,7 +91,7 @@ def simulate(
     support_stiffness : float
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
     temperature : float
-        Ambient [degree Celsius]; recorded, without influence on the shipped friction laws.
+        Ambient [degree Celsius]; recorded, and taken by friction laws that have a temperature.
     seconds : float
         Length of the recording [s].
     acquisition : Acquisition, optional
@@ -124,6 +125,7 @@ def simulate(
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
     shaft, settling = motion_and_settling(shaft, settling)
     _check(seconds, settling, acquisition.rate, interference, temperature)
+    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
 
     decimation = math.ceil(_LEAST_SOUND_RATE / acquisition.rate)
     rate = decimation * acquisition.rate

@@ -86,6 +86,13 @@ class Oscillation:
     amplitude: float
     frequency: float
 
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.amplitude) and 0.0 < self.frequency < math.inf):
+            raise ParameterError(
+                f"an oscillation of {self.amplitude:g} rad at {self.frequency:g} Hz: the frequency "
+                "must be above 0, both finite"
+            )
+
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Angular speed [rad/s] at `time` [s]."""
         omega = 2.0 * math.pi * self.frequency

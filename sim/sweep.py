@@ -99,6 +99,9 @@ class Sweep:
         """
         columns = self._columns()
         rigs, speeds = columns[0].ravel(), columns[1].ravel()
+        for speed in speeds:
+            if isinstance(speed, float) and not np.isfinite(speed):
+                raise ParameterError(f"speed = {speed:g} rad/s must be a finite number")
         features = np.empty((rigs.size, len(FEATURES)))
         rest = np.ones(rigs.size, dtype=bool)
         for rig in {id(rig): rig for rig in rigs}.values():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentTypeError
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -130,6 +131,7 @@ def run(options: Namespace) -> int:
         say("fitting modes")
         low, high = options.band or _default_band(frf)
         modes = fit_modes(frf.frequency, frf.response, low=low, high=high, coherence=frf.coherence)
+        modes = _trusted(modes, frf, options.coherence)
         say(f"{counted(modes.frequency.size, 'mode')} from {low:.5g} to {high:.5g} Hz")
     _write(options, frf, modes)
     return 1 if refused else 0
@@ -241,6 +243,34 @@ def _write(options: Namespace, frf: Frf, modes: Modes | None) -> None:
     for path in (options.out, options.modes):
         if path is not None:
             print(path)
+
+
+def _trusted(modes: Modes, frf: Frf, least: float) -> Modes:
+    """Leave out modes where the coherence says that the response is not to be trusted."""
+    import numpy as np
+
+    if frf.coherence is None:
+        return modes
+    # A resonance's own dip, or that of the notch beside it, is narrow.
+    smooth = np.array(
+        [
+            np.median(frf.coherence[np.abs(frf.frequency - f) <= 0.02 * f])
+            if np.any(np.abs(frf.frequency - f) <= 0.02 * f)
+            else np.interp(f, frf.frequency, frf.coherence)
+            for f in modes.frequency
+        ]
+    )
+    kept = smooth >= least
+    left_out = int(np.count_nonzero(~kept))
+    if left_out:
+        note(f"{counted(left_out, 'mode')} left out, where the coherence is below {least:g}")
+    return replace(
+        modes,
+        frequency=modes.frequency[kept],
+        damping_ratio=modes.damping_ratio[kept],
+        residues=modes.residues[:, kept],
+        orders=modes.orders[kept],
+    )
 
 
 def _mode_rows(modes: Modes, frf: Frf) -> list[dict[str, object]]:

@@ -170,6 +170,10 @@ def _effects(
 ) -> tuple[LawSpec, ...]:
     from sim.effects.effect import activated
 
+    names = [spec.name for spec in given]
+    for name in names:
+        if names.count(name) > 1:
+            raise ParameterError(f"--effect {name} is given twice; give all its keys at once")
     for spec in given:
         try:
             activated((spec,), library)
