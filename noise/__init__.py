@@ -30,12 +30,12 @@ _EXPORTS = {
     "noise.pictures.sweep": ("sweep_torque",),
     "noise.recordings": ("find_recordings", "read_recording", "write_recording"),
     "noise.report": ("ReportEntry", "write_report"),
-    "sim.sweep": ("Sweep",),
     "sim.acquisition": ("Acquisition",),
     "sim.critical_damping": ("critical_damping",),
     "sim.critical_speeds": ("critical_speeds",),
     "sim.run": ("Run", "simulate"),
     "sim.shaft": ("ConstantSpeed", "LoggedSpeed", "Oscillation", "SpeedRamp"),
+    "sim.sweep": ("Sweep",),
 }
 """What a notebook finds here, by the module it lives in."""
 
