@@ -59,14 +59,15 @@ _MATRIX = float64[:, ::1]
 
 @njit(
     types.void(
-        _VECTOR, _LAW, boolean, _VECTOR, _HOOK, _HOOK, _HOOK, _HOOK, int64, _MATRIX, int64[::1],
+        _VECTOR, _LAW, boolean, _VECTOR,
+        _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, int64, _MATRIX, int64[::1],
         _VECTOR, float64, float64, float64, _VECTOR, _MATRIX, _VECTOR, _VECTOR, _MATRIX, _MATRIX,
         int64[::1],
     ),
     cache=True, nogil=True, **UNCOUNTED,
 )  # fmt: skip
 def run_contact(
-    s, law, has_law, coefficients, h0, h1, h2, h3, n_hooks, values, offsets,
+    s, law, has_law, coefficients, h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, values, offsets,
     shaft_speed, step, longest, tolerance, carried, rows, context, contact, along, out,
     direction_out,
 ) -> None:  # fmt: skip
@@ -81,10 +82,19 @@ def run_contact(
     slope, angle = along[0], along[1]
     # What each hook and the law see of the inner states and their rates.
     o0, o1, o2 = N_MOTION + offsets[0], N_MOTION + offsets[1], N_MOTION + offsets[2]
-    o3, o4 = N_MOTION + offsets[3], N_MOTION + offsets[4]
-    inner = u[o0:o1], u[o1:o2], u[o2:o3], u[o3:o4], u[N_MOTION:]
-    rates = p[o0:o1], p[o1:o2], p[o2:o3], p[o3:o4], p[N_MOTION:]
-    numbers = values[0], values[1], values[2], values[3]
+    o3, o4, o5 = N_MOTION + offsets[3], N_MOTION + offsets[4], N_MOTION + offsets[5]
+    o6, o7, o8 = N_MOTION + offsets[6], N_MOTION + offsets[7], N_MOTION + offsets[8]
+    inner = (
+        u[o0:o1], u[o1:o2], u[o2:o3], u[o3:o4],
+        u[o4:o5], u[o5:o6], u[o6:o7], u[o7:o8], u[N_MOTION:],
+    )  # fmt: skip
+    rates = (
+        p[o0:o1], p[o1:o2], p[o2:o3], p[o3:o4],
+        p[o4:o5], p[o5:o6], p[o6:o7], p[o7:o8], p[N_MOTION:],
+    )  # fmt: skip
+    numbers = (
+        values[0], values[1], values[2], values[3], values[4], values[5], values[6], values[7],
+    )  # fmt: skip
     drive = shaft_speed, slope, angle
     t_crit, t_kin = s[8], s[9]
     contact[CRITICAL], contact[KINETIC] = t_crit, t_kin
@@ -125,7 +135,8 @@ def run_contact(
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
                 (sample - i) * step, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
-                h0, h1, h2, h3, n_hooks, numbers, inner, rates, drive, context, contact,
+                h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, numbers, inner, rates, drive, context,
+                contact,
             )  # fmt: skip
             out[0, sample], out[1, sample] = friction, e
             out[2, sample], out[3, sample], out[4, sample] = u[0], p[0], u[2]
@@ -180,7 +191,8 @@ def run_contact(
                 stick_time = time - stick_start if mode == 0 else stick_length
                 friction, e, holding, critical, caught, shaft = contact_rates(
                     t - i * step, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
-                    h0, h1, h2, h3, n_hooks, numbers, inner, rates, drive, context, contact,
+                    h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, numbers, inner, rates, drive, context,
+                    contact,
                 )  # fmt: skip
                 for j in range(d):
                     k[stage, j] = p[j]

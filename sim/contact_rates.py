@@ -45,8 +45,8 @@ _MOST_CREEP_PASSES = 30
 
 @njit(forceinline=True, **UNCOUNTED)
 def contact_rates(
-    since, i, time, stick_time, mode, u, p, s, law, has_law, coefficients, h0, h1, h2, h3, n_hooks,
-    values, inner, rates, drive, context, contact,
+    since, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
+    h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, values, inner, rates, drive, context, contact,
 ) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Fill the rates `p` of the state `u`, `since` sample `i` of the drive [s].
 
@@ -86,6 +86,14 @@ def contact_rates(
                 h2(context, values[2], inner[2], rates[2], contact)
             if n_hooks > 3:
                 h3(context, values[3], inner[3], rates[3], contact)
+            if n_hooks > 4:
+                h4(context, values[4], inner[8], rates[8], contact)
+            if n_hooks > 5:
+                h5(context, values[5], inner[5], rates[5], contact)
+            if n_hooks > 6:
+                h6(context, values[6], inner[6], rates[6], contact)
+            if n_hooks > 7:
+                h7(context, values[7], inner[7], rates[7], contact)
             creep = contact[CREEP]
             gap = creep - share
             if not sticks or gap == 0.0:
@@ -114,7 +122,7 @@ def contact_rates(
         holding = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
     if has_law:
         # Laws have the first of the inner states, effects those after.
-        friction = law(shaft - surface, coefficients, contact, inner[4], rates[4])
+        friction = law(shaft - surface, coefficients, contact, inner[8], rates[8])
     elif mode == 0:
         friction = holding
     else:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LONGEST_STEP", "MOST_HOOKS", "ContactRun", "Hook", "solve_contact"]
 
-MOST_HOOKS = 4
+MOST_HOOKS = 8
 """Effects that can act on the contact at once."""
 
 LONGEST_STEP = 1e-4

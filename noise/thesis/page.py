@@ -43,7 +43,7 @@ def verdict_counts(rows: Sequence[Row]) -> dict[str, int]:
     --------
     >>> from noise.thesis.misprints import misprints
     >>> verdict_counts(misprints())
-    {'misprint': 5, 'not checkable': 1}
+    {'misprint': 5}
     """
     words = Counter(
         part if not part.removeprefix("calibrated ").startswith("off by") else _off(part)
