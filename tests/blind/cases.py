@@ -1,0 +1,172 @@
+"""Cases: recordings of the second rig with sidecars, its rig file, and the answer kept apart.
+
+Whatever is not the case's effect is drawn alike for all classes, recording by recording: scatter
+of the rig, gains, coloured noise, drift and the recorder's clock. The recordings without an effect
+need not be kept: `run_case` makes them again, to the bit, when told what to leave off.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import resample_poly
+
+from .design import Design, draw_design, stream
+from .files import rig_text, support_name, write_npz, write_wav
+from .rig import plain, turn
+from .structure import Structure, draw_structure
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from .design import Condition
+
+__all__ = ["CHANNELS", "Case", "run_case", "without_effects", "write_case"]
+
+CHANNELS = {"torque": "N m", "acceleration": "m/s^2", "pressure": "Pa", "angle": "rad"}
+_NOISE = {"torque": 0.005, "acceleration": 0.03, "pressure": 1.0e-3, "angle": 1e-4}
+_SETTLING = 0.35
+_LEAST_RATE = 75e3
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A case as it is handed out: samples as channels by time, responses by support."""
+
+    design: Design
+    recordings: tuple[NDArray[np.float32], ...]
+    responses: dict[float, tuple[dict, dict]]
+    answer: dict
+
+
+def _structures(design: Design) -> dict[float, Structure]:
+    supports = sorted({c.support for c in design.conditions})
+    return {
+        kb: draw_structure(stream(design.seed, design.kept_for, design.index, 6, i), kb)
+        for i, kb in enumerate(supports)
+    }
+
+
+def _record(design: Design, k: int, structure: Structure, off: frozenset[str]):
+    """Make recording `k`; effects named in `off` are left out."""
+    where = (design.seed, design.kept_for, design.index)
+    condition, chance = design.conditions[k], stream(*where, 7, k)
+    decimation = int(np.ceil(_LEAST_RATE / design.rate))
+    rate = design.rate * decimation * (1.0 + design.rate_error)
+    n = round(design.seconds * design.rate) * decimation
+    speed = condition.speed * np.exp(0.004 * chance.standard_normal())
+    setup = plain(design.true(condition, k), speed,
+                  rate=rate, seconds=n / rate, settling=_SETTLING)  # fmt: skip
+    for j, (form, strength) in enumerate(design.forms):
+        if form.effect not in off:
+            form.apply(setup, strength, stream(*where, 8, j), stream(*where, 9, j, k))
+    turned = turn(setup)
+    signals = structure.respond(turned)
+    for change in setup.structure + setup.radiation:
+        change(signals, turned)
+    signals = {name: x[setup.settle :] for name, x in signals.items()} | {"torque": turned.torque}
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (setup.omega[1:] + setup.omega[:-1]))]) / rate
+    signals["angle"] = angle[setup.settle : setup.n] - angle[setup.settle]
+    for change in setup.sensors:
+        change(signals, turned)
+    return np.stack([
+        _sampled(signals[name], decimation, _NOISE[name], name, chance) for name in CHANNELS
+    ])  # fmt: skip
+
+
+def _sampled(x, decimation, level, name, rng):
+    """Decimate, scale by a gain of 1 % scatter, add coloured noise and drift; 32-bit samples."""
+    y = resample_poly(x, 1, decimation, padtype="line")
+    white = rng.standard_normal(y.size)
+    f = np.fft.rfftfreq(y.size)
+    slow = np.fft.irfft(np.fft.rfft(rng.standard_normal(y.size)) / np.sqrt(1.0 + f / 1e-3), y.size)
+    gain = 1.0 if name == "angle" else 1.0 + 0.01 * rng.standard_normal()
+    drift = 2.0 * rng.standard_normal() * np.linspace(-1.0, 1.0, y.size)
+    loud = level * np.exp(0.1 * rng.standard_normal())
+    samples = (gain * y + loud * (white + 2.0 * slow + drift)).astype(np.float32)
+    if not np.isfinite(samples).all():
+        raise RuntimeError(f"{name} is not finite")
+    return samples
+
+
+def run_case(design: Design, off: frozenset[str] = frozenset()) -> Case:
+    """Run all recordings of a case, the effects in `off` left out."""
+    structures = _structures(design)
+    recordings = tuple(
+        _record(design, k, structures[c.support], off) for k, c in enumerate(design.conditions)
+    )
+    where = (design.seed, design.kept_for, design.index)
+    first = {c.support: c for c in reversed(design.conditions)}
+    responses = {
+        kb: structures[kb].measured(design.nominal(first[kb]), stream(*where, 10, i))
+        for i, kb in enumerate(sorted(structures))
+    }
+    return Case(design, recordings, responses, _answer(design))
+
+
+def _answer(design: Design) -> dict:
+    verdict = [form.effect for form, _ in design.forms]
+    if design.kind in ("parameters", "stranger"):
+        verdict = ["unknown" if design.kind == "stranger" else "parameters"]
+    return {
+        "seed": design.seed,
+        "index": design.index,
+        "set": design.kept_for,
+        "class": design.kind,
+        "verdict": verdict,
+        "effects": [
+            {"name": form.effect, "form": form.name, "stage": form.stage, "strength": strength}
+            for form, strength in design.forms
+        ],
+        "offsets": design.offsets,
+        "repeats": _repeats(design),
+        "rig_of_each_recording": {
+            f"run{k + 1:02d}": asdict(design.true(c, k)) for k, c in enumerate(design.conditions)
+        },
+    }
+
+
+def _repeats(design: Design) -> list[list[str]]:
+    by_condition: dict[Condition, list[str]] = {}
+    for k, condition in enumerate(design.conditions):
+        by_condition.setdefault(condition, []).append(f"run{k + 1:02d}")
+    return [names for names in by_condition.values() if len(names) > 1]
+
+
+def without_effects(answer: dict, names: frozenset[str] | None = None) -> Case:
+    """Make a case again with effects off (all, or those named): the truth's own closed gap."""
+    design = draw_design(answer["seed"], answer["index"], answer["set"])
+    return run_case(design, names or frozenset(form.effect for form, _ in design.forms))
+
+
+def write_case(case: Case, data: Path, answers: Path | None) -> None:
+    """Write a case's folder ``data`` and, apart from it, the file ``answers``."""
+    data.mkdir(parents=True)
+    design = case.design
+    data.joinpath("rig.toml").write_text(rig_text(design), encoding="utf-8")
+    for kb, pair in case.responses.items():
+        for name, content in zip(("acceleration", "pressure"), pair, strict=True):
+            write_npz(data / f"torque_to_{name}_{support_name(kb)}.npz", content)
+    for k, (condition, samples) in enumerate(zip(design.conditions, case.recordings, strict=True)):
+        write_wav(data / f"run{k + 1:02d}.wav", samples, design.rate)
+        sidecar = {
+            "channels": [{"name": name, "unit": unit} for name, unit in CHANNELS.items()],
+            "conditions": {
+                "speed_rad_s": condition.speed,
+                "interference_mm": condition.interference_mm,
+                "support_stiffness_Nm_rad": condition.support if condition.support > 0.0 else None,
+                "material": "fluorocarbon",
+                "temperature_C": 23.0,
+            },
+            "calibrated": True,
+        }
+        text = json.dumps(sidecar, indent=1) + "\n"
+        data.joinpath(f"run{k + 1:02d}.json").write_text(text, encoding="utf-8")
+    if answers is not None:
+        answers.parent.mkdir(parents=True, exist_ok=True)
+        answers.write_text(json.dumps(case.answer, indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,29 @@
+"""Every effect of the contract in forms of its own, and strangers that no library has."""
+
+from __future__ import annotations
+
+from . import (
+    drive,
+    elastomer,
+    friction,
+    measurement,
+    radiation,
+    sensor_faults,
+    strangers,
+    structure,
+)
+from .form import DEVELOPMENT, FORMS, SEALED, Form
+
+__all__ = [
+    "CAUSES", "DEVELOPMENT", "FORMS", "SEALED", "STRANGERS", "Form", "forms_of",
+]  # fmt: skip
+
+_MODULES = (drive, friction, elastomer, structure, radiation, measurement, sensor_faults, strangers)
+
+STRANGERS = tuple(sorted({f.effect for f in FORMS.values() if f.effect.startswith("stranger_")}))
+CAUSES = tuple(sorted({f.effect for f in FORMS.values()} - set(STRANGERS)))
+
+
+def forms_of(effect: str, kept_for: str) -> list[Form]:
+    """Forms of an effect in one of the two sets, by name."""
+    return [FORMS[k] for k in sorted(FORMS) if k[0] == effect and FORMS[k].kept_for == kept_for]
