@@ -35,5 +35,4 @@ LAW = FrictionLaw(
     parameters=STRIBECK_PARAMETERS,
     torque=_torque,
     initial_state=unbent,
-    tolerance=2e-8,
 )
