@@ -152,10 +152,7 @@ def simulate_motion(
     for active in effects:
         if active.effect.drive is not None:
             drive = active.effect.drive(drive, rate, active.form, active.values, rng)
-    hooks = tuple(_hook(active, rng) for active in effects if active.effect.contact is not None)
-    if len(hooks) > MOST_HOOKS:
-        names = ", ".join(a.effect.name for a in effects if a.effect.contact is not None)
-        raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
+    hooks = _hooks(effects, rng)
     torques = fit.critical_torque, fit.kinetic_torque
     if law.torque is None and not hooks:
         states, _, _ = solve_stick_slip(system.packed(), *torques, drive, step)
@@ -181,6 +178,15 @@ def simulate_motion(
         clamp_angle=states[:, 4],
         clamp_speed=states[:, 5],
     )
+
+
+def _hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
+    """List what acts on the contact, in the order of the effects."""
+    acting = [active for active in effects if active.effect.contact is not None]
+    if len(acting) > MOST_HOOKS:
+        names = ", ".join(active.effect.name for active in acting)
+        raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
+    return tuple(_hook(active, rng) for active in acting)
 
 
 def _hook(active: ActiveEffect, rng: np.random.Generator) -> Hook:

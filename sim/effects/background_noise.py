@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
+from sim.channel_level import channel_level
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -34,9 +35,6 @@ if TYPE_CHECKING:
 
 __all__ = ["EFFECT"]
 
-_REFERENCE_PRESSURE = 20e-6
-"""[Pa]"""
-
 _LOWEST, _HIGHEST = 20.0, 20e3
 """Band that levels are those of [Hz]."""
 
@@ -46,15 +44,9 @@ _EXPONENTS = {"white": 0.0, "pink": 1.0, "brown": 2.0}
 def _sensors(
     signals: Signals, rate: float, form: str, values: Values, rng: np.random.Generator
 ) -> Signals:
-    levels = {
-        "pressure": _REFERENCE_PRESSURE * 10.0 ** (values["pressure_level"] / 20.0),
-        "acceleration": values["acceleration"],
-        "torque": values["torque"],
-        "angle": values["angle"],
-    }
     noisy = {}
     for name, signal in signals.items():
-        level = values["amount"] * levels.get(name.partition("_")[0], 0.0)
+        level = values["amount"] * channel_level(name, values)
         noisy[name] = signal + level * _noise(signal.size, rate, _EXPONENTS[form], rng)
     return noisy
 

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sim.channel_level import channel_level
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -37,9 +38,6 @@ if TYPE_CHECKING:
 
 __all__ = ["EFFECT"]
 
-_REFERENCE_PRESSURE = 20e-6
-"""[Pa]"""
-
 _ODD = (1, 3, 5, 7, 9)
 
 _CONDUCTION = 0.2
@@ -49,15 +47,9 @@ _CONDUCTION = 0.2
 def _sensors(
     signals: Signals, rate: float, form: str, values: Values, rng: np.random.Generator
 ) -> Signals:
-    levels = {
-        "pressure": _REFERENCE_PRESSURE * 10.0 ** (values["pressure_level"] / 20.0),
-        "acceleration": values["acceleration"],
-        "torque": values["torque"],
-        "angle": values["angle"],
-    }
     humming = {}
     for name, signal in signals.items():
-        level = values["amount"] * levels.get(name.partition("_")[0], 0.0)
+        level = values["amount"] * channel_level(name, values)
         turns = values["frequency"] / rate * np.arange(signal.size, dtype=float)
         turns += rng.uniform()
         humming[name] = signal + level * _hum(form, turns)
