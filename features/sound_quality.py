@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from features.conditioning import checked_signal
-from models.errors import ParameterError
+from models.errors import ParameterError, not_installed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -167,6 +167,5 @@ def _library() -> Any:
         return import_module("mosqito")
     except ImportError:
         raise ParameterError(
-            "sound quality needs MoSQITo, which is not installed; "
-            'run: pip install "bushing-noise[sound-quality]"'
+            not_installed("sound quality needs", "MoSQITo", "sound-quality")
         ) from None

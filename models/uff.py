@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.errors import ParameterError
+from models.errors import ParameterError, not_installed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -150,8 +150,7 @@ def _pyuff(path: Path) -> Any:
         import pyuff
     except ImportError:
         raise ParameterError(
-            f"{path}: universal files need pyuff, which is not installed; "
-            'run: pip install "bushing-noise[uff]"'
+            not_installed(f"{path}: universal files need", "pyuff", "uff")
         ) from None
     return pyuff
 

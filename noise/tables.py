@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
+from models.errors import ParameterError, not_installed
 from noise.atomic import atomic
 
 if TYPE_CHECKING:
@@ -64,8 +64,7 @@ def check_table_path(path: str | Path | None) -> None:
             import pyarrow as pa  # noqa: F401
         except ImportError:
             raise ParameterError(
-                f"{path}: Parquet needs pyarrow, which is not installed; "
-                'run: pip install "bushing-noise[parquet]"'
+                not_installed(f"{path}: Parquet needs", "pyarrow", "parquet")
             ) from None
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import ParameterError
+from models.errors import ParameterError, not_installed
 from noise.calibrate.cells import CELLS, Cell
 from noise.calibrate.objective import Score, score
 from noise.calibrate.unknowns import rig_of, start, values_at
@@ -85,9 +85,7 @@ def search(
     try:
         import cma
     except ImportError:
-        raise ParameterError(
-            'the search needs the package cma; pip install "bushing-noise[calibrate]"'
-        ) from None
+        raise ParameterError(not_installed("the search needs", "cma", "calibrate")) from None
 
     def judged(point: NDArray[np.float64]) -> Found:
         values = values_at(point)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.errors import RecordingError
+from models.errors import RecordingError, not_installed
 from noise.recordings.bounded import BoundedFile
 from noise.recordings.hdf5_texts import check_texts
 from noise.recordings.logged import LoggedChannel, raw_samples, refusing
@@ -61,10 +61,7 @@ def read_hdf5_file(path: Path) -> RawSamples:
     try:
         import h5py
     except ImportError:
-        raise RecordingError(
-            f"{path}: HDF5 files need h5py, which is not installed; "
-            'run: pip install "bushing-noise[hdf5]"'
-        ) from None
+        raise RecordingError(not_installed(f"{path}: HDF5 files need", "h5py", "hdf5")) from None
     with (
         refusing(path, "HDF5 file"),
         h5py.File(path, "r", locking=False) as file,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.errors import RecordingError
+from models.errors import RecordingError, not_installed
 from noise.recordings.bounded import BoundedFile
 from noise.recordings.logged import LoggedChannel, is_ours, raw_samples, refusing
 from noise.recordings.mdf_blocks import COMMENT_LINK, check_mdf_blocks
@@ -56,10 +56,7 @@ def read_mdf_file(path: Path) -> RawSamples:
     try:
         from asammdf import MDF
     except ImportError:
-        raise RecordingError(
-            f"{path}: MDF files need asammdf, which is not installed; "
-            'run: pip install "bushing-noise[mdf]"'
-        ) from None
+        raise RecordingError(not_installed(f"{path}: MDF files need", "asammdf", "mdf")) from None
     with refusing(path, "MDF file", "asammdf"), _WithoutComment(path) as stream:
         with BoundedFile(path) as whole:
             properties = comment_properties(path, check_mdf_blocks(path, whole))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.errors import RecordingError
+from models.errors import RecordingError, not_installed
 from noise.recordings.bounded import BoundedFile
 from noise.recordings.logged import LoggedChannel, raw_samples, refusing
 from noise.recordings.sampling import even_rate, whole_rate
@@ -61,10 +61,7 @@ def read_tdms_file(path: Path) -> RawSamples:
     try:
         from nptdms import TdmsFile
     except ImportError:
-        raise RecordingError(
-            f"{path}: TDMS files need nptdms, which is not installed; "
-            'run: pip install "bushing-noise[tdms]"'
-        ) from None
+        raise RecordingError(not_installed(f"{path}: TDMS files need", "nptdms", "tdms")) from None
     with refusing(path, "TDMS file", "nptdms"), BoundedFile(path) as stream:
         check_tdms_segments(path, stream)
         file = TdmsFile.open(stream)
