@@ -9,28 +9,14 @@ from models.condition import FIXED
 from models.radiation import response
 from models.response import frequency_response
 from models.rig_file import load_material_rig
-from sim.chain import changed_chain
-from sim.effects import EFFECTS
+from tests.chain_paths import RATE, changed, spectra
 
-RATE = 96e3
 RIG = load_material_rig("fluorocarbon")
 
 
 @pytest.fixture(scope="module")
 def plain():
     return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
-
-
-def changed(paths, name, seed=0, **parameters):
-    active = EFFECTS[name].active(parameters)
-    return changed_chain(paths, [active], np.random.default_rng(seed))
-
-
-def spectra(*signals, n=2**17):
-    """Frequencies from 300 Hz to 18 kHz, and the spectrum of each signal there."""
-    frequency = np.fft.rfftfreq(n, 1 / RATE)
-    kept = (frequency > 300.0) & (frequency < 18e3)
-    return frequency[kept], *(np.fft.rfft(signal, n)[kept] for signal in signals)
 
 
 def test_a_further_mode_stands_out_in_acceleration_and_sound(plain):

@@ -19,8 +19,8 @@ from sim.effects.effect import Effect, Stage, activated
 from sim.long_run import simulate_blocks
 from sim.parameters import Parameter
 from sim.run import simulate
+from tests.chain_paths import RATE, changed
 
-RATE = 96e3
 RIG = load_material_rig("fluorocarbon")
 CHAIN = ("beam_modes", "plate_modes", "room_reflections")
 EVERY_FORM = [(name, form) for name in CHAIN for form in EFFECTS[name].forms]
@@ -32,11 +32,6 @@ QUIET = Acquisition(noise={})
 @pytest.fixture(scope="module")
 def plain():
     return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
-
-
-def changed(paths, name, seed=0, **parameters):
-    active = EFFECTS[name].active(parameters)
-    return changed_chain(paths, [active], np.random.default_rng(seed))
 
 
 def padded(signal, size):

@@ -12,8 +12,8 @@ from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.run import simulate
+from tests.sensor_signals import RATE, random_signals, read, rms, tone
 
-RATE = 96e3
 MEASUREMENT = (
     "background_noise", "mains_hum", "mount_resonance", "clipping", "gain_error", "channel_delay",
 )  # fmt: skip
@@ -29,31 +29,6 @@ STAGES = {
     "plate_modes": "radiation", "room_reflections": "radiation",
     **dict.fromkeys(MEASUREMENT, "measurement"),
 }  # fmt: skip
-
-
-def read(signals, name, seed=0, **parameters):
-    active = EFFECTS[name].active(parameters)
-    return EFFECTS[name].sensors(
-        signals, RATE, active.form, active.values, np.random.default_rng(seed)
-    )
-
-
-def random_signals(seed=0, n=4000):
-    rng = np.random.default_rng(seed)
-    return {
-        "torque": 8.0 + rng.standard_normal(n),
-        "acceleration": 30.0 * rng.standard_normal(n),
-        "pressure": rng.standard_normal(n),
-        "angle": np.linspace(0.0, 1.0, n),
-    }
-
-
-def tone(frequency, seconds=0.5):
-    return np.sin(2.0 * np.pi * frequency * np.arange(round(seconds * RATE)) / RATE)
-
-
-def rms(signal):
-    return np.sqrt(np.mean(signal**2))
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
