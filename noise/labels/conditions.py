@@ -10,6 +10,7 @@ leave it out would hide how much of the data it is.
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -198,6 +199,8 @@ def _round_up(value: float) -> float:
     """Return the next of 1, 2, 5, 10 ... of whatever power of ten."""
     if value <= 0.0:
         return 0.0
+    if value < sys.float_info.min:  # powers of ten end there
+        return value
     decade = 10.0 ** math.floor(math.log10(value) + 1e-9)
     return next(step * decade for step in (1, 2, 5, 10) if value <= step * decade * (1 + 1e-9))
 
