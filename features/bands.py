@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.spectra import welch
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 
@@ -47,6 +48,12 @@ THESIS_BANDS = ((0.0, 2e3), (2e3, 5e3), (5e3, 15e3))
 
 _ANTI_ALIAS = 0.9
 """Share of the Nyquist frequency that a recorder's anti-aliasing filter leaves alone."""
+
+_LEAST_BINS = 4
+"""Bins that a band must hold for its level to be its own."""
+
+_RESOLUTION = 1.4
+"""Spacing of the bins [Hz] for one-third octaves: the band at 25 Hz is 5.8 Hz wide."""
 
 _A_POLES = (20.598997, 107.65265, 737.86223, 12194.217)
 
@@ -101,9 +108,7 @@ def band_power(spectrum: Spectrum, low: ArrayLike, high: ArrayLike) -> NDArray[n
     lower, upper = np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64)
     if np.any(upper < lower):
         raise ParameterError("bands: an upper edge lies below its lower one; give low, then high")
-    edges = np.append(spectrum.frequency - 0.5 * spectrum.spacing, 0.5 * spectrum.rate)
-    edges[0] = 0.0
-    below = np.append(0.0, np.cumsum(spectrum.density) * spectrum.spacing)
+    edges, below = spectrum.cumulative
     power: NDArray[np.float64] = np.interp(upper, edges, below) - np.interp(lower, edges, below)
     return np.where(upper <= 0.5 * spectrum.rate * (1.0 + 1e-9), power, np.nan)
 
@@ -152,6 +157,43 @@ def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, fl
     power[high > _ANTI_ALIAS * 0.5 * spectrum.rate] = np.nan
     levels = band_levels(power, reference)
     return dict(zip(NOMINAL_THIRD_OCTAVES, levels.tolist(), strict=True))
+
+
+def fine_third_octaves(
+    x: NDArray[np.float64], rate: float, *, reference: float
+) -> dict[str, float]:
+    """`third_octave_levels` of a signal, from as fine a spectrum as the lowest band needs.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        Checked already.
+    rate : float
+        Sampling rate [Hz].
+    reference : float
+        [unit]
+
+    Returns
+    -------
+    dict of str to float
+        [dB] by nominal mid-band frequency; NaN also where the signal is too short for four bins in
+        a band: half a second is below 40 Hz.
+
+    Examples
+    --------
+    >>> hum = np.sin(2 * np.pi * 50 * np.arange(24000) / 48e3)
+    >>> levels = fine_third_octaves(hum, 48e3, reference=1.0)
+    >>> round(levels["50"], 1), levels["25"]
+    (-3.0, nan)
+    """
+    spectrum = welch(x, rate, _RESOLUTION)
+    levels = third_octave_levels(spectrum, reference=reference)
+    low, _, high = third_octave_edges()
+    fine = high - low >= _LEAST_BINS * spectrum.spacing
+    return {
+        band: levels[band] if resolved else float("nan")
+        for band, resolved in zip(NOMINAL_THIRD_OCTAVES, fine, strict=True)
+    }
 
 
 def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:

@@ -49,7 +49,11 @@ WEAKEST_PERIOD = 0.3
 _BINS_A_HARMONIC = 12.0
 """Bins that should lie between harmonics, five of which a line covers."""
 
-_RATIO_RANGE_DB = 60.0
+_RATIO_RANGE_DB = 30.0
+"""What leaks from lines into their surroundings lies this far below them, or further [dB]."""
+
+_APART = 4.0
+"""Bins between two lines that are told apart."""
 
 _MOST = 0.5
 
@@ -73,6 +77,10 @@ class Harmonics:
         Harmonics within 30 dB of the strongest one and 10 dB above the local noise floor.
     peaks : Lines
         All discrete lines, harmonic or not.
+    inharmonicity : float
+        Distance of a line from the nearest harmonic over half the fundamental, mean of all lines by
+        power: 0 where all are harmonics, 0.5 where they lie anywhere, 1 midway between harmonics.
+        NaN without a fundamental or lines, or where harmonics are too close to be told apart.
     """
 
     fundamental: float
@@ -81,10 +89,16 @@ class Harmonics:
     harmonicity: float
     count: int
     peaks: Lines
+    inharmonicity: float
 
     @property
     def harmonic_to_noise(self) -> float:
-        """Power in the harmonics relative to all other power [dB], held within +-60 dB."""
+        """Power in the harmonics relative to all other power [dB], held within +-30 dB.
+
+        NaN without a fundamental, which white noise hides where a sawtooth is less than 3 dB above.
+        """
+        if math.isnan(self.fundamental):
+            return math.nan
         least = 10.0 ** (-0.1 * _RATIO_RANGE_DB)
         inside = max(self.harmonicity, least)
         return 10.0 * math.log10(inside / max(1.0 - self.harmonicity, least * inside))
@@ -178,15 +192,15 @@ def harmonics_of(
     rate = spectrum.rate
     period = strongest_period(x, rate, lowest=lowest, highest=highest)
     if lines.total <= 0.0 or period.strength < WEAKEST_PERIOD:
-        return Harmonics(math.nan, period.strength, np.empty(0), 0.0, 0, lines)
+        return Harmonics(math.nan, period.strength, np.empty(0), 0.0, 0, lines, math.nan)
     wanted = period.frequency / _BINS_A_HARMONIC
     if spectrum.spacing > 1.01 * wanted and x.size / rate > 1.01 / spectrum.spacing:
         spectrum = welch(x, rate, wanted)
         floor = noise_floor(spectrum)
         refined = find_lines(spectrum, low=lowest, high=usable_limit(rate), floor=floor)
-        fundamental = _refined(period, refined)
     else:
-        fundamental = _refined(period, lines)
+        refined = lines
+    fundamental = _refined(period, refined)
     number = np.arange(1, max(1, math.floor(usable_limit(rate) / fundamental)) + 1)
     frequency = np.asarray(number * fundamental, dtype=np.float64)
     excess = line_powers(spectrum, floor, frequency, spacing=0.5 * fundamental)
@@ -198,7 +212,33 @@ def harmonics_of(
     count = int(np.count_nonzero(standing & (power > 0.0) & (power >= least)))
     harmonicity = min(1.0, max(0.0, float(excess.sum()) / lines.total))
     amplitudes = np.sqrt(2.0 * power)
-    return Harmonics(fundamental, period.strength, amplitudes, harmonicity, count, lines)
+    told_apart = fundamental >= _APART * spectrum.spacing
+    inharmonicity = inharmonicity_of(fundamental, refined) if told_apart else math.nan
+    return Harmonics(
+        fundamental, period.strength, amplitudes, harmonicity, count, lines, inharmonicity
+    )
+
+
+def inharmonicity_of(fundamental: float, lines: Lines) -> float:
+    """Distance of lines from the harmonics of a fundamental [Hz]; see `Harmonics`.
+
+    Notes
+    -----
+    G. Peeters, A large set of audio features for sound description, CUIDADO report, IRCAM (2004).
+    The B of a stiff string, f_n = n f_0 sqrt(1 + B n^2), would be no number for friction: where its
+    lines are no harmonics they do not stretch evenly, they stand at the structure's modes.
+
+    Examples
+    --------
+    >>> at = np.array([100.0, 200.0, 310.0])
+    >>> equal = np.ones(3)
+    >>> round(inharmonicity_of(100.0, Lines(at, equal, equal, 3.0)), 3)
+    0.067
+    """
+    order = lines.frequency / fundamental
+    off = np.abs(order - np.maximum(np.rint(order), 1.0))
+    power = float(lines.power.sum())
+    return min(1.0, 2.0 * float((lines.power * off).sum()) / power) if power > 0.0 else math.nan
 
 
 def _refined(period: Period, lines: Lines) -> float:

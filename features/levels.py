@@ -15,15 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import fft, signal as sig
 
-from features.bands import (
-    NOMINAL_THIRD_OCTAVES,
-    a_weighting,
-    band_levels,
-    third_octave_edges,
-    third_octave_levels,
-)
+from features.bands import a_weighting, band_levels, fine_third_octaves
 from features.conditioning import checked_signal
-from features.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
@@ -33,10 +26,6 @@ __all__ = ["FAST", "SoundLevels", "a_weighted", "fast_levels", "sound_levels"]
 
 FAST = 0.125
 """Time constant of the weighting F [s] (IEC 61672-1)."""
-
-_LEAST_BINS = 4
-_RESOLUTION = 1.4
-"""Spacing of the bins [Hz]: the band at 25 Hz is 5.8 Hz wide."""
 
 _MARGIN = 0.25
 """By which a sound is continued on either side, turned about its last sample [s]: cut off, a hum
@@ -121,7 +110,7 @@ def sound_levels(
     mean_squares = [np.mean(x**2), np.mean(weighted**2)]
     level, level_a = band_levels(mean_squares, reference).tolist()
     fast = float(fast_levels(weighted, rate, reference=reference).max())
-    return SoundLevels(level, level_a, fast, _third_octaves(x, rate, reference))
+    return SoundLevels(level, level_a, fast, fine_third_octaves(x, rate, reference=reference))
 
 
 def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
@@ -199,14 +188,3 @@ def fast_levels(
     kept = float(np.exp(-1.0 / (FAST * rate)))
     smoothed = sig.lfilter([1.0 - kept], [1.0, -kept], x**2)
     return band_levels(smoothed, reference)
-
-
-def _third_octaves(x: NDArray[np.float64], rate: float, reference: float) -> dict[str, float]:
-    spectrum = autospectrum(x, rate, resolution=_RESOLUTION)
-    levels = third_octave_levels(spectrum, reference=reference)
-    low, _, high = third_octave_edges()
-    fine = high - low >= _LEAST_BINS * spectrum.spacing
-    return {
-        band: levels[band] if resolved else float("nan")
-        for band, resolved in zip(NOMINAL_THIRD_OCTAVES, fine, strict=True)
-    }

@@ -171,7 +171,9 @@ def track_periods(
     window += np.sin(2.0 * np.pi * lags) / (2.0 * np.pi)
     energy = np.maximum(correlation[:, :1], np.finfo(float).tiny)
     normalised = correlation[:, :n_lags] / (energy * window)
-    beyond = np.cumsum(normalised < 0.0, axis=1)[:, 1:-1] > 0
+    negative = normalised < 0.0
+    first = np.where(negative.any(axis=1), negative.argmax(axis=1), n_lags)
+    beyond = np.arange(1, n_lags - 1) >= first[:, np.newaxis]
     middle = normalised[:, 1:-1]
     rising = (middle > normalised[:, :-2]) & (middle >= normalised[:, 2:])
     heights = np.where(beyond & rising, middle, 0.0)

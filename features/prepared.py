@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.bands import band_power
+from features.bands import THESIS_BANDS, band_power, fine_third_octaves
 from features.conditioning import (
     ACOUSTIC_FROM,
     NOTHING,
@@ -37,7 +37,7 @@ from features.slip_pulses import (
     pulses_of,
     squared,
 )
-from features.spectra import SpectralShape, Spectrum, spectral_shape, welch
+from features.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
 from features.time_course import TimeCourse, time_course
 
 if TYPE_CHECKING:
@@ -78,6 +78,9 @@ class Prepared:
         [unit]
     rms : float
         About the mean [unit]; 0 for a signal that is constant but for rounding.
+    stick_rate : float
+        How fast the torque rises in true stick [N m/s]: k_EFF times the shaft's speed (thesis,
+        (5.1)); NaN where that is not known.
     """
 
     samples: NDArray[np.float64]
@@ -86,6 +89,7 @@ class Prepared:
     calibrated: bool
     mean: float
     rms: float
+    stick_rate: float = math.nan
 
     @property
     def low(self) -> float:
@@ -118,10 +122,15 @@ class Prepared:
         return band_signal(self.transform, self.low, self.limit)
 
     @cached_property
+    def in_band_power(self) -> float:
+        """Mean square of that part."""
+        return float(np.mean(self.in_band[0] ** 2))
+
+    @cached_property
     def in_band_share(self) -> float:
         """Share of the power below the limit that lies within the band that is described."""
         whole = float(np.mean(self.below[0] ** 2))
-        return float(np.mean(self.in_band[0] ** 2)) / whole if whole > 0.0 else 0.0
+        return self.in_band_power / whole if whole > 0.0 else 0.0
 
     @cached_property
     def spectrum(self) -> Spectrum:
@@ -190,6 +199,24 @@ class Prepared:
         """Of the samples as they are, over all that the rate holds."""
         return welch(self.samples, self.rate, _LEVEL_RESOLUTION)
 
+    @cached_property
+    def fine_spectrum(self) -> Spectrum:
+        """Of the signal divided by its rms value, over all that the rate holds, in finest bins."""
+        return whole_spectrum(self.transform)
+
+    @cached_property
+    def third_octaves(self) -> dict[str, float]:
+        """Levels of the samples as they are [dB re 1 unit], by nominal mid-band frequency."""
+        return fine_third_octaves(self.samples, self.rate, reference=1.0)
+
+    def thesis_band(self, number: int) -> float:
+        """Level of one of the thesis's bands relative to the band described [dB]; or NaN."""
+        low, high = THESIS_BANDS[number]
+        if high > usable_limit(self.rate):
+            return math.nan
+        part, whole = band_power(self.fine_spectrum, [low, self.low], [high, self.limit])
+        return relative_db(float(part), float(whole))
+
     def share_db(self, low: float, high: float) -> float:
         """Level of a part of the band relative to the whole of it [dB]; NaN if not reached."""
         if high > 1.001 * self.limit:
@@ -197,14 +224,17 @@ class Prepared:
         part, whole = band_power(self.spectrum, [low, self.low], [high, self.limit])
         return relative_db(float(part), float(whole))
 
-    def top_band(self, number: int) -> tuple[float, float]:
-        """Level of a top band relative to the band described [dB], and its kurtosis; or NaN."""
-        low, high = TOP_BANDS[number]
+    @cached_property
+    def top_bands(self) -> tuple[tuple[float, float], ...]:
+        """Level of each top band re the band described [dB], and its kurtosis; or NaN."""
+        return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
+
+    def _top_band(self, low: float, high: float) -> tuple[float, float]:
         if high > usable_limit(self.rate):
             return math.nan, math.nan
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)
-        level = relative_db(0.5 * float(power.mean()), float(np.mean(self.in_band[0] ** 2)))
+        level = relative_db(0.5 * float(power.mean()), self.in_band_power)
         return level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan
 
 
@@ -223,7 +253,14 @@ def relative_db(part: float, whole: float) -> float:
     return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))
 
 
-def prepare(signal: ArrayLike, rate: float, kind: str, *, calibrated: bool = True) -> Prepared:
+def prepare(
+    signal: ArrayLike,
+    rate: float,
+    kind: str,
+    *,
+    calibrated: bool = True,
+    stick_rate: float = math.nan,
+) -> Prepared:
     """Check a signal and make it ready for features.
 
     Parameters
@@ -236,6 +273,8 @@ def prepare(signal: ArrayLike, rate: float, kind: str, *, calibrated: bool = Tru
         Of channel.
     calibrated : bool
         Whether the samples are in physical units.
+    stick_rate : float
+        Of a torque [N m/s].
 
     Returns
     -------
@@ -256,4 +295,5 @@ def prepare(signal: ArrayLike, rate: float, kind: str, *, calibrated: bool = Tru
     mean = float(x.mean())
     scale = largest if largest > 0.0 else 1.0
     rms = scale * math.sqrt(float(np.mean(((x - mean) / scale) ** 2)))
-    return Prepared(x, rate, kind, calibrated, mean, rms if rms > NOTHING * largest else 0.0)
+    rms = rms if rms > NOTHING * largest else 0.0
+    return Prepared(x, rate, kind, calibrated, mean, rms, stick_rate)

@@ -10,17 +10,22 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from features.band_features import BAND_FEATURES
 from features.prepared import ACOUSTIC_KINDS, prepare
 from features.spectral_features import SPECTRAL_FEATURES
+from features.stick_rate import stick_rate_of
 from features.temporal_features import TEMPORAL_FEATURES
 from features.torque_features import TORQUE_FEATURES
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import ArrayLike
 
     from features.feature import Feature
     from models.recording import Recording
+    from models.rig import Rig
 
 __all__ = [
     "FEATURES",
@@ -36,7 +41,12 @@ KINDS = (*ACOUSTIC_KINDS, "torque")
 """Kinds of channel that have features."""
 
 
-FEATURES: tuple[Feature, ...] = (*SPECTRAL_FEATURES, *TEMPORAL_FEATURES, *TORQUE_FEATURES)
+FEATURES: tuple[Feature, ...] = (
+    *SPECTRAL_FEATURES,
+    *BAND_FEATURES,
+    *TEMPORAL_FEATURES,
+    *TORQUE_FEATURES,
+)
 """All features of all kinds."""
 
 
@@ -83,7 +93,12 @@ def feature_names(kind: str) -> tuple[str, ...]:
 
 
 def feature_vector(
-    signal: ArrayLike, rate: float, kind: str, *, calibrated: bool = True
+    signal: ArrayLike,
+    rate: float,
+    kind: str,
+    *,
+    calibrated: bool = True,
+    stick_rate: float = math.nan,
 ) -> dict[str, float]:
     """All features of one channel.
 
@@ -98,6 +113,8 @@ def feature_vector(
     kind : {"pressure", "acceleration", "torque"}
     calibrated : bool
         Whether the samples are in physical units; levels are NaN otherwise.
+    stick_rate : float
+        How fast a torque rises in true stick [N m/s], if known: k_EFF times the shaft's speed.
 
     Returns
     -------
@@ -118,7 +135,7 @@ def feature_vector(
     (1046, 1.0, 1.0)
     """
     features = features_of(kind)
-    prepared = prepare(signal, rate, kind, calibrated=calibrated)
+    prepared = prepare(signal, rate, kind, calibrated=calibrated, stick_rate=stick_rate)
     return {feature.name: feature(prepared) for feature in features}
 
 
@@ -133,12 +150,19 @@ def recording_feature_names() -> tuple[str, ...]:
     return tuple(f"{kind}_{name}" for kind in KINDS for name in feature_names(kind))
 
 
-def recording_features(recording: Recording) -> dict[str, float]:
+def recording_features(
+    recording: Recording, *, rig: Rig | None = None, names: Collection[str] | None = None
+) -> dict[str, float]:
     """Features of the first channel of each kind in a recording.
 
     Parameters
     ----------
     recording : Recording
+    rig : Rig, optional
+        What the stiffness of the bushing is taken from; without it, the shipped rig with the
+        material that the recording names.
+    names : collection of str, optional
+        Those to compute, which saves the time of the others; all by default.
 
     Returns
     -------
@@ -162,17 +186,25 @@ def recording_features(recording: Recording) -> dict[str, float]:
     """
     found: dict[str, float] = {}
     for kind in KINDS:
-        name = next((channel.name for channel in recording.channels if channel.kind == kind), None)
-        if name is None:
-            values = dict.fromkeys(feature_names(kind), math.nan)
-        else:
-            try:
-                values = feature_vector(
-                    recording[name], recording.rate, kind, calibrated=recording.calibrated
-                )
-            except ParameterError as error:
-                raise ParameterError(
-                    f"recording {recording.name!r}, channel {name!r}: {error}"
-                ) from error
-        found.update({f"{kind}_{key}": value for key, value in values.items()})
+        wanted = {f"{kind}_{feature.name}": feature for feature in features_of(kind)}
+        if names is not None:
+            wanted = {name: feature for name, feature in wanted.items() if name in names}
+        row = recording.first(kind)
+        if row is None or not wanted:
+            found |= dict.fromkeys(wanted, math.nan)
+            continue
+        try:
+            signal = prepare(
+                recording.samples[row],
+                recording.rate,
+                kind,
+                calibrated=recording.calibrated,
+                stick_rate=stick_rate_of(recording, rig) if kind == "torque" else math.nan,
+            )
+            found |= {name: feature(signal) for name, feature in wanted.items()}
+        except ParameterError as error:
+            channel = recording.channels[row].name
+            raise ParameterError(
+                f"recording {recording.name!r}, channel {channel!r}: {error}"
+            ) from error
     return found

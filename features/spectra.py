@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,8 @@ from models.errors import ParameterError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from features.conditioning import Transform
 
 __all__ = ["DEFAULT_RESOLUTION", "SpectralShape", "Spectrum", "autospectrum", "spectral_shape"]
 
@@ -33,6 +36,9 @@ _OVERLAP_SLACK = 0.02
 """Segments that a signal may lack for an overlap of half: no further one for a few samples."""
 
 _FLATNESS_FLOOR = 1e-12
+
+_FADE_ENERGY = 0.375
+"""Of the fades in a transform, per sample: the mean of sin^4."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +67,13 @@ class Spectrum:
     def spacing(self) -> float:
         """Distance between bins [Hz]."""
         return float(self.frequency[1])
+
+    @cached_property
+    def cumulative(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Edges of the bins [Hz] and the mean square below each [unit^2], shape (n_bins + 1,)."""
+        edges = np.append(self.frequency - 0.5 * self.spacing, 0.5 * self.rate)
+        edges[0] = 0.0
+        return edges, np.append(0.0, np.cumsum(self.density) * self.spacing)
 
     @property
     def amplitude(self) -> NDArray[np.float64]:
@@ -163,6 +176,29 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     return Spectrum(np.arange(density.size) * (rate / length), density, rate, power.shape[0])
 
 
+def whole_spectrum(transform: Transform) -> Spectrum:
+    """Spectrum with the finest bins that a signal's length allows; fades count by their energy.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from features.conditioning import forward
+    >>> tone = whole_spectrum(forward(np.sin(2 * np.pi * 1000 * np.arange(9600) / 48e3), 48e3))
+    >>> tone.spacing, round(float(tone.density.sum() * tone.spacing), 3)
+    (5.0, 0.5)
+    """
+    bins = transform.bins
+    energy = transform.n_samples + 2.0 * _FADE_ENERGY * transform.lead
+    power: NDArray[np.float64] = bins.real**2 + bins.imag**2
+    density = power * (2.0 / (transform.rate * energy))
+    density[0] *= 0.5
+    if transform.length % 2 == 0:
+        density[-1] *= 0.5
+    spacing = transform.rate / transform.length
+    frequency = np.arange(density.size, dtype=np.float64) * spacing
+    return Spectrum(frequency, density, transform.rate, 1)
+
+
 def segment_powers(
     x: NDArray[np.float64], length: int, *, transform_length: int | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -191,10 +227,21 @@ def segment_powers(
     n_segments = 1 + math.ceil((x.size - length) / (length / 2) - _OVERLAP_SLACK)
     starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
     segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
-    window = np.sin(np.pi * np.arange(length) / length) ** 2
-    windowed = (segments - segments.mean(axis=1, keepdims=True)) * window
+    window = _hann(length)
+    windowed = segments - segments.mean(axis=1, keepdims=True)
+    windowed *= window
     bins = fft.rfft(windowed, transform_length or length, axis=1)
-    return bins.real**2 + bins.imag**2, window
+    power = bins.real**2
+    power += bins.imag**2
+    return power, window
+
+
+@lru_cache(maxsize=16)
+def _hann(length: int) -> NDArray[np.float64]:
+    """Hann window; the same few lengths come again and again."""
+    window = np.sin(np.pi * np.arange(length) / length) ** 2
+    window.setflags(write=False)
+    return window
 
 
 def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralShape:

@@ -1,9 +1,9 @@
-"""Features of a sound's or an acceleration's spectrum: where its power lies and what lines it has.
+"""Features of a sound's or an acceleration's spectrum: its level, its shape and what lines it has.
 
 Creak is broadband, squawk has several discrete frequencies, squeal one that predominates (thesis,
 5.2.3). The entries follow these words: how the power is spread, how much of it is in lines and in
-how many, whether they are harmonics of one vibration. All but the levels and the top bands refer to
-the part from 150 Hz to 7 kHz.
+how many, whether they are harmonics of one vibration. All but the levels refer to the part from
+150 Hz to 7 kHz.
 """
 
 from __future__ import annotations
@@ -91,62 +91,6 @@ SPECTRAL_FEATURES = (
         _hum,
         silent=None,
         tolerance=(0.0, 0.02),
-    ),
-    Feature(
-        "band_150_500",
-        "dB",
-        "Level from 150 to 500 Hz re that from 150 Hz to 7 kHz.",
-        _THIS,
-        lambda p: p.share_db(150.0, 500.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_500_1000",
-        "dB",
-        "Level from 500 Hz to 1 kHz re that from 150 Hz to 7 kHz.",
-        _THIS,
-        lambda p: p.share_db(500.0, 1_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_1000_2000",
-        "dB",
-        "Level from 1 to 2 kHz re that from 150 Hz to 7 kHz.",
-        _THIS,
-        lambda p: p.share_db(1_000.0, 2_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_2000_5000",
-        "dB",
-        "Level from 2 to 5 kHz re that from 150 Hz to 7 kHz.",
-        _NOISES,
-        lambda p: p.share_db(2_000.0, 5_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_5000_7000",
-        "dB",
-        "Level from 5 to 7 kHz re that from 150 Hz to 7 kHz.",
-        _NOISES,
-        lambda p: p.share_db(5_000.0, 7_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_7000_13000",
-        "dB",
-        "Level from 7 to 13 kHz re that from 150 Hz to 7 kHz; needs a rate of 29.8 kHz.",
-        _NOISES,
-        lambda p: p.top_band(0)[0],
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_13000_19000",
-        "dB",
-        "Level from 13 to 19 kHz re that from 150 Hz to 7 kHz; needs a rate of 43.5 kHz.",
-        _NOISES,
-        lambda p: p.top_band(1)[0],
-        tolerance=(0.0, 0.1),
     ),
     Feature(
         "centroid",
@@ -248,6 +192,21 @@ SPECTRAL_FEATURES = (
         _THIS,
         lambda p: p.harmonics.count,
         silent=0.0,
+    ),
+    Feature(
+        "harmonic_to_noise",
+        "dB",
+        "Power within harmonics, above the noise floor, re all other power, within 30 dB.",
+        _THIS,
+        lambda p: p.harmonics.harmonic_to_noise,
+        tolerance=(0.0, 0.2),
+    ),
+    Feature(
+        "inharmonicity",
+        "1",
+        "Mean distance of lines from the nearest harmonic, by power; 0 on them, 1 midway.",
+        _PEETERS,
+        lambda p: p.harmonics.inharmonicity,
     ),
     Feature(
         "line_order",

@@ -111,7 +111,7 @@ TEMPORAL_FEATURES = (
         "1",
         "The same of the part from 7 to 13 kHz; needs a rate of 29.8 kHz.",
         _NOISES,
-        lambda p: p.top_band(0)[1],
+        lambda p: p.top_bands[0][1],
         tolerance=(0.05, 0.0),
     ),
     Feature(

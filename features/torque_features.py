@@ -24,6 +24,7 @@ __all__ = ["TORQUE_FEATURES"]
 _TORQUE = ("torque",)
 _STICK_SLIP = "thesis, 5.1.1"
 _SPECTRA = "thesis, 5.2.1"
+_PEETERS = "Peeters 2004"
 _PITCH = "McLeod & Wyvill 2005"
 _THIS = "bushing-noise"
 
@@ -40,7 +41,7 @@ def _high_band(p: Prepared) -> float:
 
 def _kurtosis(p: Prepared) -> float:
     x, _ = p.in_band
-    return float(np.mean((x / x.std()) ** 4))
+    return float(np.mean(np.square(np.square(x / x.std()))))
 
 
 TORQUE_FEATURES = (
@@ -108,6 +109,23 @@ TORQUE_FEATURES = (
         _SPECTRA,
         lambda p: p.harmonics.count,
         silent=0.0,
+        kinds=_TORQUE,
+    ),
+    Feature(
+        "harmonic_to_noise",
+        "dB",
+        "Power within harmonics, above the noise floor, re all other power, within 30 dB.",
+        _THIS,
+        lambda p: p.harmonics.harmonic_to_noise,
+        kinds=_TORQUE,
+        tolerance=(0.0, 0.2),
+    ),
+    Feature(
+        "inharmonicity",
+        "1",
+        "Mean distance of lines from the nearest harmonic, by power; 0 on them, 1 midway.",
+        _PEETERS,
+        lambda p: p.harmonics.inharmonicity,
         kinds=_TORQUE,
     ),
     Feature(
@@ -190,6 +208,15 @@ TORQUE_FEATURES = (
         kinds=_TORQUE,
     ),
     Feature(
+        "slip_glide",
+        "octave/s",
+        "Trend of the slip rate: median slope of its logarithm.",
+        "Theil 1950",
+        lambda p: p.torque_slips.glide,
+        kinds=_TORQUE,
+        tolerance=(0.02, 0.02),
+    ),
+    Feature(
         "drop",
         "N m",
         "Mean fall of the torque in a slip.",
@@ -212,6 +239,15 @@ TORQUE_FEATURES = (
         "Median slope of the rising torque; k_EFF times the shaft's speed in true stick.",
         "thesis, (5.1)",
         lambda p: p.torque_slips.stick_slope,
+        calibrated=True,
+        kinds=_TORQUE,
+    ),
+    Feature(
+        "slope_ratio",
+        "1",
+        "That slope over k_EFF times the shaft's speed, where known; 1 in true stick.",
+        "thesis, (5.1)",
+        lambda p: p.torque_slips.stick_slope / p.stick_rate,
         calibrated=True,
         kinds=_TORQUE,
     ),

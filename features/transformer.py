@@ -16,7 +16,7 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils.validation import _check_feature_names_in, validate_data
 
 from features.conditioning import MIN_SAMPLES
-from features.registry import KINDS, feature_names, feature_vector
+from features.registry import KINDS, feature_names, feature_vector, recording_features
 from models.errors import ParameterError
 from models.recording import Recording
 
@@ -151,20 +151,11 @@ class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         return rows
 
     def _of_recording(self, recording: Recording) -> list[float]:
-        row: list[float] = []
-        for kind in self.kinds:
-            at = recording.first(kind)
-            if at is None:
-                row += [math.nan] * len(feature_names(kind))
-                continue
-            samples, known = recording.samples[at], recording.calibrated
-            try:
-                row += self._of_channel(samples, recording.rate, kind, known)
-            except ParameterError as error:
-                channel = recording.channels[at].name
-                where = f"recording {recording.name!r}, channel {channel!r}"
-                raise ParameterError(f"{where}: {error}") from error
-        return row
+        names = self.get_feature_names_out().tolist()
+        if recording.samples.shape[1] < MIN_SAMPLES:
+            return [math.nan] * len(names)
+        found = recording_features(recording, names=frozenset(names))
+        return [found[name] for name in names]
 
     @staticmethod
     def _of_channel(

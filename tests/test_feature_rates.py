@@ -20,7 +20,17 @@ MASTER_RATE = 192_000
 RATES = (16_000, 22_050, 30_000, 32_000, 44_100, 48_000, 51_200, 65_536, 96_000)
 COMMON = 7_000.0
 
-REACHED_FROM = {"band_7000_13000": 29_800, "top_kurtosis": 29_800, "band_13000_19000": 43_500}
+REACHED_FROM = {
+    "band_7000_13000": 29_800,
+    "top_kurtosis": 29_800,
+    "band_5000_15000": 34_300,
+    "band_13000_19000": 43_500,
+    "third_octave_8000": 19_900,
+    "third_octave_10000": 25_000,
+    "third_octave_12500": 31_400,
+    "third_octave_16000": 39_600,
+    "third_octave_20000": 49_800,
+}
 """Features of what lies above 7 kHz, and the rate [Hz] that they need."""
 
 RHYTHM = {"pulse_rate", "pulse_irregularity", "pulse_glide"}

@@ -103,8 +103,11 @@ def test_top_bands_are_missing_exactly_where_the_rate_does_not_reach_them(rate):
     found = vector("creak", rate)
     missing = {key for key, value in found.items() if math.isnan(value)}
     above_13 = {"band_7000_13000", "top_kurtosis"} if rate < 29_800 else set()
+    above_15 = {"band_5000_15000"} if rate < 34_300 else set()
     above_19 = {"band_13000_19000"} if rate < 43_500 else set()
-    assert missing == above_13 | above_19
+    octaves = {"8000": 19_900, "10000": 25_000, "12500": 31_400, "16000": 39_600, "20000": 49_800}
+    above = {f"third_octave_{name}" for name, needed in octaves.items() if rate < needed}
+    assert missing == above_13 | above_15 | above_19 | above
 
 
 # --- what the features must tell apart --------------------------------------------------------
@@ -185,6 +188,27 @@ def test_torque_features_tell_stick_slip_from_quasi_harmonic():
     assert glides["fundamental"] == pytest.approx(900, abs=1)
     assert glides["oscillation"] == pytest.approx(0.3 / math.sqrt(2), rel=0.01)
     assert abs(glides["asymmetry"]) < 0.1 < 1 < -sticks["asymmetry"]
+
+
+def test_squawk_is_harmonic_and_two_modes_of_their_own_are_not():
+    t = np.arange(48_000) / 48e3
+    modes = np.sin(2 * np.pi * 300 * t) + np.sin(2 * np.pi * 600 * t) + np.sin(2 * np.pi * 1020 * t)
+    found = feature_vector(modes + 0.01 * noise(t.size), 48e3, "pressure")
+    assert vector("squawk")["inharmonicity"] < 0.01
+    assert vector("squawk")["harmonic_to_noise"] > 20
+    # A third of the power lies 0.4 of 300 Hz from the third harmonic.
+    assert found["fundamental"] == pytest.approx(300, rel=0.01)
+    assert found["inharmonicity"] == pytest.approx(2 * 0.4 / 3, abs=0.01)
+
+
+def test_a_torque_that_sticks_has_a_slope_ratio_of_one_and_its_glide_is_told():
+    t = np.arange(30_000) / 30e3
+    slips = 40 * (2 ** (0.5 * t) - 1) / (0.5 * math.log(2))  # 40 a second, half an octave faster
+    torque = 8 + 2.7 * (slips % 1.0)
+    found = feature_vector(torque, 30e3, "torque", stick_rate=2.7 * 40 * 2**0.25)
+    assert found["slip_glide"] == pytest.approx(0.5, abs=0.01)
+    assert found["slope_ratio"] == pytest.approx(1.0, abs=0.02)
+    assert math.isnan(feature_vector(torque, 30e3, "torque")["slope_ratio"])
 
 
 def test_20_ms_of_a_squeal_are_recognised():

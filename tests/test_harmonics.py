@@ -7,8 +7,9 @@ import pytest
 from hypothesis import assume, given, settings, strategies as st
 from scipy.signal import lfilter
 
-from features.harmonics import analyse_harmonics
-from features.lines import find_lines, line_resolution, noise_floor
+from features.conditioning import band_signal, forward
+from features.harmonics import analyse_harmonics, inharmonicity_of
+from features.lines import Lines, find_lines, line_resolution, noise_floor
 from features.spectra import autospectrum
 from models.errors import ParameterError
 
@@ -175,7 +176,8 @@ def test_silence_has_neither_fundamental_nor_lines(x):
     assert math.isnan(found.fundamental)
     assert found.harmonicity == 0.0
     assert found.peaks.share == 0.0
-    assert found.harmonic_to_noise == -60.0
+    assert math.isnan(found.harmonic_to_noise)
+    assert math.isnan(found.inharmonicity)
 
 
 def test_20_ms_are_enough_for_the_period_of_three_cycles():
@@ -186,3 +188,51 @@ def test_20_ms_are_enough_for_the_period_of_three_cycles():
 def test_limits_that_leave_nothing_are_refused():
     with pytest.raises(ParameterError, match="between 500 and 437"):
         analyse_harmonics(np.ones(100), 1e3, lowest=500.0)
+
+
+@pytest.mark.parametrize("seconds", [0.25, 0.5, 1.0])
+@pytest.mark.parametrize("ratio", [5.0, 10.0, 20.0])
+@pytest.mark.parametrize("frequency", [155, 500])
+def test_the_harmonic_to_noise_ratio_is_that_of_the_mixture(frequency, ratio, seconds):
+    tones = sawtooth(frequency, seconds)
+    hiss = band_signal(forward(noise(2 * tones.size, 3), RATE), 5.0, 7000.0)[0][: tones.size]
+    x = tones + hiss * (tones.std() / hiss.std() * 10 ** (-ratio / 20))
+    allowed = 1.0 if seconds < 0.5 else 0.5
+    assert analyse_harmonics(x, RATE).harmonic_to_noise == pytest.approx(ratio, abs=allowed)
+
+
+def test_more_than_30_db_between_harmonics_and_noise_are_not_told():
+    assert analyse_harmonics(np.sin(2 * np.pi * 500 * times()), RATE).harmonic_to_noise == 30.0
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1e-5, 1e-4, 5e-4])
+def test_a_stiff_string_is_as_inharmonic_as_its_b_says(stiffness):
+    number = np.arange(1, 11)
+    frequency = 200.0 * number * np.sqrt(1.0 + stiffness * number**2)
+    amplitude = 1.0 / number
+    x = amplitude @ np.sin(2 * np.pi * np.outer(frequency, times()) + number[:, np.newaxis] ** 2)
+    found = analyse_harmonics(x, RATE)
+    order = frequency / found.fundamental
+    power = amplitude**2 / (amplitude**2).sum()
+    assert found.fundamental == pytest.approx(200.0, rel=0.01)
+    assert found.inharmonicity == pytest.approx(2 * power @ abs(order - number), abs=0.003)
+
+
+def test_lines_that_stand_anywhere_are_half_inharmonic():
+    rng = np.random.default_rng(4)
+    found = of_equal_lines(np.sort(rng.uniform(300, 6500, 300)))
+    assert found == pytest.approx(0.5, abs=0.06)
+
+
+def of_equal_lines(frequency):
+    """Inharmonicity of lines of equal power, re a fundamental of 100 Hz."""
+    equal = np.ones(frequency.size)
+    return inharmonicity_of(100.0, Lines(frequency, equal, equal, float(equal.sum())))
+
+
+@pytest.mark.parametrize("frequency", [5.3, 20.0, 50.3])
+def test_the_fundamental_survives_low_frequency_and_a_missing_line(frequency):
+    x, t = sawtooth(frequency, 2.0, 4e3), times(2.0, 4e3)
+    line = np.sin(2 * np.pi * frequency * t)
+    without = x - 2 * np.mean(x * line) * line
+    assert analyse_harmonics(without, 4e3).fundamental == pytest.approx(frequency, rel=0.005)

@@ -182,3 +182,39 @@ def test_what_does_not_drop_suddenly_does_not_slip(shape):
 def test_drops_begin_at_the_peaks():
     found = torque_slips(stick_slip(100), 30e3)
     assert found.times[:5] == pytest.approx([0.009, 0.019, 0.029, 0.039, 0.049], abs=3e-4)
+
+
+def gliding_stick_slip(glide, rate=30e3, seconds=1.0, frequency=80.0):
+    """A sawtooth whose rate changes by so many octaves a second."""
+    t = np.arange(round(rate * seconds)) / rate
+    octaves = glide * t
+    cycles = frequency * (t if glide == 0 else (2**octaves - 1) / (glide * math.log(2)))
+    phase = cycles % 1.0
+    return 8.0 + 2.7 * np.where(phase < 0.9, phase / 0.9, (1.0 - phase) / 0.1)
+
+
+@pytest.mark.parametrize("rate", [16e3, 22.05e3, 30e3, 48e3, 96e3])
+@pytest.mark.parametrize("glide", [-1.5, -0.1, 0.0, 0.5])
+def test_the_glide_of_the_slip_rate_is_told_at_any_sampling_rate(glide, rate):
+    found = torque_slips(gliding_stick_slip(glide, rate), rate)
+    assert found.glide == pytest.approx(glide, abs=0.02)
+
+
+def test_a_slip_missed_or_made_up_does_not_move_the_glide():
+    torque = gliding_stick_slip(0.5)
+    slips = torque_slips(torque, 30e3).times
+    for number in (20, 50, 51, 80):  # a rise goes on where a slip was
+        first, last = (round(30e3 * slips[number + step]) for step in (-1, 1))
+        torque[first + 60 : last] = np.linspace(torque[first + 60], torque[last], last - first - 60)
+    first = round(30e3 * (slips[30] + slips[31]) / 2)
+    torque[first : first + 40] -= np.linspace(2.0, 0.0, 40)
+    found = torque_slips(torque, 30e3)
+    assert found.times.size == slips.size - 4 + 1
+    assert found.interval_variation > 0.2
+    assert found.glide == pytest.approx(0.5, abs=0.05)
+
+
+def test_four_slips_have_no_glide():
+    found = torque_slips(stick_slip(20.0, seconds=0.22), 30e3)
+    assert 2 <= found.times.size <= 4
+    assert math.isnan(found.glide)

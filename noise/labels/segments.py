@@ -191,7 +191,8 @@ def _classified(windows: list[Recording], classifier: Classifier) -> NDArray[np.
     probabilities = np.zeros((len(windows), len(LABELS)))
     probabilities[silent, LABELS.index("none")] = 1.0
     if not silent.all():
-        rows = [recording_features(w) for w, s in zip(windows, silent, strict=True) if not s]
+        loud = [window for window, s in zip(windows, silent, strict=True) if not s]
+        rows = [recording_features(w, names=classifier.feature_names) for w in loud]
         probabilities[~silent] = classifier.predict_proba(rows)
     return probabilities
 
