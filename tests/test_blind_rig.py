@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 
 from models.measured import measured_responses
-from models.rig_file import load_material_rig
+from models.rig_file import load_material_rig, load_rig
+from sim.acquisition import Acquisition
 from sim.motion import simulate_motion
+from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from tests.blind import kernel
-from tests.blind.effects import CAUSES, FORMS, STRANGERS
+from tests.blind.cases import NOISE, Case, responses_of, structures_of, write_case
+from tests.blind.design import draw_design
+from tests.blind.effects import CAUSES, DEVELOPMENT, FORMS, STRANGERS
 from tests.blind.files import support_name, write_npz
 from tests.blind.rig import FIXED, Parameters, plain, turn
 from tests.blind.structure import accelerance, draw_structure, filtered
@@ -163,3 +167,35 @@ def test_the_contracts_effects_are_all_there_in_two_forms_a_set():
 
 def _kept(name):
     return {f.kept_for for f in FORMS.values() if f.effect == name}
+
+
+@pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
+def test_the_bolted_clamp_sounds_as_sim_has_it_where_slips_leave_it_alone(tmp_path):
+    design = draw_design(77, 1, DEVELOPMENT)
+    condition = next(c for c in design.conditions if c.support == FIXED)
+    structure = structures_of(design)[FIXED]
+    silence = (np.zeros((4, 2), np.float32),) * len(design.conditions)
+    responses = responses_of(design, structures_of(design))
+    write_case(Case(design, silence, responses, {}), tmp_path / "case", None)
+    run = simulate(
+        load_rig(tmp_path / "case" / "rig.toml"), condition.speed,
+        interference=1e-3 * condition.interference_mm, support_stiffness=np.inf,
+        acquisition=Acquisition(rate=RATE, noise={}),
+    )  # fmt: skip
+    setup = plain(design.nominal(condition), condition.speed, rate=RATE, seconds=1.0, settling=0.35)
+    turned = turn(setup)
+    mine = structure.respond(turned)["pressure"][turned.settle :]
+    theirs = run.recording.samples[run.recording.channel_names.index("pressure")]
+    noise = NOISE["pressure"] * np.random.default_rng(1).standard_normal(mine.size)
+    assert _slip_frequency(turned.torque) > 250.0
+    for low in (125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0):
+        assert _band(mine + noise, low) == pytest.approx(_band(theirs + noise, low), abs=1.0)
+
+
+@pytest.mark.parametrize("support", [2214.0, 3745.0, FIXED])
+def test_no_mode_is_too_narrow_for_the_lines_it_is_measured_at(support):
+    for seed in range(20):
+        structure = draw_structure(np.random.default_rng(seed), support)
+        for frequency, damping, _ in (structure.beams, structure.plate):
+            assert (2.0 * damping * frequency >= 7.5 - 1e-9).all()
+            assert (damping < 0.035).all()

@@ -1,4 +1,8 @@
-"""``python -m tests.blind generate --out DIR --seed N --cases N [--sealed]``."""
+"""``python -m tests.blind generate|score``: make development cases; score a diagnosis on cases.
+
+``score`` takes a folder that ``generate`` has written, or ``--sealed``, which makes the sealed set,
+scores it, and writes both to the log in the repository.
+"""
 
 from __future__ import annotations
 
@@ -6,24 +10,57 @@ import argparse
 import sys
 from pathlib import Path
 
-from .effects import DEVELOPMENT, SEALED
-from .generate import generate
+from .generate import Wanted, generate
+from .score.baselines import BASELINES
+from .score.diagnosing import DIAGNOSE
+from .score.run import Asked, score_folder, score_sealed
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command."""
+    given = _parser().parse_args(arguments)
+    wanted = Wanted(given.seed, given.cases, "quotas" if given.balanced else "shares")
+    if given.command == "generate":
+        seconds = generate(given.out, wanted, given.workers)
+        sys.stderr.write(f"{given.cases} cases in {seconds:.0f} s\n")
+        return
+    asked = Asked(
+        given.diagnose, given.baseline, given.quick, given.workers, given.equivalent, given.own
+    )
+    if given.sealed == (given.folder is not None):
+        raise SystemExit("score takes either a folder that generate has written, or --sealed")
+    if given.sealed:
+        score_sealed(wanted, asked, given.out)
+    else:
+        score_folder(given.folder, asked, given.out)
+
+
+def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.blind")
     commands = parser.add_subparsers(dest="command", required=True)
-    making = commands.add_parser("generate", help="write cases, and their answers apart")
-    making.add_argument("--out", type=Path, required=True)
-    making.add_argument("--seed", type=int, required=True)
-    making.add_argument("--cases", type=int, required=True)
-    making.add_argument("--workers", type=int, default=2)
-    making.add_argument("--sealed", action="store_true", help="forms kept for the sealed set")
-    given = parser.parse_args(arguments)
-    kept_for = SEALED if given.sealed else DEVELOPMENT
-    seconds = generate(given.out, given.seed, given.cases, kept_for, given.workers)
-    sys.stderr.write(f"{given.cases} cases in {seconds:.0f} s\n")
+    making = commands.add_parser("generate", help="write development cases, answers apart")
+    scoring = commands.add_parser("score", help="score a diagnosis on cases")
+    for one in (making, scoring):
+        one.add_argument("--out", type=Path, required=True)
+        one.add_argument("--seed", type=int, default=1)
+        one.add_argument("--cases", type=int, default=600)
+        one.add_argument("--workers", type=int, default=2)
+        one.add_argument(
+            "--balanced", action="store_true",
+            help="quotas rather than shares: 1500 cases hold 300 nulls, 40 of each cause and "
+            "100 strangers, for which shares take 2100",
+        )  # fmt: skip
+    scoring.add_argument("folder", type=Path, nargs="?", help="what generate has written")
+    scoring.add_argument("--sealed", action="store_true", help="open the sealed set; logged")
+    scoring.add_argument("--diagnose", default=DIAGNOSE, metavar="MODULE:FUNCTION")
+    scoring.add_argument("--baseline", choices=sorted(BASELINES))
+    scoring.add_argument("--quick", action="store_true", help="the first answer alone")
+    scoring.add_argument(
+        "--equivalent", type=Path,
+        help="JSON: lists of effects that count as one, declared before the cases are seen",
+    )  # fmt: skip
+    scoring.add_argument("--own", type=Path, help="cases of own forms, for what is lost to others")
+    return parser
 
 
 if __name__ == "__main__":

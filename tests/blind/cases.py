@@ -8,7 +8,7 @@ need not be kept: `run_case` makes them again, to the bit, when told what to lea
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,10 +26,13 @@ if TYPE_CHECKING:
 
     from .design import Condition
 
-__all__ = ["CHANNELS", "Case", "run_case", "without_effects", "write_case"]
+__all__ = [
+    "CHANNELS", "NOISE", "Case", "answer_of", "responses_of", "run_case", "sampled",
+    "structures_of", "without_effects", "write_case",
+]  # fmt: skip
 
 CHANNELS = {"torque": "N m", "acceleration": "m/s^2", "pressure": "Pa", "angle": "rad"}
-_NOISE = {"torque": 0.005, "acceleration": 0.03, "pressure": 1.0e-3, "angle": 1e-4}
+NOISE = {"torque": 0.005, "acceleration": 0.03, "pressure": 1.0e-3, "angle": 1e-4}
 _SETTLING = 0.35
 _LEAST_RATE = 75e3
 
@@ -44,7 +47,8 @@ class Case:
     answer: dict
 
 
-def _structures(design: Design) -> dict[float, Structure]:
+def structures_of(design: Design) -> dict[float, Structure]:
+    """Draw the structure of each support of a case."""
     supports = sorted({c.support for c in design.conditions})
     return {
         kb: draw_structure(stream(design.seed, design.kept_for, design.index, 6, i), kb)
@@ -75,11 +79,11 @@ def _record(design: Design, k: int, structure: Structure, off: frozenset[str]):
     for change in setup.sensors:
         change(signals, turned)
     return np.stack([
-        _sampled(signals[name], decimation, _NOISE[name], name, chance) for name in CHANNELS
+        sampled(signals[name], decimation, NOISE[name], name, chance) for name in CHANNELS
     ])  # fmt: skip
 
 
-def _sampled(x, decimation, level, name, rng):
+def sampled(x, decimation, level, name, rng):
     """Decimate, scale by a gain of 1 % scatter, add coloured noise and drift; 32-bit samples."""
     y = resample_poly(x, 1, decimation, padtype="line")
     white = rng.standard_normal(y.size)
@@ -94,22 +98,31 @@ def _sampled(x, decimation, level, name, rng):
     return samples
 
 
-def run_case(design: Design, off: frozenset[str] = frozenset()) -> Case:
-    """Run all recordings of a case, the effects in `off` left out."""
-    structures = _structures(design)
+def run_case(design: Design, off: frozenset[str] = frozenset(), *, plain: bool = False) -> Case:
+    """Run all recordings of a case, the effects in `off` left out; a plain one has no offsets."""
+    if plain:
+        design = replace(design, offsets={})
+    structures = structures_of(design)
     recordings = tuple(
         _record(design, k, structures[c.support], off) for k, c in enumerate(design.conditions)
     )
-    where = (design.seed, design.kept_for, design.index)
+    return Case(design, recordings, responses_of(design, structures), answer_of(design))
+
+
+def responses_of(design: Design, structures: dict[float, Structure], again: int = 0):
+    """Measure the structures of a case; `again` numbers further measurements of the same."""
     first = {c.support: c for c in reversed(design.conditions)}
-    responses = {
-        kb: structures[kb].measured(design.nominal(first[kb]), stream(*where, 10, i))
+    where = (design.seed, design.kept_for, design.index, 10)
+    return {
+        kb: structures[kb].measured(
+            design.nominal(first[kb]), stream(*where, i + len(structures) * again)
+        )
         for i, kb in enumerate(sorted(structures))
     }
-    return Case(design, recordings, responses, _answer(design))
 
 
-def _answer(design: Design) -> dict:
+def answer_of(design: Design) -> dict:
+    """Say what is the matter with a case."""
     verdict = [form.effect for form, _ in design.forms]
     if design.kind in ("parameters", "stranger"):
         verdict = ["unknown" if design.kind == "stranger" else "parameters"]
@@ -117,6 +130,7 @@ def _answer(design: Design) -> dict:
         "seed": design.seed,
         "index": design.index,
         "set": design.kept_for,
+        "block": design.block,
         "class": design.kind,
         "verdict": verdict,
         "effects": [
@@ -140,7 +154,7 @@ def _repeats(design: Design) -> list[list[str]]:
 
 def without_effects(answer: dict, names: frozenset[str] | None = None) -> Case:
     """Make a case again with effects off (all, or those named): the truth's own closed gap."""
-    design = draw_design(answer["seed"], answer["index"], answer["set"])
+    design = draw_design(answer["seed"], answer["index"], answer["set"], answer["block"])
     return run_case(design, names or frozenset(form.effect for form, _ in design.forms))
 
 

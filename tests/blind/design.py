@@ -14,12 +14,20 @@ import numpy as np
 from .effects import CAUSES, DEVELOPMENT, STRANGERS, Form, forms_of
 from .rig import FIXED, Parameters
 
-__all__ = ["CLASSES", "OFFSET_KEYS", "Condition", "Design", "draw_design", "stream"]
+__all__ = ["BLOCKS", "CLASSES", "OFFSET_KEYS", "Condition", "Design", "draw_design", "stream"]
 
 CLASSES = (
     ["none"] * 3 + ["parameters"] * 3 + ["one"] * 8 + ["pair"] * 3 + ["triple"] + ["stranger"] * 2
 )
 """A block of classes: a share of 15, 15, 40, 15, 5 and 10 %."""
+
+_QUOTAS = (
+    ["none"] * 15 + ["parameters"] * 5 + ["one"] * 42 + ["pair"] * 5 + ["triple"] * 3
+    + ["stranger"] * 5
+)  # fmt: skip
+BLOCKS = {"shares": CLASSES, "quotas": _QUOTAS}
+"""Twenty blocks of quotas, 1500 cases, have 300 nulls, each cause 40 times and 100 strangers; by
+shares that takes 2100."""
 
 OFFSET_KEYS = (
     "elastomer_stiffness", "critical_torque", "kinetic_torque", "damping", "elastomer_inertia",
@@ -68,6 +76,7 @@ class Design:
     seconds: float
     forms: tuple[tuple[Form, float], ...]
     offsets: dict[str, float]
+    block: str = "shares"
 
     def nominal(self, condition: Condition) -> Parameters:
         """What the rig file says of a condition."""
@@ -116,12 +125,12 @@ def _conditions(rng: np.random.Generator) -> tuple[Condition, ...]:
     return tuple(both[i] for i in rng.permutation(len(both)))
 
 
-def _what(seed: int, index: int, kept_for: str) -> tuple[str, list[str]]:
+def _what(seed: int, index: int, kept_for: str, classes: list[str]) -> tuple[str, list[str]]:
     """Class and effects of a case."""
-    block, place = divmod(index, len(CLASSES))
-    kinds = [CLASSES[i] for i in stream(seed, kept_for, block, 1).permutation(len(CLASSES))]
+    block, place = divmod(index, len(classes))
+    kinds = [classes[i] for i in stream(seed, kept_for, block, 1).permutation(len(classes))]
     kind = kinds[place]
-    before = CLASSES.count(kind) * block + kinds[:place].count(kind)
+    before = classes.count(kind) * block + kinds[:place].count(kind)
     offered = CAUSES
     if kind == "stranger":
         offered = tuple(name for name in STRANGERS if forms_of(name, kept_for))
@@ -134,8 +143,8 @@ def _what(seed: int, index: int, kept_for: str) -> tuple[str, list[str]]:
     return kind, [offered[i] for i in sorted(chosen)]
 
 
-def draw_design(seed: int, index: int, kept_for: str) -> Design:
-    """Draw case `index` (from 0) of a set."""
+def draw_design(seed: int, index: int, kept_for: str, block: str = "shares") -> Design:
+    """Draw case `index` (from 0) of a set; `block` names how many of each class there are."""
     rng = stream(seed, kept_for, index, 0)
     wide = np.exp(0.08 * rng.standard_normal(16))
     fits = {
@@ -146,7 +155,7 @@ def draw_design(seed: int, index: int, kept_for: str) -> Design:
     conditions = _conditions(rng)
     rate, seconds = int(rng.choice(_RATES)), float(rng.choice(_LENGTHS))
     rate_error = float(1e-4 * rng.standard_normal())
-    kind, names = _what(seed, index, kept_for)
+    kind, names = _what(seed, index, kept_for, BLOCKS[block])
     secret = stream(seed, kept_for, index, 5)
     forms = []
     for name in names:
@@ -161,5 +170,5 @@ def draw_design(seed: int, index: int, kept_for: str) -> Design:
     return Design(
         seed, index, kept_for, kind, fits, damping,
         (1.0 / 65000.0 * wide[10], 1.0 / 1200.0 * wide[11]),
-        conditions, rate, rate_error, seconds, tuple(forms), offsets,
+        conditions, rate, rate_error, seconds, tuple(forms), offsets, block,
     )  # fmt: skip

@@ -1,39 +1,93 @@
-"""A whole set of cases on several processes; the data and the answers in folders apart."""
+"""A whole set of cases on several processes; the data and the answers in folders apart.
+
+The sealed forms are drawn here as well, but only for whoever names the log, in which the opening
+is written before the first case is made.
+"""
 
 from __future__ import annotations
 
+import json
 import time
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
 from .cases import run_case, write_case
 from .design import draw_design
+from .effects import DEVELOPMENT, SEALED
+from .gap import gaps_of
+from .score.log import log_opening
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
-__all__ = ["generate"]
+__all__ = ["Wanted", "add_gaps", "each", "generate", "generate_sealed"]
 
 
-def _one(out: Path, seed: int, index: int, kept_for: str) -> int:
-    name = f"case-{index + 1:04d}"
-    case = run_case(draw_design(seed, index, kept_for))
-    write_case(case, out / "data" / name, out / "answers" / f"{name}.json")
-    return index
+@dataclass(frozen=True)
+class Wanted:
+    """Which cases to make: the first `cases` of a seed; `block` as in `design.BLOCKS`."""
+
+    seed: int
+    cases: int
+    block: str = "shares"
 
 
-def generate(out: Path, seed: int, cases: int, kept_for: str, workers: int) -> float:
-    """Write cases into ``out/data`` and their answers into ``out/answers``; return the seconds."""
-    if (out / "data").exists():
-        raise SystemExit(f"{out / 'data'} is there already; name another folder")
-    begun = time.perf_counter()
+@contextmanager
+def each(workers: int) -> Iterator[Callable]:
+    """Give a map over several processes; one worker stays in this process."""
     if workers == 1:
-        for index in range(cases):
-            _one(out, seed, index, kept_for)
-        return time.perf_counter() - begun
+        yield map
+        return
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        jobs = [pool.submit(_one, out, seed, index, kept_for) for index in range(cases)]
-        for job in jobs:
-            job.result()
+        yield pool.map
+
+
+def _one(job: tuple[Path, Path, int, int, str, str]) -> None:
+    data, answers, seed, index, kept_for, block = job
+    name = f"case-{index + 1:04d}"
+    case = run_case(draw_design(seed, index, kept_for, block))
+    write_case(case, data / name, answers / f"{name}.json")
+
+
+def _make(data: Path, answers: Path, wanted: Wanted, kept_for: str, workers: int) -> float:
+    if data.exists():
+        raise SystemExit(f"{data} is there already; name another folder")
+    begun = time.perf_counter()
+    jobs = [
+        (data, answers, wanted.seed, i, kept_for, wanted.block) for i in range(wanted.cases)
+    ]  # fmt: skip
+    with each(workers) as mapped:
+        list(mapped(_one, jobs))
     return time.perf_counter() - begun
+
+
+def generate(out: Path, wanted: Wanted, workers: int) -> float:
+    """Write development cases into ``out/data``, answers into ``out/answers``; return seconds."""
+    return _make(out / "data", out / "answers", wanted, DEVELOPMENT, workers)
+
+
+def generate_sealed(
+    data: Path, answers: Path, wanted: Wanted, workers: int, *, log: Path, about: str
+) -> str:
+    """Log that the sealed set is opened, then write its cases; return the opening's name."""
+    opened = log_opening(
+        log, seed=wanted.seed, cases=wanted.cases, block=wanted.block, about=about
+    )  # fmt: skip
+    _make(data, answers, wanted, SEALED, workers)
+    return opened
+
+
+def _gap(path: Path) -> None:
+    answer = json.loads(path.read_text(encoding="utf-8"))
+    if "gap" not in answer:
+        path.write_text(json.dumps(answer | gaps_of(answer), indent=1) + "\n", encoding="utf-8")
+
+
+def add_gaps(answers: Path, workers: int) -> None:
+    """Add to each answer how far the case is from nothing being the matter, where it lacks it."""
+    with each(workers) as mapped:
+        list(mapped(_gap, sorted(answers.glob("case-*.json"))))

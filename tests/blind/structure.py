@@ -25,6 +25,9 @@ __all__ = ["Structure", "accelerance", "draw_structure", "filtered"]
 
 _BLOWS = 32
 _LINES = np.arange(10.0, 10_001.0, 2.5)
+_LEAST_WIDTH = 7.5
+"""Of a mode at half power [Hz]: three lines, since a hammer test could not resolve a narrower one.
+Low ones that are lighter damped would besides ring on from the start into the recording."""
 _WAY_BACK = 0.06
 """In which a torque goes gently back to where it began, as a periodic convolution has it do [s]."""
 
@@ -131,10 +134,12 @@ def draw_structure(rng: np.random.Generator, support_stiffness: float) -> Struct
         beams = np.append(beams, np.array([140.0, 240.0, 410.0, 640.0]) * rng.uniform(0.9, 1.1, 4))
         gains = np.append(gains, rng.uniform(0.5, 2.0, 4))
     plate = np.sort(np.exp(rng.uniform(np.log(130.0), np.log(11e3), 26)))
+    lossy = np.maximum(rng.uniform(0.008, 0.03, 26), 0.5 * _LEAST_WIDTH / plate)
+    zetas = np.maximum(zetas[: beams.size], 0.5 * _LEAST_WIDTH / beams)
     return Structure(
         arm=0.08,
-        beams=np.array([beams, zetas[: beams.size], gains]),
-        plate=np.array([plate, rng.uniform(0.008, 0.03, 26), 0.012 * rng.standard_normal(26)]),
+        beams=np.array([beams, zetas, gains]),
+        plate=np.array([plate, lossy, 0.012 * rng.standard_normal(26)]),
         clamp_to_pressure=6e-5 * rng.uniform(0.7, 1.3),
         distance=rng.uniform(0.4, 0.8),
     )

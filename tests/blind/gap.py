@@ -1,0 +1,103 @@
+"""How far a case lies from what it would be with nothing the matter, in floors.
+
+The examiner's own measure, so that which cases count does not hang on the candidate's. Sixth-octave
+levels of torque, acceleration and pressure, and size and phase of the ways from one channel to the
+next, are taken with and without what is the matter, all chance being the same; the floor of each is
+how repeats differ without, smoothed over neighbouring bands. The gap is that of the channel or way
+which differs most, 1 where nothing does: a recording differs from a repeat by the floor as well.
+A band counts for six floors at most, so that none decides alone.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from .cases import run_case
+from .design import Design, draw_design
+
+__all__ = ["gap_between", "gaps_of", "repeats_of", "summary"]
+
+_LOWEST, _HIGHEST_SHARE, _PER_OCTAVE = 40.0, 0.42, 6
+_LEAST_LEVEL, _LEAST_PHASE = 0.5, 0.05
+_SMOOTHED = 7
+_WAYS = ((0, 1), (0, 2), (1, 2))
+_PHASED, _FEWEST_LINES = 0.7, 8
+_LARGEST = 6.0
+
+
+def _edges(rate: float) -> np.ndarray:
+    octaves = np.log2(_HIGHEST_SHARE * rate / _LOWEST)
+    return _LOWEST * 2.0 ** (np.arange(int(_PER_OCTAVE * octaves) + 1) / _PER_OCTAVE)
+
+
+def summary(samples: np.ndarray, rate: float) -> np.ndarray:
+    """Levels [dB] of three channels, then size [dB] and phase [rad] of three ways, by band."""
+    x = samples[:3].astype(float)
+    n = x.shape[1]
+    spectrum = np.fft.rfft((x - x.mean(axis=1, keepdims=True)) * np.hanning(n), axis=1)
+    first = np.searchsorted(np.fft.rfftfreq(n, 1.0 / rate), _edges(rate))
+
+    def banded(y: np.ndarray) -> np.ndarray:
+        return np.add.reduceat(y, first, axis=-1)[..., :-1]
+
+    power = banded(np.abs(spectrum) ** 2) + 1e-30
+    cross = np.stack([banded(spectrum[b] * spectrum[a].conj()) for a, b in _WAYS])
+    level = 10.0 * np.log10(power)
+    size = np.stack([20.0 * np.log10(np.abs(c) + 1e-30) - level[a] for c, (a, _) in
+                     zip(cross, _WAYS, strict=True)])  # fmt: skip
+    coherent = [np.abs(c) / np.sqrt(power[a] * power[b]) for c, (a, b) in
+                zip(cross, _WAYS, strict=True)]  # fmt: skip
+    phased = (np.array(coherent) > _PHASED) & (np.diff(first) >= _FEWEST_LINES)
+    phase = np.where(phased, np.angle(cross), np.nan)
+    return np.concatenate([level, size, phase])
+
+
+def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Differences of two summaries; phases by the shorter way, none where there is no phase."""
+    d = one - other
+    d[6:] = np.nan_to_num(np.angle(np.exp(1j * d[6:])))
+    return d
+
+
+def gap_between(
+    with_it: list[np.ndarray],
+    without: list[np.ndarray],
+    repeats: list[tuple[int, int]],
+    rate: float,
+) -> float:
+    """Gap of recordings from the same without; `repeats` are places of two of one condition."""
+    plain = [summary(x, rate) for x in without]
+    away = [_apart(summary(x, rate), y) for x, y in zip(with_it, plain, strict=True)]
+    spread = np.mean([_apart(plain[i], plain[j]) ** 2 for i, j in repeats], axis=0)
+    smooth = uniform_filter1d(spread, _SMOOTHED, axis=1, mode="nearest")
+    floor = np.sqrt(np.maximum(smooth, 0.0))
+    least = np.repeat([_LEAST_LEVEL, _LEAST_PHASE], [6, 3])[:, None]
+    z = np.minimum(np.abs(away) / np.maximum(floor, least), _LARGEST)
+    gap = float(np.sqrt(1.0 + np.mean(z**2, axis=(0, 2)).max()))
+    if not np.isfinite(gap):
+        raise RuntimeError("the gap is not finite")
+    return gap
+
+
+def repeats_of(design: Design) -> list[tuple[int, int]]:
+    """Places of recordings that are of one condition."""
+    c = design.conditions
+    return [(i, j) for i in range(len(c)) for j in range(i) if c[i] == c[j]]
+
+
+def gaps_of(answer: dict) -> dict:
+    """Gap of a case and, of several effects, of each by itself; as the answer's further keys."""
+    design = draw_design(answer["seed"], answer["index"], answer["set"], answer["block"])
+    names = [form.effect for form, _ in design.forms]
+    if design.kind == "none":
+        return {"gap": 1.0, "gap_alone": {}}
+    repeats, rate = repeats_of(design), design.rate
+    plain = run_case(design, frozenset(names), plain=True).recordings
+    whole = gap_between(run_case(design).recordings, plain, repeats, rate)
+    alone = {}
+    if len(names) > 1:
+        for name in names:
+            only = run_case(design, frozenset(names) - {name}).recordings
+            alone[name] = gap_between(only, plain, repeats, rate)
+    return {"gap": whole, "gap_alone": alone}
