@@ -234,7 +234,8 @@ def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, labelled, capsy
 def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
     asked = []
 
-    def train(*, seed, progress):
+    def train(*, seed, added, progress):
+        assert not added
         asked.append((seed, list(progress(iter([1, 2]), 2))))
         card = {"test": {"n": 600, "macro_f1": 0.9}}
         return Namespace(save=lambda path: path.write_bytes(b"trained"), card=card)

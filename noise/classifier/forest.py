@@ -93,6 +93,7 @@ def grow_forest(
     n_trees: int,
     least_leaf: int,
     seed: int,
+    weights: NDArray[np.float64] | None = None,
 ) -> Forest:
     """Grow a forest with balanced classes.
 
@@ -104,6 +105,8 @@ def grow_forest(
         Classes 0, 1, 2 ...
     n_trees, least_leaf, seed : int
         Number of trees, samples in the smallest leaf, seed of the draws.
+    weights : ndarray, shape (n,), optional
+        How much each sample counts, beside what balances the classes; by default all the same.
 
     Returns
     -------
@@ -127,7 +130,7 @@ def grow_forest(
         class_weight="balanced",
         random_state=seed,
         n_jobs=-1,
-    ).fit(x, y)
+    ).fit(x, y, sample_weight=weights)
     return _as_arrays(model)
 
 

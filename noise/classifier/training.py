@@ -23,15 +23,24 @@ from noise.classifier.designs import random_design
 from noise.classifier.forest import grow_forest
 from noise.classifier.hearing import RATES, as_recorded, coloured_noise, resampled
 from noise.classifier.model import LABELS, Classifier, calibrated
+from noise.classifier.own_samples import (
+    OWN_WEIGHT,
+    as_arrays as own_arrays,
+    own_card,
+    split_files,
+)
 from noise.classifier.strangers import stranger
 from noise.classifier.truth import noise_of
 from sim.acquisition import Acquisition
 from sim.run import simulate
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
+
+    from noise.classifier.forest import Forest
+    from noise.classifier.own_samples import OwnSample
 
 __all__ = ["Sample", "draw_sample", "train"]
 
@@ -71,6 +80,7 @@ def train(
     n_training: int = N_TRAINING,
     n_calibration: int = N_CALIBRATION,
     n_test: int = N_TEST,
+    added: Sequence[OwnSample] = (),
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
 ) -> Classifier:
     """Train a classifier; the same seed gives the same classifier.
@@ -80,13 +90,16 @@ def train(
     seed : int
     n_training, n_calibration, n_test : int
         Samples to learn from, to calibrate on and to score.
+    added : sequence of OwnSample
+        Of the user's own recordings, to learn from as well (`noise.classifier.own_samples`).
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.
 
     Returns
     -------
     Classifier
-        Its card tells the scores on the last of the three sets.
+        Its card tells the scores on the last of the three sets and, where recordings were added,
+        on those of them that were held out.
     """
     total = n_training + n_calibration + n_test
     children = np.random.SeedSequence(seed).spawn(total)
@@ -108,11 +121,15 @@ def train(
         raise ParameterError(f"{n_training} training samples hold no {absent}; draw more of them")
     learn, calibrate, test = np.split(np.arange(total), [n_training, n_training + n_calibration])
     forest = grow_forest(x[learn], y[learn], n_trees=N_TREES, least_leaf=LEAST_LEAF, seed=seed)
+    own: dict[str, object] = {}
+    if added:
+        forest, own["own"] = _grown_with(added, forest, names, x[learn], y[learn], seed)
     sharpness = _fitted_sharpness(forest.probabilities(x[calibrate]), y[calibrate])
     card: dict[str, object] = {
         "seed": seed,
         "samples": dict(Counter(sample.label for sample in samples[:n_training])),
         "test": _scores(calibrated(forest.probabilities(x[test]), sharpness), y[test]),
+        **own,
     }
     return Classifier(tuple(names), forest, sharpness, card)
 
@@ -128,6 +145,30 @@ def draw_sample(seed: np.random.SeedSequence) -> Sample:
     else:
         recording, label = _simulated(rng)
     return Sample(recording_features(recording), label)
+
+
+def _grown_with(
+    added: Sequence[OwnSample],
+    without: Forest,
+    names: Sequence[str],
+    x: NDArray[np.float64],
+    y: NDArray[np.int64],
+    seed: int,
+) -> tuple[Forest, dict[str, object]]:
+    """Grow the forest on the user's own samples as well; return it and what the card says of it."""
+    learned, held = split_files(added, seed)
+    own_x, own_y = own_arrays(learned, names)
+    forest = grow_forest(
+        np.concatenate([x, own_x]),
+        np.concatenate([y, own_y]),
+        n_trees=N_TREES,
+        least_leaf=LEAST_LEAF,
+        seed=seed,
+        weights=np.concatenate([np.ones(y.size), np.full(own_y.size, OWN_WEIGHT)]),
+    )
+    held_x, _ = own_arrays(held, names)
+    before, after = without.probabilities(held_x), forest.probabilities(held_x)
+    return forest, own_card(learned, held, before, after)
 
 
 def _simulated(rng: np.random.Generator) -> tuple[Recording, str]:

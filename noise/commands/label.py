@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
     from noise.classifier import Classifier
+    from noise.inference import Inference
 
 __all__ = ["Labelling", "configure", "run"]
 
@@ -32,17 +33,18 @@ def configure(parser: ArgumentParser) -> None:
     parser.description = (
         "Label recordings: one row a segment with the label creak, squawk, squeal, none or "
         "unknown, its probability, frequency in Hz and level in dB re 20 uPa (dBFS where not "
-        "calibrated), and the operating condition it belongs to. A file that cannot be read has "
-        "the reason in the column error. Label tables in place of recordings are joined, for --map "
-        "and --audacity."
+        "calibrated), and the operating condition it belongs to: logged, or inferred from a creak, "
+        "squawk or squeal with bounds of 90 %, or missing. A file that cannot be read has the "
+        "reason in the column error. Label tables in place of recordings are joined, for --map and "
+        "--audacity."
     )
     add_batch(parser)
     parser.add_argument(
         "--map",
         type=Path,
         metavar="PICTURE",
-        help="picture of which label is where in speed, interference and support stiffness "
-        "(.png, .svg or .pdf); the numbers go into a .csv of the same name",
+        help="picture of which label is where in speed, interference and support stiffness, as "
+        "far as they were logged (.png, .svg or .pdf); the numbers go into a .csv of the same name",
     )
     parser.add_argument(
         "--audacity",
@@ -56,6 +58,13 @@ def configure(parser: ArgumentParser) -> None:
         type=Path,
         metavar="FILE.npz",
         help="classifier that `bushing-noise train` made (default: the one that is shipped)",
+    )
+    parser.add_argument(
+        "--inference",
+        type=Path,
+        metavar="FILE.npz",
+        help="model that infers conditions which were not logged, made by `bushing-noise train` "
+        "(default: the one that is shipped)",
     )
     opt.add_full_scale(parser)
     opt.add_seed(parser, "taken by all commands; labelling uses no random numbers")
@@ -72,10 +81,10 @@ def run(options: Namespace) -> int:
         from noise.labels.audacity import track_paths
 
         track_paths(options.audacity, [job.name for job in jobs])
-    classifier = options.classifier
-    if classifier is not None and options.scheduler is not None:
-        classifier = classifier.absolute()  # other machines have other working folders
-    work = Labelling(classifier, options.full_scale)
+    models = (options.classifier, options.inference)
+    if options.scheduler is not None:  # other machines have other working folders
+        models = tuple(path and path.absolute() for path in models)
+    work = Labelling(*models, full_scale=options.full_scale)
     return run_batch(options, work, jobs, lambda rows: _export(options, rows))
 
 
@@ -84,6 +93,7 @@ class Labelling:
     """A `noise.batch.Work`: the labelled segments of a recording."""
 
     classifier: Path | None = None
+    inference: Path | None = None
     full_scale: float | None = None
 
     doing = "labelling"
@@ -96,19 +106,22 @@ class Labelling:
         return COLUMNS
 
     def prepare(self) -> None:
-        """Load the classifier."""
+        """Load the classifier, and what infers conditions."""
         import noise.labels.segments
         import noise.recordings  # noqa: F401
 
-        _ = self._loaded
+        _ = self._loaded, self._inference
 
     def identity(self) -> dict[str, str | float | None]:
-        """Return what decides the rows: the options, and the classifier by its content."""
+        """Return what decides the rows: the options, and the models by their content."""
         from noise.batch import file_digest
 
-        # The shipped one is part of the program.
-        classifier = None if self.classifier is None else file_digest(self.classifier)
-        return {"classifier": classifier, "full_scale": self.full_scale}
+        # The shipped ones are part of the program.
+        models = {"classifier": self.classifier, "inference": self.inference}
+        said: dict[str, str | float | None] = {"full_scale": self.full_scale}
+        for name, path in models.items():
+            said[name] = None if path is None else file_digest(path)
+        return said
 
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""
@@ -120,7 +133,8 @@ class Labelling:
         with open_blocks(path, full_scale=self.full_scale) as blocks:
             recording = blocks or read_recording(path, full_scale=self.full_scale)
             segments = label_recording(recording, self._loaded, per_track=_names_no_channels(path))
-            return label_rows(name, recording, segments), recording.calibrated
+            rows = label_rows(name, recording, segments, self._inference)
+            return rows, recording.calibrated
 
     @cached_property
     def _loaded(self) -> Classifier:
@@ -128,9 +142,19 @@ class Labelling:
 
         return load_classifier(self.classifier)
 
+    @cached_property
+    def _inference(self) -> Inference:
+        from noise.inference import load_inference
+
+        return load_inference(self.inference)
+
     def __getstate__(self) -> dict[str, object]:
-        """Leave the loaded classifier here: elsewhere it is loaded again."""
-        return {"classifier": self.classifier, "full_scale": self.full_scale}
+        """Leave the loaded models here: elsewhere they are loaded again."""
+        return {
+            "classifier": self.classifier,
+            "inference": self.inference,
+            "full_scale": self.full_scale,
+        }
 
 
 def _check_exports(options: Namespace) -> None:

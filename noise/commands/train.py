@@ -1,30 +1,38 @@
-"""``bushing-noise train``: the classifier again, from simulation."""
+"""``bushing-noise train``: the classifier again, from simulation and the user's own recordings."""
 
 from __future__ import annotations
 
+from argparse import ArgumentTypeError
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
 from noise.commands import options as opt
 from noise.commands.targets import check_target
-from noise.progress import say, track
+from noise.progress import counted, say, track
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
-    from noise.classifier.training import Sample
+    from noise.classifier import Classifier
+    from noise.classifier.own_samples import OwnSample
+
+    _Sample = TypeVar("_Sample")
 
 __all__ = ["configure", "run"]
+
+_PART_TO_CALIBRATE, _PART_TO_SCORE = 5, 5
+"""With --samples N, one for so many of them is drawn to calibrate, and to score."""
 
 
 def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
         "Build the classifier again from simulated runs and made-up sounds that are none of the "
-        "three noises; the same seed gives the same classifier. It takes minutes. Use it with "
-        "`bushing-noise label --classifier FILE.npz`."
+        "three noises, and from labelled recordings of your own if --add names some; the same "
+        "call gives the same classifier. It takes minutes. Use it with `bushing-noise label "
+        "--classifier FILE.npz`."
     )
     parser.add_argument(
         "--out",
@@ -33,29 +41,129 @@ def configure(parser: ArgumentParser) -> None:
         metavar="FILE.npz",
         help="file for the classifier (required)",
     )
+    parser.add_argument(
+        "--add",
+        type=Path,
+        action="append",
+        metavar="DIR",
+        help="folder of labelled recordings to learn from as well (may be given several times): "
+        "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
+        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav). A third of the "
+        "files is held out, and scored before and after",
+    )
+    parser.add_argument(
+        "--samples",
+        type=_count,
+        metavar="N",
+        help="simulated samples to learn from (default: 3000); fewer are quicker and know less",
+    )
+    parser.add_argument(
+        "--inference",
+        type=Path,
+        metavar="FILE.npz",
+        help="also train the model that infers conditions which were not logged, into this file; "
+        "use it with `bushing-noise label --inference FILE.npz`",
+    )
     opt.add_seed(parser, "seed of the training samples and of the forest")
 
 
 def run(options: Namespace) -> int:
     """Train, save, and tell the score."""
-    if options.out.suffix.lower() != ".npz" or options.out.is_dir():
-        raise ParameterError(f"--out {options.out}: a classifier is a file that ends in .npz")
-    check_target(options.out)
+    _check_model(options.out, "--out", "a classifier")
+    if options.inference is not None:
+        _check_model(options.inference, "--inference", "a model")
+        if options.inference.absolute() == options.out.absolute():
+            raise ParameterError(
+                f"--inference {options.inference}: is what --out names for the classifier; give "
+                "one of them another name"
+            )
     say("preparing")
+    added, refused = _own(options.add or ())
+    classifier = _trained(options.seed, options.samples, added)
+    classifier.save(options.out)
+    say(f"trained: {_scores(classifier.card.get('test'))}")
+    if added:
+        say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
+    print(options.out)
+    if options.inference is not None:
+        from noise.inference.training import train_inference
+
+        train_inference(seed=options.seed, progress=_progress).save(options.inference)
+        print(options.inference)
+    return int(refused)
+
+
+def _trained(seed: int, n_samples: int | None, added: Sequence[OwnSample]) -> Classifier:
     from noise.classifier.training import train
 
-    def progress(samples: Iterable[Sample], total: int) -> Iterable[Sample]:
-        return track(samples, "simulating", total=total, unit="training sample")
+    if n_samples is None:
+        return train(seed=seed, added=added, progress=_progress)
+    return train(
+        seed=seed,
+        n_training=n_samples,
+        n_calibration=max(1, n_samples // _PART_TO_CALIBRATE),
+        n_test=max(1, n_samples // _PART_TO_SCORE),
+        added=added,
+        progress=_progress,
+    )
 
-    classifier = train(seed=options.seed, progress=progress)
-    classifier.save(options.out)
-    say(f"trained: {_scores(classifier.card)}")
-    print(options.out)
-    return 0
+
+def _check_model(path: Path, option: str, what: str) -> None:
+    if path.suffix.lower() != ".npz" or path.is_dir():
+        raise ParameterError(f"{option} {path}: {what} is a file that ends in .npz")
+    check_target(path, option)
 
 
-def _scores(card: object) -> str:
-    test = card.get("test") if isinstance(card, dict) else None
+def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
+    """Return the user's own samples, and whether something was refused, which is then named."""
+    if not folders:
+        return [], False
+    from noise.classifier.own_recordings import read_labelled
+    from noise.classifier.own_samples import own_samples
+
+    for folder in folders:
+        if not folder.is_dir():
+            raise ParameterError(f"--add {folder}: there is no such folder")
+    samples: list[OwnSample] = []
+    refusals: list[str] = []
+    for folder in dict.fromkeys(folder.resolve() for folder in folders):
+        windows, unread = read_labelled(folder)
+        found, unlearned = own_samples(track(windows, "analysing", unit="window"))
+        samples += found
+        refusals += [*unread, *unlearned]
+    for line in refusals:
+        say(f"bushing-noise: refused: {line}")
+    if not samples:
+        raise ParameterError(
+            f"--add {', '.join(map(str, folders))}: holds no recording with a label that can be "
+            "learned from"
+        )
+    return samples, bool(refusals)
+
+
+def _progress(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+    return track(samples, "simulating", total=total, unit="training sample")
+
+
+def _scores(test: object) -> str:
     if not isinstance(test, dict):
         return "no score"
     return ", ".join(f"{name.replace('_', ' ')} {value:g}" for name, value in test.items())
+
+
+def _own_scores(card: object) -> str:
+    if not isinstance(card, dict):
+        return "none"
+    held = card["held_out_files"]
+    if not held:
+        return f"{counted(card['files'], 'file')} learned from, too few to hold one out"
+    return (
+        f"{counted(card['files'], 'file')} learned from, {held} held out; of the windows held out "
+        f"{card['accuracy_before']:.0%} right without the others, {card['accuracy_after']:.0%} with"
+    )
+
+
+def _count(text: str) -> int:
+    if not text.strip().isdecimal() or int(text) == 0:
+        raise ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
+    return int(text)

@@ -1,22 +1,25 @@
-"""Label tracks as Audacity imports them, one a recording: start, end and label of each segment.
+"""Label tracks as Audacity has them, one a recording: start, end and label of each segment.
 
 The format is that of Audacity's manual, "Importing and Exporting Labels": seconds with a point, tab
-between the fields.
+between the fields; a line that begins with a backslash is the range of frequencies of the one
+before.
 """
 
 from __future__ import annotations
 
+import math
+import re
 from collections import Counter
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
+from models.errors import ParameterError, RecordingError
 from noise.atomic import atomic
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-__all__ = ["label_track", "track_paths", "write_label_tracks"]
+__all__ = ["label_track", "read_label_track", "track_paths", "write_label_tracks"]
 
 
 def label_track(rows: Iterable[Mapping[str, object]]) -> str:
@@ -41,6 +44,58 @@ def label_track(rows: Iterable[Mapping[str, object]]) -> str:
         track = "" if channel in ("all", None) else f"track {channel}: "
         lines.append(f"{start:.6f}\t{end:.6f}\t{track}{row['label']}\n")
     return "".join(lines)
+
+
+def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
+    r"""Read a label track.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    list of (float, float, str, str)
+        Start and end [s], channel as in the label table, and label.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read, or is no label track.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "run07.txt"
+    ...     _ = path.write_text("0.5\t2.25\tcreak\n1\t2\ttrack 2: squeal\n")
+    ...     read_label_track(path)
+    [(0.5, 2.25, 'all', 'creak'), (1.0, 2.0, '2', 'squeal')]
+    """
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except UnicodeDecodeError:
+        raise RecordingError(f"{path}: is no text, so no label track") from None
+    found: list[tuple[float, float, str, str]] = []
+    for number, line in enumerate(lines, 1):
+        if not line.strip() or line.startswith("\\"):
+            continue
+        start, end, label = (*line.split("\t", 2), "", "")[:3]
+        try:
+            times = float(start), float(end)
+        except ValueError:
+            times = (math.nan, math.nan)
+        if not 0.0 <= times[0] <= times[1] < math.inf:
+            raise RecordingError(
+                f"{path}: line {number} is {line[:40]!r}, expected start, end and label with tabs "
+                "between"
+            )
+        track = re.fullmatch(r"track (\d+): (.*)", label.strip())
+        channel, said = (track[1], track[2]) if track else ("all", label.strip())
+        found.append((*times, channel, said))
+    return found
 
 
 def track_paths(target: Path, files: Sequence[str]) -> dict[str, Path]:

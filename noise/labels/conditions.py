@@ -4,7 +4,9 @@ Logged speeds differ in their last digits and ramps pass through all of them, so
 in steps of a round number about its multiples, whatever the sense of rotation. Fits and supports
 are few in most campaigns and stay themselves, what lies within 5 % taken together; where there are
 too many, they are counted in steps as well. A condition that is not known is a place of its own: to
-leave it out would hide how much of the data it is.
+leave it out would hide how much of the data it is. What was inferred from the signal counts as not
+known: one number out of a wide interval would look like a measurement, and a map made of what the
+noise tells of its condition could not say at which condition the noise is made.
 """
 
 from __future__ import annotations
@@ -92,7 +94,8 @@ def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
     Parameters
     ----------
     rows : iterable of mapping
-        Of the label table; those without a label are passed over.
+        Of the label table; those without a label are passed over, and conditions whose source is
+        ``inferred`` count as not known.
 
     Returns
     -------
@@ -110,7 +113,7 @@ def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
     ('squawk', 2, Range(low=4.9, high=5.1, middle=5.0), None)
     """
     labelled = [row for row in rows if row.get("label") in LABELS]
-    speeds, fits, supports = ([_number(row.get(axis)) for row in labelled] for axis in _AXES)
+    speeds, fits, supports = ([_logged(row, axis) for row in labelled] for axis in _AXES)
     of_speed = _steps([abs(v) for v in speeds if v is not None], _MOST_SPEEDS)
     of_fit = _groups([v for v in fits if v is not None], _MOST_FITS)
     of_support = _groups([v for v in supports if v is not None], _MOST_SUPPORTS, _factor)
@@ -203,6 +206,10 @@ def _round_up(value: float) -> float:
         return value
     decade = 10.0 ** math.floor(math.log10(value) + 1e-9)
     return next(step * decade for step in (1, 2, 5, 10) if value <= step * decade * (1 + 1e-9))
+
+
+def _logged(row: Mapping[str, object], axis: str) -> float | None:
+    return None if row.get(f"{axis}_source") == "inferred" else _number(row.get(axis))
 
 
 def _number(value: object) -> float | None:

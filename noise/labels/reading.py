@@ -29,13 +29,16 @@ _NEEDED = ("file", "label")
 _SUPPORT = "support_stiffness_Nm_rad"
 
 
-def read_label_table(path: Path) -> list[dict[str, object]]:
+def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict[str, object]]:
     r"""Read a label table.
 
     Parameters
     ----------
     path : Path
         CSV, JSON Lines or Parquet, by its ending.
+    refusals : list of str, optional
+        Takes one line for each row that cannot be used, which is left out; without it, such a row
+        is an error.
 
     Returns
     -------
@@ -68,7 +71,15 @@ def read_label_table(path: Path) -> list[dict[str, object]]:
         raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (ValueError, csv.Error) as error:
         raise RecordingError(f"{path}: is damaged or no table ({error})") from None
-    return [_checked(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
+    checked = []
+    for number, row in enumerate(rows, 1):
+        try:
+            checked.append(_checked(row, f"{path}: row {number}"))
+        except RecordingError as error:
+            if refusals is None:
+                raise
+            refusals.append(str(error))
+    return checked
 
 
 def _read_csv(path: Path) -> list[dict[str, object]]:
@@ -99,8 +110,12 @@ def _checked(row: object, where: str) -> dict[str, object]:
     if checked["label"] not in (*LABELS, None):
         known = ", ".join(LABELS)
         raise RecordingError(f"{where} has label {checked['label']!r}, expected {known}")
-    if checked[_SUPPORT] is None and checked[f"{_SUPPORT}_source"] in ("logged", "inferred"):
-        checked[_SUPPORT] = math.inf  # which JSON cannot write
+    source = checked[f"{_SUPPORT}_source"]
+    stiff = [_SUPPORT] if source in ("logged", "inferred") else []
+    stiff += [f"{_SUPPORT}_low", f"{_SUPPORT}_high"] if source == "inferred" else []
+    for column in stiff:
+        if checked[column] is None:
+            checked[column] = math.inf  # which JSON cannot write
     return checked
 
 

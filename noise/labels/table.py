@@ -1,13 +1,20 @@
-"""The label table: one row a segment, linked to the condition it was recorded at."""
+"""The label table: one row a segment, linked to the condition it was recorded at.
+
+What was logged stands as it is. What was not is inferred where there is a noise to tell it, with
+the bounds of an interval of 90 %; the material is never.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from noise.classifier import LABELS
+from noise.inference import load_inference
+from noise.inference.segments import infer_stretch
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
@@ -15,7 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from models.condition import Condition
     from models.recording import Recording
+    from noise.inference import Inference, Interval
     from noise.labels.segments import Segment
 
 __all__ = ["COLUMNS", "error_row", "label_rows"]
@@ -26,7 +35,15 @@ _SPEED_BLOCK = 0.02
 _BLOCKS_AT_ONCE = 500
 """How many of them are read together."""
 
-_CONDITIONS = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad")
+_TELLING_LABELS = ("creak", "squawk", "squeal")
+"""Noises that tell of the condition that made them."""
+
+_CONDITIONS = {
+    "speed_rad_s": "speed",
+    "interference_mm": "interference",
+    "support_stiffness_Nm_rad": "support_stiffness",
+}
+"""Columns, and the fields of a condition that they hold."""
 
 COLUMNS = (
     "file", "channel", "start_s", "end_s", "label",
@@ -39,7 +56,10 @@ COLUMNS = (
 
 
 def label_rows(
-    name: str, recording: Recording | RecordingBlocks, segments: list[Segment]
+    name: str,
+    recording: Recording | RecordingBlocks,
+    segments: list[Segment],
+    inference: Inference | None = None,
 ) -> list[dict[str, object]]:
     """Return one row for each segment.
 
@@ -50,12 +70,15 @@ def label_rows(
     recording : Recording or RecordingBlocks
         Where the shaft's speed was recorded, each segment gets its mean over that segment.
     segments : list of Segment
+    inference : Inference, optional
+        By which conditions that were not logged are inferred; by default the one that is shipped.
 
     Returns
     -------
     list of dict
-        By `COLUMNS`; a condition's source is ``logged`` or ``missing``, and its bounds are empty.
-        The bolted clamp's support stiffness is ``inf``.
+        By `COLUMNS`; a condition's source is ``logged``, ``inferred`` or ``missing``, and it has
+        bounds where it is inferred. An inferred speed is a magnitude. The bolted clamp's support
+        stiffness is ``inf``.
 
     Examples
     --------
@@ -68,7 +91,7 @@ def label_rows(
     (2.0, 'logged', 'missing')
     """
     blocks = RecordingBlocks.of(recording)
-    return [_row(name, blocks, segment) for segment in segments]
+    return [_row(name, blocks, segment, inference) for segment in segments]
 
 
 def error_row(name: str, message: str) -> dict[str, object]:
@@ -76,8 +99,10 @@ def error_row(name: str, message: str) -> dict[str, object]:
     return {**dict.fromkeys(COLUMNS), "file": name, "error": message}
 
 
-def _row(name: str, blocks: RecordingBlocks, segment: Segment) -> dict[str, object]:
-    condition = blocks.condition
+def _row(
+    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
+) -> dict[str, object]:
+    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
     row: dict[str, object] = {
         **dict.fromkeys(COLUMNS),
         "file": name,
@@ -93,15 +118,38 @@ def _row(name: str, blocks: RecordingBlocks, segment: Segment) -> dict[str, obje
         "material": condition.material,
         "material_source": "logged" if condition.material else "missing",
     }
-    logged = (
-        _segment_speed(blocks, segment),
-        None if condition.interference is None else 1e3 * condition.interference,
-        condition.support_stiffness,
-    )
-    for column, value in zip(_CONDITIONS, logged, strict=True):
-        row[column] = _rounded(value, 6)
+    inferred = _inferred(blocks, segment, condition, inference)
+    for column, field in _CONDITIONS.items():
+        value = _in_unit(column, getattr(condition, field))
+        row[column] = value
         row[f"{column}_source"] = "missing" if value is None else "logged"
+        if value is None and field in inferred:
+            interval = inferred[field]
+            row[column] = _in_unit(column, interval.value)
+            row[f"{column}_low"] = _in_unit(column, interval.low)
+            row[f"{column}_high"] = _in_unit(column, interval.high)
+            row[f"{column}_source"] = "inferred"
     return row
+
+
+def _inferred(
+    blocks: RecordingBlocks, segment: Segment, logged: Condition, inference: Inference | None
+) -> dict[str, Interval]:
+    """Infer what is not logged of a segment whose label tells of it."""
+    unknown = any(getattr(logged, field) is None for field in _CONDITIONS.values())
+    if not unknown or segment.label not in _TELLING_LABELS:
+        return {}
+    if segment.channel != "all":
+        blocks = blocks.track(int(segment.channel) - 1)
+    first = round(segment.start * blocks.rate)
+    last = min(round(segment.end * blocks.rate), blocks.n_samples)
+    return infer_stretch(blocks, first, last, logged, inference or load_inference())
+
+
+def _in_unit(column: str, value: float | None) -> float | None:
+    """Return a value in the unit of its column."""
+    millimetres = value is not None and column.endswith("_mm")
+    return _rounded(1e3 * value if millimetres and value is not None else value, 6)
 
 
 def _segment_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
