@@ -1,0 +1,133 @@
+"""A case: the recordings of one rig, as a folder holds them, and what in it cannot be used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from models.errors import BushingNoiseError, ParameterError
+from noise.diagnosis.reconstruction import LEAD, TAIL
+from noise.recordings import find_recordings, read_recording
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from models.recording import Recording
+    from models.rig import Rig
+
+__all__ = ["Case", "read_case", "usable"]
+
+SHORTEST = LEAD + TAIL + 0.1
+"""Shorter recordings show too few cycles [s]."""
+
+LEAST_RATE = 8e3
+"""[Hz]"""
+
+KINDS = ("torque", "acceleration", "pressure")
+"""Kinds of channel of which a recording must have one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """Recordings of one rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    names : tuple of str
+        Of the files.
+    recordings : tuple of Recording
+    refused : tuple of (str, str)
+        Name and reason of what was left out.
+    """
+
+    rig: Rig
+    names: tuple[str, ...]
+    recordings: tuple[Recording, ...]
+    refused: tuple[tuple[str, str], ...] = ()
+
+
+def read_case(paths: Sequence[Path], rig: Rig) -> Case:
+    """Read the recordings in files and folders.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+    rig : Rig
+
+    Returns
+    -------
+    Case
+        What cannot be read or used is among ``refused``.
+
+    Raises
+    ------
+    ParameterError
+        There is no recording, or none that can be used; the message says what would be right.
+    """
+    names, recordings, refused = [], [], []
+    for path, name in find_recordings(paths):
+        try:
+            recording = usable(read_recording(path), rig)
+        except BushingNoiseError as error:
+            refused.append((name, str(error)))
+        else:
+            names.append(name)
+            recordings.append(recording)
+    if not recordings:
+        reason = f"; {refused[0][0]}: {refused[0][1]}" if refused else ""
+        raise ParameterError(
+            f"{', '.join(str(path) for path in paths)}: no recording that can be diagnosed{reason}"
+        )
+    return Case(rig, tuple(names), tuple(recordings), tuple(refused))
+
+
+def usable(recording: Recording, rig: Rig) -> Recording:
+    """Return a recording as the diagnosis can use it.
+
+    A speed that was not stated is taken from the angle; interference and support may be left out
+    where the rig has only one.
+
+    Raises
+    ------
+    ParameterError
+        What it lacks.
+    """
+    if not recording.calibrated:
+        raise ParameterError(
+            'is not in physical units; state units in a sidecar, with "calibrated": true'
+        )
+    if all(recording.first(kind) is None for kind in KINDS):
+        raise ParameterError(f"has no channel of {', '.join(KINDS)}")
+    if recording.rate < LEAST_RATE:
+        raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
+    if recording.duration < SHORTEST:
+        raise ParameterError(f"lasts {recording.duration:.3g} s; {SHORTEST:.3g} s at least")
+    condition = recording.condition
+    speed = condition.speed
+    row = recording.first("angle")
+    if speed is None and row is not None:
+        angle = recording.samples[row]
+        speed = float(angle[-1] - angle[0]) / recording.duration
+    if not speed:
+        raise ParameterError(
+            "states no speed and has no turning angle; give speed_rad_s under conditions of the "
+            "sidecar"
+        )
+    interference = condition.interference
+    if interference is None and len(rig.fits) == 1:
+        interference = rig.fits[0].interference
+    if interference is None:
+        raise ParameterError("states no interference_mm, and the rig file has several fits")
+    support = condition.support_stiffness
+    if support is None and len(rig.measured) == 1:
+        support = rig.measured[0].support_stiffness
+    if support is None:
+        raise ParameterError("states no support_stiffness_Nm_rad, of which there may be several")
+    return replace(
+        recording,
+        condition=replace(
+            condition, speed=speed, interference=interference, support_stiffness=support
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Simulated cases whose causes are known, for the diagnosis to learn from."""

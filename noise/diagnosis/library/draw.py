@@ -1,0 +1,205 @@
+"""Cases: recordings of simulated rigs with a known cause, made as a user would record them.
+
+Whatever is not the case's cause is drawn alike for all causes: the rig, its conditions, its
+structure, the scatter from run to run, gains, noise and drift.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import resample_poly
+
+from models.recording import Channel, Recording
+from models.response import radiate
+from noise.diagnosis.library.rigs import OFFSETS, draw_setting, with_offsets
+from noise.diagnosis.library.strangers import STRANGERS, draw_stranger
+from noise.diagnosis.library.strengths import drawn_effect
+from noise.diagnosis.library.structures import draw_structure
+from noise.diagnosis.library.truth import KINDS, Truth
+from noise.diagnosis.scatter import Scatter, scattered
+from sim.acquisition import Acquisition
+from sim.bushing import lumped_bushing
+from sim.chain import changed_chain
+from sim.effects import EFFECTS
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+    from models.response import Response
+    from models.rig import Rig
+    from noise.diagnosis.library.rigs import Setting
+    from sim.effects.effect import ActiveEffect
+
+__all__ = ["DrawnCase", "draw_case"]
+
+WEAKEST = 0.02
+"""Least strength of an effect that is drawn."""
+
+_SETTLING = 0.35
+_LEAST_RATE = 75e3
+_CHANNELS = ("torque", "acceleration", "pressure", "angle")
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnCase:
+    """A case.
+
+    Parameters
+    ----------
+    rig : Rig
+        As its file has it, responses measured.
+    recordings : tuple of Recording
+    truth : Truth
+    """
+
+    rig: Rig
+    recordings: tuple[Recording, ...]
+    truth: Truth
+
+
+def draw_case(seed: np.random.SeedSequence | int) -> DrawnCase:
+    """Draw a case; the same seed gives the same case.
+
+    Examples
+    --------
+    >>> case = draw_case(5)
+    >>> 4 <= len(case.recordings) <= 9, case.recordings[0].channel_names
+    (True, ('torque', 'acceleration', 'pressure', 'angle'))
+    """
+    rng = np.random.default_rng(seed)
+    setting = draw_setting(rng)
+    truth, effects = _draw_cause(setting.rig, rng)
+    fine = math.ceil(_LEAST_RATE / setting.rate) * setting.rate
+    structures = {
+        support: draw_structure(lumped_bushing(setting.rig, 0.279e-3, support), rng)
+        for support in sorted({_support(c) for c in setting.conditions})
+    }
+    rig = replace(
+        setting.rig,
+        measured=tuple(s.measured(support, rng) for support, s in structures.items()),
+    )
+    plain = {support: s.response(fine) for support, s in structures.items()}
+    chain_seed = int(rng.integers(2**31))
+    louder = {name: level * rng.uniform(0.7, 1.6) for name, level in Acquisition().noise.items()}
+    recordings = tuple(
+        _record(
+            setting, condition, effects, dict(truth.offsets), plain[_support(condition)],
+            chain_seed, louder, rng,
+        )
+        for condition in setting.conditions
+    )  # fmt: skip
+    return DrawnCase(rig, recordings, truth)
+
+
+def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveEffect]]:
+    kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
+    if kind == "parameters":
+        sign = float(rng.choice([-1.0, 1.0]))
+        names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
+        offsets = tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
+        return Truth(kind, offsets=offsets), []
+    if kind == "unknown":
+        name, strength = str(rng.choice(list(STRANGERS))), _strength(rng)
+        middle = rig.fit(0.279e-3)
+        stranger = draw_stranger(
+            name, strength, middle.kinetic_torque, middle.elastomer_stiffness, rng
+        )
+        return Truth(kind, (name,), ("plain",), (strength,)), [stranger.active({})]
+    count = {"one": 1, "pair": 2, "triple": 3}.get(kind, 0)
+    names = rng.choice(sorted(EFFECTS), count, replace=False).tolist()
+    strengths = tuple(_strength(rng) for _ in names)
+    specs = [drawn_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
+    effects = [EFFECTS[spec.name].active(spec.parameters) for spec in specs]
+    return Truth(kind, tuple(names), tuple(e.form for e in effects), strengths), effects
+
+
+def _record(
+    setting: Setting,
+    condition: Condition,
+    effects: list[ActiveEffect],
+    offsets: Mapping[str, float],
+    plain: Response,
+    chain_seed: int,
+    noise: Mapping[str, float],
+    rng: np.random.Generator,
+) -> Recording:
+    assert condition.speed is not None
+    assert condition.interference is not None
+    scatter, chance = Scatter(), np.random.default_rng(int(rng.integers(2**31)))
+    support = _support(condition)
+    if not math.isinf(support):
+        support *= float(np.exp(scatter.structure * chance.standard_normal()))
+    fine = plain.rate
+    settling = round(_SETTLING * fine)
+    motion = simulate_motion(
+        scattered(with_offsets(setting.rig, offsets), scatter, chance),
+        ConstantSpeed(condition.speed * float(np.exp(scatter.structure * chance.normal()))),
+        interference=condition.interference,
+        support_stiffness=support,
+        seconds=(settling + round(setting.seconds * fine)) / fine,
+        rate=fine,
+        effects=effects,
+        rng=chance,
+    )
+    force = np.zeros_like(motion.torque)
+    for active in effects:
+        if active.effect.force is not None:
+            force += active.effect.force(motion, active.form, active.values)
+    chain = changed_chain(plain, effects, np.random.default_rng(chain_seed))
+    acceleration, pressure = radiate(chain, motion.torque, force)
+    signals = {
+        "torque": motion.torque[settling:],
+        "acceleration": acceleration[settling:],
+        "pressure": pressure[settling:],
+        "angle": motion.shaft_angle[settling:] - motion.shaft_angle[settling],
+    }
+    for active in effects:
+        if active.effect.sensors is not None:
+            signals = active.effect.sensors(signals, fine, active.form, active.values, chance)
+    decimation = round(fine / setting.rate)
+    samples = [
+        _sampled(
+            signals[name], decimation, noise[name], 0.0 if name == "angle" else scatter.gain, chance
+        )
+        for name in _CHANNELS
+    ]
+    return Recording(
+        np.stack(samples), setting.rate, tuple(Channel(name) for name in _CHANNELS), condition
+    )
+
+
+def _sampled(
+    signal: NDArray[np.float64],
+    decimation: int,
+    noise: float,
+    gain: float,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    """Decimate, and add white noise, a coloured one and a drift."""
+    x = resample_poly(signal, 1, decimation, padtype="line")
+    f = np.fft.rfftfreq(x.size)
+    slow = np.fft.irfft(np.fft.rfft(rng.standard_normal(x.size)) / np.sqrt(1.0 + f / 1e-3), x.size)
+    drift = rng.standard_normal() * np.linspace(-1.0, 1.0, x.size)
+    unsteady = rng.uniform(0.0, 3.0) * slow + rng.uniform(0.0, 3.0) * drift
+    loud = noise * float(np.exp(0.1 * rng.standard_normal()))
+    return np.asarray(
+        (1.0 + gain * rng.standard_normal()) * x + loud * (rng.standard_normal(x.size) + unsteady)
+    )
+
+
+def _strength(rng: np.random.Generator) -> float:
+    return math.exp(rng.uniform(math.log(WEAKEST), 0.0))
+
+
+def _support(condition: Condition) -> float:
+    assert condition.support_stiffness is not None
+    return condition.support_stiffness

@@ -1,0 +1,126 @@
+"""What the rig file says would have been recorded: quick simulated repeats of a condition.
+
+The structure's ways are those of `noise.diagnosis.paths`, applied to the simulated torque, so a
+repeat costs a few milliseconds. A rig file that lists effects beyond friction and drive is run by
+`noise.diagnosis.replicates` instead, which knows all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import resample_poly
+
+from models.recording import Channel, Recording
+from noise.diagnosis.paths import predict
+from noise.diagnosis.replicates import replicates
+from noise.diagnosis.scatter import Scatter, scattered
+from sim.acquisition import Acquisition
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from models.condition import Condition
+    from models.rig import Rig
+    from noise.diagnosis.paths import Way
+    from sim.effects.effect import Effect
+
+__all__ = ["nominal_recordings"]
+
+_LEAST_RATE = 75e3
+"""Of the simulated motion [Hz]."""
+
+_SETTLING = 0.35
+"""[s]"""
+
+_CHANNELS = ("torque", "acceleration", "pressure", "angle")
+
+
+def nominal_recordings(
+    rig: Rig,
+    condition: Condition,
+    found_ways: Mapping[str, Way],
+    *,
+    rate: float,
+    seconds: float,
+    seeds: Sequence[int],
+    scatter: Scatter | None = None,
+    library: Mapping[str, Effect] | None = None,
+) -> list[Recording]:
+    """Simulate repeats of a run of the rig as its file has it.
+
+    Parameters
+    ----------
+    rig : Rig
+    condition : Condition
+        Speed, interference and support stiffness; all must be known.
+    found_ways : mapping of str to Way
+        As `noise.diagnosis.paths.ways` gives them for this condition.
+    rate, seconds : float
+        [Hz], [s]
+    seeds : sequence of int
+        One a repeat.
+    scatter : Scatter, optional
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
+
+    Returns
+    -------
+    list of Recording
+    """
+    effects = activated(rig.effects, library or EFFECTS)
+    if any(e.effect.force or e.effect.chain or e.effect.sensors for e in effects):
+        return replicates(
+            rig, condition, rate=rate, seconds=seconds, seeds=seeds, scatter=scatter,
+            library=library,
+        )  # fmt: skip
+    assert condition.speed is not None
+    assert condition.interference is not None
+    assert condition.support_stiffness is not None
+    scatter = scatter or Scatter()
+    decimation = math.ceil(_LEAST_RATE / rate)
+    fine = decimation * rate
+    settling = round(_SETTLING * fine)
+    n = settling + round(seconds * rate) * decimation
+    levels = Acquisition().noise
+    recordings = []
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        motion = simulate_motion(
+            scattered(rig, scatter, rng),
+            ConstantSpeed(condition.speed * float(np.exp(scatter.structure * rng.normal()))),
+            interference=condition.interference,
+            support_stiffness=condition.support_stiffness,
+            seconds=n / fine,
+            rate=fine,
+            effects=effects,
+            rng=rng,
+        )
+        turned = motion.shaft_angle[settling:] - motion.shaft_angle[settling]
+        torque, angle = (
+            resample_poly(x, 1, decimation, padtype="line")
+            for x in (motion.torque[settling:], turned)
+        )
+        signals = {
+            "torque": torque,
+            "acceleration": predict(torque, rate, found_ways["acceleration"]),
+            "pressure": predict(torque, rate, found_ways["pressure"]),
+            "angle": angle,
+        }
+        samples = np.stack(
+            [
+                (1.0 + (scatter.gain * rng.normal() if name != "angle" else 0.0)) * x
+                + levels[name] * rng.standard_normal(x.size)
+                for name, x in signals.items()
+            ]
+        )
+        recordings.append(
+            Recording(samples, rate, tuple(Channel(name) for name in _CHANNELS), condition)
+        )
+    return recordings

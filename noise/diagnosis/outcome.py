@@ -1,0 +1,260 @@
+"""What a diagnosis says, as plain data: for the report, for `diagnosis.json`, for a notebook."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from models.recording import Recording
+
+__all__ = [
+    "Diagnosis",
+    "EffectFinding",
+    "Heard",
+    "Illustration",
+    "Location",
+    "StageFinding",
+    "as_json",
+]
+
+
+@dataclass(frozen=True)
+class StageFinding:
+    """How a stage of the chain differs.
+
+    Parameters
+    ----------
+    gap : float
+        In units of what repeats differ by.
+    share : float
+        Of the whole gap.
+    p_value : float
+        Of so large a difference between repeats, corrected for the number of looks.
+    """
+
+    gap: float
+    share: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Location:
+    """Where the simulation goes wrong first.
+
+    Parameters
+    ----------
+    stage : str
+    channels : tuple of str
+    band : (float, float)
+        [Hz]
+    phase : str
+        Of the cycle: ``stick``, ``slip``, ``cycle`` where it is the cycle as a whole, or ``all``.
+    conditions : str
+        In which it shows, such as ``speed_rad_s >= 2.5``, or ``all``.
+    p_value : float
+    """
+
+    stage: str
+    channels: tuple[str, ...]
+    band: tuple[float, float]
+    phase: str
+    conditions: str
+    p_value: float
+
+
+@dataclass(frozen=True)
+class EffectFinding:
+    """A candidate cause.
+
+    Parameters
+    ----------
+    name, stage : str
+    probability : float
+        That it is at work, alone or with others.
+    parameters : mapping of str to float or str
+        As fitted; empty where it was not.
+    strength : (float, float), optional
+        90 % interval of the parameter that switches it off.
+    gap_before, gap_recalibrated, gap_after, gap_floor : float, optional
+        On recordings that no fit has seen; None where it was not fitted.
+    closed, closed_low, closed_high, closed_by_effect : float, optional
+        Shares of the closable gap, with a 90 % interval; None where there is nothing to close.
+    """
+
+    name: str
+    stage: str
+    probability: float
+    parameters: Mapping[str, float | str] = field(default_factory=dict)
+    strength: tuple[float, float] | None = None
+    gap_before: float | None = None
+    gap_recalibrated: float | None = None
+    gap_after: float | None = None
+    gap_floor: float | None = None
+    closed: float | None = None
+    closed_low: float | None = None
+    closed_high: float | None = None
+    closed_by_effect: float | None = None
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What the user hears of it, of one held-out recording: label and level [dB(A)]."""
+
+    recording: str
+    label_measured: str
+    label_before: str
+    label_after: str | None
+    level_measured: float
+    level_before: float
+    level_after: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Illustration:
+    """One held-out recording beside its simulations, for pictures and players."""
+
+    name: str
+    measured: Recording
+    before: Recording
+    after: Recording | None
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """The whole answer.
+
+    Parameters
+    ----------
+    verdict : tuple of str
+        Empty: no gap beyond repeatability; ``("parameters",)``; ``("unknown",)``; or one to three
+        effects.
+    equivalent : tuple of (str, str)
+        Pairs of effects that these channels cannot separate.
+    location : Location, optional
+        None where there is no gap.
+    stages : mapping of str to StageFinding
+        By `sim.effects.effect.Stage`, in the order of the chain.
+    effects : tuple of EffectFinding
+        The most probable first; ``parameters`` and ``unknown`` are not among them.
+    probabilities : mapping of str to float
+        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work.
+    parameters : mapping of str to (float, float)
+        90 % interval of each rig parameter, relative to the rig file.
+    next_measurement : str
+    held_out : tuple of str
+        Recordings that no fit has seen.
+    gap, floor, p_value : float
+        Of the case as a whole, before anything was fitted.
+    seconds : float
+        That it took.
+    notes : tuple of str
+        What is missing and what that costs; channels in bad health.
+    heard : tuple of Heard
+    illustrations : tuple of Illustration
+    """
+
+    verdict: tuple[str, ...]
+    equivalent: tuple[tuple[str, str], ...]
+    location: Location | None
+    stages: Mapping[str, StageFinding]
+    effects: tuple[EffectFinding, ...]
+    probabilities: Mapping[str, float]
+    parameters: Mapping[str, tuple[float, float]]
+    next_measurement: str
+    held_out: tuple[str, ...]
+    gap: float
+    floor: float
+    p_value: float
+    seconds: float
+    notes: tuple[str, ...] = ()
+    heard: tuple[Heard, ...] = ()
+    illustrations: tuple[Illustration, ...] = ()
+
+
+def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Return a diagnosis as ``diagnosis.json`` has it.
+
+    Examples
+    --------
+    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
+    >>> as_json(nothing)["verdict"], as_json(nothing)["location"]
+    ([], None)
+    """
+    location = diagnosis.location
+    return {
+        "verdict": list(diagnosis.verdict),
+        "equivalent": [list(pair) for pair in diagnosis.equivalent],
+        "location": None
+        if location is None
+        else {
+            "stage": location.stage,
+            "channels": list(location.channels),
+            "band_hz": [_rounded(f, 1) for f in location.band],
+            "phase": location.phase,
+            "conditions": location.conditions,
+            "p_value": _rounded(location.p_value),
+        },
+        "stages": {
+            name: {
+                "gap": _rounded(stage.gap), "share": _rounded(stage.share),
+                "p_value": _rounded(stage.p_value),
+            }
+            for name, stage in diagnosis.stages.items()
+        },
+        "effects": [_effect(effect) for effect in diagnosis.effects],
+        "probabilities": {n: _rounded(p) for n, p in diagnosis.probabilities.items()},
+        "parameters": {
+            name: [_rounded(x) for x in interval] for name, interval in diagnosis.parameters.items()
+        },
+        "next_measurement": diagnosis.next_measurement,
+        "held_out": list(diagnosis.held_out),
+        "gap": _rounded(diagnosis.gap),
+        "gap_floor": _rounded(diagnosis.floor),
+        "p_value": _rounded(diagnosis.p_value),
+        "heard": [
+            {
+                "recording": h.recording,
+                "label": {
+                    "measured": h.label_measured, "before": h.label_before, "after": h.label_after,
+                },
+                "level_dba": {
+                    "measured": _rounded(h.level_measured, 1),
+                    "before": _rounded(h.level_before, 1),
+                    "after": _rounded(h.level_after, 1),
+                },
+            }
+            for h in diagnosis.heard
+        ],
+        "notes": list(diagnosis.notes),
+        "seconds": _rounded(diagnosis.seconds, 1),
+    }  # fmt: skip
+
+
+def _effect(effect: EffectFinding) -> dict[str, Any]:
+    return {
+        "name": effect.name,
+        "stage": effect.stage,
+        "probability": _rounded(effect.probability),
+        "parameters": {
+            name: value if isinstance(value, str) else _rounded(value, 6)
+            for name, value in effect.parameters.items()
+        },
+        "strength": None if effect.strength is None else [_rounded(x) for x in effect.strength],
+        **{
+            name: _rounded(getattr(effect, name))
+            for name in (
+                "gap_before", "gap_recalibrated", "gap_after", "gap_floor", "closed", "closed_low",
+                "closed_high", "closed_by_effect",
+            )
+        },
+    }  # fmt: skip
+
+
+def _rounded(value: float | None, digits: int = 4) -> float | None:
+    if value is None or not math.isfinite(value):
+        return None
+    return round(float(value), digits)

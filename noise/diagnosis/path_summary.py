@@ -1,0 +1,246 @@
+"""How a channel compares with what the torque should have made of it, in numbers.
+
+The torque that was measured is sent through the way that the rig file has, so that nothing the
+contact does enters: gain, delay and coherence by band, the shape of what the channel has too much,
+when it comes, and how it decays.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft, rfft
+from scipy.signal import get_window
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["BAND_EDGES", "band_names", "common_residual", "path_summary", "segments"]
+
+Numbers = dict[str, float]
+
+BAND_EDGES = np.array([
+    30.0, 60.0, 120.0, 180.0, 260.0, 350.0, 500.0, 700.0, 1000.0, 1400.0, 2000.0, 2800.0, 4000.0,
+    5600.0, 8000.0, 10000.0,
+])  # fmt: skip
+"""[Hz]"""
+
+USABLE = 0.42
+"""Share of the sampling rate up to which a band counts."""
+
+_LEAD, _TAIL = 0.08, 0.01
+"""Left out at the ends, where the structure rings from before and nothing follows [s]."""
+
+_LONGEST_DELAY = 2.5e-3
+_FINE = 16
+"""The delay is found to so many parts of a sample."""
+
+_REFERENCE_BAND = (80.0, 6000.0)
+"""In which gain and delay are those of the whole channel [Hz]."""
+
+_SHORT = 256
+"""Samples of a short segment, in which blows are told from what lasts."""
+
+_CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
+
+
+def band_names(rate: float) -> list[int]:
+    """Numbers of the bands that a rate reaches, from 1."""
+    return [i for i in range(1, BAND_EDGES.size) if BAND_EDGES[i] < USABLE * rate]
+
+
+def segments(x: NDArray[np.float64], size: int) -> NDArray[np.complex128]:
+    """Spectra of half-overlapping Hann-windowed segments, each of its own mean removed.
+
+    Returns
+    -------
+    ndarray, shape (n_segments, size // 2 + 1)
+        Their mean square is the signal's, summed over both sides.
+    """
+    hop = size // 2
+    count = (x.size - size) // hop + 1
+    cut = np.lib.stride_tricks.sliding_window_view(x, size)[::hop][:count]
+    return np.asarray(rfft((cut - cut.mean(axis=1, keepdims=True)) * _window(size), axis=1))
+
+
+def path_summary(
+    predicted: NDArray[np.float64],
+    measured: NDArray[np.float64],
+    rate: float,
+    slips: NDArray[np.float64],
+) -> tuple[Numbers, NDArray[np.float64]]:
+    """Compare a channel with its prediction.
+
+    Parameters
+    ----------
+    predicted, measured : ndarray, shape (n,)
+    rate : float
+        [Hz]
+    slips : ndarray, shape (n_slips,)
+        Times at which the contact begins to slip [s].
+
+    Returns
+    -------
+    dict of str to float
+    residual : ndarray
+        Measured less predicted, without its ends.
+    """
+    ends = slice(int(_LEAD * rate), predicted.size - int(_TAIL * rate))
+    p, m = predicted[ends], measured[ends]
+    residual = m - p
+    size = 2048 if rate < 40e3 else 4096
+    of_p, of_m = segments(p, size), segments(m, size)
+    frequency = np.asarray(np.fft.rfftfreq(size, 1.0 / rate), np.float64)
+    pp, mm = (np.abs(of_p) ** 2).mean(axis=0), (np.abs(of_m) ** 2).mean(axis=0)
+    pm = (np.conj(of_p) * of_m).mean(axis=0)
+    left = (np.abs(of_m - of_p) ** 2).mean(axis=0)
+    numbers = _by_band(frequency, pp, mm, pm, left, rate)
+    numbers |= _transfer(frequency, pp, mm, pm, rate)
+    numbers |= _course(p, m, residual)
+    numbers |= _blows(residual, rate, slips - ends.start / rate)
+    return numbers, residual
+
+
+def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: float) -> Numbers:
+    """Coherence, by band, of what two channels have too much."""
+    size = 2048
+    x, y = segments(one, size), segments(other, size)
+    frequency = np.asarray(np.fft.rfftfreq(size, 1.0 / rate), np.float64)
+    cross = np.abs((np.conj(x) * y).mean(axis=0)) ** 2
+    power = (np.abs(x) ** 2).mean(axis=0) * (np.abs(y) ** 2).mean(axis=0)
+    return {
+        f"common_{i}": math.log(float((cross / (power + 1e-30))[inside].mean()) + 1e-9)
+        for i, (low, high) in enumerate(_CROSS_BANDS)
+        if (inside := (frequency > low) & (frequency < high)).any()
+    }
+
+
+def _by_band(
+    frequency: NDArray[np.float64],
+    pp: NDArray[np.float64],
+    mm: NDArray[np.float64],
+    pm: NDArray[np.complex128],
+    left: NDArray[np.float64],
+    rate: float,
+) -> Numbers:
+    numbers: Numbers = {}
+    place = np.digitize(frequency, BAND_EDGES)
+    coherent = np.abs(pm) ** 2 / (pp * mm + 1e-30) * mm
+    for i in band_names(rate):
+        inside = place == i
+        if not inside.any():
+            continue
+        a, c = float(pp[inside].sum()) + 1e-30, float(mm[inside].sum()) + 1e-30
+        share = min(float(coherent[inside].sum()) / c, 0.99999)
+        numbers[f"gain_{i}"] = 0.5 * math.log(c / a)
+        numbers[f"incoherent_{i}"] = math.log(1.0 - share + 1e-5)
+        numbers[f"transfer_{i}"] = math.log(1e-4 + abs(complex(pm[inside].sum()) / a - 1.0))
+        numbers[f"left_{i}"] = 0.5 * math.log(float(left[inside].sum()) / c + 1e-9)
+        numbers[f"excess_{i}"] = 0.5 * math.log(float(left[inside].mean()) + 1e-14)
+        numbers[f"level_{i}"] = 0.5 * math.log(float(mm[inside].mean()) + 1e-14)
+    return numbers
+
+
+def _transfer(
+    frequency: NDArray[np.float64],
+    pp: NDArray[np.float64],
+    mm: NDArray[np.float64],
+    pm: NDArray[np.complex128],
+    rate: float,
+) -> Numbers:
+    """Gain, tilt, delay and decay of the way from predicted to measured."""
+    inside = (frequency > _REFERENCE_BAND[0]) & (frequency < _REFERENCE_BAND[1])
+    h = pm[inside] / np.maximum(pp[inside], 1e-30)
+    coherence = np.abs(pm[inside]) ** 2 / (pp[inside] * mm[inside] + 1e-30)
+    weight = coherence / np.maximum(1.0 - coherence, 1e-3)
+    total = float(weight.sum()) + 1e-12
+    magnitude = np.log(np.maximum(np.abs(h), 1e-6))
+    gain = float((weight * magnitude).sum()) / total
+    octaves = np.log2(frequency[inside] / 700.0)
+    phases = np.zeros(frequency.size, complex)
+    phases[inside] = weight * h / np.maximum(np.abs(h), 1e-30)
+    length = _FINE * 2 * (frequency.size - 1)
+    correlation = irfft(phases, length) * (0.5 * length / total)
+    most = int(_LONGEST_DELAY * rate * _FINE)
+    correlation = np.concatenate([correlation[-most:], correlation[: most + 1]])
+    best = int(np.argmax(correlation))
+    impulse = np.zeros(frequency.size, complex)
+    impulse[inside] = h * np.sqrt(weight / weight.max()) * np.hanning(h.size) ** 0.25
+    energy = irfft(impulse) ** 2
+    whole = float(energy.sum()) + 1e-30
+
+    def between(start: float, end: float) -> float:
+        return math.log(float(energy[int(start * rate) : int(end * rate)].sum()) / whole + 1e-6)
+
+    return {
+        "gain": gain,
+        "gain_spread": math.sqrt(float((weight * (magnitude - gain) ** 2).sum()) / total),
+        "tilt": float((weight * octaves * magnitude).sum())
+        / max(float((weight * octaves**2).sum()), 1e-12),
+        "delay": 1e6 * (best - most) / (_FINE * rate),
+        "phase_match": float(correlation[best]),
+        "ring_early": between(6e-4, 2e-3),
+        "ring_middle": between(2e-3, 6e-3),
+        "ring_late": between(6e-3, 20e-3),
+        "ring_before": math.log(float(energy[-int(0.02 * rate) :].sum()) / whole + 1e-6),
+    }
+
+
+def _course(
+    p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
+) -> Numbers:
+    quarter = residual.size // 4
+
+    def quarters(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(x[: 4 * quarter].reshape(4, quarter).std(axis=1)) + 1e-12
+
+    of_residual, of_gain = quarters(residual), quarters(m) / quarters(p)
+    return {
+        "residual": math.log(float(residual.std()) / (float(m.std()) + 1e-12) + 1e-9),
+        "residual_kurtosis": math.log(_kurtosis(residual)),
+        "kurtosis": math.log(_kurtosis(m) / _kurtosis(p)),
+        "residual_drift": math.log(of_residual[3] / of_residual[0]),
+        "residual_quarters": float(of_residual.std() / of_residual.mean()),
+        "gain_drift": math.log(of_gain[3] / of_gain[0]),
+    }
+
+
+def _blows(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float64]) -> Numbers:
+    power = np.abs(segments(residual, _SHORT)) ** 2
+    frequency = np.fft.rfftfreq(_SHORT, 1.0 / rate)
+    high = power[:, (frequency > 2500.0) & (frequency < min(12e3, USABLE * rate))].sum(axis=1)
+    low = power[:, frequency < 2500.0].sum(axis=1)
+    numbers = {
+        "high_floor": _half_log(float(np.percentile(high, 10))),
+        "high_most": _half_log(float(np.percentile(high, 98))),
+        "high_mean": _half_log(float(high.mean())),
+        "low_floor": _half_log(float(np.percentile(low, 10))),
+    }
+    if slips.size > 3:
+        middle = (np.arange(high.size) + 1) * (_SHORT // 2) / rate
+        last = np.searchsorted(slips, middle) - 1
+        since = np.where(last >= 0, middle - slips[np.maximum(last, 0)], 1.0)
+        after, later = high[since < 2.5e-3], high[since > 5e-3]
+        if after.size > 5 and later.size > 5:
+            numbers["high_at_slips"] = math.log(
+                (float(after.mean()) + 1e-14) / (float(later.mean()) + 1e-14)
+            )
+    return numbers
+
+
+def _kurtosis(x: NDArray[np.float64]) -> float:
+    square = (x - x.mean()) ** 2
+    return float(square @ square) / x.size / (float(square.mean()) ** 2 + 1e-30) + 1e-9
+
+
+def _half_log(power: float) -> float:
+    return 0.5 * math.log(power + 1e-14)
+
+
+@lru_cache(maxsize=8)
+def _window(size: int) -> NDArray[np.float64]:
+    window = get_window("hann", size)
+    return np.asarray(window / math.sqrt(float((window**2).sum())))
