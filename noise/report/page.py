@@ -8,29 +8,24 @@ their gain, so the page says what full scale is worth, and whether it is the sam
 
 from __future__ import annotations
 
-import base64
-import hashlib
 import io
 import math
 from collections import Counter
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import soundfile
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE
 from noise.atomic import atomic
 from noise.classifier import LABELS
 from noise.report.figures import entry_figures
+from noise.report.templating import as_base64, template
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from jinja2 import Template
 
     from models.recording import Recording
     from noise.labels.segments import Segment
@@ -129,7 +124,7 @@ def write_report(
         _Section(entry, _values(entry), _probabilities(entry.segment), sound, figure)
         for entry, sound, figure in zip(entries, sounds, figures, strict=True)
     ]
-    html = _template().render(
+    html = template("report.html.j2").render(
         title=title,
         summary=_counts(entries) if summary is None else summary,
         gain=_common_gain(entries),
@@ -138,22 +133,6 @@ def write_report(
     with atomic(path) as temporary:
         # Names of files may hold what no UTF-8 can.
         temporary.write_bytes(html.encode("utf-8", "backslashreplace"))
-
-
-@lru_cache(maxsize=1)
-def _template() -> Template:
-    environment = Environment(
-        loader=PackageLoader("noise.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["base64"] = lambda content: base64.b64encode(content).decode()
-    environment.filters["sha256"] = lambda text: base64.b64encode(
-        hashlib.sha256(text.encode()).digest()
-    ).decode()
-    return environment.get_template("report.html.j2")
 
 
 def _sound(entry: ReportEntry) -> _Sound | None:
@@ -181,7 +160,7 @@ def _sound(entry: ReportEntry) -> _Sound | None:
     wav = io.BytesIO()
     soundfile.write(wav, samples, rate, format="WAV", subtype="PCM_16")
     return _Sound(
-        uri=f"data:audio/wav;base64,{base64.b64encode(wav.getvalue()).decode()}",
+        uri=f"data:audio/wav;base64,{as_base64(wav.getvalue())}",
         length=f"{len(samples) / rate:.3g} s",
         gain="not stated" if entry.full_scale is None else _full_scale(entry.full_scale),
     )

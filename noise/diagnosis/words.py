@@ -1,0 +1,214 @@
+"""Causes, stages and chances in plain words.
+
+An effect's name is for programs; an engineer in a hurry needs a clause that says what happens on
+the rig. Chances are worded by one scale, that of the Intergovernmental Panel on Climate Change
+(Mastrandrea et al. 2010, Guidance note on consistent treatment of uncertainties), because it says
+which number a word stands for; the number always follows the word.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from models.errors import ParameterError
+
+__all__ = [
+    "CAUSES",
+    "STAGES",
+    "Cause",
+    "cause_of",
+    "chance",
+    "evidence",
+    "frequency",
+    "joined",
+    "p_number",
+    "percent",
+]
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A cause in words: what it is called, and in a clause what it does."""
+
+    name: str
+    clause: str
+
+
+CAUSES = {
+    "amplitude_softening": Cause(
+        "amplitude softening", "the elastomer softens the further it is deformed to and fro"
+    ),
+    "background_noise": Cause(
+        "background noise", "the room and the amplifiers add random noise to the channels"
+    ),
+    "beam_modes": Cause(
+        "further beam modes", "clamp, beams and anchors ring in modes that the model leaves out"
+    ),
+    "channel_delay": Cause("channel delay", "the channels do not share one clock"),
+    "clipping": Cause("clipping", "an amplifier cuts off the peaks of a channel"),
+    "critical_torque_scatter": Cause(
+        "critical torque scatter", "no two sticks break at the same torque"
+    ),
+    "frictional_heating": Cause(
+        "frictional heating", "friction heats the surface, and a warmer contact carries less torque"
+    ),
+    "gain_error": Cause("gain error", "the sensitivity of a channel is not what it is taken for"),
+    "mains_hum": Cause("mains hum", "cables pick up the mains and its harmonics"),
+    "mount_resonance": Cause("mount resonance", "a sensor moves by itself on its mount"),
+    "partial_slip": Cause(
+        "partial slip", "the contact creeps before it slips, and so lets go gradually"
+    ),
+    "plate_modes": Cause(
+        "further plate modes", "what radiates the sound has resonances that the model leaves out"
+    ),
+    "room_reflections": Cause(
+        "room reflections", "sound reaches the microphone by way of the room as well"
+    ),
+    "shaft_compliance": Cause(
+        "shaft compliance", "the shaft twists under the torque and is no rigid drive"
+    ),
+    "slip_pulse": Cause("slip pulse", "a large slip sets off a blow between beam and anchor"),
+    "speed_fluctuation": Cause("speed fluctuation", "the shaft does not turn evenly"),
+    "static_ageing": Cause("static ageing", "the contact grows stronger the longer it sticks"),
+    "transfer_film": Cause(
+        "transfer film",
+        "rubber comes off onto the shaft, which raises the torque and lessens its drops",
+    ),
+    "velocity_strengthening": Cause(
+        "velocity strengthening", "the kinetic torque rises with the sliding speed"
+    ),
+    "velocity_weakening": Cause(
+        "velocity weakening", "the kinetic torque falls with the sliding speed"
+    ),
+    "viscoelastic_stiffness": Cause(
+        "viscoelastic stiffness", "the elastomer is stiffer, and damps, the faster it is deformed"
+    ),
+    "none": Cause("no gap", "recordings and simulation differ as repeats do"),
+    "parameters": Cause("parameters", "values of the rig file are off; no effect is missing"),
+    "unknown": Cause("unknown", "something that is in no library of effects"),
+}
+"""Every shipped effect, and what a verdict can be beside effects, by name."""
+
+STAGES = {
+    "drive": "the shaft's motion",
+    "friction": "contact, elastomer",
+    "structure": "clamp and beams",
+    "radiation": "plate and room",
+    "measurement": "sensors and cables",
+}
+"""What each stage of the chain is, in its order."""
+
+_CHANCES = (
+    (0.99, "virtually certain"),
+    (0.90, "very likely"),
+    (0.66, "likely"),
+    (0.33, "about as likely as not"),
+    (0.10, "unlikely"),
+    (0.01, "very unlikely"),
+    (-math.inf, "exceptionally unlikely"),
+)
+
+_EVIDENCE = (
+    (0.001, "repeats would hardly ever differ as much"),
+    (0.01, "repeats would very seldom differ as much"),
+    (0.05, "repeats would seldom differ as much"),
+    (math.inf, "repeats differ as much"),
+)
+
+
+def cause_of(name: str) -> Cause:
+    """Return a cause in words; one that is not shipped is the user's own.
+
+    Examples
+    --------
+    >>> cause_of("mains_hum").name, cause_of("zero_offset").clause
+    ('mains hum', 'an effect of your own')
+    """
+    return CAUSES.get(name) or Cause(name.replace("_", " "), "an effect of your own")
+
+
+def chance(probability: float) -> str:
+    """Return a probability as a word and a number.
+
+    Raises
+    ------
+    ParameterError
+        It does not lie between 0 and 1.
+
+    Examples
+    --------
+    >>> chance(0.96), chance(0.999), chance(0.004)
+    ('very likely, 96 %', 'virtually certain, > 99 %', 'exceptionally unlikely, < 1 %')
+    """
+    if not 0.0 <= probability <= 1.0:
+        raise ParameterError(f"probability is {probability!r}; it lies between 0 and 1")
+    word = next(word for least, word in _CHANCES if probability >= least)
+    return f"{word}, {percent(probability)}"
+
+
+def evidence(p_value: float) -> str:
+    """Return a p-value as words.
+
+    Examples
+    --------
+    >>> evidence(0.0004), evidence(0.4)
+    ('repeats would hardly ever differ as much', 'repeats differ as much')
+    """
+    if not math.isfinite(p_value):
+        return "not determined"
+    return next(words for below, words in _EVIDENCE if p_value < below)
+
+
+def p_number(p_value: float) -> str:
+    """Return a p-value as it is printed.
+
+    Examples
+    --------
+    >>> p_number(0.4), p_number(0.0123), p_number(0.00042), p_number(1e-7)
+    ('p = 0.40', 'p = 0.012', 'p = 0.0004', 'p < 0.0001')
+    """
+    if not math.isfinite(p_value):
+        return "p not determined"
+    if p_value < 1e-4:
+        return "p < 0.0001"
+    return f"p = {p_value:.{2 if p_value >= 0.1 else 3 if p_value >= 0.01 else 4}f}"
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent; no estimate of a chance is said to be certain by rounding.
+
+    Examples
+    --------
+    >>> percent(0.5), percent(0.996), percent(0.001), percent(-0.2)
+    ('50 %', '> 99 %', '< 1 %', '−20 %')
+    """
+    if 0.0 < share < 0.01:
+        return "< 1 %"
+    if 0.99 < share < 1.0:
+        return "> 99 %"
+    return f"{100 * share:.0f} %".replace("-", "\N{MINUS SIGN}")
+
+
+def frequency(hertz: float) -> str:
+    """Return a frequency as it is read.
+
+    Examples
+    --------
+    >>> frequency(50.0), frequency(1800.0), frequency(15e3)
+    ('50 Hz', '1.8 kHz', '15 kHz')
+    """
+    return f"{hertz / 1e3:.3g} kHz" if hertz >= 1e3 else f"{hertz:.3g} Hz"
+
+
+def joined(words: list[str] | tuple[str, ...], last: str = "and") -> str:
+    """Return an enumeration.
+
+    Examples
+    --------
+    >>> joined(["a", "b", "c"]), joined(["a"])
+    ('a, b and c', 'a')
+    """
+    if len(words) < 2:
+        return "".join(words)
+    return f"{', '.join(words[:-1])} {last} {words[-1]}"
