@@ -87,7 +87,7 @@ def contact_rates(
             if n_hooks > 3:
                 h3(context, values[3], inner[3], rates[3], contact)
             if n_hooks > 4:
-                h4(context, values[4], inner[8], rates[8], contact)
+                h4(context, values[4], inner[4], rates[4], contact)
             if n_hooks > 5:
                 h5(context, values[5], inner[5], rates[5], contact)
             if n_hooks > 6:

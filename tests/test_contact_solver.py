@@ -220,3 +220,21 @@ def test_blocks_joined_are_one_run(name):
 def test_the_same_run_is_the_same_bit_for_bit():
     one, two = (solve("calibrated", "contact_with_memory", 5.0, 0.1) for _ in range(2))
     assert np.array_equal(one, two)
+
+
+def test_each_of_five_effects_has_states_of_its_own():
+    names = (
+        "velocity_strengthening", "critical_torque_scatter", "amplitude_softening",
+        "viscoelastic_stiffness", "frictional_heating",
+    )  # fmt: skip
+
+    def torque(order):
+        return simulate_motion(
+            THESIS, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=3745.0,
+            seconds=0.05, rate=30e3, effects=[EFFECTS[name].active({}) for name in order],
+            rng=np.random.default_rng(0),
+        ).torque  # fmt: skip
+
+    given, turned = torque(names), torque((names[-1], *names[:-1]))
+    assert np.abs(given - turned).max() < 0.05 * given.std()
+    assert np.abs(given - torque(names[:-1])).max() > 0.01 * given.std()
