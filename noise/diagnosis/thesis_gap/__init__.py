@@ -1,0 +1,1 @@
+"""The thesis's own gap: which missing effect brings its constant torques to its measured tables."""
