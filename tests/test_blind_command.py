@@ -15,8 +15,10 @@ from tests.blind.design import BLOCKS, draw_design
 from tests.blind.effects import CAUSES, DEVELOPMENT, SEALED
 from tests.blind.gap import gaps_of
 from tests.blind.generate import Wanted, generate_sealed
+from tests.blind.score.floors import floors_of
 from tests.blind.score.log import LOG, commit
 from tests.blind.score.run import Asked, score_sealed
+from tests.blind.score.truth import truth_of
 
 BLIND = Path(__file__).parent / "blind"
 
@@ -160,3 +162,20 @@ def test_the_gap_is_one_where_nothing_is_the_matter_and_above_elsewhere(kind):
     assert (found["gap"] == 1.0) == (kind == "none")
     assert found["gap"] >= 1.0
     assert set(found["gap_alone"]) == {form.effect for form, _ in design.forms}
+
+
+@pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
+def test_turning_a_strong_effect_off_closes_the_gap_to_about_a_floor():
+    designs = (draw_design(2, i, DEVELOPMENT) for i in range(200))
+    design = next(d for d in designs if d.kind == "one" and d.forms[0][1] > 0.8)
+    found = floors_of({"seed": 2, "index": design.index, "set": DEVELOPMENT, "block": "shares"})
+    assert found["floors"] > 2.0
+    assert found["floors_off"] < 2.0
+    assert 0.5 < found["closed"] < 1.2
+
+
+def test_floors_stand_for_the_gap_where_an_answer_has_them():
+    answer = {"class": "one", "verdict": ["clipping"], "effects": [], "gap": 1.2}
+    assert not truth_of("a", answer).counts
+    assert truth_of("a", answer | {"floors": 3.0, "closed": 0.9}).counts
+    assert truth_of("a", answer | {"floors": 3.0, "closed": 0.9}).closed == 0.9

@@ -1,19 +1,22 @@
 """The second rig keeps the laws of mechanics, and agrees with the first where both are plain."""
 
 import itertools
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
 from models.measured import measured_responses
 from models.rig_file import load_material_rig, load_rig
+from noise.diagnosis.case import read_case
+from noise.diagnosis.floor import case_gap
 from sim.acquisition import Acquisition
 from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from tests.blind import kernel
-from tests.blind.cases import NOISE, Case, responses_of, structures_of, write_case
-from tests.blind.design import draw_design
+from tests.blind.cases import NOISE, Case, responses_of, run_case, structures_of, write_case
+from tests.blind.design import Condition, Design, draw_design
 from tests.blind.effects import CAUSES, DEVELOPMENT, FORMS, STRANGERS
 from tests.blind.files import support_name, write_npz
 from tests.blind.rig import FIXED, Parameters, plain, turn
@@ -65,6 +68,17 @@ def test_the_work_of_friction_is_what_is_stored_and_what_the_dampers_take():
     assert change == pytest.approx(stored[-1] - stored[0], abs=0.01 * np.trapezoid(put_in) / RATE)
 
 
+def test_bolted_clamp_leaves_the_elastomer_its_own_frequency():
+    p = Parameters(support_stiffness=FIXED, damping=1e-9, critical_torque=0.0, kinetic_torque=0.0)
+    start = np.zeros(12)
+    start[0], start[7] = 2e-3, 60.0
+    s = turn(plain(p, 60.0, rate=RATE, seconds=1.0, settling=0.0), start).states
+    spectrum = np.abs(np.fft.rfft(s[:, kernel.X1] * np.hanning(len(s)), 4 * len(s)))
+    found = np.argmax(spectrum) * RATE / (4 * len(s))
+    assert found == pytest.approx(np.sqrt(665.0 * 65000.0) / (2.0 * np.pi), abs=0.6)
+    assert not s[:, kernel.X2].any()
+
+
 def test_steady_sliding_carries_the_kinetic_torque():
     s = turn(plain(Parameters(), 12.0, rate=RATE, seconds=0.3, settling=0.5))
     assert s.torque == pytest.approx(8.0, abs=1e-4)
@@ -101,6 +115,55 @@ def test_both_rigs_agree_without_effects(fit, support, speed):
     assert _slip_frequency(mine.torque) == pytest.approx(_slip_frequency(theirs), rel=5e-3)
     for low in (100.0, 200.0, 400.0, 800.0, 1600.0):
         assert _band(mine.torque, low) == pytest.approx(_band(theirs, low), abs=0.3)
+
+
+@pytest.mark.parametrize(("speed", "subharmonic"), [(1.6, False), (1.8, False), (2.0, True)])
+def test_both_rigs_slip_alternately_at_the_same_speeds(speed, subharmonic):
+    """Where slips alternate, the octave below the slips' is loud; a little faster it is not."""
+    rig = load_material_rig("fluorocarbon-thesis")
+    at = rig.fit(0.279e-3)
+    p = Parameters(
+        rig.elastomer_inertia, rig.clamp_inertia, at.elastomer_stiffness, 2214.0,
+        at.damping[2214.0], at.critical_torque, at.kinetic_torque,
+    )  # fmt: skip
+    mine = turn(plain(p, speed, rate=RATE, seconds=0.5, settling=0.35)).torque
+    theirs = simulate_motion(
+        rig, ConstantSpeed(speed), interference=0.279e-3, support_stiffness=2214.0, seconds=0.85,
+        rate=RATE, rng=np.random.default_rng(0),
+    ).torque[31_500:]  # fmt: skip
+    shares = [_band(x, 44.0) - 10.0 * np.log10(_power(x)) for x in (mine, theirs)]
+    assert [share > -20.0 for share in shares] == [subharmonic] * 2
+    if subharmonic:
+        assert shares[0] == pytest.approx(shares[1], abs=0.5)
+
+
+def _power(torque):
+    return np.sum(np.abs(np.fft.rfft((torque - torque.mean()) * np.hanning(torque.size))) ** 2)
+
+
+class _Exact(Design):
+    """A design whose recordings are of the rig as its file has it, without scatter."""
+
+    def true(self, condition, recording):  # noqa: ARG002
+        return self.nominal(condition)
+
+
+@pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
+def test_over_fits_and_supports_the_second_rig_lies_within_the_floor_of_sim(tmp_path):
+    drawn = draw_design(41, 0, DEVELOPMENT)
+    speeds = {0.178: 1.3, 0.279: 2.1, 0.381: 3.4}
+    conditions = tuple(
+        Condition(speed, fit, support)
+        for fit, speed in speeds.items()
+        for support in (2214.0, 3745.0, FIXED)
+    )
+    same = {"conditions": conditions, "seconds": 0.5, "rate": 30_000, "forms": (), "offsets": {}}
+    design = _Exact(**{f.name: getattr(drawn, f.name) for f in fields(drawn)} | same)
+    write_case(run_case(design), tmp_path / "case", None)
+    rig = load_rig(tmp_path / "case" / "rig.toml")
+    gap = case_gap(read_case([tmp_path / "case"], rig).recordings, rig)
+    assert gap.distance < 1.2
+    assert gap.p_value > 0.05
 
 
 def _slip_frequency(torque):

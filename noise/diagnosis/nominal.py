@@ -14,10 +14,11 @@ import numpy as np
 from scipy.signal import resample_poly
 
 from models.recording import Channel, Recording
-from noise.diagnosis.paths import predict
+from noise.diagnosis.paths import moved, predict
 from noise.diagnosis.replicates import replicates
 from noise.diagnosis.scatter import Scatter, scattered
 from sim.acquisition import Acquisition
+from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
@@ -25,6 +26,8 @@ from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
 
     from models.condition import Condition
     from models.rig import Rig
@@ -37,7 +40,13 @@ _LEAST_RATE = 75e3
 """Of the simulated motion [Hz]."""
 
 _SETTLING = 0.35
-"""[s]"""
+"""Simulated before a recording begins [s]."""
+
+_RUNNING_OUT = 0.12
+"""Simulated after a recording ends [s]."""
+
+_FADE = 0.1
+"""In which a torque fades in and out [s], outside of the recording."""
 
 _CHANNELS = ("torque", "acceleration", "pressure", "angle")
 
@@ -86,14 +95,18 @@ def nominal_recordings(
     scatter = scatter or Scatter()
     decimation = math.ceil(_LEAST_RATE / rate)
     fine = decimation * rate
-    settling = round(_SETTLING * fine)
-    n = settling + round(seconds * rate) * decimation
+    before = round(_SETTLING * rate)
+    kept = slice(before, before + round(seconds * rate))
+    n = (kept.stop + round(_RUNNING_OUT * rate)) * decimation
     levels = Acquisition().noise
+    at = (condition.interference, condition.support_stiffness)
+    bushing = lumped_bushing(rig, *at)
     recordings = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
+        once = scattered(rig, scatter, rng)
         motion = simulate_motion(
-            scattered(rig, scatter, rng),
+            once,
             ConstantSpeed(condition.speed * float(np.exp(scatter.structure * rng.normal()))),
             interference=condition.interference,
             support_stiffness=condition.support_stiffness,
@@ -102,16 +115,20 @@ def nominal_recordings(
             effects=effects,
             rng=rng,
         )
-        turned = motion.shaft_angle[settling:] - motion.shaft_angle[settling]
         torque, angle = (
             resample_poly(x, 1, decimation, padtype="line")
-            for x in (motion.torque[settling:], turned)
+            for x in (motion.torque, motion.shaft_angle)
         )
+        faded = torque[kept].mean() + _faded(torque - torque[kept].mean(), rate)
+        lumped = lumped_bushing(once, *at)
+        outputs = {
+            name: predict(faded, rate, moved(found_ways[name], bushing, lumped))[kept]
+            for name in ("acceleration", "pressure")
+        }
         signals = {
-            "torque": torque,
-            "acceleration": predict(torque, rate, found_ways["acceleration"]),
-            "pressure": predict(torque, rate, found_ways["pressure"]),
-            "angle": angle,
+            "torque": torque[kept],
+            **outputs,
+            "angle": angle[kept] - angle[before],
         }
         samples = np.stack(
             [
@@ -124,3 +141,17 @@ def nominal_recordings(
             Recording(samples, rate, tuple(Channel(name) for name in _CHANNELS), condition)
         )
     return recordings
+
+
+def _faded(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Fade in and out.
+
+    Errors of a measured response have it ring before and after whatever is sudden, for as long as
+    its lines are fine. What rings on from before a recording must be in it, but the start from rest
+    and the end of the simulation must not.
+    """
+    n = round(_FADE * rate)
+    slope = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, n))
+    gain = np.ones(signal.size)
+    gain[:n], gain[-n:] = slope, slope[::-1]
+    return np.asarray(signal * gain)

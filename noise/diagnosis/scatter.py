@@ -8,6 +8,7 @@ about the nominal one.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -29,7 +30,7 @@ class Scatter:
         Of the elastomer's stiffness, damping and inertia, the kinetic torque, and what the
         critical torque exceeds it by, each on its own; assumed.
     structure : float
-        Of the clamp's inertia and of the speed; assumed.
+        Of the clamp's inertia, the support's stiffness and the speed; assumed.
     gain : float
         Of the sensors' sensitivities; assumed.
     """
@@ -61,11 +62,12 @@ def scattered(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
     True
     """
     stiffness, kinetic, drop, damping, inertia = np.exp(scatter.bushing * rng.standard_normal(5))
-    clamp = float(np.exp(scatter.structure * rng.standard_normal()))
+    # the support's stiffness scatters too; what counts is the clamp's frequency, hence the root
+    clamp = float(np.exp(math.sqrt(2.0) * scatter.structure * rng.standard_normal()))
 
     def drawn(fit: Fit) -> Fit:
         sliding = fit.kinetic_torque * float(kinetic)
-        excess = (fit.critical_torque - fit.kinetic_torque) * float(drop * kinetic)
+        excess = (fit.critical_torque - fit.kinetic_torque) * float(drop)
         return replace(
             fit,
             elastomer_stiffness=fit.elastomer_stiffness * float(stiffness),

@@ -33,11 +33,14 @@ _RESOLUTION = 12.0
 _USABLE = 0.42
 """Share of the sampling rate up to which a band counts."""
 
-_SENSOR_NOISE = {"torque": 0.015, "acceleration": 0.1, "pressure": 3e-3}
-"""Noise that good sensors may have from 0 to 15 kHz, rms in the channel's unit: added to all bands,
-so that what lies below it does not count; assumed."""
+_SENSOR_NOISE = {"torque": 0.025, "acceleration": 0.1, "pressure": 4e-3}
+"""White noise from 0 to 15 kHz, rms in the channel's unit, five times that of good sensors: added
+to all bands, so that what lies below it does not count; assumed."""
 
 _NOISE_BAND = 15e3
+
+_CORNER = 500.0
+"""Below which that noise rises as 1/f, as amplifiers' and rooms' does [Hz]; assumed."""
 
 _N_BANDS = math.floor(_PER_OCTAVE * math.log2(_HIGHEST / _LOWEST))
 _EDGES = _LOWEST * 2.0 ** (np.arange(_N_BANDS + 1) / _PER_OCTAVE)
@@ -106,7 +109,8 @@ def _levels(signal: NDArray[np.float64], rate: float, kind: str) -> NDArray[np.f
     spectrum = welch(signal - signal.mean(), rate, _RESOLUTION)
     power = band_power(spectrum, _EDGES[:-1], _EDGES[1:])
     power[_EDGES[1:] > _USABLE * rate] = np.nan
-    noise = _SENSOR_NOISE[kind] ** 2 * np.diff(_EDGES) / _NOISE_BAND
+    lines = np.diff(_EDGES) + _CORNER * np.diff(np.log(_EDGES))
+    noise = _SENSOR_NOISE[kind] ** 2 * lines / _NOISE_BAND
     return np.asarray(0.5 * np.log(power + noise))
 
 

@@ -25,8 +25,9 @@ def main(arguments: list[str] | None = None) -> None:
         sys.stderr.write(f"{given.cases} cases in {seconds:.0f} s\n")
         return
     asked = Asked(
-        given.diagnose, given.baseline, given.quick, given.workers, given.equivalent, given.own
-    )
+        given.diagnose, given.baseline, given.quick, given.workers, given.equivalent, given.own,
+        given.floors,
+    )  # fmt: skip
     if given.sealed == (given.folder is not None):
         raise SystemExit("score takes either a folder that generate has written, or --sealed")
     if given.sealed:
@@ -58,6 +59,10 @@ def _parser() -> argparse.ArgumentParser:
     scoring.add_argument(
         "--equivalent", type=Path,
         help="JSON: lists of effects that count as one, declared before the cases are seen",
+    )  # fmt: skip
+    scoring.add_argument(
+        "--floors", action="store_true",
+        help="reckon gaps, and what the effect's absence closes, by the diagnosis' own floors",
     )  # fmt: skip
     scoring.add_argument("--own", type=Path, help="cases of own forms, for what is lost to others")
     return parser

@@ -37,7 +37,8 @@ OWN_CLOSED = 0.90
 class Asked:
     """How to score: by which diagnosis or baseline, quick or not, on how many processes.
 
-    `own` is a folder of cases with the library's own forms, scored beside for the loss.
+    `own` is a folder of cases with the library's own forms, scored beside for the loss; with
+    `floors`, gaps are reckoned as the diagnosis does.
     """
 
     diagnose: str
@@ -46,6 +47,7 @@ class Asked:
     workers: int = 1
     equivalent: Path | None = None
     own: Path | None = None
+    floors: bool = False
 
     @property
     def about(self) -> str:
@@ -71,6 +73,10 @@ def _said(truths: list[Truth], data: Path, asked: Asked) -> list[Mapping | None]
 
 def _scores(data: Path, answers: Path, asked: Asked, least_closed: float) -> Scores:
     add_gaps(answers, asked.workers)
+    if asked.floors:
+        from .floors import add_floors
+
+        add_floors(answers, asked.workers)
     truths = read_truths(answers)
     missing = [t.case for t in truths if not (data / t.case).is_dir()]
     if missing:

@@ -3,6 +3,7 @@
 `gap` is the distance, in floors, between recordings with and without what is the matter (1 being
 repeats of each other); `alone` the same for each effect by itself; `closed` the share of the
 closable gap that goes when the effect is turned off: 1 where the plain rig is the nominal one.
+Where an answer has floors, as `floors` adds them, its gap is theirs.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def truth_of(case: str, answer: dict) -> Truth:
         tuple(answer["verdict"]),
         tuple(effect["stage"] for effect in effects),
         effects[0]["strength"] if len(effects) == 1 else None,
-        answer.get("gap"),
+        answer.get("floors", answer.get("gap")),
         answer.get("gap_alone", {}),
         answer.get("closed", 1.0),
     )
