@@ -237,7 +237,7 @@ def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
     def train(*, seed, added, progress):
         assert not added
         asked.append((seed, list(progress(iter([1, 2]), 2))))
-        card = {"test": {"n": 600, "macro_f1": 0.9}}
+        card = {"pressure": {"n": 600, "macro_f1": 0.9}}
         return Namespace(save=lambda path: path.write_bytes(b"trained"), card=card)
 
     monkeypatch.setattr("noise.classifier.training.train", train)
@@ -247,7 +247,7 @@ def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
     assert printed == f"{out}\n"
     assert out.read_bytes() == b"trained"
     assert asked == [(3, [1, 2])]
-    assert "macro f1 0.9" in err
+    assert "pressure: n 600, macro f1 0.9" in err
 
 
 @pytest.mark.parametrize("given", [[], ["--out", "mine.pkl"], ["--out", "file.txt/mine.npz"]])

@@ -11,9 +11,9 @@ import pytest
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.classifier import load_classifier
-from noise.classifier.forest import grow_forest
 from noise.classifier.own_recordings import MOST_WINDOWS, read_labelled
 from noise.classifier.own_samples import OwnSample, own_samples, split_files
+from noise.classifier.trees import grow_trees
 from noise.cli import main
 from noise.labels.audacity import label_track, read_label_track
 from noise.recordings import write_recording
@@ -132,7 +132,7 @@ def test_what_is_no_label_track_is_refused(tmp_path, content):
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 10, 31])
 def test_a_third_of_the_files_is_held_out_and_none_is_on_both_sides(n):
     samples = [
-        OwnSample({}, ("creak", "none")[file % 2], f"{file}.wav")
+        OwnSample(np.zeros((1, 2), np.float32), ("creak", "none")[file % 2], f"{file}.wav")
         for file in range(n)
         for _ in range(1 + file % 4)
     ]
@@ -143,14 +143,16 @@ def test_a_third_of_the_files_is_held_out_and_none_is_on_both_sides(n):
     assert [s.name for s in split_files(samples, seed=4)[1]] == [s.name for s in held]
 
 
-def test_weights_say_what_counts_within_a_label():
-    x = np.repeat([[0.0], [1.0]], 40, axis=0)
-    y = np.tile([0, 1], 40)
+def test_weights_say_what_counts_where_labels_meet():
+    x = np.repeat([[0.0], [1.0]], 60, axis=0)
+    y = np.tile([0, 1, 2], 40)
     heavy = np.where((y == 1) & (x[:, 0] == 0.0), 5.0, 1.0)
     there = np.array([[0.0]])
-    alike = grow_forest(x, y, n_trees=20, least_leaf=5, seed=0).probabilities(there)
-    weighted = grow_forest(x, y, n_trees=20, least_leaf=5, seed=0, weights=heavy)
-    assert weighted.probabilities(there)[0, 1] > alike[0, 1] + 0.05
+    alike, weighted = (
+        grow_trees(x, y, weight=weight, n_rounds=20, seed=0).probabilities(there)[0, 1]
+        for weight in (np.ones(y.size), heavy)
+    )
+    assert weighted > alike + 0.2
 
 
 def test_a_window_that_cannot_be_analysed_is_named(tmp_path):

@@ -1,4 +1,4 @@
-"""The classifier: features of a segment in, probabilities of the five labels out.
+"""The classifier: features of windows in, probabilities of the five labels out.
 
 Trained on simulation alone, it ships with the package (``data/classifier.npz``); how it is
 trained is the business of `noise.classifier.training`.
@@ -8,20 +8,21 @@ from __future__ import annotations
 
 import json
 import zipfile
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from functools import lru_cache
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from models.errors import ParameterError
 from noise.atomic import atomic
-from noise.classifier.forest import Forest
+from noise.classifier.calibration import Calibration
+from noise.classifier.trees import Trees
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -30,73 +31,74 @@ __all__ = ["LABELS", "Classifier", "load_classifier"]
 LABELS = ("creak", "squawk", "squeal", "none", "unknown")
 """The labels, in the order of all tables of probabilities."""
 
-_FORMAT = 1
+_FORMAT = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Classifier:
-    """A forest over named features, with calibrated probabilities.
+    """Boosted trees over named features, with calibrated probabilities.
 
     Parameters
     ----------
     feature_names : tuple of str
-        Features in the forest's order.
-    forest : Forest
-    sharpness : float
-        Exponent that calibrates the forest's votes: above 1 it makes them more certain.
+        Features in the order of the trees; of `noise.labels.windows.FEATURE_NAMES`.
+    trees : Trees
+    calibrations : pair of Calibration
+        For sound alone, and for sound with what else was measured.
     card : mapping
-        How it was trained: seed, counts, score.
+        How it was trained: seed, counts, scores.
     """
 
     feature_names: tuple[str, ...]
-    forest: Forest
-    sharpness: float
+    trees: Trees
+    calibrations: tuple[Calibration, Calibration]
     card: Mapping[str, object]
 
     classes = LABELS
 
-    def predict_proba(self, features: list[dict[str, float]]) -> NDArray[np.float64]:
+    def predict_proba(self, features: NDArray[np.float32]) -> NDArray[np.float64]:
         """Probabilities of `LABELS`.
 
         Parameters
         ----------
-        features : list of dict
-            One a segment, as `features.recording_features` gives them; those that are missing
-            count as unknown.
+        features : ndarray, shape (n_windows, n_features)
+            By `feature_names`; NaN where missing.
 
         Returns
         -------
-        ndarray, shape (n_segments, 5)
+        ndarray, shape (n_windows, 5)
             Each row sums to 1.
         """
-        x = np.array([[row.get(name, np.nan) for name in self.feature_names] for row in features])
-        return calibrated(self.forest.probabilities(x.reshape(len(features), -1)), self.sharpness)
+        votes = self.trees.probabilities(features)
+        alone, among_others = (calibration(votes) for calibration in self.calibrations)
+        more = has_more_than_sound(features, self.feature_names)
+        return np.where(more[:, None], among_others, alone)
 
     def save(self, path: str | Path) -> None:
         """Write the classifier into an NPZ file, whole or not at all."""
-        arrays = {field.name: getattr(self.forest, field.name) for field in fields(Forest)}
+        arrays = {field.name: getattr(self.trees, field.name) for field in fields(Trees)}
         header = {
             "format": _FORMAT,
             "labels": LABELS,
             "feature_names": self.feature_names,
-            "sharpness": self.sharpness,
+            "calibrations": [asdict(calibration) for calibration in self.calibrations],
             "card": dict(self.card),
         }
         with atomic(path) as temporary, temporary.open("wb") as file:
             np.savez_compressed(file, header=np.array(json.dumps(header)), **arrays)
 
 
-def calibrated(votes: NDArray[np.float64], sharpness: float) -> NDArray[np.float64]:
-    """Raise votes to a power and normalise them: one number, fitted on samples no tree saw.
+def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> NDArray[np.bool_]:
+    """Whether windows have features of other channels than the pressure, shape (n_windows,).
 
     Examples
     --------
-    >>> calibrated(np.array([[0.5, 0.25, 0.25]]), 2.0).round(2).tolist()
-    [[0.67, 0.17, 0.17]]
+    >>> features = np.array([[1.0, np.nan], [1.0, 2.0]], dtype=np.float32)
+    >>> has_more_than_sound(features, ["pressure_range", "torque_mean"]).tolist()
+    [False, True]
     """
-    floor = 1e-3  # no forest of some hundred trees can tell less
-    p = (votes + floor) ** sharpness
-    return np.asarray(p / p.sum(axis=1, keepdims=True))
+    others = [i for i, name in enumerate(names) if not name.startswith("pressure_")]
+    return np.asarray(np.isfinite(features[:, others]).any(axis=1))
 
 
 def load_classifier(path: str | Path | None = None) -> Classifier:
@@ -125,11 +127,12 @@ def _load(path: Path) -> Classifier:
     try:
         with np.load(path, allow_pickle=False) as file:
             header = json.loads(str(file["header"]))
-            forest = Forest(**{field.name: file[field.name] for field in fields(Forest)})
-        forest.check()
-        highest = int(forest.feature.max(initial=-1))
-        if highest >= len(header["feature_names"]) or forest.votes.shape[1] != len(LABELS):
+            trees = Trees(**{field.name: file[field.name] for field in fields(Trees)})
+        trees.check()
+        highest = int(trees.feature.max(initial=-1))
+        if highest >= len(header["feature_names"]) or trees.base.shape != (len(LABELS),):
             raise ValueError("its trees ask for features or labels that it does not name")
+        calibrations = header["calibrations"]
         if header["format"] != _FORMAT or tuple(header["labels"]) != LABELS:
             raise ParameterError(
                 f"classifier {path}: of format {header['format']!r}, expected {_FORMAT}; "
@@ -137,8 +140,8 @@ def _load(path: Path) -> Classifier:
             )
         return Classifier(
             feature_names=tuple(header["feature_names"]),
-            forest=forest,
-            sharpness=float(header["sharpness"]),
+            trees=trees,
+            calibrations=(_calibration(calibrations[0]), _calibration(calibrations[1])),
             card=header["card"],
         )
     except FileNotFoundError:
@@ -149,3 +152,10 @@ def _load(path: Path) -> Classifier:
         raise ParameterError(
             f"classifier {path}: no file that `bushing-noise train` wrote ({error})"
         ) from None
+
+
+def _calibration(stored: Mapping[str, Any]) -> Calibration:
+    found = Calibration(float(stored["sharpness"]), tuple(float(w) for w in stored["weights"]))
+    if len(found.weights) != len(LABELS):
+        raise ValueError("its calibration is not one of its labels")
+    return found

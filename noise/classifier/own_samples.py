@@ -13,21 +13,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.registry import recording_features
-from models.errors import ParameterError
+from features.registry import KINDS
 from noise.classifier.model import LABELS
+from noise.labels.windows import describe
+from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
     from noise.classifier.own_recordings import OwnWindow
 
-__all__ = ["OWN_WEIGHT", "OwnSample", "as_arrays", "own_card", "own_samples", "split_files"]
+__all__ = ["OWN_WEIGHT", "OwnSample", "own_card", "own_samples", "split_files"]
 
 OWN_WEIGHT = 5.0
 """Simulated samples that an own window counts as."""
+
+LEAST_RATE = 1000.0
+"""A recording sampled more slowly shows nothing of a noise [Hz]."""
 
 _EVERY = 3
 """One file of so many is held out."""
@@ -35,9 +39,19 @@ _EVERY = 3
 
 @dataclass(frozen=True, eq=False)
 class OwnSample:
-    """Features of a window of the user's, its label, and the file that it comes from."""
+    """What the user's own recordings teach: a window of at most a second.
 
-    features: Mapping[str, float]
+    Parameters
+    ----------
+    features : ndarray of float32, shape (n_windows, n_features)
+        Of the windows that the classifier sees in it, by `noise.labels.windows.FEATURE_NAMES`.
+    label : str
+        One of `noise.classifier.LABELS`.
+    name : str
+        File that it comes from.
+    """
+
+    features: NDArray[np.float32]
     label: str
     name: str
 
@@ -49,20 +63,18 @@ def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[OwnSample], list[str
     -------
     samples : list of OwnSample
     refusals : list of str
-        One line for each file with a window that can't be analysed.
+        One line for each file with a window that nothing can be learned from.
     """
     samples: list[OwnSample] = []
     refused: dict[str, str] = {}
     for window in windows:
-        try:
-            features = recording_features(window.recording)
-        except ParameterError as error:
-            refused.setdefault(window.name, f"{window.name}: {error}")
-            continue
-        if any(np.isfinite(value) for value in features.values()):
-            samples.append(OwnSample(features, window.label, window.name))
-        else:
-            refused.setdefault(window.name, f"{window.name}: has nothing to learn from in it")
+        blocks = RecordingBlocks.of(window.recording)
+        if blocks.rate >= LEAST_RATE and any(blocks.first(kind) is not None for kind in KINDS):
+            features = describe(blocks).features
+            if np.isfinite(features).any():
+                samples.append(OwnSample(features, window.label, window.name))
+                continue
+        refused.setdefault(window.name, f"{window.name}: has nothing to learn from in it")
     return samples, list(refused.values())
 
 
@@ -73,7 +85,8 @@ def split_files(samples: Sequence[OwnSample], seed: int) -> tuple[list[OwnSample
 
     Examples
     --------
-    >>> runs = [OwnSample({}, "creak", f"{run}.wav") for run in range(6) for _ in range(4)]
+    >>> one = np.zeros((1, 2), dtype=np.float32)
+    >>> runs = [OwnSample(one, "creak", f"{run}.wav") for run in range(6) for _ in range(4)]
     >>> learned, held = split_files(runs, seed=0)
     >>> len(learned), len(held), {s.name for s in learned} & {s.name for s in held}
     (16, 8, set())
@@ -92,22 +105,6 @@ def split_files(samples: Sequence[OwnSample], seed: int) -> tuple[list[OwnSample
     )
 
 
-def as_arrays(
-    samples: Sequence[OwnSample], names: Sequence[str]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return features, shape (n, n_names), and labels by their place in `LABELS`.
-
-    Examples
-    --------
-    >>> x, y = as_arrays([OwnSample({"torque_mean": 3.0}, "squeal", "a.wav")], ["torque_mean"])
-    >>> x.tolist(), y.tolist()
-    ([[3.0]], [2])
-    """
-    x = np.array([[s.features.get(name, np.nan) for name in names] for s in samples], dtype=float)
-    y = np.array([LABELS.index(sample.label) for sample in samples], dtype=np.int64)
-    return x.reshape(len(samples), len(names)), y
-
-
 def own_card(
     learned: Sequence[OwnSample],
     held: Sequence[OwnSample],
@@ -122,7 +119,7 @@ def own_card(
     before, after : ndarray, shape (n_held, 5)
         Probabilities of those held out from the classifier without the others and with them.
     """
-    _, y = as_arrays(held, ())
+    y = np.array([LABELS.index(sample.label) for sample in held])
     right = [
         round(float(np.mean(p.argmax(axis=1) == y)), 4) if held else None for p in (before, after)
     ]

@@ -1,77 +1,98 @@
 """Training the classifier, on simulation and on made-up strangers alone.
 
-Three sets that share no draw: one grows the forest, one calibrates its probabilities, and one is
-scored and written into the card. What
-a run is called follows from its physics (`noise.classifier.truth`), never from its features. The
-classifier has to work with whatever channels there are, so the samples keep any subset of them.
+Three sets that share no draw: one grows the trees, one calibrates its probabilities, and one is
+scored and written into the card. What a sample is called follows from its physics
+(`noise.classifier.samples`), never from its features; samples whose name hangs on a bound of the
+definition are in none of the three. The classifier has to work with whatever channels there are, so
+each recording of three channels is shown several times, with some of them masked. The user's own
+recordings are learned beside the simulated ones, and neither calibrate nor change the score.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from joblib import Parallel, delayed
-from scipy.optimize import minimize_scalar
 
-from features.registry import recording_feature_names, recording_features
+from features.windows.table import HOP, LENGTH
 from models.errors import ParameterError
-from models.recording import Channel, Recording
-from noise.classifier.designs import random_design
-from noise.classifier.forest import grow_forest
-from noise.classifier.hearing import RATES, as_recorded, coloured_noise, resampled
-from noise.classifier.model import LABELS, Classifier, calibrated
-from noise.classifier.own_samples import (
-    OWN_WEIGHT,
-    as_arrays as own_arrays,
-    own_card,
-    split_files,
-)
-from noise.classifier.strangers import stranger
-from noise.classifier.truth import noise_of
-from sim.acquisition import Acquisition
-from sim.run import simulate
+from noise.classifier.calibration import means_of_groups
+from noise.classifier.model import LABELS, Classifier, has_more_than_sound
+from noise.classifier.operating_point import fit_calibration
+from noise.classifier.own_samples import OWN_WEIGHT, own_card, split_files
+from noise.classifier.samples import draw
+from noise.classifier.scores import scores
+from noise.classifier.swells import swelling
+from noise.classifier.trees import grow_trees
+from noise.labels.windows import FEATURE_NAMES, describe
+from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
 
-    from noise.classifier.forest import Forest
     from noise.classifier.own_samples import OwnSample
+    from noise.classifier.samples import Drawn
 
-__all__ = ["Sample", "draw_sample", "train"]
+__all__ = ["Sample", "describe_drawn", "draw_sample", "learn", "train"]
 
-N_TRAINING = 3000
-"""Samples that grow the forest."""
+N_TRAINING = 4300
+"""Samples that grow the trees."""
+
+_MADE_UP = 0.6
+"""So many sounds that are no bushing's are learned beside each sample: they cost little."""
 
 N_CALIBRATION = 600
 """Samples that calibrate its probabilities."""
 
-N_TEST = 600
+N_TEST = 480
 """Samples that are scored."""
 
-N_TREES = 150
-LEAST_LEAF = 4
+N_ROUNDS = 220
 
-_STRANGERS = 0.25
-_QUIET = 0.08
-"""Shares of the samples that are strangers, and noise or hum alone; the others are simulated."""
+_QUIET_DB = 30.0
+"""Windows that lie so far below a sample's loudest are pauses, of which nothing is learned."""
 
-_PRESSURE_ALONE = 0.6
-"""Share of the simulated samples that keep the sound alone; the others keep any subset."""
+_OUTSIDE = 0.1
+"""How far a window may reach beyond the time for which the label holds [s]."""
 
-_LEAST_TONE_TO_ROOM = -5.0
+_KINDS = ("pressure", "acceleration", "torque")
+_SUBSETS = (
+    ("pressure",),
+    _KINDS,
+    ("pressure", "acceleration"),
+    ("pressure", "torque"),
+    ("acceleration", "torque"),
+    ("acceleration",),
+    ("torque",),
+)
+"""Which channels are left of three; what is most often measured comes first."""
+
+_SELDOM = 0.4
+"""How much the other subsets count."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """One training sample: a segment's features and what it is."""
+    """One training sample.
 
-    features: dict[str, float]
+    Parameters
+    ----------
+    features : ndarray of float32, shape (n_windows, n_features)
+        Of the windows in which the label holds, by `noise.labels.windows.FEATURE_NAMES`.
+    label : str
+    ambiguous : bool
+        Whether the label hangs on a bound of its definition.
+    """
+
+    features: NDArray[np.float32]
     label: str
+    ambiguous: bool
 
 
 def train(
@@ -100,172 +121,152 @@ def train(
     Classifier
         Its card tells the scores on the last of the three sets and, where recordings were added,
         on those of them that were held out.
+
+    Raises
+    ------
+    ParameterError
+        Too few samples to hold every label.
     """
-    total = n_training + n_calibration + n_test
-    children = np.random.SeedSequence(seed).spawn(total)
+    n_made_up = round(_MADE_UP * n_training)
+    total = n_made_up + n_training + n_calibration + n_test
+    seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
+    seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw_sample)(child) for child in children
+        delayed(draw_sample)(child, bushings=i >= n_made_up) for i, child in enumerate(seeds)
     )
     samples = list(progress(drawn, total) if progress else drawn)
-    # Levels are left out: the samples are not calibrated, and a noise is one at any level.
-    names = [
-        name
-        for name in recording_feature_names()
-        if any(np.isfinite(sample.features[name]) for sample in samples[:n_training])
-    ]
-    x = np.array([[sample.features[name] for name in names] for sample in samples])
-    y = np.array([LABELS.index(sample.label) for sample in samples])
-    missing = set(range(len(LABELS))) - set(y[:n_training].tolist())
-    if missing:
-        absent = ", ".join(LABELS[i] for i in sorted(missing))
+    return learn(samples, n_made_up + n_training, n_calibration, seed=seed, added=added)
+
+
+def draw_sample(seed: np.random.SeedSequence, *, bushings: bool = True) -> Sample:
+    """Draw one sample and describe the part of it where its label holds.
+
+    It is no simulated bushing unless `bushings`.
+    """
+    (other,) = seed.spawn(1)
+    drawn = draw(np.random.default_rng(seed), bushings=bushings)
+    return describe_drawn(swelling(drawn, np.random.default_rng(other)))
+
+
+def describe_drawn(drawn: Drawn) -> Sample:
+    """Describe the windows of a drawn recording in which its label holds and something sounds."""
+    found = describe(RecordingBlocks.of(drawn.recording))
+    start = np.arange(len(found.features)) * HOP
+    outside = np.maximum(drawn.span[0] - start, 0.0) + np.maximum(
+        np.minimum(start + LENGTH, drawn.recording.duration) - drawn.span[1], 0.0
+    )
+    kept = (outside <= _OUTSIDE) & (found.level > found.level.max() - _QUIET_DB)
+    kept[np.argmin(outside - 1e-6 * found.level)] |= not kept.any()
+    return Sample(found.features[kept], drawn.label, drawn.ambiguous)
+
+
+def learn(
+    samples: Sequence[Sample],
+    n_training: int,
+    n_calibration: int,
+    *,
+    seed: int,
+    added: Sequence[OwnSample] = (),
+) -> Classifier:
+    """Learn from the first samples, calibrate on the next, and score on what is left."""
+    found = {sample.label for sample in samples[:n_training]}
+    absent = ", ".join(label for label in LABELS if label not in found)
+    if absent:
         raise ParameterError(f"{n_training} training samples hold no {absent}; draw more of them")
-    learn, calibrate, test = np.split(np.arange(total), [n_training, n_training + n_calibration])
-    forest = grow_forest(x[learn], y[learn], n_trees=N_TREES, least_leaf=LEAST_LEAF, seed=seed)
-    own: dict[str, object] = {}
-    if added:
-        forest, own["own"] = _grown_with(added, forest, names, x[learn], y[learn], seed)
-    sharpness = _fitted_sharpness(forest.probabilities(x[calibrate]), y[calibrate])
+    limits = (0, n_training, n_training + n_calibration, len(samples))
+    training, calibration, test = (
+        [sample for sample in samples[first:last] if not sample.ambiguous]
+        for first, last in pairwise(limits)
+    )
     card: dict[str, object] = {
         "seed": seed,
-        "samples": dict(Counter(sample.label for sample in samples[:n_training])),
-        "test": _scores(calibrated(forest.probabilities(x[test]), sharpness), y[test]),
-        **own,
+        "samples": dict(sorted(Counter(sample.label for sample in training).items())),
+        "ambiguous": round(float(np.mean([sample.ambiguous for sample in samples])), 4),
     }
-    return Classifier(tuple(names), forest, sharpness, card)
+    classifier = _grown(training, (), calibration, seed)
+    if added:
+        learned, held = split_files(added, seed)
+        without, classifier = classifier, _grown(training, learned, calibration, seed)
+        before, after = (_of_recordings(c, held) for c in (without, classifier))
+        card["own"] = own_card(learned, held, before, after)
+    for name, kinds in (("pressure", _SUBSETS[0]), ("three_channels", _SUBSETS[1])):
+        scored = _masked(test, kinds)
+        if scored:
+            y = np.array([LABELS.index(sample.label) for sample in scored])
+            card[name] = scores(_of_recordings(classifier, scored), y, LABELS.index("unknown"))
+    return replace(classifier, card=card)
 
 
-def draw_sample(seed: np.random.SeedSequence) -> Sample:
-    """Draw one sample: a simulated run, a stranger, or noise alone."""
-    rng = np.random.default_rng(seed)
-    kind = rng.random()
-    if kind < _STRANGERS:
-        recording, label = _stranger(rng), "unknown"
-    elif kind < _STRANGERS + _QUIET:
-        recording, label = _quiet(rng), "none"
-    else:
-        recording, label = _simulated(rng)
-    return Sample(recording_features(recording), label)
-
-
-def _grown_with(
-    added: Sequence[OwnSample],
-    without: Forest,
-    names: Sequence[str],
-    x: NDArray[np.float64],
-    y: NDArray[np.int64],
+def _grown(
+    training: Sequence[Sample],
+    own: Sequence[OwnSample],
+    calibration: Sequence[Sample],
     seed: int,
-) -> tuple[Forest, dict[str, object]]:
-    """Grow the forest on the user's own samples as well; return it and what the card says of it."""
-    learned, held = split_files(added, seed)
-    own_x, own_y = own_arrays(learned, names)
-    forest = grow_forest(
-        np.concatenate([x, own_x]),
-        np.concatenate([y, own_y]),
-        n_trees=N_TREES,
-        least_leaf=LEAST_LEAF,
-        seed=seed,
-        weights=np.concatenate([np.ones(y.size), np.full(own_y.size, OWN_WEIGHT)]),
-    )
-    held_x, _ = own_arrays(held, names)
-    before, after = without.probabilities(held_x), forest.probabilities(held_x)
-    return forest, own_card(learned, held, before, after)
+) -> Classifier:
+    """Grow trees and calibrate them."""
+    x, y, weight = _shown(training, own)
+    known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
+    names = tuple(name for name, k in zip(FEATURE_NAMES, known, strict=True) if k)
+    trees = grow_trees(x[:, known], y, weight=weight, n_rounds=N_ROUNDS, seed=seed)
+    calibrations = []
+    for kinds in _SUBSETS[:2]:
+        heard = _masked(calibration, kinds)
+        x, group = _windows(heard)
+        labels = np.array([LABELS.index(sample.label) for sample in heard], dtype=np.int64)
+        votes = trees.probabilities(x[:, known])
+        calibrations.append(fit_calibration(votes, group, labels, LABELS.index("unknown")))
+    return Classifier(names, trees, (calibrations[0], calibrations[1]), {})
 
 
-def _simulated(rng: np.random.Generator) -> tuple[Recording, str]:
-    while True:
-        design = random_design(rng)
-        try:
-            run = simulate(
-                design.rig,
-                design.speed,
-                interference=design.interference,
-                support_stiffness=design.support_stiffness,
-                seconds=float(rng.uniform(0.5, 1.0)),
-                acquisition=Acquisition(noise={}),
-                rng=rng,
-            )
-        except ParameterError:  # a drawn design that cannot be built
-            continue
-        break
-    label = noise_of(run)
-    source = run.pressure if label != "none" else np.zeros_like(run.pressure)
-    rate = int(rng.choice(RATES))
-    sound = resampled(as_recorded(source, run.motion.rate, rng), run.motion.rate, rate)
-    heard = _one_track(sound, rate, rng)
-    if rng.random() < _PRESSURE_ALONE:
-        return heard, label
-    # Torque and acceleration have noise of their own, small against the oscillation or not.
-    torque, acceleration = run.recording["torque"], run.recording["acceleration"]
-    measured = {
-        "torque": torque
-        + 10.0 ** rng.uniform(-3.5, -1.5)
-        * np.abs(torque).mean()
-        * rng.standard_normal(torque.size),
-        "acceleration": acceleration
-        + 10.0 ** rng.uniform(-3.0, 0.5) * rng.standard_normal(acceleration.size),
-    }
-    rows = {"pressure": heard.samples[0]} | {
-        name: resampled(signal, run.recording.rate, rate) for name, signal in measured.items()
-    }
-    kept = [name for name in rows if rng.random() < 0.6] or [str(rng.choice(list(rows)))]
-    n = min(row.size for row in rows.values())
-    recording = replace(
-        heard,
-        samples=np.stack([rows[name][:n] for name in kept]),
-        channels=tuple(Channel(name) for name in kept),
-    )
-    return recording, label
+def _shown(
+    samples: Sequence[Sample], own: Sequence[OwnSample]
+) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.float64]]:
+    """Windows of all samples under several masks, their labels, and weights of balanced labels."""
+    rows, labels, weights = [], [], []
+    everything: tuple[Sample | OwnSample, ...] = (*samples, *own)
+    for sample in everything:
+        several = has_more_than_sound(sample.features, FEATURE_NAMES).any()
+        counts = 1.0 if isinstance(sample, Sample) else OWN_WEIGHT
+        for kinds in _SUBSETS if several else _SUBSETS[:1]:
+            n = len(sample.features)
+            rows.append(_mask(sample.features, kinds))
+            labels += [LABELS.index(sample.label)] * n
+            share = 1.0 if kinds in _SUBSETS[:2] else _SELDOM
+            weights += [share * counts / n] * n
+    y, weight = np.array(labels), np.array(weights)
+    weight /= np.bincount(y, weight)[y]
+    return np.concatenate(rows), y, weight / weight.mean()
 
 
-def _stranger(rng: np.random.Generator) -> Recording:
-    rate = int(rng.choice(RATES))
-    n = int(rng.uniform(0.4, 1.0) * rate)
-    return _one_track(as_recorded(stranger(n, rate, rng), rate, rng), rate, rng)
+def _masked(samples: Sequence[Sample], kinds: tuple[str, ...]) -> list[Sample]:
+    """Return the samples that have these channels, with no others."""
+    return [
+        replace(sample, features=_mask(sample.features, kinds))
+        for sample in samples
+        if len(kinds) == 1 or has_more_than_sound(sample.features, FEATURE_NAMES).any()
+    ]
 
 
-def _quiet(rng: np.random.Generator) -> Recording:
-    """Noise, with or without hum, as a microphone records where nothing sounds."""
-    rate = int(rng.choice(RATES))
-    n = int(rng.uniform(0.4, 1.0) * rate)
-    noise = coloured_noise(n, rng.uniform(0.0, 2.2), rng)
-    if rng.random() < 0.5:
-        time = np.arange(n) / rate
-        mains = float(rng.choice((50.0, 60.0)))
-        for k in range(1, int(rng.integers(2, 8))):
-            phase = 2 * np.pi * (k * mains * time + rng.random())
-            noise += 10.0 ** rng.uniform(_LEAST_TONE_TO_ROOM / 20.0, 1.0) / k * np.sin(phase)
-    return _one_track(noise, rate, rng)
+def _of_recordings(
+    classifier: Classifier, samples: Sequence[Sample] | Sequence[OwnSample]
+) -> NDArray[np.float64]:
+    """Mean probabilities of each sample's windows, shape (n_samples, 5)."""
+    if not samples:
+        return np.empty((0, len(LABELS)))
+    x, group = _windows(samples)
+    columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
+    return means_of_groups(classifier.predict_proba(x[:, columns]), group)
 
 
-def _one_track(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> Recording:
-    gain = 10.0 ** rng.uniform(-3.0, -0.5)
-    return Recording(gain * sound[None, :], rate, (Channel("pressure"),), calibrated=False)
+def _windows(
+    samples: Sequence[Sample] | Sequence[OwnSample],
+) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """Windows of all samples, and which sample each is of."""
+    none = np.empty((0, len(FEATURE_NAMES)), dtype=np.float32)
+    group = np.repeat(np.arange(len(samples)), [len(s.features) for s in samples])
+    return np.concatenate([none, *(s.features for s in samples)]), group
 
 
-def _fitted_sharpness(votes: NDArray[np.float64], y: NDArray[np.int64]) -> float:
-    """Exponent with the smallest log loss."""
-
-    def log_loss(sharpness: float) -> float:
-        p = calibrated(votes, sharpness)
-        return float(-np.mean(np.log(p[np.arange(y.size), y])))
-
-    return float(minimize_scalar(log_loss, bounds=(0.3, 5.0), method="bounded").x)
-
-
-def _scores(p: NDArray[np.float64], y: NDArray[np.int64]) -> dict[str, float]:
-    from sklearn.metrics import f1_score
-
-    found = p.argmax(axis=1)
-    certainty = p.max(axis=1)
-    bins = np.minimum((10.0 * certainty).astype(int), 9)
-    right = found == y
-    ece = sum(
-        np.mean(bins == b) * abs(np.mean(right[bins == b]) - np.mean(certainty[bins == b]))
-        for b in np.unique(bins)
-    )
-    return {
-        "n": int(y.size),
-        "accuracy": round(float(np.mean(right)), 4),
-        "macro_f1": round(float(f1_score(y, found, average="macro")), 4),
-        "expected_calibration_error": round(float(ece), 4),
-    }
+def _mask(features: NDArray[np.float32], kinds: tuple[str, ...]) -> NDArray[np.float32]:
+    kept = [name.partition("_")[0] in kinds for name in FEATURE_NAMES]
+    return np.where(kept, features, np.float32(np.nan))

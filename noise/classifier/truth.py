@@ -14,11 +14,16 @@ none of which the classifier sees; lines are found as `features.lines` does.
   natural rubber's chatter does, "much like squawk".
 - *creak*, too: friction that is random without stick, as on a transfer film; its sound "resembled
   the creaking, except that it was not as loud" (6.2).
+
+Every bound in here is a number where nature has none. A run whose name changes when one of them is
+moved by 2 dB, or a share by a fifth, is `ambiguous`: two listeners would differ, and neither
+learning nor a score should depend on which of them is asked.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,14 +32,16 @@ from features.bands import overall_level
 from features.lines import Lines, find_lines
 from features.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
-from sim.regime import LEAST_OSCILLATION, Regime, friction_regime
+from sim.regime import LEAST_OSCILLATION, LEAST_STICK
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from sim.run import Run
 
-__all__ = ["LEAST_LEVEL", "noise_of", "sustained_frequencies"]
+__all__ = ["LEAST_LEVEL", "Evidence", "evidence", "is_ambiguous", "noise_of"]
 
 LEAST_LEVEL = 35.0
 """Sound below it is not heard in a quiet room [dB(A) re 20 uPa]."""
@@ -47,6 +54,93 @@ _LEAST_SHARE = 0.5
 
 _LINE_RANGE = 18.0
 """Lines weaker than the strongest by more than this do not count [dB]."""
+
+_DECIBELS, _SHARE = 2.0, 0.2
+"""How far a bound is moved to see whether a name depends on it."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a run's name follows from.
+
+    Parameters
+    ----------
+    level : float
+        Of the sound, re the least level that is heard [dB].
+    blows : float
+        Level of the blows' sound re all the rest, re the least of a creak [dB].
+    swing : float
+        Standard deviation of the torque over its mean, re the least of an oscillation.
+    audible : float
+        The same of its part from 20 Hz to 5 kHz.
+    stick : float
+        Share of the time that the contact sticks, re the least of stick-slip.
+    second : float
+        Level of the second line of the torque re the first, re the least that counts [dB].
+    share : float
+        Of that part's power in the strongest line, re the least of a predominant one.
+    """
+
+    level: float
+    blows: float
+    swing: float
+    audible: float
+    stick: float
+    second: float
+    share: float
+
+    @property
+    def name(self) -> str:
+        """The noise."""
+        if self.swing <= 1.0 or self.level < 0.0:
+            return "none"
+        if self.blows >= 0.0:
+            return "creak"
+        if self.audible <= 1.0:
+            return "none"
+        if self.second >= 0.0:
+            return "squawk"
+        if self.share > 1.0:
+            return "squeal"
+        return "squawk" if self.stick > 1.0 else "creak"
+
+    def moved(self) -> Iterator[Evidence]:
+        """Yield the evidence with each bound moved down and up in turn."""
+        for step in (-_DECIBELS, _DECIBELS):
+            yield replace(self, level=self.level + step)
+            yield replace(self, blows=self.blows + step)
+            yield replace(self, second=self.second + step)
+        for factor in (1.0 - _SHARE, 1.0 / (1.0 - _SHARE)):
+            yield replace(self, swing=self.swing * factor)
+            yield replace(self, audible=self.audible * factor)
+            yield replace(self, stick=self.stick * factor)
+            yield replace(self, share=self.share * factor)
+
+
+def evidence(run: Run) -> Evidence:
+    """Measure what the name of a run at constant speed follows from.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> evidence(simulate(load_material_rig("PDMS"), 5.0)).swing < 1e-3
+    True
+    """
+    rate = run.motion.rate
+    last = run.motion.since(run.motion.torque.size // 2)
+    mean = abs(float(np.mean(last.torque)))
+    lines = find_lines(autospectrum(last.torque, rate), low=20.0, high=5e3)
+    blows = _level(run.pulse_pressure, rate) - _level(run.pressure - run.pulse_pressure, rate)
+    return Evidence(
+        level=_level(run.pressure, rate) - LEAST_LEVEL,
+        blows=-math.inf if math.isnan(blows) else blows + _CREAK_MARGIN,
+        swing=float(np.std(last.torque)) / mean / LEAST_OSCILLATION,
+        audible=math.sqrt(lines.total) / mean / LEAST_OSCILLATION,
+        stick=float(np.mean(last.stuck)) / LEAST_STICK,
+        second=_second(lines) + _LINE_RANGE,
+        share=lines.strongest_share / _LEAST_SHARE,
+    )
 
 
 def noise_of(run: Run) -> str:
@@ -62,46 +156,26 @@ def noise_of(run: Run) -> str:
     >>> noise_of(simulate(rig, 1.0, interference=0.381e-3, support_stiffness=2214.0))
     'creak'
     """
-    rate = run.motion.rate
-    level = _level(run.pressure, rate)
-    if friction_regime(run.motion) is Regime.STEADY_SLIDING or level < LEAST_LEVEL:
-        return "none"
-    if _level(run.pulse_pressure, rate) >= _level(run.pressure - run.pulse_pressure, rate) - (
-        _CREAK_MARGIN
-    ):
-        return "creak"
-    lines = _torque_lines(run)
-    if _audible_oscillation(run, lines) <= LEAST_OSCILLATION:
-        return "none"
-    if _sustained(lines).size > 1:
-        return "squawk"
-    if lines.strongest_share > _LEAST_SHARE:
-        return "squeal"
-    return "squawk" if friction_regime(run.motion) is Regime.STICK_SLIP else "creak"
+    return evidence(run).name
 
 
-def sustained_frequencies(run: Run) -> NDArray[np.float64]:
-    """Frequencies of the torque's lines within 18 dB of the strongest [Hz], strongest first."""
-    return _sustained(_torque_lines(run))
+def is_ambiguous(found: Evidence) -> bool:
+    """Whether the name changes where one of the bounds is moved by 2 dB or a fifth.
+
+    Examples
+    --------
+    >>> clear = Evidence(20.0, -30.0, 5.0, 5.0, 0.0, -9.0, 1.8)
+    >>> clear.name, is_ambiguous(clear), is_ambiguous(replace(clear, second=-1.0))
+    ('squeal', False, True)
+    """
+    return any(other.name != found.name for other in found.moved())
 
 
-def _torque_lines(run: Run) -> Lines:
-    torque = run.motion.torque
-    spectrum = autospectrum(torque[torque.size // 2 :], run.motion.rate)
-    return find_lines(spectrum, low=20.0, high=5e3)
-
-
-def _sustained(lines: Lines) -> NDArray[np.float64]:
-    if not lines.power.size:
-        return lines.frequency
-    strong = lines.power >= lines.power[0] * 10.0 ** (-_LINE_RANGE / 10.0)
-    return np.asarray(lines.frequency[strong])
-
-
-def _audible_oscillation(run: Run, lines: Lines) -> float:
-    """Root mean square of the torque from 20 Hz to 5 kHz, over its mean."""
-    torque = run.motion.torque
-    return math.sqrt(lines.total) / abs(float(np.mean(torque[torque.size // 2 :])))
+def _second(lines: Lines) -> float:
+    """Level of the second line re the first [dB]."""
+    if lines.power.size < 2 or not lines.power[1] > 0.0:
+        return -math.inf
+    return 10.0 * math.log10(float(lines.power[1] / lines.power[0]))
 
 
 def _level(pressure: NDArray[np.float64], rate: float) -> float:

@@ -13,7 +13,7 @@ from noise.progress import counted, say, track
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from noise.classifier import Classifier
     from noise.classifier.own_samples import OwnSample
@@ -25,14 +25,17 @@ __all__ = ["configure", "run"]
 _PART_TO_CALIBRATE, _PART_TO_SCORE = 5, 5
 """With --samples N, one for so many of them is drawn to calibrate, and to score."""
 
+_TOLD = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_named")
+"""Scores that are told."""
+
 
 def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
         "Build the classifier again from simulated runs and made-up sounds that are none of the "
         "three noises, and from labelled recordings of your own if --add names some; the same "
-        "call gives the same classifier. It takes minutes. Use it with `bushing-noise label "
-        "--classifier FILE.npz`."
+        "call gives the same classifier. It takes some ten minutes. Use it with `bushing-noise "
+        "label --classifier FILE.npz`."
     )
     parser.add_argument(
         "--out",
@@ -55,7 +58,7 @@ def configure(parser: ArgumentParser) -> None:
         "--samples",
         type=_count,
         metavar="N",
-        help="simulated samples to learn from (default: 3000); fewer are quicker and know less",
+        help="simulated samples to learn from (default: 4300); fewer are quicker and know less",
     )
     parser.add_argument(
         "--inference",
@@ -64,7 +67,7 @@ def configure(parser: ArgumentParser) -> None:
         help="also train the model that infers conditions which were not logged, into this file; "
         "use it with `bushing-noise label --inference FILE.npz`",
     )
-    opt.add_seed(parser, "seed of the training samples and of the forest")
+    opt.add_seed(parser, "seed of the training samples and of the trees")
 
 
 def run(options: Namespace) -> int:
@@ -81,7 +84,7 @@ def run(options: Namespace) -> int:
     added, refused = _own(options.add or ())
     classifier = _trained(options.seed, options.samples, added)
     classifier.save(options.out)
-    say(f"trained: {_scores(classifier.card.get('test'))}")
+    say(f"trained: {_scores(classifier.card)}")
     if added:
         say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
     print(options.out)
@@ -145,10 +148,16 @@ def _progress(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
     return track(samples, "simulating", total=total, unit="training sample")
 
 
-def _scores(test: object) -> str:
-    if not isinstance(test, dict):
-        return "no score"
-    return ", ".join(f"{name.replace('_', ' ')} {value:g}" for name, value in test.items())
+def _scores(card: Mapping[str, object]) -> str:
+    parts = []
+    for name in ("pressure", "three_channels"):
+        found = card.get(name)
+        if isinstance(found, dict):
+            numbers = ", ".join(
+                f"{key.replace('_', ' ')} {found[key]:g}" for key in _TOLD if key in found
+            )
+            parts.append(f"{name.replace('_', ' ')}: {numbers}")
+    return "; ".join(parts) or "no score"
 
 
 def _own_scores(card: object) -> str:

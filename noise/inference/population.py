@@ -24,8 +24,9 @@ from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec, Rig
 from models.rig_file import load_material_rig
-from noise.classifier.hearing import RATES, as_recorded, resampled
+from noise.classifier.hearing import resampled
 from noise.classifier.truth import noise_of
+from noise.inference.hearing import RATES, as_recorded
 from sim.run import simulate
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from features.registry import recording_features
-from noise.classifier.hearing import RATES
 from noise.inference.described import KINDS
+from noise.inference.hearing import RATES
 from noise.inference.population import LONGEST_LOOK, MATERIAL, SHORTEST_LOOK
 
 if TYPE_CHECKING:

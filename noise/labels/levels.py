@@ -1,7 +1,8 @@
-"""The level of a part of a recording, however long: summed up piece by piece."""
+"""The level of any part of a recording, from what is summed up in cells while it is read once."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,60 +10,104 @@ import numpy as np
 from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
-    from noise.recordings.blocks import RecordingBlocks
+    from numpy.typing import NDArray
 
-__all__ = ["block_levels"]
+__all__ = ["CELL_RATE", "CellLevels"]
 
-_PIECE = 10.0
-"""What is held in memory [s]."""
+CELL_RATE = 100
+"""Cells in a second; segments begin and end with one."""
 
 
-def block_levels(
-    blocks: RecordingBlocks, first: int, last: int
-) -> tuple[float | None, float | None]:
-    """Level of the first pressure channel in a part of a recording.
+class CellLevels:
+    """Mean, peak and power of a signal in cells of 10 ms, put together for any run of cells.
 
     Parameters
     ----------
-    blocks : RecordingBlocks
-    first, last : int
-        The part from sample `first` up to `last`.
-
-    Returns
-    -------
-    level, level_dbfs : float or None
-        Of the alternating part: in dB re 20 uPa, ``None`` where not calibrated, and in dB re full
-        scale; both ``None`` where there is no pressure, or none that varies.
+    rate : float
+        Sampling rate [Hz].
+    n_samples : int
+        Of the whole signal; the last cell is what is left, at least half a cell where there are
+        several.
 
     Examples
     --------
-    >>> from models.recording import Channel, Recording
-    >>> from noise.recordings.blocks import RecordingBlocks
-    >>> pascal = Recording(np.array([[1.0, -1.0] * 50]), 100.0, (Channel("pressure"),))
-    >>> level, level_dbfs = block_levels(RecordingBlocks.of(pascal), 0, 100)
+    >>> levels = CellLevels(100.0, 100)
+    >>> levels.add(0, 100, np.array([1.0, -1.0] * 50), 0)
+    >>> levels.rms_db(0, 100)
+    0.0
+    """
+
+    def __init__(self, rate: float, n_samples: int) -> None:
+        count = max(1, round(n_samples * CELL_RATE / rate))
+        # Fewer samples than cells: rates of less than 100 Hz.
+        edges = np.round(np.arange(count + 1) * (rate / CELL_RATE)).astype(np.int64)
+        edges[-1] = n_samples
+        self.edges: NDArray[np.int64] = np.unique(np.minimum(edges, n_samples))
+        self._mean = np.zeros(self.count)
+        self._peak = np.zeros(self.count)
+        self._square = np.zeros(self.count)
+
+    @property
+    def count(self) -> int:
+        """Number of cells."""
+        return self.edges.size - 1
+
+    def add(self, begin: int, end: int, samples: NDArray[np.float64], start: int) -> None:
+        """Sum up the cells that begin from sample `begin` up to `end`.
+
+        Parameters
+        ----------
+        begin, end : int
+            Samples of the whole signal.
+        samples : ndarray, shape (n,)
+            What is at hand, from sample `start` on: the cells have to end in it.
+        start : int
+        """
+        first, last = np.searchsorted(self.edges[:-1], (begin, end)).tolist()
+        if first == last:
+            return
+        edges = self.edges[first : last + 1]
+        at, sizes = edges[:-1] - edges[0], np.diff(edges)
+        part = samples[edges[0] - start : edges[-1] - start]
+        mean = np.add.reduceat(part, at) / sizes
+        # About the mean of the cell and relative to its peak, whose square may overflow.
+        rest = part - np.repeat(mean, sizes)
+        peak = np.maximum.reduceat(np.abs(rest), at)
+        rest /= np.repeat(np.where(peak > 0.0, peak, 1.0), sizes)
+        self._mean[first:last] = mean
+        self._peak[first:last] = peak
+        self._square[first:last] = np.add.reduceat(rest * rest, at)
+
+    def rms_db(self, first: int, last: int) -> float | None:
+        """Root mean square about the mean of cells `first` up to `last` [dB re the unit].
+
+        ``None`` where nothing varies.
+        """
+        sizes = np.diff(self.edges[first : last + 1])
+        n = int(sizes.sum())
+        means = self._mean[first:last]
+        middle = float(means @ sizes) / n
+        offset = np.abs(means - middle)
+        peak = max(float(self._peak[first:last].max()), float(offset.max()))
+        if not peak > 0.0:
+            return None
+        square = self._square[first:last] * (self._peak[first:last] / peak) ** 2
+        total = float(np.sum(square + sizes * (offset / peak) ** 2))
+        return 20.0 * math.log10(peak) + 10.0 * math.log10(total / n) if total > 0.0 else None
+
+
+def sound_levels(
+    rms_db: float | None, *, calibrated: bool, full_scale: float
+) -> tuple[float | None, float | None]:
+    """Return level [dB re 20 uPa], ``None`` where not calibrated, and level re full scale [dB].
+
+    Examples
+    --------
+    >>> level, level_dbfs = sound_levels(0.0, calibrated=True, full_scale=1.0)
     >>> round(level, 2), level_dbfs
     (93.98, 0.0)
     """
-    row = blocks.first("pressure")
-    if row is None:
+    if rms_db is None:
         return None, None
-    length = round(_PIECE * blocks.rate)
-    n = last - first
-    mean = sum(float(p.samples[row].sum()) for p in blocks.pieces(first, last, length)) / n
-    # Scaled by the peak, whose square may overflow.
-    peaks, squares = [], []
-    for piece in blocks.pieces(first, last, length):
-        signal = piece.samples[row] - mean
-        peaks.append(float(np.abs(signal).max()))
-        scaled = signal / peaks[-1] if peaks[-1] > 0.0 else signal
-        squares.append(float((scaled**2).sum()))
-    peak = max(peaks)
-    if not peak > 0.0:
-        return None, None
-    square = sum(s * (p / peak) ** 2 for s, p in zip(squares, peaks, strict=True)) / n
-    rms_db = 20.0 * float(np.log10(peak) + np.log10(np.sqrt(square)))
-    full_scale = blocks.channels[row].full_scale if blocks.calibrated else 1.0
-    level_dbfs = rms_db - 20.0 * float(np.log10(full_scale))
-    if not blocks.calibrated:
-        return None, level_dbfs
-    return rms_db - 20.0 * float(np.log10(REFERENCE_PRESSURE)), level_dbfs
+    level_dbfs = rms_db - 20.0 * math.log10(full_scale if calibrated else 1.0)
+    return (rms_db - 20.0 * math.log10(REFERENCE_PRESSURE) if calibrated else None), level_dbfs

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import itertools
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.conditioning import ACOUSTIC_FROM
-from features.harmonics import analyse_harmonics
-from features.registry import KINDS, recording_features
-from features.slip_pulses import acoustic_slips
-from noise.classifier import LABELS
-from noise.labels.levels import block_levels
+from features.registry import KINDS
+from features.windows.table import HOP, LENGTH
+from models.recording import REFERENCE_PRESSURE
+from noise.classifier.model import LABELS
+from noise.labels.boundaries import change_points
+from noise.labels.frequencies import segment_frequency
+from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
+from noise.labels.smoothing import named_course
+from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
@@ -24,17 +27,9 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from noise.classifier import Classifier
+    from noise.labels.windows import Described
 
 __all__ = ["Segment", "file_label", "label_recording"]
-
-WINDOW = 0.5
-"""Length of what is classified at once [s]."""
-
-HOP = 0.125
-"""Time from one window to the next [s]; segments begin and end on it."""
-
-_SHORTEST_TAIL = 0.5
-"""A last window is one if at least this share of it lies in the recording."""
 
 _SILENT_LEVEL = 10.0
 """Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""
@@ -42,14 +37,11 @@ _SILENT_LEVEL = 10.0
 _SILENT_LEVEL_DBFS = -90.0
 """Uncalibrated sound below it is silence [dBFS]: the last bit of 16."""
 
+_SURELY = 6.0
+"""What is louder than silence by so much in its described part needs no second look [dB]."""
+
 _LEAST_RATE = 1000.0
 """A recording sampled more slowly shows nothing of a noise [Hz]."""
-
-_LONGEST_LOOK = 4.0
-"""The frequency of a longer segment is that of so much of its middle [s]."""
-
-_AT_ONCE = 256
-"""Windows that are classified, and cells that are averaged, together."""
 
 
 @dataclass(frozen=True)
@@ -138,134 +130,109 @@ def file_label(segments: list[Segment]) -> Segment:
 
 def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
     if blocks.rate < _LEAST_RATE or all(blocks.first(kind) is None for kind in KINDS):
-        nothing_to_tell = np.eye(len(LABELS))[LABELS.index("unknown")]
-        return [_segment(blocks, channel, 0, blocks.n_samples, nothing_to_tell)]
-    starts = _window_starts(blocks)
-    length = min(blocks.n_samples, round(WINDOW * blocks.rate))
-    probabilities = _window_probabilities(blocks, starts, length, classifier)
-    cells, cell_probabilities = _on_cells(starts, length, blocks, probabilities)
-    silent = [_is_silent(blocks.cut(*edges)) for edges in pairwise(cells)]
-    cell_probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    labels = cell_probabilities.argmax(axis=1)
-    edges = [0, *(np.flatnonzero(np.diff(labels)) + 1), len(labels)]
+        return [_nothing_to_tell(blocks, channel)]
+    found = describe(blocks)
+    columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
+    probabilities = classifier.predict_proba(found.features[:, columns])
+    silent = _silent_windows(blocks, found)
+    probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
+    edges, _ = named_course(probabilities)
+    cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
+    last_cell = found.cells.count
+    limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
     return [
         _segment(
             blocks,
+            found,
             channel,
-            cells[first],
-            cells[last],
-            cell_probabilities[first:last].mean(axis=0),
+            (first, last),
+            (begin, end),
+            probabilities[first:last].mean(axis=0),
         )
-        for first, last in itertools.pairwise(edges)
+        for (first, last), (begin, end) in zip(
+            pairwise(edges.tolist()), pairwise(limits), strict=True
+        )
+        if end > begin
     ]
 
 
-def _window_starts(blocks: RecordingBlocks) -> list[int]:
-    n = blocks.n_samples
-    length, hop = round(WINDOW * blocks.rate), round(HOP * blocks.rate)
-    if n <= length:
-        return [0]
-    starts = list(range(0, n - length + 1, hop))
-    if n - length - starts[-1] > (1.0 - _SHORTEST_TAIL) * hop:
-        starts.append(n - length)
-    return starts
-
-
-def _window_probabilities(
-    blocks: RecordingBlocks, starts: list[int], length: int, classifier: Classifier
-) -> NDArray[np.float64]:
-    """Return the probabilities of all windows, `_AT_ONCE` at a time."""
-    return np.concatenate(
-        [
-            _classified(
-                [blocks.cut(start, start + length) for start in starts[first : first + _AT_ONCE]],
-                classifier,
-            )
-            for first in range(0, len(starts), _AT_ONCE)
-        ]
-    )
-
-
-def _classified(windows: list[Recording], classifier: Classifier) -> NDArray[np.float64]:
-    silent = np.array([_is_silent(window) for window in windows])
-    probabilities = np.zeros((len(windows), len(LABELS)))
-    probabilities[silent, LABELS.index("none")] = 1.0
-    if not silent.all():
-        loud = [window for window, s in zip(windows, silent, strict=True) if not s]
-        rows = [recording_features(w, names=classifier.feature_names) for w in loud]
-        probabilities[~silent] = classifier.predict_proba(rows)
-    return probabilities
-
-
-def _is_silent(recording: Recording) -> bool:
-    if recording.first("pressure") is None:
-        return not any(np.ptp(signal) > 0.0 for signal in recording.samples)
-    level, level_dbfs = block_levels(RecordingBlocks.of(recording), 0, recording.samples.shape[1])
-    if level is not None:
-        return level < _SILENT_LEVEL
-    return level_dbfs is None or level_dbfs < _SILENT_LEVEL_DBFS
-
-
-def _on_cells(
-    starts: list[int], length: int, blocks: RecordingBlocks, probabilities: NDArray[np.float64]
-) -> tuple[list[int], NDArray[np.float64]]:
-    """Mean probabilities on cells one hop long, each of the windows about it."""
-    n = blocks.n_samples
-    hop = round(HOP * blocks.rate)
-    edges = [*range(0, max(n - hop // 2, 1), hop), n]
-    middles = 0.5 * (np.array(edges[:-1]) + np.array(edges[1:]))
-    centres = np.array(starts) + 0.5 * length
-    means = np.empty((middles.size, len(LABELS)))
-    for first in range(0, middles.size, _AT_ONCE):
-        some = middles[first : first + _AT_ONCE]
-        # The nearest window to a cell is never farther than its own length.
-        near = slice(*np.searchsorted(centres, (some[0] - length - hop, some[-1] + length + hop)))
-        # A triangle: windows count the less the farther their middle is from the cell.
-        distance = np.abs(some[:, None] - centres[None, near])
-        nearest = distance.min(axis=1, keepdims=True)
-        weight = np.maximum(0.0, 1.0 - (distance - nearest) / hop)
-        weight /= weight.sum(axis=1, keepdims=True)
-        means[first : first + _AT_ONCE] = weight @ probabilities[near]
-    return edges, means
+def _silent_windows(blocks: RecordingBlocks, found: Described) -> NDArray[np.bool_]:
+    """Whether nothing is to be heard in each window."""
+    cells, n = found.cells, len(found.features)
+    row = blocks.first("pressure")
+    full_scale = 1.0 if row is None else blocks.channels[row].full_scale
+    silent = np.zeros(n, dtype=np.bool_)
+    # All that is heard is no less than the part of it that is described.
+    limit = _SILENT_LEVEL_DBFS + 20.0 * math.log10(full_scale)
+    if blocks.calibrated:
+        limit = _SILENT_LEVEL + 20.0 * math.log10(REFERENCE_PRESSURE)
+    loud = (found.level > limit + _SURELY) & (row is not None)
+    for window in np.flatnonzero(~loud).tolist():
+        first = min(round(window * HOP * CELL_RATE), cells.count - 1)
+        last = min(first + round(LENGTH * CELL_RATE), cells.count)
+        rms = cells.rms_db(first, last)
+        if rms is None or row is None:
+            silent[window] = rms is None
+            continue
+        level, level_dbfs = sound_levels(rms, calibrated=blocks.calibrated, full_scale=full_scale)
+        if level is not None:
+            silent[window] = level < _SILENT_LEVEL
+        else:
+            silent[window] = level_dbfs is None or level_dbfs < _SILENT_LEVEL_DBFS
+    return silent
 
 
 def _segment(
     blocks: RecordingBlocks,
+    found: Described,
     channel: str,
-    first: int,
-    last: int,
+    windows: tuple[int, int],
+    cells: tuple[int, int],
     probabilities: NDArray[np.float64],
 ) -> Segment:
     label = LABELS[int(probabilities.argmax())]
-    level, level_dbfs = block_levels(blocks, first, last)
+    edges = found.cells.edges[list(cells)] / blocks.rate
+    row = blocks.first("pressure")
+    level, level_dbfs = None, None
+    if row is not None:
+        level, level_dbfs = sound_levels(
+            found.cells.rms_db(*cells),
+            calibrated=blocks.calibrated,
+            full_scale=blocks.channels[row].full_scale,
+        )
     return Segment(
         channel=channel,
-        start=first / blocks.rate,
-        end=last / blocks.rate,
+        start=float(edges[0]),
+        end=float(edges[1]),
         label=label,
         probabilities=dict(zip(LABELS, probabilities.tolist(), strict=True)),
-        frequency=_frequency(blocks, first, last, label),
+        frequency=segment_frequency(found.features[slice(*windows)], label),
         level=level,
         level_dbfs=level_dbfs,
     )
 
 
-def _frequency(blocks: RecordingBlocks, first: int, last: int, label: str) -> float | None:
-    """Slip frequency of creak and squawk, else the strongest line: of the torque if it is there."""
-    rows = [blocks.first(kind) for kind in ("torque", "pressure", "acceleration")]
-    index = next((row for row in rows if row is not None), None)
-    if label == "none" or index is None or blocks.rate < _LEAST_RATE:
-        return None
-    spare = max(0, last - first - round(_LONGEST_LOOK * blocks.rate)) // 2
-    signal = blocks.read(first + spare, last - spare)[index]
-    torque = index == rows[0]
-    if label == "creak" and not torque:
-        pulses = acoustic_slips(signal, blocks.rate).rate
-        if pulses > 0.0:
-            return float(pulses)
-    harmonics = analyse_harmonics(signal, blocks.rate)
-    if label in ("creak", "squawk") and np.isfinite(harmonics.fundamental):
-        return float(harmonics.fundamental)
-    # Below lies rumble, which may be louder than any tone.
-    lines = harmonics.peaks.frequency[(harmonics.peaks.frequency >= ACOUSTIC_FROM) | torque]
-    return float(lines[0]) if lines.size else None
+def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
+    """Return the segment of a recording that no noise can be told from."""
+    levels = CellLevels(blocks.rate, blocks.n_samples)
+    row = blocks.first("pressure")
+    level, level_dbfs = None, None
+    if row is not None:
+        # Few samples a second, so few in all.
+        levels.add(0, blocks.n_samples, blocks.read(0, blocks.n_samples)[row], 0)
+        level, level_dbfs = sound_levels(
+            levels.rms_db(0, levels.count),
+            calibrated=blocks.calibrated,
+            full_scale=blocks.channels[row].full_scale,
+        )
+    certain = np.eye(len(LABELS))[LABELS.index("unknown")].tolist()
+    return Segment(
+        channel=channel,
+        start=0.0,
+        end=blocks.n_samples / blocks.rate,
+        label="unknown",
+        probabilities=dict(zip(LABELS, certain, strict=True)),
+        frequency=None,
+        level=level,
+        level_dbfs=level_dbfs,
+    )

@@ -1,4 +1,9 @@
-"""What lies between a source and its recording: room, microphone, noise, sampling rate, gain."""
+"""What lies between a bushing and the recordings that the inferred intervals hold for.
+
+Room, microphone and noise are simpler here than the classifier's (`noise.classifier.hearing`): to
+be called by its name a sound has to be known through a telephone too, but an interval of 90 % is a
+statement about one population, and stays what it was when the classifier learns to hear more.
+"""
 
 from __future__ import annotations
 
@@ -7,44 +12,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
-from scipy.signal import fftconvolve, resample_poly
+from scipy.signal import fftconvolve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["RATES", "as_recorded", "coloured_noise", "resampled"]
+__all__ = ["RATES", "as_recorded"]
 
 RATES = (16_000, 22_050, 30_000, 44_100, 48_000)
 """Sampling rates that recordings come in [Hz]."""
 
 
-def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``.
-
-    Examples
-    --------
-    >>> noise = coloured_noise(1000, 1.0, np.random.default_rng(0))
-    >>> round(float(noise.std()), 6)
-    1.0
-    """
+def _coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``."""
     spectrum = rfft(rng.standard_normal(n))
     frequency = np.arange(spectrum.size, dtype=float)
     frequency[0] = 1.0
     noise = irfft(spectrum * frequency ** (-0.5 * slope), n)
     return np.asarray(noise / noise.std())
-
-
-def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArray[np.float64]:
-    """Resample to another rate, band-limited; rates are taken to the nearest hertz.
-
-    Examples
-    --------
-    >>> resampled(np.zeros(96), 96_000, 44_100).size
-    45
-    """
-    up, down = round(wanted), round(rate)
-    common = math.gcd(up, down)
-    return np.asarray(resample_poly(signal, up // common, down // common, padtype="line"))
 
 
 def as_recorded(
@@ -71,7 +56,7 @@ def as_recorded(
     heard = _through_a_microphone(heard, rate, rng)
     level = float(heard.std())
     snr = rng.uniform(6.0, 50.0) if rng.random() < 0.8 else 60.0
-    noise = coloured_noise(heard.size, rng.uniform(0.0, 2.0), rng)
+    noise = _coloured_noise(heard.size, rng.uniform(0.0, 2.0), rng)
     noise_level = level * 10.0 ** (-snr / 20.0) if level > 0.0 else 1.0
     heard = heard + noise_level * noise
     return np.asarray(heard / heard.std())

@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Forest", "grow_forest"]
+__all__ = ["Forest", "as_arrays"]
 
 _LEAF = -1
 
@@ -86,55 +86,27 @@ class Forest:
         return np.asarray(self.votes[node].mean(axis=1, dtype=np.float64))
 
 
-def grow_forest(
-    x: NDArray[np.float64],
-    y: NDArray[np.int64],
-    *,
-    n_trees: int,
-    least_leaf: int,
-    seed: int,
-    weights: NDArray[np.float64] | None = None,
-) -> Forest:
-    """Grow a forest with balanced classes.
+def as_arrays(model: Any) -> Forest:
+    """Return a fitted forest of scikit-learn's as arrays.
 
     Parameters
     ----------
-    x : ndarray, shape (n, n_features)
-        NaN where a feature is missing.
-    y : ndarray of int, shape (n,)
-        Classes 0, 1, 2 ...
-    n_trees, least_leaf, seed : int
-        Number of trees, samples in the smallest leaf, seed of the draws.
-    weights : ndarray, shape (n,), optional
-        How much each sample counts, beside what balances the classes; by default all the same.
+    model : RandomForestClassifier or ExtraTreesClassifier
+        Fitted to one output, or to several of yes or no.
 
     Returns
     -------
     Forest
+        Of several outputs the votes are the shares of yes.
 
     Examples
     --------
-    >>> rng = np.random.default_rng(0)
-    >>> y = np.repeat([0, 1], 100)
-    >>> forest = grow_forest(rng.normal(size=(200, 2)) + 4.0 * y[:, None], y, n_trees=10,
-    ...                      least_leaf=2, seed=0)
-    >>> forest.probabilities(np.array([[0.0, 0.0], [4.0, np.nan]])).round().tolist()
+    >>> from sklearn.ensemble import RandomForestClassifier
+    >>> x, y = np.arange(40.0)[:, None], np.repeat([0, 1], 20)
+    >>> forest = as_arrays(RandomForestClassifier(10, random_state=0).fit(x, y))
+    >>> forest.probabilities(np.array([[2.0], [38.0]])).round().tolist()
     [[1.0, 0.0], [0.0, 1.0]]
     """
-    from sklearn.ensemble import RandomForestClassifier
-
-    model = RandomForestClassifier(
-        n_estimators=n_trees,
-        min_samples_leaf=least_leaf,
-        max_features="sqrt",
-        class_weight="balanced",
-        random_state=seed,
-        n_jobs=-1,
-    ).fit(x, y, sample_weight=weights)
-    return _as_arrays(model)
-
-
-def _as_arrays(model: Any) -> Forest:
     trees = [estimator.tree_ for estimator in model.estimators_]
     counts = np.array([tree.node_count for tree in trees])
     roots = np.concatenate([[0], np.cumsum(counts)[:-1]])
@@ -144,15 +116,21 @@ def _as_arrays(model: Any) -> Forest:
     ]
     feature = np.concatenate([tree.feature for tree in trees])
     leaf = feature < 0
-    votes = np.concatenate([tree.value[:, 0, :] for tree in trees])
+    votes = np.concatenate([_votes(tree.value) for tree in trees])
     return Forest(
         roots=roots.astype(np.int32),
         feature=np.where(leaf, _LEAF, feature).astype(np.int16),
         threshold=_at_most(np.concatenate([tree.threshold for tree in trees])),
         children=np.where(leaf[:, None], 0, np.concatenate(children)).astype(np.int32),
         missing_left=np.concatenate([tree.missing_go_to_left for tree in trees]).astype(bool),
-        votes=(votes / votes.sum(axis=1, keepdims=True)).astype(np.float32),
+        votes=np.where(leaf[:, None], votes, 0.0).astype(np.float32),
     )
+
+
+def _votes(value: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Shares of the classes or, of several yes-or-no outputs, of yes."""
+    share = value / value.sum(axis=2, keepdims=True)
+    return np.asarray(share[:, 0, :] if value.shape[1] == 1 else share[:, :, 1])
 
 
 def _at_most(threshold: NDArray[np.float64]) -> NDArray[np.float32]:

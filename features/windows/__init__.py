@@ -1,0 +1,1 @@
+"""Features of many overlapping windows of a sound at once, made for labelling hours of it."""

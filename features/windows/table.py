@@ -1,0 +1,192 @@
+"""All features of the windows of a page, and their names.
+
+Windows of half a second begin every quarter of a second. A page is some seconds of signal and
+what follows it for half a second more, so that windows go on across its end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.windows.courses import COURSE_NAMES, courses_of
+from features.windows.frames import FRAME_COLUMNS, describe_frames, frame_count
+from features.windows.rhythm import ENVELOPE_RATE, RHYTHM_NAMES, envelope, rhythms_of
+from features.windows.tones import SEGMENT_HOP, TONE_NAMES, long_spectra, tones_of
+from features.windows.working import FRAME_RATE, RATE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["HOP", "LENGTH", "WINDOW_NAMES", "Page", "describe_page", "window_count"]
+
+LENGTH = 0.5
+"""Of a window [s]."""
+
+HOP = 0.25
+"""From the beginning of a window to that of the next [s]."""
+
+_TOP_NAMES = ("top_1", "top_2", "top_together", "high_share")
+
+_LEAST_FRAMES = 3
+
+_FRAMES_OF = round(LENGTH * FRAME_RATE) - 3
+"""Frames that lie in a window as a whole."""
+
+WINDOW_NAMES = (
+    *COURSE_NAMES,
+    *TONE_NAMES,
+    *RHYTHM_NAMES,
+    *(f"high_{name}" for name in RHYTHM_NAMES),
+    *_TOP_NAMES,
+)
+"""Features of a window: its course, its lines, the rhythm of all of it and of its part above 2 kHz;
+power from 7 to 13 and from 13 to 19 kHz re that below 7 kHz [dB], how far they change together, and
+power above 2 kHz re all [dB]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Page:
+    """What is known of a page.
+
+    Parameters
+    ----------
+    features : ndarray of float32, shape (n_windows, n_features)
+        By `WINDOW_NAMES`; NaN where undefined.
+    level : ndarray of float32, shape (n_windows,)
+        Power of each window [dB re the signal's unit].
+    frames : ndarray of float32, shape (n_frames, n_columns + n_bands)
+        By `features.windows.frames.FRAME_COLUMNS`, then the bands, both re the signal's unit.
+    """
+
+    features: NDArray[np.float32]
+    level: NDArray[np.float32]
+    frames: NDArray[np.float32]
+
+
+def window_count(n: int) -> int:
+    """Return how many windows begin in `n` samples at 16 kHz: the last holds half its length.
+
+    Examples
+    --------
+    >>> window_count(16_000), window_count(100)
+    (3, 1)
+    """
+    return max(1, -(-(n - round(HOP * RATE)) // round(HOP * RATE)))
+
+
+def describe_page(
+    sound: NDArray[np.float32],
+    high: NDArray[np.float32],
+    top: NDArray[np.float32],
+    *,
+    scale: float,
+    windows: int,
+    limit: float,
+) -> Page:
+    """Describe the windows that begin in a page.
+
+    Parameters
+    ----------
+    sound, high : ndarray of float32, shape (n,)
+        As `features.windows.working.Block` has them, with what follows the page as far as the last
+        window reaches and the recording goes.
+    top : ndarray of float32, shape (n_frames, 2)
+        As there.
+    scale : float
+        Unit of the three [unit of the signal].
+    windows : int
+        How many begin in the page.
+    limit : float
+        Frequency up to which it is described [Hz].
+
+    Returns
+    -------
+    Page
+
+    Examples
+    --------
+    >>> hiss = np.random.default_rng(0).normal(size=16_000).astype(np.float32)
+    >>> nothing = np.full((100, 2), np.nan, dtype=np.float32)
+    >>> describe_page(hiss, hiss, nothing, scale=1.0, windows=3, limit=7e3).features.shape[0]
+    3
+    """
+    n = sound.size
+    start = np.arange(windows) * HOP
+    frames = describe_frames(sound, limit)
+    count = frame_count(n)
+    first = np.minimum((start * FRAME_RATE).astype(np.int64), count - 1)
+    last = np.minimum(first + _FRAMES_OF, count)
+    spectra = max(1, -(-(n - SEGMENT_HOP) // SEGMENT_HOP))
+    of_spectra = np.minimum((start * (RATE // SEGMENT_HOP)).astype(np.int64), spectra - 1)
+    until = np.minimum(of_spectra + 3, spectra)
+    power, blows = envelope(sound), envelope(high)
+    begin = np.minimum((start * ENVELOPE_RATE).astype(np.int64), power.size)
+    end = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
+    features = np.concatenate(
+        [
+            courses_of(frames, first, last),
+            tones_of(long_spectra(sound, spectra), of_spectra, until, limit),
+            rhythms_of(power, begin, end),
+            rhythms_of(blows, begin, end),
+            _tops(top, power, blows, windows),
+        ],
+        axis=1,
+    )
+    unit = 20.0 * np.log10(max(scale, 1e-300))
+    level = _means(power, windows, round(HOP * ENVELOPE_RATE))
+    values = np.concatenate([frames.values, frames.bands], axis=1)
+    values[:, 0] += unit
+    values[:, len(FRAME_COLUMNS) :] += unit
+    return Page(features, (10.0 * np.log10(level + 1e-20) + unit).astype(np.float32), values)
+
+
+def _tops(
+    top: NDArray[np.float32],
+    power: NDArray[np.float32],
+    blows: NDArray[np.float32],
+    windows: int,
+) -> NDArray[np.float32]:
+    per_frame = ENVELOPE_RATE // FRAME_RATE
+    n = min(len(top), power.size // per_frame)
+    out = np.full((windows, len(_TOP_NAMES)), np.nan, dtype=np.float32)
+    hop, length = round(HOP * FRAME_RATE), round(LENGTH * FRAME_RATE)
+    below = power[: n * per_frame].reshape(n, per_frame).mean(axis=1)
+    high = blows[: n * per_frame].reshape(n, per_frame).mean(axis=1)
+    columns = np.stack([below, high, top[:n, 0], top[:n, 1]], axis=1)
+    whole = min(windows, max(0, (n - length) // hop + 1))
+    if whole:
+        rows = np.lib.stride_tricks.sliding_window_view(columns, length, axis=0)[::hop][:whole]
+        out[:whole] = _top_features(rows)
+    for w in range(whole, windows):
+        part = columns[w * hop : w * hop + length]
+        if len(part) >= _LEAST_FRAMES:
+            out[w] = _top_features(part.T[None])[0]
+    return out
+
+
+def _top_features(rows: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return `_TOP_NAMES` from power below 7 kHz, above 2 kHz and in the two bands.
+
+    Rows are of shape (n_windows, 4, n_frames).
+    """
+    sums = rows.sum(axis=2)
+    total = np.where(sums[:, 0] > 0.0, sums[:, 0], np.float32(np.nan))
+    shares = 10.0 * np.log10(np.maximum(sums[:, 1:] / total[:, None], np.float32(1e-6)))
+    a, b = np.sqrt(rows[:, 2]), np.sqrt(rows[:, 1])
+    a = a - a.mean(axis=1, keepdims=True)
+    b = b - b.mean(axis=1, keepdims=True)
+    spread = np.sqrt((a * a).sum(axis=1) * (b * b).sum(axis=1))
+    together = (a * b).sum(axis=1) / np.where(spread > 0.0, spread, np.float32(np.nan))
+    return np.stack([shares[:, 1], shares[:, 2], together, shares[:, 0]], axis=1)
+
+
+def _means(power: NDArray[np.float32], windows: int, hop: int) -> NDArray[np.float32]:
+    """Mean power of each window from the sums of its two halves."""
+    padded = np.zeros((windows + 1) * hop, dtype=np.float32)
+    padded[: min(power.size, padded.size)] = power[: padded.size]
+    halves = padded.reshape(windows + 1, hop).sum(axis=1)
+    counts = np.clip(power.size - np.arange(windows) * hop, 1, 2 * hop)
+    return np.asarray((halves[:-1] + halves[1:]) / counts, dtype=np.float32)

@@ -1,0 +1,170 @@
+"""A long signal in blocks at a common rate: what all features of windows are computed from.
+
+One Fourier transform of eight seconds gives the part below 7 kHz at 16 kHz, the part of it above
+2 kHz where blows stand out of tones, and the power in two bands above 7 kHz. Blocks overlap by a
+second, of which half is faded and thrown away on either side, and lie on a fixed grid; so what is
+computed does not depend on how much of a recording was in memory. All in single precision, relative
+to the block's peak, which is twice as fast.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy import fft
+
+from features.conditioning import USABLE_SHARE, WORKING_LIMIT
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["FRAME_RATE", "MARGIN", "RATE", "USEFUL", "Block", "block_length", "working_block"]
+
+RATE = 16_000
+"""Rate at which windows are described [Hz]."""
+
+USEFUL = 7
+"""Length of a block without its margins [s]."""
+
+MARGIN = 0.5
+"""What a block has more on either side [s]."""
+
+FRAME_RATE = 100
+"""Frames in a second."""
+
+_LOW = (110.0, 160.0)
+"""Between these the signal is faded in [Hz]: below lie hum and rumble."""
+
+_HIGH_FROM = (1700.0, 2300.0)
+"""Between these the part is faded in that shows blows [Hz]."""
+
+_TOP_BANDS = ((7_000, 13_000), (13_000, 19_000))
+"""Above the common band [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """A block at the common rate, without its margins.
+
+    Parameters
+    ----------
+    sound : ndarray of float32, shape (n,)
+        From 160 Hz to 7 kHz [share of `scale`].
+    high : ndarray of float32, shape (n,)
+        Its part above 2 kHz.
+    top : ndarray of float32, shape (n_frames, 2)
+        Power from 7 to 13 and from 13 to 19 kHz [share of `scale` squared]; NaN where the rate
+        does not reach so far.
+    scale : float
+        Peak of the block [unit]; 0 where it is constant.
+    """
+
+    sound: NDArray[np.float32]
+    high: NDArray[np.float32]
+    top: NDArray[np.float32]
+    scale: float
+
+
+def block_length(duration: float) -> int:
+    """Return the useful length of a recording's blocks [s]: less where all of it is short.
+
+    Examples
+    --------
+    >>> block_length(0.8), block_length(3600.0)
+    (1, 7)
+    """
+    return next((length for length in (1, 3) if duration <= length), USEFUL)
+
+
+def working_block(samples: NDArray[np.float64], rate: float, useful: int) -> Block:
+    """Bring a block to the common rate.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (round((useful + 1) * rate),)
+        With a margin of half a second on either side.
+    rate : float
+        [Hz]
+    useful : int
+        Length without the margins [s].
+
+    Returns
+    -------
+    Block
+
+    Examples
+    --------
+    >>> time = np.arange(96_000) / 48e3
+    >>> block = working_block(np.sin(2 * np.pi * 1000.0 * time), 48e3, 1)
+    >>> block.sound.size, round(float(block.sound.std()), 2), round(float(block.high.std()), 2)
+    (16000, 0.71, 0.0)
+    """
+    length = samples.size
+    seconds = useful + 2.0 * MARGIN
+    lead, n = round(MARGIN * RATE), useful * RATE
+    x = samples - samples.mean()
+    scale = float(np.abs(x).max())
+    if not scale > 0.0:
+        nothing = np.zeros(n, dtype=np.float32)
+        top = np.zeros((useful * FRAME_RATE, 2), dtype=np.float32)
+        top[:, [high > USABLE_SHARE * rate for _, high in _TOP_BANDS]] = np.nan
+        return Block(nothing, nothing, top, 0.0)
+    x /= scale
+    single = x.astype(np.float32)
+    ramp = _ramp(round(0.5 * MARGIN * rate))
+    single[: ramp.size] *= ramp
+    single[-ramp.size :] *= ramp[::-1]
+    spectrum = fft.rfft(single)
+    low, high = _gains(round(1e6 * rate), useful)
+    kept = min(low.size, spectrum.size)
+    bins = np.zeros(round(seconds * RATE) // 2 + 1, dtype=np.complex64)
+    bins[:kept] = spectrum[:kept] * low[:kept]
+    # Transforms scale with their length.
+    scaling = np.float32(round(seconds * RATE) / length)
+    bins *= scaling
+    sound = fft.irfft(bins, round(seconds * RATE))[lead : lead + n]
+    bins[: high.size] *= high
+    pulses = fft.irfft(bins, round(seconds * RATE))[lead : lead + n]
+    top = np.full((useful * FRAME_RATE, len(_TOP_BANDS)), np.nan, dtype=np.float32)
+    for column, (bottom, end) in enumerate(_TOP_BANDS):
+        if end <= USABLE_SHARE * rate:
+            top[:, column] = _band_power(spectrum, bottom, end, seconds, length)
+    return Block(sound, pulses, top, scale)
+
+
+@lru_cache(maxsize=8)
+def _ramp(n: int) -> NDArray[np.float32]:
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * (np.arange(n) + 0.5) / n), dtype=np.float32)
+
+
+@lru_cache(maxsize=8)
+def _gains(microhertz: int, useful: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Gains of the whole band and of its high part, by bin."""
+    limit = min(WORKING_LIMIT, USABLE_SHARE * 1e-6 * microhertz)
+    spacing = 1.0 / (useful + 2.0 * MARGIN)
+    end = 1.07 * limit
+    frequency = np.arange(math.ceil(end / spacing)) * spacing
+    low = _flank(frequency, *_LOW)
+    low *= 1.0 - _flank(frequency, limit, end)
+    return low.astype(np.float32), _flank(frequency, *_HIGH_FROM).astype(np.float32)
+
+
+def _flank(frequency: NDArray[Any], low: float, high: float) -> NDArray[np.float64]:
+    share = np.clip((frequency - low) / (high - low), 0.0, 1.0)
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * share))
+
+
+def _band_power(
+    spectrum: NDArray[np.complex64], low: int, high: int, seconds: float, length: int
+) -> NDArray[np.float32]:
+    """Power of a band in each frame, from its analytic signal at a rate of the band's width."""
+    first, last = round(low * seconds), round(high * seconds)
+    analytic = fft.ifft(spectrum[first:last]) * np.float32(2.0 * (last - first) / length)
+    per_frame = (high - low) // FRAME_RATE
+    power = 0.5 * (analytic.real**2 + analytic.imag**2)
+    margin = round(MARGIN * (high - low))
+    return np.asarray(power[margin : power.size - margin].reshape(-1, per_frame).mean(axis=1))

@@ -1,0 +1,150 @@
+r"""A slider that is drawn along by a spring: stick, slip, stick, at a hand's irregular speed.
+
+The spring k is drawn at v(t). The contact bears a friction that grows with the time of stick,
+
+.. math::
+    F_s(t_s) = F_k + \Delta F \, (1 - e^{-t_s / \tau}), \qquad
+    k \int v \, dt = 2 (F_s - F_k) (1 + \sigma \xi)
+
+so a slip comes where the spring has been drawn by a distance D = D_0 (1 - exp(-t_s / tau)), and
+lets go as much, its overshoot being the mirror image of what it was drawn beyond F_k. The second
+equation holds for every stick, with a scatter sigma of contacts that differ. The longer the stick,
+the larger the slip: slow creaks knock, fast ones buzz. A slip takes far less time than a stick and
+counts as instantaneous (Rabinowicz, *Friction and Wear of Materials*, chapter 4.8).
+
+The rate of slips is v / D; v is drawn such that it glides, irregularly, and stops now and then.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Slips", "random_drive", "slide", "wandering"]
+
+
+@dataclass(frozen=True, eq=False)
+class Slips:
+    """When the slider slips [s], and how far, relative to D_0; arrays of shape (n_slips,)."""
+
+    time: NDArray[np.float64]
+    size: NDArray[np.float64]
+
+
+def wandering(
+    n: int, rate: float, frequency: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return a smooth random course, mostly within -1 to 1, that turns `frequency` times a second.
+
+    Examples
+    --------
+    >>> course = wandering(4800, 48e3, 2.0, np.random.default_rng(0))
+    >>> course.shape, bool(np.abs(np.diff(course)).max() < 0.01)
+    ((4800,), True)
+    """
+    step = rate / (2.0 * frequency)
+    knots = rng.uniform(-1.0, 1.0, int(n / step) + 4)
+    place = np.arange(n) / step + 1.0 + rng.random()
+    left = place.astype(int)
+    x = place - left
+    # Catmull-Rom through the knots.
+    a, b, c, d = (knots[np.minimum(left + shift, knots.size - 1)] for shift in (-1, 0, 1, 2))
+    course = b + 0.5 * x * (c - a + x * (2 * a - 5 * b + 4 * c - d + x * (3 * (b - c) + d - a)))
+    return np.asarray(course)
+
+
+def random_drive(
+    n: int, rate: float, slowest: float, fastest: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return the drive's speed over D_0 [1/s]: nearly the rate of slips where sticks are long.
+
+    A hand or a gust: its logarithm wanders between `slowest` and `fastest`; at times it comes to
+    rest, or begins fast and dies away.
+
+    Examples
+    --------
+    >>> drive = random_drive(48_000, 48e3, 5.0, 250.0, np.random.default_rng(0))
+    >>> bool(drive.min() >= 0.0), bool(drive.max() < 400.0)
+    (True, True)
+    """
+    middle, half = 0.5 * math.log(slowest * fastest), 0.5 * math.log(fastest / slowest)
+    course = wandering(n, rate, math.exp(rng.uniform(math.log(0.3), math.log(4.0))), rng)
+    x = np.linspace(0.0, 1.0, n)
+    if rng.random() < 0.5:  # a trend: it dies away, starts up, or both
+        trend = rng.choice((-1.0, 1.0)) * (1.0 - 2.0 * x ** rng.uniform(0.5, 2.0))
+        if rng.random() < 0.4:
+            trend = 1.0 - 2.0 * np.abs(2.0 * x - 1.0)
+        share = rng.uniform(0.4, 0.9)
+        course = share * trend + (1.0 - share) * course
+    drive = np.exp(middle + half * np.clip(course, -1.1, 1.1))
+    for _ in range(int(rng.poisson(0.5 * n / rate))):
+        start = int(rng.integers(n))
+        drive[start : start + int(rng.uniform(0.04, 0.3) * rate)] = 0.0
+    return np.asarray(drive)
+
+
+def slide(
+    drive: NDArray[np.float64],
+    rate: float,
+    *,
+    ageing_time: float,
+    scatter: float,
+    rng: np.random.Generator,
+) -> Slips:
+    """Find the slips of a slider.
+
+    Parameters
+    ----------
+    drive : ndarray, shape (n,)
+        Speed of the drive over D_0 [1/s].
+    rate : float
+        Of its samples [Hz].
+    ageing_time : float
+        tau [s].
+    scatter : float
+        sigma.
+    rng : numpy.random.Generator
+
+    Examples
+    --------
+    >>> slips = slide(np.full(48_000, 50.0), 48e3, ageing_time=1e-4, scatter=0.0,
+    ...               rng=np.random.default_rng(0))
+    >>> slips.time.size
+    50
+    """
+    scattered = np.maximum(0.15, 1.0 + scatter * rng.standard_normal(4096))
+    index, size = _slips(drive, rate, ageing_time, scattered)
+    return Slips(index / rate, size)
+
+
+def _events(
+    drive: NDArray[np.float64], rate: float, ageing_time: float, scattered: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    index = np.empty(drive.size)
+    size = np.empty(drive.size)
+    count = 0
+    drawn = 0.0
+    stick = 0.0
+    for i in range(drive.size):
+        step = drive[i] / rate
+        drawn += step
+        stick += 1.0 / rate
+        borne = scattered[count % scattered.size] * (1.0 - math.exp(-stick / ageing_time))
+        # No contact is back within a tenth of a millisecond.
+        if drawn >= borne and stick > 1e-4:
+            index[count] = i - min(1.0, (drawn - borne) / max(step, 1e-12))
+            size[count] = drawn
+            count += 1
+            drawn = 0.0
+            stick = 0.0
+    return index[:count].copy(), size[:count].copy()
+
+
+_slips = njit(cache=True)(_events)

@@ -1,0 +1,80 @@
+"""Noise that is there anyway: hiss of a room, a cabin, a road, wind on the microphone."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["background", "coloured_noise"]
+
+
+def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``.
+
+    Examples
+    --------
+    >>> noise = coloured_noise(1000, 1.0, np.random.default_rng(0))
+    >>> round(float(noise.std()), 6)
+    1.0
+    """
+    m = next_fast_len(n, real=True)
+    spectrum = rfft(rng.standard_normal(m))
+    frequency = np.arange(spectrum.size, dtype=float)
+    frequency[0] = 1.0
+    noise = irfft(spectrum * frequency ** (-0.5 * slope), m)[:n]
+    return np.asarray(noise / noise.std())
+
+
+def background(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Steady noise of unit standard deviation, of a room, a cabin, a road or wind.
+
+    A cabin's noise falls by 6 to 10 dB an octave and carries weak engine orders; a tyre's has its
+    hump at 150-1000 Hz; wind is low and comes in gusts.
+
+    Examples
+    --------
+    >>> float(background(4800, 48e3, np.random.default_rng(1)).std().round(6))
+    1.0
+    """
+    kind = rng.random()
+    if kind < 0.5:
+        return coloured_noise(n, rng.uniform(0.0, 2.0), rng)
+    if kind < 0.7:
+        noise = coloured_noise(n, rng.uniform(1.8, 3.2), rng)
+        if rng.random() < 0.5:
+            noise = noise + _engine_orders(n, rate, rng)
+    elif kind < 0.85:
+        noise = _hump(n, rate, rng) + rng.uniform(0.2, 1.0) * coloured_noise(n, 1.5, rng)
+    else:
+        gust = coloured_noise(n, 3.0, rng)
+        noise = coloured_noise(n, rng.uniform(1.5, 2.5), rng) * np.exp(
+            0.5 * rng.uniform(0.0, 1.0) * gust
+        )
+    return np.asarray(noise / noise.std())
+
+
+def _engine_orders(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    time = np.arange(n) / rate
+    firing = rng.uniform(25.0, 120.0)
+    orders = np.zeros(n)
+    for k in (0.5, 1.0, 1.5, 2.0, 3.0):
+        strength = rng.uniform(0.0, 0.5) / k
+        orders += strength * np.sin(2.0 * np.pi * (k * firing * time + rng.random()))
+    return orders
+
+
+def _hump(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Noise about one frequency, an octave or two wide."""
+    m = next_fast_len(n, real=True)
+    spectrum = rfft(rng.standard_normal(m))
+    frequency = np.maximum(np.arange(spectrum.size) * rate / m, 1.0)
+    centre = math.exp(rng.uniform(math.log(150.0), math.log(1000.0)))
+    octaves = np.log2(frequency / centre) / rng.uniform(0.5, 1.5)
+    noise = irfft(spectrum * np.exp(-0.5 * octaves**2), m)[:n]
+    return np.asarray(noise / noise.std())

@@ -1,0 +1,50 @@
+"""A room about a source: a few early reflections and a diffuse tail.
+
+Reflections come at random within the first 40 ms, weaker the later; the tail decays exponentially,
+its high frequencies first, as air and furniture have it. Nothing of it is any room's geometry: the
+classifier should hear through all rooms, not know one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import fftconvolve, lfilter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["in_a_room"]
+
+
+def in_a_room(
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Add reflections and a tail; the length stays, the direct sound is the first.
+
+    Examples
+    --------
+    >>> click = np.zeros(4800)
+    >>> click[0] = 1.0
+    >>> heard = in_a_room(click, 48e3, np.random.default_rng(0))
+    >>> heard.shape, round(float(heard[0]), 6)
+    ((4800,), 1.0)
+    """
+    t60 = math.exp(rng.uniform(math.log(0.1), math.log(1.2)))
+    n = int(min(t60, 0.6) * rate)
+    time = np.arange(n) / rate
+    taps = rng.standard_normal(n) * 10.0 ** (-3.0 * time / t60)
+    taps[: int(rng.uniform(0.002, 0.01) * rate)] = 0.0
+    pole = math.exp(-2.0 * math.pi * rng.uniform(2e3, 12e3) / rate)
+    taps = lfilter([1.0 - pole], [1.0, -pole], taps)
+    taps *= 10.0 ** (rng.uniform(-20.0, 0.0) / 20.0) / math.sqrt(float(np.sum(taps**2)))
+    early = int(rng.integers(0, 9))
+    if early:
+        when = rng.uniform(0.001, 0.04, early)
+        taps[np.minimum((when * rate).astype(int), n - 1)] += (
+            rng.uniform(0.1, 0.7, early) * rng.choice((-1.0, 1.0), early) / (1.0 + 60.0 * when)
+        )
+    taps[0] = 1.0
+    return np.asarray(fftconvolve(sound, taps)[: sound.size])

@@ -1,0 +1,86 @@
+"""The one frequency that goes with a label: of the slips of a creak or squawk, else of the tone."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.labels.windows import FEATURE_NAMES
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["segment_frequency"]
+
+_PERIODIC = 0.3
+"""Least autocorrelation of an envelope for its period to be that of slips."""
+
+_LEAST_BLOWS = math.log2(3.0 / 10.0)
+"""Fewer blows a second tell no rate [octave re 10 Hz]."""
+
+_COLUMN = {name: i for i, name in enumerate(FEATURE_NAMES)}
+
+
+def segment_frequency(features: NDArray[np.float32], label: str) -> float | None:
+    """Return slip frequency of creak and squawk, else of the strongest line [Hz].
+
+    Parameters
+    ----------
+    features : ndarray of float32, shape (n_windows, n_features)
+        Of the segment's windows, by `noise.labels.windows.FEATURE_NAMES`.
+    label : str
+
+    Returns
+    -------
+    float or None
+        Of the torque where there is one; ``None`` for ``none``, or where nothing is found.
+
+    Examples
+    --------
+    >>> features = np.full((2, len(FEATURE_NAMES)), np.nan, dtype=np.float32)
+    >>> features[:, FEATURE_NAMES.index("pressure_line_frequency")] = 1.0
+    >>> features[:, FEATURE_NAMES.index("pressure_line_count")] = 1.0
+    >>> segment_frequency(features, "squeal")
+    2000.0
+    """
+    if label == "none":
+        return None
+    slips = label in ("creak", "squawk")
+    torque = _median(features, "torque_fundamental" if slips else "torque_line_frequency")
+    if torque is not None:
+        return torque
+    for kind in ("pressure", "acceleration"):
+        found = None
+        if label == "creak":
+            found = _blow_rate(features, kind)
+        if slips and found is None:
+            found = _octaves(features, f"{kind}_fundamental", 100.0)
+        if found is None:
+            counted = features[features[:, _COLUMN[f"{kind}_line_count"]] > 0]
+            found = _octaves(counted, f"{kind}_line_frequency", 1000.0)
+        if found is not None:
+            return found
+    return None
+
+
+def _blow_rate(features: NDArray[np.float32], kind: str) -> float | None:
+    for part in ("high_", ""):
+        strength = features[:, _COLUMN[f"{kind}_{part}period_strength"]]
+        periodic = features[strength > _PERIODIC]
+        if 2 * len(periodic) > len(features):
+            return _octaves(periodic, f"{kind}_{part}period_rate", 10.0)
+    rate = features[:, _COLUMN[f"{kind}_high_blow_rate"]]
+    return _octaves(features[rate > _LEAST_BLOWS], f"{kind}_high_blow_rate", 10.0)
+
+
+def _octaves(features: NDArray[np.float32], name: str, reference: float) -> float | None:
+    octave = _median(features, name)
+    return None if octave is None else reference * 2.0**octave
+
+
+def _median(features: NDArray[np.float32], name: str) -> float | None:
+    values = features[:, _COLUMN[name]]
+    values = values[np.isfinite(values)]
+    return float(np.median(values)) if values.size else None

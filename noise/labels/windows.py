@@ -1,0 +1,216 @@
+"""A recording described window by window, reading each of its samples once.
+
+Blocks lie on a grid that begins with the recording, and pages hold two of them; so the same numbers
+come out whether the recording is in memory or read from its file, and memory does not grow with its
+length but for a few kilobytes a second that are kept of it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.conditioning import USABLE_SHARE, WORKING_LIMIT
+from features.prepared import ACOUSTIC_KINDS
+from features.registry import feature_names, feature_vector
+from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_page, window_count
+from features.windows.working import FRAME_RATE, MARGIN, RATE, block_length, working_block
+from models.errors import ParameterError
+from noise.labels.levels import CellLevels
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from features.windows.table import Page
+    from features.windows.working import Block
+    from noise.recordings.blocks import RecordingBlocks
+
+__all__ = ["FEATURE_NAMES", "Described", "describe"]
+
+_TORQUE_NAMES = feature_names("torque")
+
+FEATURE_NAMES = (
+    *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
+    *(f"torque_{name}" for name in _TORQUE_NAMES),
+)
+"""Of a window of a recording; NaN for the kinds of channel that it does not have."""
+
+_FADE = 0.01
+"""The ends of a recording are faded in and out [s]: cut hum would click."""
+
+_BLOCKS_A_PAGE = 2
+
+_FRAMES_A_HOP = round(HOP * FRAME_RATE)
+
+
+@dataclass(frozen=True, eq=False)
+class Described:
+    """What is known of a recording for labelling it.
+
+    Parameters
+    ----------
+    features : ndarray of float32, shape (n_windows, n_features)
+        By `FEATURE_NAMES`.
+    level : ndarray, shape (n_windows,)
+        Power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
+    frames : ndarray of float32, shape (n_frames, n)
+        Of that channel, as `features.windows.table.Page` has them.
+    cells : CellLevels
+        Of that channel, all frequencies.
+    """
+
+    features: NDArray[np.float32]
+    level: NDArray[np.float32]
+    frames: NDArray[np.float32]
+    cells: CellLevels
+
+
+def describe(blocks: RecordingBlocks) -> Described:
+    """Describe all windows of a recording.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+        With a channel of pressure, acceleration or torque, of which the first is listened to.
+
+    Returns
+    -------
+    Described
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> hiss = np.random.default_rng(0).normal(size=(1, 48_000))
+    >>> found = describe(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
+    >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]
+    (True, 97)
+    """
+    rows = {kind: blocks.first(kind) for kind in (*ACOUSTIC_KINDS, "torque")}
+    channels = {kind: row for kind, row in rows.items() if row is not None}
+    heard = next(iter(channels.values()))
+    acoustic = [row for kind, row in channels.items() if kind in ACOUSTIC_KINDS]
+    reader = _Reader(blocks, sorted({heard, *acoustic}), heard)
+    features, levels, frames = [], [], []
+    for first, windows in reader.pages():
+        own = reader.page(heard, first, windows)
+        levels.append(own.level)
+        frames.append(own.frames[: windows * _FRAMES_A_HOP])
+        parts = []
+        for kind in ACOUSTIC_KINDS:
+            if kind not in channels:
+                parts.append(np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32))
+            else:
+                row = channels[kind]
+                page = own if row == heard else reader.page(row, first, windows)
+                parts.append(page.features)
+        parts.append(_torque(blocks, channels.get("torque"), first, windows))
+        features.append(np.concatenate(parts, axis=1))
+    frames[-1] = own.frames
+    table = np.concatenate(features)
+    table[~np.isfinite(table)] = np.nan
+    return Described(table, np.concatenate(levels), np.concatenate(frames), reader.cells)
+
+
+class _Reader:
+    """Blocks and pages of some channels, one after the other."""
+
+    def __init__(self, blocks: RecordingBlocks, rows: list[int], heard: int) -> None:
+        self._blocks, self._rows, self._heard = blocks, rows, heard
+        rate = blocks.rate
+        self._useful = block_length(blocks.n_samples / rate)
+        self._n = max(1, round(blocks.n_samples * RATE / rate))
+        self._limit = min(WORKING_LIMIT, USABLE_SHARE * rate)
+        self._held: dict[int, dict[int, Block]] = {}
+        self.cells = CellLevels(rate, blocks.n_samples)
+
+    def pages(self) -> Iterator[tuple[int, int]]:
+        """Yield the first window of each page and their number."""
+        count = window_count(self._n)
+        a_page = round(_BLOCKS_A_PAGE * self._useful / HOP)
+        for first in range(0, count, a_page):
+            yield first, min(a_page, count - first)
+
+    def page(self, row: int, first: int, windows: int) -> Page:
+        """Describe a page of a channel."""
+        number = round(first * HOP) // self._useful
+        start = number * self._useful * RATE
+        size = min(self._n - start, round(((windows - 1) * HOP + LENGTH) * RATE))
+        held = [
+            self._block(i)[row]
+            for i in range(number, number + math.ceil(size / (self._useful * RATE)))
+        ]
+        scale = max(block.scale for block in held)
+        shares = [np.float32(block.scale / scale if scale > 0.0 else 0.0) for block in held]
+        sound, high, top = (
+            np.concatenate([part * factor for part, factor in zip(parts, factors, strict=True)])
+            for parts, factors in (
+                ([block.sound for block in held], shares),
+                ([block.high for block in held], shares),
+                ([block.top for block in held], [share**2 for share in shares]),
+            )
+        )
+        frames = math.ceil(size * FRAME_RATE / RATE)
+        return describe_page(
+            sound[:size],
+            high[:size],
+            top[:frames],
+            scale=scale,
+            windows=windows,
+            limit=self._limit,
+        )
+
+    def _block(self, number: int) -> dict[int, Block]:
+        """Return one block of all channels; the last few are kept."""
+        if number not in self._held:
+            for old in [old for old in self._held if old < number - _BLOCKS_A_PAGE]:
+                del self._held[old]
+            rate, n = self._blocks.rate, self._blocks.n_samples
+            start = round((number * self._useful - MARGIN) * rate)
+            length = round((self._useful + 2.0 * MARGIN) * rate)
+            held = self._blocks.read(max(start, 0), min(start + length, n))
+            begin = round(number * self._useful * rate)
+            end = round((number + 1) * self._useful * rate)
+            self.cells.add(begin, end, held[self._heard], max(start, 0))
+            self._held[number] = {
+                row: working_block(self._framed(held[row], start, length), rate, self._useful)
+                for row in self._rows
+            }
+        return self._held[number]
+
+    def _framed(self, samples: NDArray[np.float64], start: int, length: int) -> NDArray[np.float64]:
+        """Put what there is of a block into zeros, faded where the recording begins and ends."""
+        whole = np.zeros(length)
+        first = max(0, -start)
+        part = whole[first : first + samples.size]
+        np.subtract(samples, samples.mean(), out=part)
+        fade = min(round(_FADE * self._blocks.rate), self._blocks.n_samples // 10)
+        ramp = 0.5 - 0.5 * np.cos(np.pi * (np.arange(fade) + 0.5) / max(fade, 1))
+        if start <= 0:
+            part[:fade] *= ramp
+        if start + length >= self._blocks.n_samples:
+            part[part.size - fade :] *= ramp[::-1]
+        return whole
+
+
+def _torque(
+    blocks: RecordingBlocks, row: int | None, first: int, windows: int
+) -> NDArray[np.float32]:
+    """Features of the torque in the windows of a page."""
+    out = np.full((windows, len(_TORQUE_NAMES)), np.nan, dtype=np.float32)
+    if row is None:
+        return out
+    for i in range(windows):
+        start = round((first + i) * HOP * blocks.rate)
+        end = min(start + round(LENGTH * blocks.rate), blocks.n_samples)
+        try:
+            found = feature_vector(blocks.read(start, end)[row], blocks.rate, "torque")
+        except ParameterError:  # too short to be described
+            continue
+        out[i] = list(found.values())
+    return out
