@@ -23,6 +23,8 @@ _EXPORTS = {
     "models.rig_file": ("load_material_rig", "load_rig", "material_names"),
     "noise.classifier": ("LABELS", "Classifier", "load_classifier"),
     "noise.classifier.training": ("train",),
+    "noise.diagnosis.outcome": ("Diagnosis",),
+    "noise.diagnosis.run": ("diagnose",),
     "noise.inference": ("Inference", "Interval", "load_inference"),
     "noise.inference.training": ("train_inference",),
     "noise.labels": ("Segment", "file_label", "label_recording"),

@@ -15,9 +15,11 @@ import numpy as np
 from numba import njit
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-__all__ = ["Trees", "grow_trees"]
+__all__ = ["Trees", "as_arrays", "grow_trees"]
 
 _LEAF = -1
 
@@ -69,8 +71,8 @@ class Trees:
         if (self.classes < 0).any() or (self.classes >= self.base.size).any():
             raise ValueError("its trees speak for classes that there are not")
 
-    def probabilities(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Probabilities of the classes, not calibrated.
+    def scores(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
+        """Sum of what the trees of each class say.
 
         Parameters
         ----------
@@ -93,6 +95,11 @@ class Trees:
             self.value,
             scores,
         )
+        return scores
+
+    def probabilities(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
+        """Probabilities of the classes, not calibrated; arguments as of `scores`."""
+        scores = self.scores(x)
         p = np.exp(scores - scores.max(axis=1, keepdims=True))
         return np.asarray(p / p.sum(axis=1, keepdims=True))
 
@@ -148,7 +155,7 @@ def grow_trees(
     )
     with threadpool_limits(1):  # sums are the same on every machine
         model.fit(x, y, sample_weight=weight)
-    return _as_arrays(model)
+    return as_arrays([model])
 
 
 @njit(cache=True, error_model="numpy")
@@ -163,8 +170,14 @@ def _add_up(x, roots, classes, feature, threshold, children, missing_left, value
             scores[i, classes[tree]] += value[node]
 
 
-def _as_arrays(model: Any) -> Trees:
-    grown = [(k, tree.nodes) for trees in model._predictors for k, tree in enumerate(trees)]
+def as_arrays(models: Sequence[Any]) -> Trees:
+    """Return scikit-learn's boosted trees as arrays; of several models the classes follow on."""
+    grown, first = [], 0
+    for model in models:
+        for trees in model._predictors:
+            grown += [(first + k, tree.nodes) for k, tree in enumerate(trees)]
+        first += len(model._predictors[0])
+    bases = [np.asarray(model._baseline_prediction).reshape(-1) for model in models]
     nodes = np.concatenate([tree for _, tree in grown])
     counts = np.array([len(tree) for _, tree in grown])
     roots = np.cumsum(counts) - counts
@@ -178,5 +191,5 @@ def _as_arrays(model: Any) -> Trees:
         children=np.where(leaf[:, None], 0, children).astype(np.int32),
         missing_left=nodes["missing_go_to_left"].astype(bool),
         value=np.where(leaf, nodes["value"], 0.0).astype(np.float64),
-        base=np.asarray(model._baseline_prediction, dtype=np.float64).reshape(-1),
+        base=np.concatenate(bases).astype(np.float64),
     )

@@ -45,6 +45,10 @@ COMMANDS = {
     "features": Entry("noise.commands.features", "recordings -> a table of features"),
     "label": Entry("noise.commands.label", "recordings -> a table of labelled segments"),
     "frf": Entry("noise.commands.frf", "hammer hits -> frequency response, coherence and modes"),
+    "diagnose": Entry(
+        "noise.commands.diagnose",
+        "recordings against the simulator -> which effect is missing, and how far it closes",
+    ),
     "train": Entry("noise.commands.train", "build the classifier again from simulation"),
     "thesis": Entry(
         "noise.commands.thesis", "the published numbers beside what the program computes"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,9 @@ SHORTEST = LEAD + TAIL + 0.1
 
 LEAST_RATE = 8e3
 """[Hz]"""
+
+_SAME = 1e-3
+"""Relative difference up to which two fits or supports are the same."""
 
 KINDS = ("torque", "acceleration", "pressure")
 """Kinds of channel of which a recording must have one."""
@@ -120,11 +124,23 @@ def usable(recording: Recording, rig: Rig) -> Recording:
         interference = rig.fits[0].interference
     if interference is None:
         raise ParameterError("states no interference_mm, and the rig file has several fits")
+    low, high = rig.interference_range
+    if not low * (1.0 - _SAME) <= interference <= high * (1.0 + _SAME):
+        raise ParameterError(
+            f"interference_mm = {1e3 * interference:g} lies outside the fits of the rig file, "
+            f"{1e3 * low:g} to {1e3 * high:g}"
+        )
     support = condition.support_stiffness
     if support is None and len(rig.measured) == 1:
         support = rig.measured[0].support_stiffness
     if support is None:
         raise ParameterError("states no support_stiffness_Nm_rad, of which there may be several")
+    known = [m.support_stiffness for m in rig.measured]
+    if known and not any(math.isclose(support, k, rel_tol=_SAME) for k in known):
+        raise ParameterError(
+            f"support_stiffness_Nm_rad = {support:g} has no measured_response in the rig file; "
+            f"it has {', '.join(f'{k:g}' for k in known)}"
+        )
     return replace(
         recording,
         condition=replace(

@@ -74,9 +74,13 @@ class Reference:
 
     def squared(self, signature: NDArray[np.float64]) -> float:
         """Squared distance of a signature, 1 on average for a repeat."""
+        return self.squared_of(self.deviation(signature))
+
+    def squared_of(self, deviation: NDArray[np.float64]) -> float:
+        """Squared distance of deviations, 1 on average for those of a repeat."""
         # one repeat in a hundred falls into another regime, and must not set the unit
         usual = np.minimum(self.null, _UNUSUAL * np.median(self.null))
-        return _squared(self.deviation(signature)) / float(np.mean(usual))
+        return _squared(deviation) / float(np.mean(usual))
 
 
 @dataclass(frozen=True, eq=False)

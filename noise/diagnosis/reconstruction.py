@@ -56,7 +56,7 @@ class Reconstruction:
     clamp_speed : ndarray
         [rad/s]
     by_stiffness, by_damping, by_clamp : ndarray
-        By how much the sliding speed would be less were the elastomer's stiffness, all damping or
+        By how much the sliding speed would be more were the elastomer's stiffness, all damping or
         the clamp's inertia greater, per relative change [rad/s].
     """
 
@@ -154,7 +154,7 @@ def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]
     Examples
     --------
     >>> closed_loop(np.array([0.0, 2.0]), 8.0).round(1)
-    array([ 0.,  2.,  2.,  0.])
+    array([0., 2., 2., 0.])
     """
     n = signal.size
     length = next_fast_len(n + round(_WAY_BACK * rate), real=True)

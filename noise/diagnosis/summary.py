@@ -9,7 +9,7 @@ condition and between repeats of one.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.paths import Way
     from sim.effects.effect import Effect
 
-__all__ = ["CaseTable", "case_table", "summary"]
+__all__ = ["CaseTable", "case_table", "summary", "through_same"]
 
 Numbers = dict[str, float]
 
@@ -97,10 +97,12 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
         if (row := recording.first(kind)) is not None
     }
     numbers: Numbers = {}
-    speed = np.full(recording.samples.shape[1], condition.speed)
+    # Torque and motion change sign together: what turns backwards is looked at from behind.
+    turn, wanted = math.copysign(1.0, condition.speed), abs(condition.speed)
+    speed = np.full(recording.samples.shape[1], wanted)
     if "angle" in signal:
-        numbers |= _named("angle", angle_summary(signal["angle"], condition.speed, rate))
-        speed = shaft_speed(signal["angle"], rate)
+        numbers |= _named("angle", angle_summary(turn * signal["angle"], wanted, rate))
+        speed = shaft_speed(turn * signal["angle"], rate)
     for kind in ("torque", *_OUTPUTS):
         if kind in signal:
             numbers |= _named(kind, channel_summary(signal[kind], rate))
@@ -115,10 +117,10 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     torque = signal["torque"]
     numbers |= _named("torque", hum_summary(torque, rate))
     bushing = lumped_bushing(rig, condition.interference, condition.support_stiffness)
-    found = reconstruct(torque, speed, rate, bushing)
+    found = reconstruct(turn * torque, speed, rate, bushing)
     fit = rig.fit(condition.interference)
-    numbers |= _named("contact", contact_summary(found, fit, condition.speed))
-    slips = slip_starts(found, condition.speed)[0] / rate + found.start
+    numbers |= _named("contact", contact_summary(found, fit, wanted))
+    slips = slip_starts(found, wanted)[0] / rate + found.start
     residuals = {}
     for kind in _OUTPUTS:
         if kind in signal:
@@ -153,7 +155,7 @@ def case_table(
     CaseTable
     """
     rows, means, spreads = [], [], []
-    kept: dict[tuple[float, ...], tuple[Numbers, Numbers]] = {}
+    kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = {}
     known_ways: dict[tuple[float, ...], dict[str, Way]] = {}
     for recording in recordings:
         c = recording.condition
@@ -162,7 +164,8 @@ def case_table(
             known_ways[key[1:]] = ways(rig, key[1], key[2])
         found_ways = known_ways[key[1:]]
         rows.append(summary(recording, rig, found_ways))
-        if key not in kept:
+        like = (key, recording.rate, recording.samples.shape[1], recording.channel_names)
+        if like not in kept:
             repeats = nominal_recordings(
                 rig,
                 c,
@@ -172,9 +175,10 @@ def case_table(
                 seeds=[seed + i for i in range(N_REPEATS)],
                 library=library,
             )
-            kept[key] = _moments([summary(repeat, rig, found_ways) for repeat in repeats])
-        means.append(kept[key][0])
-        spreads.append(kept[key][1])
+            heard = [through_same(repeat, recording) for repeat in repeats]
+            kept[like] = _moments([summary(repeat, rig, found_ways) for repeat in heard])
+        means.append(kept[like][0])
+        spreads.append(kept[like][1])
     names = tuple(sorted({name for row in (*rows, *means) for name in row}))
 
     def table(numbers: list[Numbers]) -> NDArray[np.float64]:
@@ -187,6 +191,14 @@ def case_table(
         table(spreads),
         tuple(recording.condition for recording in recordings),
         recordings[0].rate,
+    )
+
+
+def through_same(repeat: Recording, recording: Recording) -> Recording:
+    """Return a repeat without the channels that a recording lacks."""
+    rows = [i for i, c in enumerate(repeat.channels) if recording.first(c.kind) is not None]
+    return replace(
+        repeat, samples=repeat.samples[rows], channels=tuple(repeat.channels[i] for i in rows)
     )
 
 

@@ -14,19 +14,17 @@ import numpy as np
 from scipy.signal import resample_poly
 
 from models.recording import Channel, Recording
-from models.response import radiate
+from noise.diagnosis.chain_run import CHANNELS, fine_rate, run_signals
 from noise.diagnosis.library.rigs import OFFSETS, draw_setting, with_offsets
 from noise.diagnosis.library.strangers import STRANGERS, draw_stranger
 from noise.diagnosis.library.strengths import drawn_effect
 from noise.diagnosis.library.structures import draw_structure
 from noise.diagnosis.library.truth import KINDS, Truth
-from noise.diagnosis.scatter import Scatter, scattered
+from noise.diagnosis.library.variants import draw_variant
+from noise.diagnosis.scatter import Scatter
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
-from sim.chain import changed_chain
 from sim.effects import EFFECTS
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,9 +42,8 @@ __all__ = ["DrawnCase", "draw_case"]
 WEAKEST = 0.02
 """Least strength of an effect that is drawn."""
 
-_SETTLING = 0.35
-_LEAST_RATE = 75e3
-_CHANNELS = ("torque", "acceleration", "pressure", "angle")
+_VARIANTS = 0.65
+"""Share of the effects that have none of the simulator's own forms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +75,7 @@ def draw_case(seed: np.random.SeedSequence | int) -> DrawnCase:
     rng = np.random.default_rng(seed)
     setting = draw_setting(rng)
     truth, effects = _draw_cause(setting.rig, rng)
-    fine = math.ceil(_LEAST_RATE / setting.rate) * setting.rate
+    fine = fine_rate(setting.rate)
     structures = {
         support: draw_structure(lumped_bushing(setting.rig, 0.279e-3, support), rng)
         for support in sorted({_support(c) for c in setting.conditions})
@@ -117,9 +114,15 @@ def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveE
     count = {"one": 1, "pair": 2, "triple": 3}.get(kind, 0)
     names = rng.choice(sorted(EFFECTS), count, replace=False).tolist()
     strengths = tuple(_strength(rng) for _ in names)
-    specs = [drawn_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
-    effects = [EFFECTS[spec.name].active(spec.parameters) for spec in specs]
+    effects = [_drawn_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
     return Truth(kind, tuple(names), tuple(e.form for e in effects), strengths), effects
+
+
+def _drawn_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+    spec = drawn_effect(name, strength, rng)
+    if rng.random() < _VARIANTS:
+        return draw_variant(name, strength, rng).active({})
+    return EFFECTS[name].active(spec.parameters)
 
 
 def _record(
@@ -132,48 +135,21 @@ def _record(
     noise: Mapping[str, float],
     rng: np.random.Generator,
 ) -> Recording:
-    assert condition.speed is not None
-    assert condition.interference is not None
     scatter, chance = Scatter(), np.random.default_rng(int(rng.integers(2**31)))
-    support = _support(condition)
-    if not math.isinf(support):
-        support *= float(np.exp(scatter.structure * chance.standard_normal()))
     fine = plain.rate
-    settling = round(_SETTLING * fine)
-    motion = simulate_motion(
-        scattered(with_offsets(setting.rig, offsets), scatter, chance),
-        ConstantSpeed(condition.speed * float(np.exp(scatter.structure * chance.normal()))),
-        interference=condition.interference,
-        support_stiffness=support,
-        seconds=(settling + round(setting.seconds * fine)) / fine,
-        rate=fine,
-        effects=effects,
-        rng=chance,
-    )
-    force = np.zeros_like(motion.torque)
-    for active in effects:
-        if active.effect.force is not None:
-            force += active.effect.force(motion, active.form, active.values)
-    chain = changed_chain(plain, effects, np.random.default_rng(chain_seed))
-    acceleration, pressure = radiate(chain, motion.torque, force)
-    signals = {
-        "torque": motion.torque[settling:],
-        "acceleration": acceleration[settling:],
-        "pressure": pressure[settling:],
-        "angle": motion.shaft_angle[settling:] - motion.shaft_angle[settling],
-    }
-    for active in effects:
-        if active.effect.sensors is not None:
-            signals = active.effect.sensors(signals, fine, active.form, active.values, chance)
+    signals = run_signals(
+        with_offsets(setting.rig, offsets), condition, effects, plain, setting.seconds, chance,
+        chain_seed=chain_seed,
+    )  # fmt: skip
     decimation = round(fine / setting.rate)
     samples = [
         _sampled(
             signals[name], decimation, noise[name], 0.0 if name == "angle" else scatter.gain, chance
         )
-        for name in _CHANNELS
+        for name in CHANNELS
     ]
     return Recording(
-        np.stack(samples), setting.rate, tuple(Channel(name) for name in _CHANNELS), condition
+        np.stack(samples), setting.rate, tuple(Channel(name) for name in CHANNELS), condition
     )
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DIAGNOSE", "diagnose_copy", "resolve"]
 
-DIAGNOSE = "noise.diagnosis:diagnose"
+DIAGNOSE = "noise.diagnosis.run:diagnosis_json"
 """What ``bushing-noise diagnose`` calls."""
 
 

@@ -1,0 +1,96 @@
+"""``bushing-noise diagnose``: recordings against the simulator, and which effect is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.commands import options as opt
+from noise.commands.targets import check_target
+from noise.progress import say
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+
+    from noise.diagnosis.outcome import Diagnosis
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: ArgumentParser) -> None:
+    """Declare description and options."""
+    parser.description = (
+        "Compare recordings of a rig with the simulator: where the simulation goes wrong, which "
+        "effect that it lacks is the cause, how sure that is, how far the gap closes when the "
+        "effect is put in, and what to measure next. Recordings need a sidecar with speed, "
+        "interference and support stiffness; with torque, acceleration, sound and angle the answer "
+        "is surest, with fewer it still comes and says what is missing. Conditions recorded twice "
+        "tell how much repeats differ."
+    )
+    parser.epilog = "example: bushing-noise diagnose recordings --rig rig.toml --out diagnosis"
+    parser.add_argument(
+        "data", type=Path, nargs="+", metavar="DATA", help="recordings, or folders of them"
+    )
+    parser.add_argument(
+        "--rig", type=Path, required=True, metavar="RIG.toml", help="what is known of the rig"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FOLDER",
+        help="folder for report.html and diagnosis.json (default: JSON on standard output)",
+    )
+    parser.add_argument(
+        "--effects",
+        type=Path,
+        metavar="FILE.py",
+        help="effects of your own, fitted beside the probable ones",
+    )
+    parser.add_argument("--quick", action="store_true", help="the first answer alone, without fits")
+    opt.add_seed(parser, "of simulated repeats and bootstraps")
+
+
+def run(options: Namespace) -> int:
+    """Diagnose and write."""
+    if options.out is not None:
+        if options.out.is_file():
+            raise ParameterError(f"--out {options.out}: is a file; name a folder")
+        check_target(options.out / "report.html")
+    say("preparing")
+    from models.rig_file import load_rig
+    from noise.commands.user_effects import effect_library
+    from noise.diagnosis.case import read_case
+    from noise.diagnosis.diagnose import diagnose_case
+    from noise.diagnosis.outcome import as_json
+
+    library = effect_library(options.effects)
+    case = read_case(options.data, load_rig(options.rig))
+    for name, reason in case.refused:
+        say(f"{name}: {reason}")
+    diagnosis = diagnose_case(
+        case, quick=options.quick, library=library, seed=options.seed or 0, progress=say
+    )
+    if options.out is None:
+        import json
+
+        print(json.dumps(as_json(diagnosis), indent=2))
+    else:
+        from noise.report.diagnosis_page import write_diagnosis
+
+        write_diagnosis(options.out, diagnosis)
+        print(options.out / "report.html")
+        print(options.out / "diagnosis.json")
+    say(_sentence(diagnosis))
+    return 1 if case.refused else 0
+
+
+def _sentence(diagnosis: Diagnosis) -> str:
+    if not diagnosis.verdict:
+        return f"no gap beyond what repeats differ by (p = {diagnosis.p_value:.2g})"
+    named = ", ".join(
+        f"{name} ({diagnosis.probabilities.get(name, 0.0):.0%})" for name in diagnosis.verdict
+    )
+    closed = next((e.closed for e in diagnosis.effects if e.name == diagnosis.verdict[0]), None)
+    how_far = "" if closed is None else f"; it closes {closed:.0%} of the gap held out"
+    return f"verdict: {named}{how_far}"

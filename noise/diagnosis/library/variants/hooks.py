@@ -1,0 +1,244 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
+# mypy: allow-untyped-decorators, no-warn-return-any
+# ruff: noqa: ANN001, ANN202, ARG001
+"""Compiled functions of the variants that act on the contact, by `sim.contact.HOOK_SIGNATURE`.
+
+What differs from variant to variant is a table among the values, so that few functions serve many
+forms. Each table says its own length, since the solver lengthens the values of a shorter effect.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from sim.contact import (
+    CREEP,
+    CRITICAL,
+    ELASTOMER_TORQUE,
+    HOOK_SIGNATURE,
+    KINETIC,
+    SHAFT_ANGLE,
+    SHAFT_INERTIA,
+    SHAFT_LAG,
+    SHAFT_LAG_RATE,
+    SHAFT_SPEED,
+    SHAFT_TORQUE,
+    SLIDING_SPEED,
+    STICK_TIME,
+    STICKS,
+    STIFFNESS,
+    TIME,
+    TORQUE,
+    TWIST,
+    TWIST_RATE,
+)
+
+__all__ = [
+    "aged", "bristled", "compliant", "crept", "filmed", "flowed", "heated", "patched", "softened",
+    "sped",
+]  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy")
+def _cubic(a, b, c, d, x):
+    """Catmull and Rom's cubic between b and c."""
+    return b + 0.5 * x * (
+        c - a + x * (2.0 * a - 5.0 * b + 4.0 * c - d + x * (3.0 * (b - c) + d - a))
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _curve(values, first, x):
+    """Read a table over 0 to 1; it starts with its length."""
+    n = int(values[first])
+    place = min(max(x, 0.0), 1.0) * (n - 1)
+    i = min(int(place), n - 2)
+    at = first + 1
+    return _cubic(
+        values[at + max(i - 1, 0)], values[at + i], values[at + i + 1],
+        values[at + min(i + 2, n - 1)], place - i,
+    )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy")
+def _periodic(values, first, place):
+    """Read a table that repeats; it starts with its length."""
+    n = int(values[first])
+    whole = math.floor(place)
+    i = int(whole)
+    at = first + 1
+    return _cubic(
+        values[at + (i - 1) % n], values[at + i % n], values[at + (i + 1) % n],
+        values[at + (i + 2) % n], place - whole,
+    )  # fmt: skip
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def sped(context, values, state, state_rates, contact) -> None:
+    """Torque over sliding speed: gain, speed, lag; curve over x / (1 + x)."""
+    speed = abs(context[SLIDING_SPEED])
+    if values[2] > 0.0:
+        state_rates[0] = (speed - state[0]) / values[2]
+        speed = max(state[0], 0.0)
+    x = speed / values[1]
+    gained = values[0] * _curve(values, 3, x / (1.0 + x)) * contact[KINETIC]
+    contact[KINETIC] += gained
+    contact[CRITICAL] += gained
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def aged(context, values, state, state_rates, contact) -> None:
+    """Critical torque over age: share, time, angle of renewal; curve over x / (1 + x)."""
+    own_age = max(state[0], 0.0)
+    unslipped = context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]
+    age = own_age if unslipped else max(context[STICK_TIME], 0.0)
+    renewal = 1.0 - abs(context[SLIDING_SPEED]) * own_age / values[2]
+    state_rates[0] = renewal if unslipped else 0.0
+    x = age / values[1]
+    grown = _curve(values, 3, x / (1.0 + x))
+    contact[CRITICAL] -= values[0] * (1.0 - grown) * (contact[CRITICAL] - contact[KINETIC])
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def crept(context, values, state, state_rates, contact) -> None:
+    """Creep over torque: share, lag; curve over the torque's share of the critical one."""
+    r = min(abs(context[TORQUE]) / contact[CRITICAL], 1.0)
+    f = _curve(values, 2, r)
+    if values[1] > 0.0:
+        state_rates[0] = (f - state[0]) / values[1]
+        f = min(max(state[0], 0.0), 1.0)
+    if context[TORQUE] * context[SHAFT_SPEED] > 0.0:
+        contact[CREEP] += values[0] * f * (1.0 - contact[CREEP])
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def patched(context, values, state, state_rates, contact) -> None:
+    """Drop over the shaft's angle: points a radian; a periodic table of factors."""
+    share = max(_periodic(values, 1, context[SHAFT_ANGLE] * values[0]), 0.0)
+    contact[CRITICAL] = contact[KINETIC] + share * (contact[CRITICAL] - contact[KINETIC])
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def filmed(context, values, state, state_rates, contact) -> None:
+    """Torque and drop on a film.
+
+    Coverage, torque ratio, drop left, roughness, whether over the shaft's angle rather than the
+    angle slid, scale [rad], whether the noise is over angle, its points a second or radian; the
+    film's curve, and the noise.
+    """
+    state_rates[0] = abs(context[SLIDING_SPEED])
+    if values[4] != 0.0:
+        x = context[SHAFT_ANGLE] / values[5]
+        x -= math.floor(x)
+    else:
+        x = state[0] / values[5]
+        x = x / (1.0 + x)
+    film = values[0] * _curve(values, 8, x)
+    drop = (contact[CRITICAL] - contact[KINETIC]) * (1.0 - film * (1.0 - values[2]))
+    along = context[SHAFT_ANGLE] if values[6] != 0.0 else context[TIME]
+    rough = _periodic(values, 9 + int(values[8]), along * values[7])
+    contact[KINETIC] *= (1.0 + film * (values[1] - 1.0)) * (1.0 + film * values[3] * rough)
+    contact[CRITICAL] = contact[KINETIC] + drop
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def heated(context, values, state, state_rates, contact) -> None:
+    """Torque over heat.
+
+    Share lost, rise [K] over which, whether heat passes from one capacity to the next, their
+    number, weights and rates; curve over x / (1 + x).
+    """
+    n = int(values[3])
+    rise = 0.0
+    for i in range(n):
+        rise = state[i] if values[2] != 0.0 else rise + state[i]
+    x = max(rise, 0.0) / values[1]
+    factor = 1.0 - values[0] * _curve(values, 4 + 2 * n, x / (1.0 + x))
+    contact[KINETIC] *= factor
+    contact[CRITICAL] *= factor
+    power = contact[KINETIC] * abs(context[SLIDING_SPEED])
+    for i in range(n):
+        rate = values[4 + n + i]
+        if values[2] != 0.0 and i > 0:
+            state_rates[i] = rate * (state[i - 1] - state[i])
+        else:
+            state_rates[i] = values[4 + i] * power - rate * state[i]
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def softened(context, values, state, state_rates, contact) -> None:
+    """Stiffness over departure from a mean.
+
+    Share, twist, time of the mean, time for which the amplitude is held; curve over x / (1 + x).
+    """
+    mean = state[0]
+    departure = context[TWIST] - mean
+    state_rates[0] = departure / values[2]
+    size = abs(departure)
+    if values[3] > 0.0:
+        risen = size - state[1]
+        state_rates[1] = risen / (0.1 * values[3] if risen > 0.0 else values[3])
+        size = max(state[1], 0.0)
+    x = size / values[1]
+    lost = values[0] * _curve(values, 4, x / (1.0 + x)) * contact[STIFFNESS]
+    contact[STIFFNESS] -= lost
+    contact[ELASTOMER_TORQUE] += lost * mean
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def bristled(context, values, state, state_rates, contact) -> None:
+    """Part of the stiffness in bristles that yield: share, number, the twist of each."""
+    n = int(values[1])
+    held = 0.0
+    rate = context[TWIST_RATE]
+    for i in range(n):
+        bent = state[i]
+        held += bent
+        state_rates[i] = rate * (1.0 - abs(bent) / values[2 + i]) if rate * bent > 0.0 else rate
+    lost = values[0] * contact[STIFFNESS]
+    contact[ELASTOMER_TORQUE] += lost * (held / n - context[TWIST])
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def flowed(context, values, state, state_rates, contact) -> None:
+    """Branches with a dashpot that is not linear.
+
+    Number, whether it thins (1) or thickens (0), twist; shares and rates.
+    """
+    n = int(values[0])
+    share = 0.0
+    for i in range(n):
+        stretch = context[TWIST] - state[i]
+        share += values[3 + i] * stretch
+        y = min(abs(stretch) / values[2], 4.0)
+        faster = 1.0
+        if values[1] == 0.0:
+            faster = 1.0 / (1.0 + y)
+        elif y > 1e-6:
+            faster = math.sinh(y) / y
+        state_rates[i] = stretch * values[3 + n + i] * faster
+    contact[ELASTOMER_TORQUE] += contact[STIFFNESS] * share
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def compliant(context, values, state, state_rates, contact) -> None:
+    """Shaft that yields.
+
+    Inertia (0 for a rigid one), stiffness, share that softens, share that is cubic, lag over which,
+    damping, dry torque, lag over which that builds up, share of a Maxwell branch and its rate.
+    """
+    if values[0] == 0.0:
+        return
+    lag, rate = context[SHAFT_LAG], context[SHAFT_LAG_RATE]
+    y = (lag / values[4]) ** 2
+    spring = values[1] * lag * (1.0 - values[2] * y / (1.0 + y) + values[3] * (y - 1.0))
+    bent = state[0]
+    state_rates[0] = rate / values[7] * (1.0 - abs(bent) if rate * bent > 0.0 else 1.0)
+    stretch = lag - state[1]
+    state_rates[1] = stretch * values[9]
+    contact[SHAFT_INERTIA] = values[0]
+    contact[SHAFT_TORQUE] = (
+        spring + values[5] * rate + values[6] * bent + values[8] * values[1] * stretch
+    )

@@ -1,0 +1,52 @@
+"""The diagnosis of a folder, as a notebook and the blind check call it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from models.rig_file import load_rig
+from noise.diagnosis.case import read_case
+from noise.diagnosis.diagnose import diagnose_case
+from noise.diagnosis.outcome import as_json
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from noise.diagnosis.outcome import Diagnosis
+
+__all__ = ["diagnose", "diagnosis_json"]
+
+
+def diagnose(
+    data: str | Path | Sequence[str | Path], rig: str | Path, *, quick: bool = False, seed: int = 0
+) -> Diagnosis:
+    """Diagnose recordings against the simulator.
+
+    Parameters
+    ----------
+    data : path or sequence of paths
+        Recordings, or folders of them.
+    rig : path
+        Rig file.
+    quick : bool
+        Whether to give the first answer alone, without fits.
+    seed : int
+        Of simulated repeats and bootstraps.
+
+    Returns
+    -------
+    Diagnosis
+
+    Raises
+    ------
+    ParameterError
+        Rig file or recordings cannot be used.
+    """
+    paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
+    return diagnose_case(read_case(paths, load_rig(rig)), quick=quick, seed=seed)
+
+
+def diagnosis_json(data: Path, rig: Path, *, quick: bool = False) -> dict[str, Any]:
+    """Diagnose a folder; return what ``diagnosis.json`` holds."""
+    return as_json(diagnose(data, rig, quick=quick))
