@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.paths import Way
     from sim.effects.effect import ActiveEffect
 
-__all__ = ["CHANNELS", "chain_of", "fine_rate", "recorded", "run_signals"]
+__all__ = ["CHANNELS", "chain_of", "fine_rate", "recorded", "run_signals", "sensed"]
 
 CHANNELS = ("torque", "acceleration", "pressure", "angle")
 
@@ -158,13 +158,27 @@ def recorded(
     rng: np.random.Generator,
     scatter: Scatter | None = None,
 ) -> Recording:
-    """Sample signals as good instruments do: gains that scatter, a little white noise."""
+    """Sample signals and read them by good instruments, as `sensed` does."""
+    decimation = round(fine / rate)
+    sampled = {
+        name: resample_poly(signals[name], 1, decimation, padtype="line") for name in CHANNELS
+    }
+    return sensed(sampled, rate, condition, rng, scatter)
+
+
+def sensed(
+    signals: Mapping[str, NDArray[np.float64]],
+    rate: float,
+    condition: Condition,
+    rng: np.random.Generator,
+    scatter: Scatter | None = None,
+) -> Recording:
+    """Read samples as good instruments do: gains that scatter, a little white noise."""
     scatter = scatter or Scatter()
     levels = Acquisition().noise
-    decimation = round(fine / rate)
     rows = []
     for name in CHANNELS:
-        x = resample_poly(signals[name], 1, decimation, padtype="line")
+        x = signals[name]
         gain = 1.0 if name == "angle" else 1.0 + scatter.gain * rng.normal()
         rows.append(gain * x + levels[name] * rng.standard_normal(x.size))
     return Recording(np.stack(rows), rate, tuple(Channel(name) for name in CHANNELS), condition)

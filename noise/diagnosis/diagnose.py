@@ -15,6 +15,7 @@ import numpy as np
 from noise.diagnosis.equivalence import equivalent_pairs, next_measurement
 from noise.diagnosis.floor import case_gap
 from noise.diagnosis.heard import heard_of
+from noise.diagnosis.library.rigs import OFFSETS
 from noise.diagnosis.location import locate, stage_findings
 from noise.diagnosis.outcome import Diagnosis, EffectFinding, Illustration
 from noise.diagnosis.own import with_own
@@ -46,7 +47,7 @@ _FITTED = 3
 _LIKELY = 0.1
 """Candidates less probable than this are fitted only if nothing else is."""
 
-_CLOSABLE = 1.0
+_CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor (`before` - `floor`)."""
 
 _DRAWS = 400
@@ -206,7 +207,7 @@ def _finding(
     spec = next(spec for spec in fitted.model.effects if spec.name == name)
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(scores.before), size=(_DRAWS, len(scores.before)))
-    drawn = [_closed(*(x[i] for x in _columns(scores, ("before", "after")))) for i in draws]
+    drawn = [_closed(scores.before[i], scores.after[i]) for i in draws]
     known = [x for x in drawn if x is not None]
     closed = _closed(scores.before, scores.after)
     low, high = np.percentile(known, _INTERVAL) if closed is not None and known else (None, None)
@@ -227,10 +228,6 @@ def _finding(
     )
 
 
-def _columns(scores: _Scores, names: Sequence[str]) -> list[NDArray[np.float64]]:
-    return [getattr(scores, name) for name in names]
-
-
 def _root(squared: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.mean(squared)))
 
@@ -238,7 +235,7 @@ def _root(squared: NDArray[np.float64]) -> float:
 def _closed(before: NDArray[np.float64], after: NDArray[np.float64]) -> float | None:
     """Share of the closable gap; None where there is less than a floor to close."""
     gap, left = _root(before), max(_root(after), 1.0)
-    return None if gap - 1.0 < 0.5 * _CLOSABLE else (gap - left) / (gap - 1.0)
+    return None if gap - 1.0 < _CLOSABLE else (gap - left) / (gap - 1.0)
 
 
 def _strength(fitted: Fitted, effect: Effect) -> tuple[float, float] | None:
@@ -253,8 +250,6 @@ def _strength(fitted: Fitted, effect: Effect) -> tuple[float, float] | None:
 
 
 def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
-    from noise.diagnosis.library.rigs import OFFSETS
-
     spread = fitted.spread or (0.0,) * len(OFFSETS)
     return {
         name: (float(np.exp(x - 1.645 * s)), float(np.exp(x + 1.645 * s)))

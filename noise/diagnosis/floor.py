@@ -24,7 +24,7 @@ from noise.diagnosis.distance import (
     scattered_enough,
 )
 from noise.diagnosis.nominal import nominal_recordings
-from noise.diagnosis.paths import ways
+from noise.diagnosis.paths import KnownWays
 from noise.diagnosis.signature import GROUPS, group_of, signature
 
 if TYPE_CHECKING:
@@ -91,10 +91,11 @@ def case_gap(
     True
     """
     simulated: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
+    known_ways = KnownWays(rig)
     for recording in recordings:
         key, c = condition_key(recording), recording.condition
         if key not in simulated:
-            found = ways(rig, key[1], key[2])
+            found = known_ways.at(key[1], key[2])
             runs = nominal_recordings(
                 rig, c, found, rate=recording.rate, seconds=recording.duration,
                 seeds=_seeds(seed, len(simulated), n_repeats), scatter=scatter, library=library,

@@ -7,17 +7,15 @@ repeat costs a few milliseconds. A rig file that lists effects beyond friction a
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.signal import resample_poly
 
-from models.recording import Channel, Recording
+from noise.diagnosis.chain_run import fine_rate, sensed
 from noise.diagnosis.paths import moved, predict
 from noise.diagnosis.replicates import replicates
 from noise.diagnosis.scatter import Scatter, scattered
-from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -30,14 +28,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.condition import Condition
+    from models.recording import Recording
     from models.rig import Rig
     from noise.diagnosis.paths import Way
     from sim.effects.effect import Effect
 
 __all__ = ["nominal_recordings"]
-
-_LEAST_RATE = 75e3
-"""Of the simulated motion [Hz]."""
 
 _SETTLING = 0.35
 """Simulated before a recording begins [s]."""
@@ -47,8 +43,6 @@ _RUNNING_OUT = 0.12
 
 _FADE = 0.1
 """In which a torque fades in and out [s], outside of the recording."""
-
-_CHANNELS = ("torque", "acceleration", "pressure", "angle")
 
 
 def nominal_recordings(
@@ -93,12 +87,11 @@ def nominal_recordings(
     assert condition.interference is not None
     assert condition.support_stiffness is not None
     scatter = scatter or Scatter()
-    decimation = math.ceil(_LEAST_RATE / rate)
-    fine = decimation * rate
+    fine = fine_rate(rate)
+    decimation = round(fine / rate)
     before = round(_SETTLING * rate)
     kept = slice(before, before + round(seconds * rate))
     n = (kept.stop + round(_RUNNING_OUT * rate)) * decimation
-    levels = Acquisition().noise
     at = (condition.interference, condition.support_stiffness)
     bushing = lumped_bushing(rig, *at)
     recordings = []
@@ -130,16 +123,7 @@ def nominal_recordings(
             **outputs,
             "angle": angle[kept] - angle[before],
         }
-        samples = np.stack(
-            [
-                (1.0 + (scatter.gain * rng.normal() if name != "angle" else 0.0)) * x
-                + levels[name] * rng.standard_normal(x.size)
-                for name, x in signals.items()
-            ]
-        )
-        recordings.append(
-            Recording(samples, rate, tuple(Channel(name) for name in _CHANNELS), condition)
-        )
+        recordings.append(sensed(signals, rate, condition, rng, scatter))
     return recordings
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from sim.bushing import LumpedBushing
 
-__all__ = ["Way", "moved", "predict", "ways"]
+__all__ = ["KnownWays", "Way", "moved", "predict", "ways"]
 
 _SAME_SUPPORT = 1e-3
 """Relative difference up to which two supports are the same."""
@@ -106,6 +106,26 @@ def ways(rig: Rig, interference: float, support_stiffness: float) -> dict[str, W
             table = np.asarray(np.fft.rfftfreq(n, 1.0 / _MODEL_RATE), np.float64)
             found.setdefault(name, Way(table, rfft(impulse, n)))
     return found
+
+
+class KnownWays:
+    """Ways of a rig, each looked up once.
+
+    Parameters
+    ----------
+    rig : Rig
+    """
+
+    def __init__(self, rig: Rig) -> None:
+        self._rig = rig
+        self._known: dict[tuple[float, float], dict[str, Way]] = {}
+
+    def at(self, interference: float, support_stiffness: float) -> dict[str, Way]:
+        """Return the ways at a condition; arguments as of `ways`."""
+        key = (interference, support_stiffness)
+        if key not in self._known:
+            self._known[key] = ways(self._rig, *key)
+        return self._known[key]
 
 
 def predict(torque: NDArray[np.float64], rate: float, way: Way) -> NDArray[np.float64]:

@@ -24,7 +24,7 @@ from noise.diagnosis.chain_run import chain_of, fine_rate, recorded, run_signals
 from noise.diagnosis.distance import Reference, reference
 from noise.diagnosis.evidence import aligned
 from noise.diagnosis.library.rigs import OFFSETS, with_offsets
-from noise.diagnosis.paths import ways
+from noise.diagnosis.paths import KnownWays
 from noise.diagnosis.signature import signature
 from noise.diagnosis.summary import summary, through_same
 from sim.effects.effect import activated
@@ -115,9 +115,10 @@ class Bench:
     chains: dict[tuple[float, float, float, bool], Response] = field(default_factory=dict)
     runs: dict[tuple[object, ...], NDArray[np.float64]] = field(default_factory=dict)
     numbers: dict[tuple[object, ...], NDArray[np.float64]] = field(default_factory=dict)
-    known_ways: dict[tuple[float, float], dict[str, Way]] = field(default_factory=dict)
+    known_ways: KnownWays = field(init=False)
 
     def __post_init__(self) -> None:
+        self.known_ways = KnownWays(self.rig)
         self.signatures = [signature(recording) for recording in self.recordings]
         kept: dict[tuple[object, ...], Reference] = {}
         for recording in self.recordings:
@@ -195,10 +196,7 @@ class Bench:
         c = like.condition
         assert c.interference is not None
         assert c.support_stiffness is not None
-        key = (c.interference, c.support_stiffness)
-        if key not in self.known_ways:
-            self.known_ways[key] = ways(self.rig, *key)
-        return self.known_ways[key]
+        return self.known_ways.at(c.interference, c.support_stiffness)
 
     def _chain(
         self, condition: Condition, rate: float, effects: Sequence[ActiveEffect]
@@ -208,7 +206,7 @@ class Bench:
         blows = any(e.effect.force is not None for e in effects)
         key = (condition.interference, condition.support_stiffness, rate, blows)
         if key not in self.chains:
-            found = ways(self.rig, key[0], key[1])
+            found = self.known_ways.at(key[0], key[1])
             self.chains[key] = chain_of(self.rig, key[0], key[1], found, rate, blows=blows)
         return self.chains[key]
 

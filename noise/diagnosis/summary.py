@@ -23,7 +23,7 @@ from noise.diagnosis.channel_summary import (
 from noise.diagnosis.contact_summary import contact_summary, slip_starts
 from noise.diagnosis.nominal import nominal_recordings
 from noise.diagnosis.path_summary import BAND_EDGES, common_residual, path_summary, segments
-from noise.diagnosis.paths import predict, ways
+from noise.diagnosis.paths import KnownWays, predict
 from noise.diagnosis.reconstruction import reconstruct
 from sim.bushing import lumped_bushing
 
@@ -156,13 +156,11 @@ def case_table(
     """
     rows, means, spreads = [], [], []
     kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = {}
-    known_ways: dict[tuple[float, ...], dict[str, Way]] = {}
+    known_ways = KnownWays(rig)
     for recording in recordings:
         c = recording.condition
         key = (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
-        if key[1:] not in known_ways:
-            known_ways[key[1:]] = ways(rig, key[1], key[2])
-        found_ways = known_ways[key[1:]]
+        found_ways = known_ways.at(key[1], key[2])
         rows.append(summary(recording, rig, found_ways))
         like = (key, recording.rate, recording.samples.shape[1], recording.channel_names)
         if like not in kept:

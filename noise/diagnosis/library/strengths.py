@@ -11,6 +11,7 @@ import math
 from typing import TYPE_CHECKING
 
 from models.rig import LawSpec
+from noise.diagnosis.library.variants.common import log_uniform
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -51,10 +52,6 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
     return LawSpec(name, values)
 
 
-def _log(rng: np.random.Generator, low: float, high: float) -> float:
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-
 def _shares(
     rng: np.random.Generator, names: tuple[str, ...] = _SENSED, *, signed: bool = False
 ) -> Values:
@@ -76,29 +73,38 @@ def _level(rng: np.random.Generator, pascal: float) -> float:
 
 def _amplitude_softening(a: float, rng: np.random.Generator) -> Values:
     return {
-        "share": 0.6 * a, "twist": _log(rng, 4e-4, 6e-3), "averaging_time": _log(rng, 0.02, 0.2),
-    }  # fmt: skip
+        "share": 0.6 * a,
+        "twist": log_uniform(rng, 4e-4, 6e-3),
+        "averaging_time": log_uniform(rng, 0.02, 0.2),
+    }
 
 
 def _background_noise(a: float, rng: np.random.Generator) -> Values:
     return {
-        "amount": a, "pressure_level": _level(rng, 0.3), "angle": 0.0,
+        "amount": a,
+        "pressure_level": _level(rng, 0.3),
+        "angle": 0.0,
         "acceleration": 8.0 * float(rng.uniform(0.2, 1.0)),
         "torque": 0.15 * float(rng.uniform(0.2, 1.0)),
-    }  # fmt: skip
+    }
 
 
 def _beam_modes(a: float, rng: np.random.Generator) -> Values:
     return {
-        "amount": a, "frequency": _log(rng, 350.0, 6000.0), "constant": _log(rng, 8.0, 40.0),
-        "damping_ratio": _log(rng, 0.004, 0.04), "anchor_mass": _log(rng, 0.005, 0.08),
-    }  # fmt: skip
+        "amount": a,
+        "frequency": log_uniform(rng, 350.0, 6000.0),
+        "constant": log_uniform(rng, 8.0, 40.0),
+        "damping_ratio": log_uniform(rng, 0.004, 0.04),
+        "anchor_mass": log_uniform(rng, 0.005, 0.08),
+    }
 
 
 def _channel_delay(a: float, rng: np.random.Generator) -> Values:
     return {
-        "delay": a * _log(rng, 5e-4, 3e-3), "bandwidth": _log(rng, 3.0, 80.0), "angle": 0.0,
-    } | _shares(rng, signed=True)  # fmt: skip
+        "delay": a * log_uniform(rng, 5e-4, 3e-3),
+        "bandwidth": log_uniform(rng, 3.0, 80.0),
+        "angle": 0.0,
+    } | _shares(rng, signed=True)
 
 
 def _clipping(a: float, rng: np.random.Generator) -> Values:
@@ -111,96 +117,121 @@ def _critical_torque_scatter(a: float, rng: np.random.Generator) -> Values:
 
 def _frictional_heating(a: float, rng: np.random.Generator) -> Values:
     return {
-        "softening": 0.02 * a, "resistance": _log(rng, 0.3, 2.0), "area": _log(rng, 3e-4, 1e-3),
-        "time_constant": _log(rng, 0.03, 1.0), "floor": float(rng.uniform(0.3, 0.7)),
-    }  # fmt: skip
+        "softening": 0.02 * a,
+        "resistance": log_uniform(rng, 0.3, 2.0),
+        "area": log_uniform(rng, 3e-4, 1e-3),
+        "time_constant": log_uniform(rng, 0.03, 1.0),
+        "floor": float(rng.uniform(0.3, 0.7)),
+    }
 
 
 def _gain_error(a: float, rng: np.random.Generator) -> Values:
     return {
-        "error": float(rng.choice([-0.5, 0.8])) * a, "corner": _log(rng, 150.0, 3000.0),
+        "error": float(rng.choice([-0.5, 0.8])) * a,
+        "corner": log_uniform(rng, 150.0, 3000.0),
         "angle": 0.0,
-    } | _shares(rng)  # fmt: skip
+    } | _shares(rng)
 
 
 def _mains_hum(a: float, rng: np.random.Generator) -> Values:
     return {
-        "amount": a, "pressure_level": _level(rng, 0.25), "angle": 0.0,
+        "amount": a,
+        "pressure_level": _level(rng, 0.25),
+        "angle": 0.0,
         "frequency": float(rng.choice([50.0, 60.0])) * (1.0 + 2e-3 * float(rng.standard_normal())),
         "acceleration": 6.0 * float(rng.uniform(0.2, 1.0)),
         "torque": 0.3 * float(rng.uniform(0.2, 1.0)),
-    }  # fmt: skip
+    }
 
 
 def _mount_resonance(a: float, rng: np.random.Generator) -> Values:
     mostly = ("acceleration",) if rng.random() < 0.7 else _SENSED
     return {
-        "amount": a, "frequency": _log(rng, 900.0, 9000.0), "damping_ratio": _log(rng, 0.015, 0.15),
-    } | _shares(rng, mostly)  # fmt: skip
+        "amount": a,
+        "frequency": log_uniform(rng, 900.0, 9000.0),
+        "damping_ratio": log_uniform(rng, 0.015, 0.15),
+    } | _shares(rng, mostly)
 
 
 def _partial_slip(a: float, rng: np.random.Generator) -> Values:
-    return {"share": 0.92 * a, "exponent": _log(rng, 1.2, 12.0)}
+    return {"share": 0.92 * a, "exponent": log_uniform(rng, 1.2, 12.0)}
 
 
 def _plate_modes(a: float, rng: np.random.Generator) -> Values:
     return {
-        "amount": 2.0 * a, "frequency": _log(rng, 150.0, 3000.0),
-        "damping_ratio": _log(rng, 0.006, 0.15), "spacing": _log(rng, 150.0, 1500.0),
-    }  # fmt: skip
+        "amount": 2.0 * a,
+        "frequency": log_uniform(rng, 150.0, 3000.0),
+        "damping_ratio": log_uniform(rng, 0.006, 0.15),
+        "spacing": log_uniform(rng, 150.0, 1500.0),
+    }
 
 
 def _room_reflections(a: float, rng: np.random.Generator) -> Values:
     return {
-        "amount": 4.0 * a, "distance": float(rng.uniform(0.3, 1.0)),
-        "length": float(rng.uniform(3.0, 12.0)), "width": float(rng.uniform(2.5, 9.0)),
-        "height": float(rng.uniform(2.3, 5.0)), "reverberation_time": _log(rng, 0.1, 1.2),
-    }  # fmt: skip
+        "amount": 4.0 * a,
+        "distance": float(rng.uniform(0.3, 1.0)),
+        "length": float(rng.uniform(3.0, 12.0)),
+        "width": float(rng.uniform(2.5, 9.0)),
+        "height": float(rng.uniform(2.3, 5.0)),
+        "reverberation_time": log_uniform(rng, 0.1, 1.2),
+    }
 
 
 def _shaft_compliance(a: float, rng: np.random.Generator) -> Values:
     return {
-        "compliance": 8e-4 * a, "inertia": _log(rng, 3e-5, 2e-4),
-        "damping_ratio": _log(rng, 0.01, 0.2), "reference_torque": _log(rng, 5.0, 30.0),
-    }  # fmt: skip
+        "compliance": 8e-4 * a,
+        "inertia": log_uniform(rng, 3e-5, 2e-4),
+        "damping_ratio": log_uniform(rng, 0.01, 0.2),
+        "reference_torque": log_uniform(rng, 5.0, 30.0),
+    }
 
 
 def _slip_pulse(a: float, rng: np.random.Generator) -> Values:
     return {
-        "amplitude": 250.0 * a, "threshold": float(rng.choice([0.0, 0.0, 1.0, 3.0])),
-        "duration": _log(rng, 2e-5, 2.5e-4),
-    }  # fmt: skip
+        "amplitude": 250.0 * a,
+        "threshold": float(rng.choice([0.0, 0.0, 1.0, 3.0])),
+        "duration": log_uniform(rng, 2e-5, 2.5e-4),
+    }
 
 
 def _speed_fluctuation(a: float, rng: np.random.Generator) -> Values:
-    return {"depth": 0.25 * a, "frequency": _log(rng, 3.0, 45.0), "bandwidth": _log(rng, 3.0, 60.0)}
+    return {
+        "depth": 0.25 * a,
+        "frequency": log_uniform(rng, 3.0, 45.0),
+        "bandwidth": log_uniform(rng, 3.0, 60.0),
+    }
 
 
 def _static_ageing(a: float, rng: np.random.Generator) -> Values:
-    return {"share": 0.97 * a, "ageing_time": _log(rng, 5e-4, 2e-2)}
+    return {"share": 0.97 * a, "ageing_time": log_uniform(rng, 5e-4, 2e-2)}
 
 
 def _transfer_film(a: float, rng: np.random.Generator) -> Values:
     return {
-        "coverage": a, "torque_ratio": float(rng.uniform(1.4, 3.0)),
-        "drop_left": float(rng.uniform(0.1, 0.5)), "roughness": 0.05 * float(rng.uniform(0.5, 1.0)),
-        "growth_angle": _log(rng, 0.2, 3.0), "formed": 0.0,
-    }  # fmt: skip
+        "coverage": a,
+        "torque_ratio": float(rng.uniform(1.4, 3.0)),
+        "drop_left": float(rng.uniform(0.1, 0.5)),
+        "roughness": 0.05 * float(rng.uniform(0.5, 1.0)),
+        "growth_angle": log_uniform(rng, 0.2, 3.0),
+        "formed": 0.0,
+    }
 
 
 def _velocity_strengthening(a: float, rng: np.random.Generator) -> Values:
-    return {"gain": 0.5 * a, "speed": _log(rng, 5.0, 20.0)}
+    return {"gain": 0.5 * a, "speed": log_uniform(rng, 5.0, 20.0)}
 
 
 def _velocity_weakening(a: float, rng: np.random.Generator) -> Values:
-    return {"share": 0.5 * a, "speed": _log(rng, 2.0, 20.0)}
+    return {"share": 0.5 * a, "speed": log_uniform(rng, 2.0, 20.0)}
 
 
 def _viscoelastic_stiffness(a: float, rng: np.random.Generator) -> Values:
     return {
-        "stiffening": 0.9 * a, "relaxation_time": _log(rng, 5e-5, 1e-2),
-        "spread": float(rng.uniform(2.0, 8.0)), "exponent": float(rng.uniform(0.1, 0.4)),
-    }  # fmt: skip
+        "stiffening": 0.9 * a,
+        "relaxation_time": log_uniform(rng, 5e-5, 1e-2),
+        "spread": float(rng.uniform(2.0, 8.0)),
+        "exponent": float(rng.uniform(0.1, 0.4)),
+    }
 
 
 _DRAW: dict[str, Callable[[float, np.random.Generator], Values]] = {
