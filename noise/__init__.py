@@ -34,6 +34,7 @@ _EXPORTS = {
     "noise.pictures.sweep": ("sweep_torque",),
     "noise.recordings": ("find_recordings", "read_recording", "write_recording"),
     "noise.report": ("ReportEntry", "write_report"),
+    "noise.report.review.build": ("Review", "review"),
     "sim.acquisition": ("Acquisition",),
     "sim.critical_damping": ("critical_damping",),
     "sim.critical_speeds": ("critical_speeds",),

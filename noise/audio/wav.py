@@ -18,7 +18,7 @@ from models.recording import REFERENCE_PRESSURE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["BITS", "largest_sample", "wav_bytes", "with_full_scale"]
+__all__ = ["BITS", "integers", "largest_sample", "wav_bytes", "with_full_scale"]
 
 BITS = (16, 24, 32)
 """Sizes of a sample: integer, integer, floating point."""
@@ -97,7 +97,7 @@ def wav_bytes(
     if bits == 32:
         code, data = 3, fractions.astype("<f4").tobytes()
     else:
-        code, data = 1, _integers(fractions, bits, dither)
+        code, data = 1, integers(fractions, bits, dither)
     chunks = [(b"fmt ", struct.pack("<HHIIHH", code, 1, rate, rate * frame, frame, bits))]
     if bits == 32:
         chunks += [(b"fact", struct.pack("<I", fractions.size))]
@@ -111,9 +111,16 @@ def wav_bytes(
     return b"RIFF" + struct.pack("<I", 4 + len(body)) + b"WAVE" + body
 
 
-def _integers(
+def integers(
     fractions: NDArray[np.float64], bits: int, dither: np.random.Generator | None
 ) -> bytes:
+    r"""Return samples as little-endian integers, rounded and dithered as in `wav_bytes`.
+
+    Examples
+    --------
+    >>> integers(np.array([0.5, -0.5]), 16, None)
+    b'\x00@\x00\xc0'
+    """
     steps = fractions * 2.0 ** (bits - 1)
     if dither is not None:
         steps += dither.random(steps.size) - dither.random(steps.size)

@@ -49,6 +49,10 @@ COMMANDS = {
         "noise.commands.diagnose",
         "recordings against the simulator -> which effect is missing, and how far it closes",
     ),
+    "review": Entry(
+        "noise.commands.review",
+        "recordings, labels, screens, diagnoses -> one page to look at and to listen to",
+    ),
     "train": Entry("noise.commands.train", "build the classifier again from simulation"),
     "thesis": Entry(
         "noise.commands.thesis", "the published numbers beside what the program computes"

@@ -14,7 +14,8 @@ from matplotlib.patches import Patch, Rectangle
 
 from models.errors import ParameterError
 from noise.classifier import LABELS
-from noise.pictures.axes import ORANGE, VERMILION, new_figure, styled
+from noise.labels.looks import LABEL_COLOURS
+from noise.pictures.axes import new_figure, styled
 from noise.pictures.speeds import support_words
 
 if TYPE_CHECKING:
@@ -26,15 +27,6 @@ if TYPE_CHECKING:
     from noise.labels.conditions import Place, Range
 
 __all__ = ["LABEL_COLOURS", "plot_conditions"]
-
-LABEL_COLOURS = {
-    "creak": VERMILION,
-    "squawk": ORANGE,
-    "squeal": "#b5478a",
-    "none": "#c3d4df",
-    "unknown": "#f6f6f6",
-}
-"""Of the labels."""
 
 _DARK = ("creak", "squeal")  # on which numbers are white
 

@@ -114,6 +114,7 @@ def _html(diagnosis: Diagnosis) -> str:
         shown=shown,
         curves=CURVES,
         gain=sounds.words,
+        full_scale=sounds.full_scale,
         parameters=parameter_rows(diagnosis.parameters),
         held_out=diagnosis.held_out,
         heard=[_heard_row(heard) for heard in diagnosis.heard],

@@ -44,10 +44,13 @@ class PlayedSounds:
         sound.
     words : str
         What full scale is worth; empty where there is no sound at all.
+    full_scale : float
+        The same as a number [Pa].
     """
 
     uris: tuple[dict[str, str], ...]
     words: str
+    full_scale: float = 1.0
 
 
 def played_sounds(illustrations: Sequence[Illustration]) -> PlayedSounds:
@@ -75,7 +78,7 @@ def played_sounds(illustrations: Sequence[Illustration]) -> PlayedSounds:
     level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
     words = f"{full_scale:.3g} Pa ({level:.0f} dB peak re 20 µPa)"
     return PlayedSounds(
-        uris, f"All sounds have one gain and may be compared: full scale = {words}."
+        uris, f"All sounds have one gain and may be compared: full scale = {words}.", full_scale
     )
 
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from noise.labels.looks import LABEL_LOOKS
+
 if TYPE_CHECKING:
     from jinja2 import Template
 
@@ -46,6 +48,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.globals["looks"] = LABEL_LOOKS
     environment.filters["base64"] = as_base64
     # What the page's own policy lets the browser run.
     environment.filters["sha256"] = lambda text: as_base64(hashlib.sha256(text.encode()).digest())

@@ -1,0 +1,116 @@
+"""``bushing-noise review``: one page of recordings, labels, screens and diagnoses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from noise.commands import options as opt
+from noise.commands.targets import check_target
+from noise.progress import counted, note, say
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: ArgumentParser) -> None:
+    """Declare description and options."""
+    parser.description = (
+        "Put recordings, labels, screens and diagnoses on one page that needs nothing else: to be "
+        "mailed, projected and printed. Sounds at one gain that is stated, spectrograms under a "
+        "moving cursor, labels in time, maps of conditions that play what is clicked, and two "
+        "sounds side by side, changed over without a gap. Press ? on the page for its keys. What "
+        "cannot be used is named on the page, and the exit code is then 1."
+    )
+    parser.epilog = (
+        "examples: bushing-noise review recordings labels.csv --out review.html; "
+        "bushing-noise review screen old.toml new.toml --out review; "
+        "bushing-noise review recordings diagnosis --seconds 5 --out review"
+    )
+    parser.add_argument(
+        "paths",
+        nargs="+",
+        type=Path,
+        metavar="PATH",
+        help="recording; label table (.csv, .jsonl, .parquet); map.csv of a screen; "
+        "diagnosis.json; rig file of a screen's design (DESIGN.toml), for its sounds; or a folder "
+        "that is searched for all of these at any depth",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        required=True,
+        metavar="DIR|PAGE.html",
+        help="page to write, or folder for its report.html (required)",
+    )
+    parser.add_argument("--title", default="Review", help="of the page (default: Review)")
+    parser.add_argument(
+        "--seconds",
+        type=opt.number(least=1.0, most=600.0),
+        default=10.0,
+        metavar="S",
+        help="longest stretch of a recording that is played, about what gave it its label "
+        "(default: 10)",
+    )
+    parser.add_argument(
+        "--megabytes",
+        type=opt.number(least=1.0, most=2000.0),
+        default=25.0,
+        metavar="MB",
+        help="size of the page; sounds are shortened to keep to it, which the page says "
+        "(default: 25)",
+    )
+    parser.add_argument(
+        "--pascal-per-full-scale",
+        type=opt.number(above=0.0),
+        metavar="PA",
+        help="sound pressure in Pa of a full-scale sample on the page, for a listening room that "
+        "is calibrated to it (default: what the loudest calibrated sound needs)",
+    )
+    parser.add_argument(
+        "--simulated",
+        type=opt.number(least=0.0, most=1000.0),
+        default=48,
+        metavar="N",
+        help="sounds simulated for the maps of screens, of all maps together (default: 48)",
+    )
+    parser.add_argument(
+        "--no-labelling",
+        action="store_true",
+        help="leave recordings without a label that no table labels (default: label them)",
+    )
+    opt.add_full_scale(parser)
+    opt.add_seed(parser, "seed of simulated sounds and of the dither")
+
+
+def run(options: Namespace) -> int:
+    """Write the page."""
+    from noise.report.review.build import page_path, review
+
+    target = page_path(options.out)
+    check_target(target)
+    made = review(
+        options.paths,
+        options.out,
+        title=options.title,
+        full_scale=options.full_scale,
+        pascal_per_full_scale=options.pascal_per_full_scale,
+        seconds=options.seconds,
+        megabytes=options.megabytes,
+        simulated=round(options.simulated),
+        classify=not options.no_labelling,
+        seed=options.seed,
+    )
+    for refusal in made.refused:
+        say(f"bushing-noise: refused: {refusal.name}: {refusal.reason}")
+    if made.shortened is not None:
+        note(
+            f"sounds are cut to {made.shortened:.3g} s to keep to {options.megabytes:g} MB; "
+            "--megabytes allows more"
+        )
+    size = made.path.stat().st_size / 1e6
+    say(f"{counted(made.sounds, 'sound')}, {size:.1f} MB")
+    print(made.path)
+    return 1 if made.refused else 0
