@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -50,7 +51,7 @@ def made_cases(seed=0, each=10):
         cases += [Known(made_table(rng, name), truth) for _ in range(each)]
     for kind in _OTHER:
         cases += [Known(made_table(rng, kind), Truth(kind)) for _ in range(each)]
-    return cases
+    return [replace(case, rig=i) for i, case in enumerate(cases)]
 
 
 @cache

@@ -161,7 +161,6 @@ def test_recordings_of_other_rates_and_lengths_are_compared_with_their_own_repea
     "kinds", [("pressure",), ("torque", "pressure"), ("acceleration", "angle")]
 )
 def test_repeats_are_listened_to_through_the_same_channels(kinds):
-    # without a torque hum is looked for in the sound, with one in what it does not explain
     table = case_table([only(run(at(2.0)), *kinds)], RIG)
     apart = np.array([not name.startswith("contact") for name in table.names])
     assert np.isfinite(table.measured[:, apart]).all()

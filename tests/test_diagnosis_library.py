@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from noise.diagnosis.chain_run import CHANNELS
+from noise.diagnosis.library.build import known_cases_of_a_rig
 from noise.diagnosis.library.draw import WEAKEST, draw_case
 from noise.diagnosis.library.rigs import OFFSETS, draw_setting, with_offsets
 from noise.diagnosis.library.strangers import STRANGERS, draw_stranger
@@ -26,6 +27,17 @@ def test_the_same_seed_gives_the_same_case_and_another_another():
         assert a.condition == b.condition
         assert a.samples.tobytes() == b.samples.tobytes()
     assert one.recordings[0].samples.tobytes() != other.recordings[0].samples.tobytes()
+
+
+def test_cases_in_a_row_are_of_one_rig_and_its_repeats_are_simulated_once():
+    one, other = draw_case(8), draw_case(11)
+    assert one.rig is other.rig
+    assert one.truth != other.truth
+    assert draw_case(12).rig.fits != one.rig.fits
+    shared, alone = known_cases_of_a_rig([8, 11]), known_cases_of_a_rig([11])
+    assert np.array_equal(shared[1].table.nominal, alone[0].table.nominal, equal_nan=True)
+    assert np.array_equal(shared[1].table.measured, alone[0].table.measured, equal_nan=True)
+    assert np.array_equal(shared[0].table.nominal, shared[1].table.nominal, equal_nan=True)
 
 
 @pytest.mark.parametrize("seed", [0, 3, 21])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -98,11 +100,29 @@ def test_a_stage_without_numbers_has_no_gap(posterior):
     assert np.isfinite([f.gap for f in findings.values()]).all()
 
 
+def test_the_loudness_of_a_channel_is_no_error_of_its_way_where_the_torque_is_known():
+    names = ("contact_peak", "pressure_band_4", "pressure_gain_4")
+    null = replace(made_posterior(), names=names, scale=np.ones(3))
+    measured = np.random.default_rng(3).normal(size=(4, 3))
+    measured[:, :2] += 15.0
+    assert stage_findings(table_of(names, measured), null)["radiation"].gap < 3.0
+    deaf = table_of(names[1:], measured[:, 1:])  # without a torque it is all there is
+    assert stage_findings(deaf, null)["radiation"].gap > 10.0
+
+
+def test_a_gap_is_one_between_repeats_and_bounded_where_a_number_hardly_scatters(posterior):
+    rng = np.random.default_rng(5)
+    gaps = [f.gap for _ in range(40) for f in stage_findings(made_table(rng), posterior).values()]
+    assert np.median([gap for gap in gaps if gap > 0.0]) == pytest.approx(1.0, abs=0.25)
+    findings = stage_findings(_table({"pressure_gain_9": 1e6}), posterior)
+    assert findings["radiation"].gap == 100.0
+
+
 @pytest.mark.parametrize(
     ("name", "stage"),
     [
         ("angle_speed_line", "drive"), ("contact_creep_up_1", "friction"),
-        ("torque_band_3", "friction"), ("torque_hum_60", "measurement"),
+        ("torque_band_3", "friction"), ("torque_raw_hum_60", "measurement"),
         ("acceleration_left_7", "structure"), ("acceleration_top", "measurement"),
         ("pressure_ring_late", "radiation"), ("pressure_delay", "measurement"),
         ("acceleration_dwell_top", "measurement"),

@@ -19,6 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
+from noise.diagnosis.cycle_shape import cycle_shape
+from noise.diagnosis.torque_by_speed import torque_by_speed
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -31,9 +34,6 @@ Numbers = dict[str, float]
 
 _TORQUE_EDGES = np.array([0.0, 0.5, 0.65, 0.8, 0.92, 1.1])
 """Of classes of the friction torque over the critical one."""
-
-_SPEED_EDGES = np.array([2.0, 5.0, 9.0, 14.0, 20.0, 28.0, 40.0])
-"""Of classes of the sliding speed [rad/s]."""
 
 _FEWEST = 8
 """Samples that make a mean."""
@@ -90,8 +90,10 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
     }
     numbers |= _stick(found, fit, stick, wanted)
     numbers |= _sliding(found, fit, ~near & ~stick)
-    numbers |= _law(found, fit, starts, ends)
+    slipping = _around(starts, ends, n, 0)
+    numbers |= torque_by_speed(found, fit, slipping)
     numbers |= _cycles(found, fit, starts, ends)
+    numbers |= cycle_shape(found, fit, starts, ends)
     numbers |= _torque(found, fit)
     return numbers
 
@@ -118,6 +120,9 @@ def _stick(found: Reconstruction, fit: Fit, stick: NDArray[np.bool_], speed: flo
         "clamp": found.by_clamp,
         "release": found.shaft_speed * np.clip(ratio, 0.0, 1.2) ** 6,
     }
+    if not found.by_clamp.any():
+        # All of the shaft's speed winds the elastomer: another speed is another stiffness.
+        columns = {name: columns[name] for name in columns if name not in ("speed", "clamp")}
     a = np.stack([column[stick] for column in columns.values()], axis=1)
     b = found.sliding_speed[stick]
     gram = a.T @ a
@@ -151,23 +156,6 @@ def _sliding(found: Reconstruction, fit: Fit, sliding: NDArray[np.bool_]) -> Num
         "sliding_torque_spread": float(torque.std()),
         "sliding_speed_spread": float(v.std()),
     }
-
-
-def _law(
-    found: Reconstruction, fit: Fit, starts: NDArray[np.int64], ends: NDArray[np.int64]
-) -> Numbers:
-    slipping = _around(starts, ends, found.torque.size, 0)
-    faster = np.gradient(found.sliding_speed) > 0.0
-    numbers: Numbers = {}
-    for name, chosen in (("up", slipping & faster), ("down", slipping & ~faster)):
-        place = np.digitize(found.sliding_speed[chosen], _SPEED_EDGES)
-        torque = found.friction_torque[chosen] / fit.kinetic_torque
-        for i in range(1, _SPEED_EDGES.size):
-            here = torque[place == i]
-            numbers[f"law_{name}_{i}"] = _mean(here)
-            if name == "down":
-                numbers[f"law_spread_{i}"] = float(here.std()) if here.size > 20 else math.nan
-    return numbers
 
 
 def _cycles(

@@ -35,12 +35,29 @@ STAGES = tuple(stage.value for stage in Stage)
 
 _HEALTH = (
     "top", "bottom", "crest", "asymmetry", "flat", "dwell", "offset", "floor", "hum", "low_floor",
-    "high_floor", "delay", "phase_match",
+    "high_floor", "delay", "phase_match", "raw",
 )  # fmt: skip
 """Numbers that tell a sensor's fault rather than the rig's."""
 
+_OVERALL = ("band", "level", "raw", "skewness")
+"""Numbers that a channel has of all that comes before it: with a torque to compare with, they tell
+nothing of the channel's own stage."""
+
+_LARGEST_GAP = 100.0
+"""Of a stage: larger ones come from numbers that hardly scatter, and are all alike."""
+
 _PHASES = {
-    "stick": ("creep", "stick", "stiffness", "calm", "time_stuck"),
+    "stick": (
+        "creep",
+        "stick",
+        "stiffness",
+        "calm",
+        "time_stuck",
+        "after",
+        "before",
+        "ring",
+        "slow_",
+    ),  # fmt: skip
     "slip": ("law", "fastest", "duration", "kinetic", "trough", "slip"),
     "cycle": ("peak", "interval", "spread", "skewness", "highest", "lowest", "friction"),
 }
@@ -82,7 +99,11 @@ def null_maxima(
 
 
 def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFinding]:
-    """How each stage differs; p-values are corrected for the looks within and between stages."""
+    """How each stage differs.
+
+    The gap is that of the number that differs most, over what is usual without a cause; the
+    p-values are corrected for the looks within and between stages.
+    """
     size = np.abs(_sure(table, posterior.names, posterior.scale))
     stages = np.array([stage_of(name) for name in posterior.names])
     found = {}
@@ -92,7 +113,7 @@ def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFin
         beyond = int(np.count_nonzero(null >= most))
         p_value = min(1.0, len(STAGES) * (1.0 + beyond) / (len(null) + 1.0))
         gap = most / max(float(np.median(null)), 1e-9)
-        found[stage] = (gap, p_value)
+        found[stage] = (min(gap, _LARGEST_GAP), p_value)
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
     whole = sum(excess.values())
     return {
@@ -118,7 +139,8 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
     inside = np.array([stage_of(name) == stage for name in names])
     if not inside.any():
         inside[:] = True
-    size = np.where(inside, np.abs(_sure(table, names, posterior.scale)), -1.0)
+    sizes = np.nan_to_num(np.abs(_sure(table, names, posterior.scale)))
+    size = np.where(inside, sizes, -1.0)
     strongest = np.argsort(size)[::-1][:12]
     strongest = strongest[size[strongest] >= 0.5 * size[strongest[0]]]
     top = names[int(strongest[0])]
@@ -138,10 +160,18 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
 def _sure(
     table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Mean difference of each number in units of its standard error."""
+    """Mean difference of each number in units of its standard error; NaN where it tells nothing."""
     z = _deviation(table, names, scale)
     count = np.isfinite(z).sum(axis=0)
-    return np.asarray(np.nansum(z, axis=0) / np.sqrt(np.maximum(count, 1)))
+    sure = np.where(count > 0, np.nansum(z, axis=0) / np.sqrt(np.maximum(count, 1)), np.nan)
+    if any(name.startswith("contact") for name in table.names):
+        sure[[_is_overall(name) for name in names]] = np.nan
+    return np.asarray(sure)
+
+
+def _is_overall(name: str) -> bool:
+    kind, _, what = name.partition("_")
+    return kind in ("acceleration", "pressure") and what.startswith(_OVERALL)
 
 
 def _deviation(
@@ -154,7 +184,8 @@ def _deviation(
 
 
 def _most(sizes: NDArray[np.float64]) -> float:
-    return float(sizes.max()) if sizes.size else 0.0
+    known = sizes[np.isfinite(sizes)]
+    return float(known.max()) if known.size else 0.0
 
 
 def _channel(name: str) -> str:

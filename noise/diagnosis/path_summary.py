@@ -41,6 +41,9 @@ _FINE = 16
 _REFERENCE_BAND = (80.0, 6000.0)
 """In which gain and delay are those of the whole channel [Hz]."""
 
+_ECHO = (6e-4, 2e-2)
+"""In which echoes are looked for, after what is direct [s]."""
+
 _SHORT = 256
 """Samples of a short segment, in which blows are told from what lasts."""
 
@@ -169,7 +172,8 @@ def _transfer(
     best = int(np.argmax(correlation))
     impulse = np.zeros(frequency.size, complex)
     impulse[inside] = h * np.sqrt(weight / weight.max()) * np.hanning(h.size) ** 0.25
-    energy = irfft(impulse) ** 2
+    answer = irfft(impulse)
+    energy = answer**2
     whole = float(energy.sum()) + 1e-30
 
     def between(start: float, end: float) -> float:
@@ -186,6 +190,24 @@ def _transfer(
         "ring_middle": between(2e-3, 6e-3),
         "ring_late": between(6e-3, 20e-3),
         "ring_before": math.log(float(energy[-int(0.02 * rate) :].sum()) / whole + 1e-6),
+    } | _echo(answer, rate)
+
+
+def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
+    """Tell what comes back at certain times from what rings at certain frequencies."""
+    first = int(_ECHO[0] * rate)
+    late = answer[first : int(_ECHO[1] * rate)]
+    size = np.abs(late)
+    most = int(np.argmax(size))
+    power = np.abs(rfft(late)) ** 2
+    line = int(np.argmax(power))
+    return {
+        "echo_crest": math.log(float(size[most]) / (float(late.std()) + 1e-30) + 1e-9),
+        "echo_kurtosis": math.log(_kurtosis(late)),
+        "echo_at": math.log((first + most) / rate),
+        "echo_most": float(late[most]) / (float(np.abs(answer).max()) + 1e-30),
+        "ring_line": float(power[line] / (power.sum() + 1e-30)),
+        "ring_line_at": math.log(max(line, 1) * rate / late.size),
     }
 
 

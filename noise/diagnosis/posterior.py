@@ -36,7 +36,7 @@ __all__ = ["CAUSES", "Posterior", "calibrated", "load_posterior", "odds_features
 CAUSES = (*sorted(EFFECTS), "parameters", "unknown", "none")
 """What can be the matter."""
 
-_FORMAT = 1
+_FORMAT = 2
 _LARGEST = 12.0
 """Of a logarithm of odds: no library is large enough to tell more."""
 

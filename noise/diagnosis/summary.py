@@ -9,7 +9,8 @@ condition and between repeats of one.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.paths import Way
     from sim.effects.effect import Effect
 
-__all__ = ["CaseTable", "case_table", "summary", "through_same"]
+__all__ = ["CaseTable", "NominalNumbers", "case_table", "summary", "through_same"]
 
 Numbers = dict[str, float]
 
@@ -106,16 +107,11 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     for kind in ("torque", *_OUTPUTS):
         if kind in signal:
             numbers |= _named(kind, channel_summary(signal[kind], rate))
+            numbers |= _named(f"{kind}_raw", hum_summary(signal[kind], rate))
             numbers |= _named(kind, _levels(signal[kind], rate))
     if "torque" not in signal:
-        return numbers | {
-            f"{kind}_{name}": value
-            for kind in _OUTPUTS
-            if kind in signal
-            for name, value in hum_summary(signal[kind], rate).items()
-        }
+        return numbers
     torque = signal["torque"]
-    numbers |= _named("torque", hum_summary(torque, rate))
     bushing = lumped_bushing(rig, condition.interference, condition.support_stiffness)
     found = reconstruct(turn * torque, speed, rate, bushing)
     fit = rig.fit(condition.interference)
@@ -132,12 +128,57 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     return numbers
 
 
+@dataclass(frozen=True, eq=False)
+class NominalNumbers:
+    """What the numbers of recordings would be were the rig as its file has it; simulated once.
+
+    Parameters
+    ----------
+    rig : Rig
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
+    seed : int
+        Of the repeats.
+    """
+
+    rig: Rig
+    library: Mapping[str, Effect] | None = None
+    seed: int = 0
+    _kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = field(default_factory=dict)
+
+    @cached_property
+    def ways(self) -> KnownWays:
+        """The rig's, each looked up once."""
+        return KnownWays(self.rig)
+
+    def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
+        """Mean and standard deviation over simulated repeats of a recording's condition."""
+        c = recording.condition
+        at = _condition(recording)
+        like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
+        if like not in self._kept:
+            found_ways = self.ways.at(at[1], at[2])
+            repeats = nominal_recordings(
+                self.rig,
+                c,
+                found_ways,
+                rate=recording.rate,
+                seconds=recording.duration,
+                seeds=[self.seed + i for i in range(N_REPEATS)],
+                library=self.library,
+            )
+            heard = [through_same(repeat, recording) for repeat in repeats]
+            self._kept[like] = _moments([summary(repeat, self.rig, found_ways) for repeat in heard])
+        return self._kept[like]
+
+
 def case_table(
     recordings: Sequence[Recording],
     rig: Rig,
     *,
     library: Mapping[str, Effect] | None = None,
     seed: int = 0,
+    nominal: NominalNumbers | None = None,
 ) -> CaseTable:
     """Summarise the recordings of a case, and simulated repeats of each condition.
 
@@ -149,37 +190,22 @@ def case_table(
         Effects that the rig's can be found among.
     seed : int
         Of the repeats.
+    nominal : NominalNumbers, optional
+        Those of this rig, where several cases are of it.
 
     Returns
     -------
     CaseTable
     """
-    rows, means, spreads = [], [], []
-    kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = {}
-    known_ways = KnownWays(rig)
-    for recording in recordings:
-        c = recording.condition
-        key = (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
-        found_ways = known_ways.at(key[1], key[2])
-        rows.append(summary(recording, rig, found_ways))
-        like = (key, recording.rate, recording.samples.shape[1], recording.channel_names)
-        if like not in kept:
-            repeats = nominal_recordings(
-                rig,
-                c,
-                found_ways,
-                rate=recording.rate,
-                seconds=recording.duration,
-                seeds=[seed + i for i in range(N_REPEATS)],
-                library=library,
-            )
-            heard = [through_same(repeat, recording) for repeat in repeats]
-            kept[like] = _moments([summary(repeat, rig, found_ways) for repeat in heard])
-        means.append(kept[like][0])
-        spreads.append(kept[like][1])
+    nominal = nominal or NominalNumbers(rig, library, seed)
+    rows = [
+        summary(recording, rig, nominal.ways.at(*_condition(recording)[1:]))
+        for recording in recordings
+    ]
+    means, spreads = zip(*(nominal.like(recording) for recording in recordings), strict=True)
     names = tuple(sorted({name for row in (*rows, *means) for name in row}))
 
-    def table(numbers: list[Numbers]) -> NDArray[np.float64]:
+    def table(numbers: Sequence[Numbers]) -> NDArray[np.float64]:
         return np.array([[row.get(name, math.nan) for name in names] for row in numbers])
 
     return CaseTable(
@@ -190,6 +216,11 @@ def case_table(
         tuple(recording.condition for recording in recordings),
         recordings[0].rate,
     )
+
+
+def _condition(recording: Recording) -> tuple[float, float, float]:
+    c = recording.condition
+    return (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
 
 
 def through_same(repeat: Recording, recording: Recording) -> Recording:

@@ -1,8 +1,10 @@
 """Training the cause posterior on simulated cases.
 
-Four cases of five grow the trees, the fifth calibrates the probabilities and sets the alarm; what
-is scored shares no draw with either. A part of the cases is learned again with channels taken away,
-so that fewer signals are answered less surely rather than wrongly.
+The cases of four rigs of five grow the trees, those of the fifth calibrate the probabilities and
+set the alarm; what is scored shares no draw with either. Each case is learned again from some of
+its recordings, since what is true of all of them is true of fewer, and what the trees make of the
+one recording that is left out is chance. A part is learned with channels taken away, so that fewer
+signals are answered less surely rather than wrongly.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Known", "train_posterior"]
 
-N_ROUNDS = 90
+N_ROUNDS = 200
 N_TREES = 120
 N_COLUMNS = 700
 """Of the evidence that are kept: what tells nothing only blurs."""
@@ -40,6 +42,11 @@ _CERTAIN = 6.0
 
 FALSE_ALARMS = 0.007
 """Share of cases without a cause that may raise the alarm, at the setting."""
+
+N_SUBSETS = 3
+"""Times that each case is learned again from some of its recordings."""
+
+_FEWEST_RECORDINGS = 3
 
 _POOR_SHARE = 0.3
 """Share of the cases that are learned again with channels missing."""
@@ -57,10 +64,11 @@ _STIFFNESS = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """A case whose cause is known."""
+    """A case whose cause is known, and the number of its rig."""
 
     table: CaseTable
     truth: Truth
+    rig: int = 0
 
 
 def train_posterior(
@@ -79,14 +87,16 @@ def train_posterior(
     Posterior
     """
     names = sorted({name for case in cases for name in case.table.names})
-    scale = scale_of([case.table for case in cases if case.truth.kind == "none"], names)
+    without_cause = [case.table for case in cases if case.truth.kind == "none"]
+    scale = scale_of(without_cause, names)
     rng = np.random.default_rng(seed)
-    # Every fifth case is kept from the trees, to calibrate what they say.
-    kept = np.arange(len(cases)) % KEPT_EVERY == 0
-    grown = [case for case, keep in zip(cases, kept, strict=True) if not keep]
+    # Every fifth rig is kept from the trees, to calibrate what they say.
+    kept = np.unique([case.rig for case in cases], return_inverse=True)[1] % KEPT_EVERY == 0
+    whole = [case for case, keep in zip(cases, kept, strict=True) if not keep]
+    grown = [*whole, *(with_fewer(case, rng) for _ in range(N_SUBSETS) for case in whole)]
     grown += [
         with_channels(case, _POOR[int(rng.integers(len(_POOR)))])
-        for case in grown
+        for case in whole
         if rng.random() < _POOR_SHARE
     ]
     x = np.array([evidence(case.table, names, scale) for case in grown])
@@ -107,7 +117,7 @@ def train_posterior(
         trees=trees,
         weights=weights,
         alarm=min(alarm, 0.5),
-        null=null_maxima([c.table for c in cases if c.truth.kind == "none"], names, scale),
+        null=null_maxima(without_cause, names, scale),
         card={"seed": seed, "cases": len(cases), "rounds": n_rounds},
     )
 
@@ -145,9 +155,9 @@ def _grown(x: NDArray[np.float32], y: NDArray[np.int64], n_rounds: int, seed: in
 
     model = HistGradientBoostingClassifier(
         max_iter=n_rounds,
-        learning_rate=0.1,
-        max_leaf_nodes=8,
-        min_samples_leaf=6,
+        learning_rate=0.06,
+        max_leaf_nodes=12,
+        min_samples_leaf=12,
         max_features=0.15,
         l2_regularization=1.0,
         early_stopping=False,
@@ -181,7 +191,24 @@ def with_channels(case: Known, channels: Sequence[str]) -> Known:
         nominal=without(table.nominal),
         scatter=without(table.scatter),
     )
-    return Known(changed, case.truth)
+    return replace(case, table=changed)
+
+
+def with_fewer(case: Known, rng: np.random.Generator) -> Known:
+    """Return a case as it would be had only some of its recordings been made."""
+    table = case.table
+    n = len(table.measured)
+    if n <= _FEWEST_RECORDINGS:
+        return case
+    chosen = np.sort(rng.choice(n, int(rng.integers(_FEWEST_RECORDINGS, n)), replace=False))
+    changed = replace(
+        table,
+        measured=table.measured[chosen],
+        nominal=table.nominal[chosen],
+        scatter=table.scatter[chosen],
+        conditions=tuple(table.conditions[i] for i in chosen),
+    )
+    return replace(case, table=changed)
 
 
 _OWN = (
@@ -195,6 +222,7 @@ _OWN = (
     "offset",
     "floor",
     "band",
+    "raw",
 )
 """Numbers that a channel has of itself alone."""
 

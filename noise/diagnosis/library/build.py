@@ -7,35 +7,41 @@ from typing import TYPE_CHECKING
 from joblib import Parallel, delayed
 
 from models.errors import ParameterError
-from noise.diagnosis.library.draw import draw_case
-from noise.diagnosis.summary import case_table
+from noise.diagnosis.library.draw import SHARED, draw_case
+from noise.diagnosis.summary import NominalNumbers, case_table
 from noise.diagnosis.training import Known
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
-__all__ = ["known_case", "known_cases"]
+__all__ = ["known_cases", "known_cases_of_a_rig"]
 
 
-def known_case(seed: int) -> Known | None:
-    """Draw a case and summarise it; None where what was drawn cannot be simulated.
+def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
+    """Draw cases of one rig and summarise them; those that cannot be simulated are left out.
 
     Examples
     --------
-    >>> case = known_case(400_001)
-    >>> case is None or case.table.measured.shape == case.table.nominal.shape
+    >>> cases = known_cases_of_a_rig([400_000, 400_001])
+    >>> all(case.table.measured.shape == case.table.nominal.shape for case in cases)
     True
     """
-    try:
-        case = draw_case(seed)
-        return Known(case_table(case.recordings, case.rig), case.truth)
-    except ParameterError:
-        return None
+    nominal, known = None, []
+    for seed in seeds:
+        try:
+            case = draw_case(seed)
+            nominal = nominal or NominalNumbers(case.rig)
+            table = case_table(case.recordings, case.rig, nominal=nominal)
+            known.append(Known(table, case.truth, seed // SHARED))
+        except ParameterError:
+            continue
+    return known
 
 
-def known_cases(first: int, count: int, workers: int = 1) -> Iterator[Known]:
-    """Draw cases one after the other, those that cannot be simulated left out."""
+def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
+    """Draw cases of one rig after the other; the first seed begins a rig."""
+    rigs = [seeds[i : i + SHARED] for i in range(0, len(seeds), SHARED)]
     drawn = Parallel(n_jobs=workers, return_as="generator")(
-        delayed(known_case)(seed) for seed in range(first, first + count)
+        delayed(known_cases_of_a_rig)(rig) for rig in rigs
     )
-    return (case for case in drawn if case is not None)
+    return (case for cases in drawn for case in cases)

@@ -1,13 +1,15 @@
 """Cases: recordings of simulated rigs with a known cause, made as a user would record them.
 
 Whatever is not the case's cause is drawn alike for all causes: the rig, its conditions, its
-structure, the scatter from run to run, gains, noise and drift.
+structure, the scatter from run to run, gains, noise and drift. `SHARED` cases in a row are of one
+rig: what the rig file predicts of it is then simulated once for all of them.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,7 +39,10 @@ if TYPE_CHECKING:
     from noise.diagnosis.library.rigs import Setting
     from sim.effects.effect import ActiveEffect
 
-__all__ = ["DrawnCase", "draw_case"]
+__all__ = ["SHARED", "DrawnCase", "draw_case"]
+
+SHARED = 4
+"""Cases of one rig."""
 
 WEAKEST = 0.02
 """Least strength of an effect that is drawn."""
@@ -63,7 +68,7 @@ class DrawnCase:
     truth: Truth
 
 
-def draw_case(seed: np.random.SeedSequence | int) -> DrawnCase:
+def draw_case(seed: int) -> DrawnCase:
     """Draw a case; the same seed gives the same case.
 
     Examples
@@ -72,19 +77,9 @@ def draw_case(seed: np.random.SeedSequence | int) -> DrawnCase:
     >>> 4 <= len(case.recordings) <= 9, case.recordings[0].channel_names
     (True, ('torque', 'acceleration', 'pressure', 'angle'))
     """
-    rng = np.random.default_rng(seed)
-    setting = draw_setting(rng)
+    setting, plain = _drawn_rig(seed // SHARED)
+    rng = np.random.default_rng([1, seed])
     truth, effects = _draw_cause(setting.rig, rng)
-    fine = fine_rate(setting.rate)
-    structures = {
-        support: draw_structure(lumped_bushing(setting.rig, 0.279e-3, support), rng)
-        for support in sorted({_support(c) for c in setting.conditions})
-    }
-    rig = replace(
-        setting.rig,
-        measured=tuple(s.measured(support, rng) for support, s in structures.items()),
-    )
-    plain = {support: s.response(fine) for support, s in structures.items()}
     chain_seed = int(rng.integers(2**31))
     louder = {name: level * rng.uniform(0.7, 1.6) for name, level in Acquisition().noise.items()}
     recordings = tuple(
@@ -94,7 +89,24 @@ def draw_case(seed: np.random.SeedSequence | int) -> DrawnCase:
         )
         for condition in setting.conditions
     )  # fmt: skip
-    return DrawnCase(rig, recordings, truth)
+    return DrawnCase(setting.rig, recordings, truth)
+
+
+@lru_cache(maxsize=1)
+def _drawn_rig(number: int) -> tuple[Setting, dict[float, Response]]:
+    """Draw a rig with measured responses, and the true ones at the rate of the simulation."""
+    rng = np.random.default_rng([0, number])
+    setting = draw_setting(rng)
+    structures = {
+        support: draw_structure(lumped_bushing(setting.rig, 0.279e-3, support), rng)
+        for support in sorted({_support(c) for c in setting.conditions})
+    }
+    measured = tuple(s.measured(support, rng) for support, s in structures.items())
+    fine = fine_rate(setting.rate)
+    return (
+        replace(setting, rig=replace(setting.rig, measured=measured)),
+        {support: s.response(fine) for support, s in structures.items()},
+    )
 
 
 def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveEffect]]:
