@@ -56,7 +56,7 @@ def run(condition, *effects, seed=0, seconds=SECONDS, rate=RATE, rig=RIG, librar
     if support not in _WAYS:
         _WAYS[support] = ways(RIG, condition.interference, support)
     active = activated([LawSpec(name, values) for name, values in effects], library)
-    blows = any(e.effect.force is not None for e in active)
+    blows = any(e.effect.force is not None or e.effect.chain is not None for e in active)
     fine = fine_rate(rate)
     chain = chain_of(rig, condition.interference, support, _WAYS[support], fine, blows=blows)
     rng = np.random.default_rng(seed)

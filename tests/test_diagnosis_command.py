@@ -293,8 +293,14 @@ def test_an_own_effect_that_closes_a_small_gap_is_as_probable_as_what_it_closes(
 
 def test_where_there_is_no_gap_an_own_effect_has_none_to_close():
     nothing = replace(one_effect(), verdict=())
-    assert with_own(nothing, {"mine": _gaps("mine", 1.0)}, ["mine"]) is nothing
+    assert with_own(nothing, {"mine": _gaps("mine", 1.0, closed=None)}, ["mine"]) is nothing
     assert with_own(one_effect(), {}, ["mine"]).verdict == one_effect().verdict
+
+
+def test_an_own_effect_that_closes_a_gap_which_the_first_answer_missed_is_named():
+    nothing = replace(one_effect(), verdict=())
+    assert with_own(nothing, {"mine": _gaps("mine", 1.2)}, ["mine"]).verdict == ("mine",)
+    assert with_own(nothing, {"mine": _gaps("mine", 5.5)}, ["mine"]) is nothing
 
 
 def test_numbers_that_are_none_become_null():

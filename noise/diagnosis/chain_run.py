@@ -7,15 +7,16 @@ hundreds of times, and has the ways measured. The order of events is the same.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.fft import irfft
-from scipy.signal import resample_poly
+from scipy.signal import firwin, resample_poly
 
 from models.radiation import response
 from models.recording import Channel, Recording
 from models.response import Response, radiate
+from noise.diagnosis.impulse import impulse_of
 from noise.diagnosis.scatter import Scatter, scattered
 from sim.acquisition import Acquisition
 from sim.chain import changed_chain
@@ -31,15 +32,20 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from noise.diagnosis.paths import Way
     from sim.effects.effect import ActiveEffect
+    from sim.motion import Motion
 
-__all__ = ["CHANNELS", "chain_of", "fine_rate", "recorded", "run_signals", "sensed"]
+__all__ = [
+    "CHANNELS", "SETTLING", "chain_of", "fine_rate", "found_by_run", "heard", "moving",
+    "read_by_sensors", "recorded", "run_signals", "sampled_at",
+    "sensed",
+]  # fmt: skip
 
 CHANNELS = ("torque", "acceleration", "pressure", "angle")
 
 _LEAST_RATE = 75e3
 """Of motion and sound [Hz]."""
 
-_SETTLING = 0.35
+SETTLING = 0.35
 """How long the shaft has turned before the recording starts [s]."""
 
 _LONGEST = 0.25
@@ -68,17 +74,12 @@ def chain_of(
 ) -> Response:
     """Return ways as impulse responses; those of blows in the anchors are modelled if asked for."""
     n = int(_LONGEST * rate)
-    frequency = np.asarray(np.fft.rfftfreq(2 * n, 1.0 / rate), np.float64)
-    x = np.clip((frequency - 0.4 * rate) / (0.05 * rate), 0.0, 1.0)
-    taper = 0.5 + 0.5 * np.cos(np.pi * x)
-    torque_to = {
-        name: np.asarray(irfft(way.at(frequency) * taper, 2 * n)[:n]) for name, way in ways.items()
-    }
-    struck = heard = np.zeros(1)
+    torque_to = {name: impulse_of(way, rate, n) for name, way in ways.items()}
+    struck = sounding = np.zeros(1)
     if blows:
         modelled = response(rig, interference, support_stiffness, rate)
-        struck, heard = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
-    return Response(rate, torque_to["acceleration"], torque_to["pressure"], struck, heard)
+        struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
+    return Response(rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding)
 
 
 def run_signals(
@@ -114,36 +115,75 @@ def run_signals(
     dict of str to ndarray
         By `CHANNELS`, without noise.
     """
-    assert condition.speed is not None
-    assert condition.interference is not None
-    assert condition.support_stiffness is not None
     scatter = scatter or Scatter()
-    rate, settling = chain.rate, round(_SETTLING * chain.rate)
+    once, support, speed = found_by_run(rig, condition, scatter, rng)
+    motion = moving(once, condition, support, speed, effects, seconds, chain.rate, rng)
+    changed = changed_chain(chain, effects, np.random.default_rng(chain_seed))
+    return read_by_sensors(heard(motion, effects, changed), effects, chain.rate, rng)
+
+
+def found_by_run(
+    rig: Rig, condition: Condition, scatter: Scatter, rng: np.random.Generator
+) -> tuple[Rig, float, float]:
+    """Draw a rig, its support's stiffness [Nm/rad] and the speed [rad/s] as one run finds them."""
+    assert condition.speed is not None
+    assert condition.support_stiffness is not None
     support = condition.support_stiffness
     if not math.isinf(support):
         support *= float(np.exp(scatter.structure * rng.normal()))
-    motion = simulate_motion(
-        scattered(rig, scatter, rng),
-        ConstantSpeed(condition.speed * float(np.exp(scatter.structure * rng.normal()))),
+    once = scattered(rig, scatter, rng)
+    return once, support, condition.speed * float(np.exp(scatter.structure * rng.normal()))
+
+
+def moving(
+    rig: Rig,
+    condition: Condition,
+    support: float,
+    speed: float,
+    effects: Sequence[ActiveEffect],
+    seconds: float,
+    rate: float,
+    rng: np.random.Generator,
+) -> Motion:
+    """Move a rig from rest for the recording's length, and `SETTLING` before."""
+    assert condition.interference is not None
+    return simulate_motion(
+        rig,
+        ConstantSpeed(speed),
         interference=condition.interference,
         support_stiffness=support,
-        seconds=(settling + round(seconds * rate)) / rate,
+        seconds=(round(SETTLING * rate) + round(seconds * rate)) / rate,
         rate=rate,
         effects=effects,
         rng=rng,
     )
+
+
+def heard(
+    motion: Motion, effects: Sequence[ActiveEffect], changed: Response
+) -> dict[str, NDArray[np.float64]]:
+    """Send a motion along the chain; by `CHANNELS`, without what came before the recording."""
     force = np.zeros_like(motion.torque)
     for active in effects:
         if active.effect.force is not None:
             force += active.effect.force(motion, active.form, active.values)
-    changed = changed_chain(chain, effects, np.random.default_rng(chain_seed))
     acceleration, pressure = radiate(changed, motion.torque, force)
-    signals = {
+    settling = round(SETTLING * motion.rate)
+    return {
         "torque": motion.torque[settling:],
         "acceleration": acceleration[settling:],
         "pressure": pressure[settling:],
         "angle": motion.shaft_angle[settling:] - motion.shaft_angle[settling],
     }
+
+
+def read_by_sensors(
+    signals: dict[str, NDArray[np.float64]],
+    effects: Sequence[ActiveEffect],
+    rate: float,
+    rng: np.random.Generator,
+) -> dict[str, NDArray[np.float64]]:
+    """Let the effects on sensors change signals, in their order."""
     for active in effects:
         if active.effect.sensors is not None:
             signals = active.effect.sensors(signals, rate, active.form, active.values, rng)
@@ -159,11 +199,22 @@ def recorded(
     scatter: Scatter | None = None,
 ) -> Recording:
     """Sample signals and read them by good instruments, as `sensed` does."""
-    decimation = round(fine / rate)
-    sampled = {
-        name: resample_poly(signals[name], 1, decimation, padtype="line") for name in CHANNELS
-    }
+    sampled = {name: sampled_at(signals[name], fine, rate) for name in CHANNELS}
     return sensed(sampled, rate, condition, rng, scatter)
+
+
+def sampled_at(signal: NDArray[np.float64], fine: float, rate: float) -> NDArray[np.float64]:
+    """Sample a signal at a rate that its own is a multiple of."""
+    decimation = round(fine / rate)
+    return np.asarray(
+        resample_poly(signal, 1, decimation, padtype="line", window=_anti_alias(decimation))
+    )
+
+
+@lru_cache(maxsize=8)
+def _anti_alias(decimation: int) -> NDArray[np.float64]:
+    taps = firwin(20 * decimation + 1, 1.0 / decimation, window=("kaiser", 5.0))
+    return np.asarray(taps, np.float64)
 
 
 def sensed(

@@ -7,60 +7,30 @@ parameters alone, and each likely cause with them, close it on recordings that n
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from noise.diagnosis.equivalence import equivalent_pairs, next_measurement
+from noise.diagnosis.fits import with_fits
 from noise.diagnosis.floor import case_gap
-from noise.diagnosis.heard import heard_of
-from noise.diagnosis.library.rigs import OFFSETS
 from noise.diagnosis.location import locate, stage_findings
-from noise.diagnosis.outcome import Diagnosis, EffectFinding, Illustration
-from noise.diagnosis.own import with_own
+from noise.diagnosis.outcome import Diagnosis, EffectFinding
 from noise.diagnosis.posterior import load_posterior
-from noise.diagnosis.refit import Bench, Model, fit_effect, fit_parameters, split
 from noise.diagnosis.summary import case_table
 from noise.diagnosis.verdict import verdict_of
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import NDArray
+    from collections.abc import Callable, Mapping
 
     from noise.diagnosis.case import Case
     from noise.diagnosis.posterior import Posterior
-    from noise.diagnosis.refit import Fitted
-    from noise.diagnosis.summary import CaseTable
     from sim.effects.effect import Effect
 
 __all__ = ["diagnose_case"]
 
 _LISTED = 5
 """Effects that are listed at least."""
-
-_FITTED = 3
-"""Candidates that are fitted."""
-
-_LIKELY = 0.1
-"""Candidates less probable than this are fitted only if nothing else is."""
-
-_CLOSABLE = 0.5
-"""A gap is worth closing from so many floors above the floor (`before` - `floor`)."""
-
-_DRAWS = 400
-_INTERVAL = (5.0, 95.0)
-
-
-@dataclass(frozen=True, eq=False)
-class _Scores:
-    """Squared distances of held-out recordings from the three models."""
-
-    before: NDArray[np.float64]
-    recalibrated: NDArray[np.float64]
-    after: NDArray[np.float64]
 
 
 def diagnose_case(
@@ -122,153 +92,8 @@ def diagnose_case(
         notes=_notes(case),
     )
     if not quick:
-        diagnosis = _with_fits(case, diagnosis, table, posterior, library, known, seed, tell)
+        diagnosis = with_fits(case, diagnosis, table, posterior, library, known, seed, tell)
     return replace(diagnosis, seconds=time.perf_counter() - started)
-
-
-def _with_fits(
-    case: Case,
-    diagnosis: Diagnosis,
-    table: CaseTable,
-    posterior: Posterior,
-    library: Mapping[str, Effect],
-    known: set[str],
-    seed: int,
-    tell: Callable[[str], None],
-) -> Diagnosis:
-    bench = Bench(case.rig, case.recordings, library, table, posterior.names, posterior.scale)
-    fitted_to, held = split([recording.condition for recording in case.recordings])
-    diagnosis = replace(diagnosis, held_out=tuple(case.names[i] for i in held))
-    if not diagnosis.verdict:
-        return replace(diagnosis, illustrations=_illustrations(case, bench, held, Model(), None))
-    tell("recalibrating the parameters")
-    alone = fit_parameters(bench, fitted_to)
-    before = bench.squared(Model(), held)
-    recalibrated = bench.squared(alone.model, held)
-    own = [name for name in library if name not in EFFECTS and name not in known]
-    findings: dict[str, EffectFinding] = {}
-    fits: dict[str, Fitted] = {}
-    named = [name for name in diagnosis.verdict if name in library]
-    if len(named) > 1:  # effects of one verdict are fitted together, and close what they close
-        tell(f"fitting {' and '.join(named)} together")
-        joint = fit_effect(bench, fitted_to, named, alone.model)
-        scores = _Scores(before, recalibrated, bench.squared(joint.model, held))
-        for name in named:
-            fits[name] = joint
-            findings[name] = _finding(name, library, diagnosis.probabilities, joint, scores, seed)
-    for name in [*_candidates(diagnosis), *own]:
-        if name in findings:
-            continue
-        tell(f"fitting {name}")
-        fits[name] = fit_effect(bench, fitted_to, [name], alone.model)
-        scores = _Scores(before, recalibrated, bench.squared(fits[name].model, held))
-        findings[name] = _finding(name, library, diagnosis.probabilities, fits[name], scores, seed)
-    diagnosis = with_own(diagnosis, findings, own)
-    if diagnosis.verdict[0] in own:
-        stage = library[diagnosis.verdict[0]].stage.value
-        diagnosis = replace(diagnosis, location=locate(table, posterior, stage))
-    effects = [
-        replace(
-            findings.get(effect.name, effect),
-            probability=diagnosis.probabilities.get(effect.name, 0.0),
-        )
-        for effect in (*diagnosis.effects, *(findings[name] for name in own))
-    ]
-    best = fits.get(diagnosis.verdict[0])
-    chosen = best.model if best is not None else alone.model
-    labels = tuple(
-        heard_of(case.names[i], case.recordings[i], bench.simulated(Model(), case.recordings[i], 7),
-                 bench.simulated(chosen, case.recordings[i], 7))
-        for i in held[:3]
-    )  # fmt: skip
-    return replace(
-        diagnosis,
-        effects=tuple(sorted(effects, key=lambda effect: -effect.probability)),
-        parameters=_intervals(best or alone),
-        heard=labels,
-        illustrations=_illustrations(case, bench, held, Model(), chosen),
-    )
-
-
-def _candidates(diagnosis: Diagnosis) -> list[str]:
-    named = [name for name in diagnosis.verdict if name in EFFECTS]
-    likely = [e.name for e in diagnosis.effects if e.probability >= _LIKELY]
-    return list(dict.fromkeys([*named, *likely, diagnosis.effects[0].name]))[:_FITTED]
-
-
-def _finding(
-    name: str,
-    library: Mapping[str, Effect],
-    probabilities: Mapping[str, float],
-    fitted: Fitted,
-    scores: _Scores,
-    seed: int,
-) -> EffectFinding:
-    spec = next(spec for spec in fitted.model.effects if spec.name == name)
-    rng = np.random.default_rng(seed)
-    draws = rng.integers(len(scores.before), size=(_DRAWS, len(scores.before)))
-    drawn = [_closed(scores.before[i], scores.after[i]) for i in draws]
-    known = [x for x in drawn if x is not None]
-    closed = _closed(scores.before, scores.after)
-    low, high = np.percentile(known, _INTERVAL) if closed is not None and known else (None, None)
-    return EffectFinding(
-        name=name,
-        stage=library[name].stage.value,
-        probability=probabilities.get(name, 0.0),
-        parameters=spec.parameters,
-        strength=_strength(fitted, library[name]) if spec is fitted.model.effects[-1] else None,
-        gap_before=_root(scores.before),
-        gap_recalibrated=_root(scores.recalibrated),
-        gap_after=_root(scores.after),
-        gap_floor=1.0,
-        closed=closed,
-        closed_low=None if low is None else float(low),
-        closed_high=None if high is None else float(high),
-        closed_by_effect=_closed(scores.recalibrated, scores.after),
-    )
-
-
-def _root(squared: NDArray[np.float64]) -> float:
-    return float(np.sqrt(np.mean(squared)))
-
-
-def _closed(before: NDArray[np.float64], after: NDArray[np.float64]) -> float | None:
-    """Share of the closable gap; None where there is less than a floor to close."""
-    gap, left = _root(before), max(_root(after), 1.0)
-    return None if gap - 1.0 < _CLOSABLE else (gap - left) / (gap - 1.0)
-
-
-def _strength(fitted: Fitted, effect: Effect) -> tuple[float, float] | None:
-    """Interval of the last effect's strength, of whose logarithm the fit gives an error."""
-    n = len(fitted.model.offsets)
-    value = fitted.model.effects[-1].parameters.get(effect.strength)
-    if not isinstance(value, float) or len(fitted.spread) <= n:
-        return None
-    factor = float(np.exp(1.645 * min(fitted.spread[n], 1.5)))
-    low, high = sorted((value / factor, value * factor))
-    return low, high
-
-
-def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
-    spread = fitted.spread or (0.0,) * len(OFFSETS)
-    return {
-        name: (float(np.exp(x - 1.645 * s)), float(np.exp(x + 1.645 * s)))
-        for name, x, s in zip(OFFSETS, fitted.model.offsets, spread, strict=False)
-    }
-
-
-def _illustrations(
-    case: Case, bench: Bench, held: Sequence[int], before: Model, after: Model | None
-) -> tuple[Illustration, ...]:
-    return tuple(
-        Illustration(
-            case.names[i],
-            case.recordings[i],
-            bench.simulated(before, case.recordings[i], 7),
-            None if after is None else bench.simulated(after, case.recordings[i], 7),
-        )
-        for i in held[:2]
-    )
 
 
 def _ranked(probabilities: Mapping[str, float]) -> list[str]:

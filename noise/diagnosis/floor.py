@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.distance import Gap
+    from noise.diagnosis.distance import Gap, Reference
     from noise.diagnosis.scatter import Scatter
     from sim.effects.effect import Effect
 
-__all__ = ["case_gap", "condition_key", "repeat_gap", "widening"]
+__all__ = ["case_gap", "condition_key", "references_of", "repeat_gap", "widening"]
 
 N_REPEATS = 12
 """Simulated repeats a condition."""
@@ -127,11 +127,39 @@ def repeat_gap(
     -------
     Gap
     """
+    signatures = [signature(recording) for recording in recordings]
+    references, widened = references_of(recordings, signatures, repeats, least=least, seed=seed)
+    return replace(gap_of(signatures, references, seed=seed), widened=widened)
+
+
+def references_of(
+    recordings: Sequence[Recording],
+    signatures: Sequence[NDArray[np.float64]],
+    repeats: Mapping[tuple[float, ...], Sequence[NDArray[np.float64]]],
+    *,
+    least: float = LEAST_SCALE,
+    seed: int = 0,
+) -> tuple[list[Reference], float]:
+    """Return what each recording is compared with: repeats, as far apart as the recordings' own.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    signatures : sequence of ndarray
+        Of the recordings.
+    repeats, least, seed
+        As of `repeat_gap`.
+
+    Returns
+    -------
+    references : list of Reference
+        One a recording; recordings of one condition share one.
+    widened : float
+        By how much the floor is wider than the repeats alone have it.
+    """
     own: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
-    signatures = []
-    for recording in recordings:
-        signatures.append(signature(recording))
-        own.setdefault(condition_key(recording), []).append(signatures[-1])
+    for recording, values in zip(recordings, signatures, strict=True):
+        own.setdefault(condition_key(recording), []).append(values)
     pairs = [(own[key], repeats[key]) for key in own if len(own[key]) > 1]
     if pairs:
         wider = widening(pairs)
@@ -144,8 +172,7 @@ def repeat_gap(
         s = np.array(repeats[key])
         mean = s.mean(axis=0)
         references[key] = reference(list(mean + each * (s - mean)), least=least, seed=seed)
-    gap = gap_of(signatures, [references[condition_key(r)] for r in recordings], seed=seed)
-    return replace(gap, widened=float(np.sqrt(np.mean(wider**2))))
+    return [references[condition_key(r)] for r in recordings], float(np.sqrt(np.mean(wider**2)))
 
 
 def widening(

@@ -46,18 +46,10 @@ nothing of the channel's own stage."""
 _LARGEST_GAP = 100.0
 """Of a stage: larger ones come from numbers that hardly scatter, and are all alike."""
 
+_STICK = ("creep", "stick", "stiffness", "calm", "after", "before", "ring", "slow_")
+
 _PHASES = {
-    "stick": (
-        "creep",
-        "stick",
-        "stiffness",
-        "calm",
-        "time_stuck",
-        "after",
-        "before",
-        "ring",
-        "slow_",
-    ),  # fmt: skip
+    "stick": (*_STICK, "time_stuck"),
     "slip": ("law", "fastest", "duration", "kinetic", "trough", "slip"),
     "cycle": ("peak", "interval", "spread", "skewness", "highest", "lowest", "friction"),
 }

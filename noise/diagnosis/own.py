@@ -37,10 +37,12 @@ def with_own(
     gaps = {name: found.gap_after for name, found in findings.items()}
     fitted = {name: max(gap, 1.0) for name, gap in gaps.items() if gap is not None}
     mine = [name for name in own if name in fitted]
-    if not mine or not diagnosis.verdict:
+    if not mine:
         return diagnosis
     best = min(mine, key=lambda name: fitted[name])
     recalibrated = findings[best].gap_recalibrated or 0.0
+    if not diagnosis.verdict and findings[best].closed is None:
+        return diagnosis  # nothing is the matter, and there is no gap that says otherwise
     others = [gap for name, gap in fitted.items() if name not in own]
     if fitted[best] > _CLEARLY * min([recalibrated, *others]):
         return diagnosis

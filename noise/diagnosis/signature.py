@@ -16,11 +16,15 @@ from features.bands import band_power
 from features.spectra import welch
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from models.recording import Recording
 
-__all__ = ["GROUPS", "NAMES", "group_of", "signature"]
+__all__ = [
+    "GROUPS", "KINDS", "NAMES", "channel_signature", "group_of", "joined_signature", "signature",
+]  # fmt: skip
 
 KINDS = ("torque", "acceleration", "pressure")
 """Kinds of channel that have a signature; of each the first channel counts."""
@@ -93,15 +97,47 @@ def signature(recording: Recording) -> NDArray[np.float64]:
     >>> values.shape == (len(NAMES),), bool(np.isfinite(values).all())
     (True, True)
     """
+    parts = {
+        kind: channel_signature(recording.samples[row], recording.rate, kind)
+        for kind in KINDS
+        if (row := recording.first(kind)) is not None
+    }
+    return joined_signature(parts)
+
+
+def channel_signature(signal: NDArray[np.float64], rate: float, kind: str) -> NDArray[np.float64]:
+    """Describe one channel: its levels, and of a torque what its slips are like.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+    rate : float
+        [Hz]
+    kind : str
+        Of `KINDS`.
+
+    Returns
+    -------
+    ndarray
+    """
+    levels = _levels(signal, rate, kind)
+    return np.concatenate([levels, _cycle(signal, rate)]) if kind == "torque" else levels
+
+
+def joined_signature(parts: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Join what `channel_signature` gave of the channels of a recording; NaN where one is missing.
+
+    Examples
+    --------
+    >>> joined_signature({}).shape == (len(NAMES),)
+    True
+    """
     values = np.full(len(NAMES), np.nan)
     for i, kind in enumerate(KINDS):
-        row = recording.first(kind)
-        if row is None:
-            continue
-        signal = recording.samples[row]
-        values[i * _N_BANDS : (i + 1) * _N_BANDS] = _levels(signal, recording.rate, kind)
-        if kind == "torque":
-            values[len(KINDS) * _N_BANDS :] = _cycle(signal, recording.rate)
+        if kind in parts:
+            values[i * _N_BANDS : (i + 1) * _N_BANDS] = parts[kind][:_N_BANDS]
+    if "torque" in parts:
+        values[len(KINDS) * _N_BANDS :] = parts["torque"][_N_BANDS:]
     return values
 
 
