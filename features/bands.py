@@ -59,7 +59,12 @@ _A_POLES = (20.598997, 107.65265, 737.86223, 12194.217)
 
 
 def third_octave_edges() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Exact lower edges, mid-band frequencies and upper edges [Hz], each of shape (30,).
+    """Exact edges of the one-third-octave bands.
+
+    Returns
+    -------
+    low, middle, high : ndarray, shape (30,)
+        Lower edges, mid-band frequencies and upper edges [Hz].
 
     Notes
     -----
@@ -114,7 +119,19 @@ def band_power(spectrum: Spectrum, low: ArrayLike, high: ArrayLike) -> NDArray[n
 
 
 def band_levels(power: ArrayLike, reference: float) -> NDArray[np.float64]:
-    """Levels [dB] of mean squares re a reference value [unit]; minus infinity for none.
+    """Levels of mean squares.
+
+    Parameters
+    ----------
+    power : array_like
+        [unit^2]
+    reference : float
+        [unit]
+
+    Returns
+    -------
+    ndarray
+        Of the same shape [dB]; minus infinity for none.
 
     Examples
     --------
@@ -197,7 +214,17 @@ def fine_third_octaves(
 
 
 def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
-    """Gain [dB] of the A-weighting at frequencies [Hz]; minus infinity at 0 Hz.
+    """Gain of the A-weighting.
+
+    Parameters
+    ----------
+    frequency : array_like
+        [Hz]
+
+    Returns
+    -------
+    ndarray
+        Of the same shape [dB]; minus infinity at 0 Hz.
 
     Notes
     -----

@@ -98,6 +98,10 @@ class TransferEstimate:
 def check_hit(hit: Hit) -> None:
     """Refuse a hit that would spoil the average.
 
+    Parameters
+    ----------
+    hit : Hit
+
     Raises
     ------
     RecordingError

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
     from features.lscf import Pole
@@ -65,6 +66,41 @@ class Modes:
         coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
         response: NDArray[np.complex128] = coefficients @ basis
         return response
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the magnitudes of the responses that the modes make up, and where the modes are.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw, such as on the measured response; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is no mode.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> one = np.ones(1)
+        >>> mode = Modes(100 * one, 0.02 * one, 1j * one[None], np.zeros((1, 4)), one, 200.0)
+        >>> axes = mode.plot(Figure().subplots())
+        >>> axes.get_xlabel(), len(axes.lines)
+        ('Frequency [Hz]', 2)
+        """
+        from features.modes_view import draw_modes
+
+        return draw_modes(self, ax)
+
+    def _repr_html_(self) -> str:
+        from features.modes_view import modes_html
+
+        return modes_html(self)
 
 
 def modes_of_poles(

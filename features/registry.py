@@ -57,6 +57,10 @@ def features_of(kind: str) -> tuple[Feature, ...]:
     ----------
     kind : {"pressure", "acceleration", "torque"}
 
+    Returns
+    -------
+    tuple of Feature
+
     Raises
     ------
     ParameterError
@@ -78,6 +82,10 @@ def feature_names(kind: str) -> tuple[str, ...]:
     Parameters
     ----------
     kind : {"pressure", "acceleration", "torque"}
+
+    Returns
+    -------
+    tuple of str
 
     Raises
     ------
@@ -141,6 +149,10 @@ def feature_vector(
 
 def recording_feature_names() -> tuple[str, ...]:
     """Names in the order of `recording_features`.
+
+    Returns
+    -------
+    tuple of str
 
     Examples
     --------

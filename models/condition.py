@@ -41,3 +41,22 @@ class Condition:
     support_stiffness: float | None = None
     material: str | None = None
     temperature: float | None = None
+
+    @property
+    def words(self) -> list[str]:
+        """Material, fit, support and speed as far as they are known, as titles tell them.
+
+        Examples
+        --------
+        >>> Condition(speed=5.0, interference=0.279e-3, support_stiffness=FIXED).words
+        ['0.279 mm', 'clamp fixed', '5 rad/s']
+        """
+        words = [] if self.material is None else [self.material]
+        if self.interference is not None:
+            words.append(f"{1e3 * self.interference:.4g} mm")
+        if self.support_stiffness is not None:
+            fixed = math.isinf(self.support_stiffness)
+            words.append("clamp fixed" if fixed else f"{self.support_stiffness:g} Nm/rad")
+        if self.speed is not None:
+            words.append(f"{self.speed:g} rad/s")
+        return words

@@ -15,6 +15,7 @@ import numpy as np
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
 __all__ = [
@@ -83,6 +84,34 @@ class Frf:
     def spacing(self) -> float:
         """Mean distance of the lines [Hz]."""
         return float((self.frequency[-1] - self.frequency[0]) / (self.frequency.size - 1))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the magnitude over frequency; lines of a coherence below a half are pale.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> frf = Frf(np.array([1.0, 2.0]), np.array([1j, 2j]), None, "N", "m/s^2")
+        >>> frf.plot(Figure().subplots()).get_ylabel()
+        'Magnitude [m/s^2 per N]'
+        """
+        from models.frf_view import draw_frf
+
+        return draw_frf(self, ax)
+
+    def _repr_html_(self) -> str:
+        from models.frf_view import frf_html
+
+        return frf_html(self)
 
 
 def check_frf(frf: Frf) -> Frf:

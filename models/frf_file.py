@@ -121,6 +121,17 @@ def write_frf(path: Path, frf: Frf) -> None:
     ------
     ParameterError
         The ending is unknown, or the library of the format is not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> f = np.arange(1.0, 11.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "torque_to_acceleration.npz"
+    ...     write_frf(path, Frf(f, 1j * f, None, "N m", "m/s^2"))
+    ...     read_frf(path, input_unit="N m", output_unit="m/s^2").spacing
+    1.0
     """
     check_frf_path(path)
     ending = path.suffix.lower()

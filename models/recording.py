@@ -11,6 +11,7 @@ from models.errors import ParameterError
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
 __all__ = ["CHANNEL_UNITS", "REFERENCE_PRESSURE", "Channel", "Recording"]
@@ -147,3 +148,39 @@ class Recording:
             raise ParameterError(f"recording {self.name!r} has no channel {name!r}; it has {have}")
         row: NDArray[np.float64] = self.samples[self.channel_names.index(name)]
         return row
+
+    def plot(self, channel: str | None = None, ax: Axes | None = None) -> Axes:
+        """Draw a channel over time.
+
+        Parameters
+        ----------
+        channel : str, optional
+            By default the first that is sound pressure, else the first.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is no such channel, or nothing in it.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from matplotlib.figure import Figure
+        >>> tone = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
+        >>> tone.plot(ax=Figure().subplots()).get_ylabel()
+        'Sound pressure [Pa]'
+        """
+        from models.recording_view import draw_channel
+
+        return draw_channel(self, channel, ax)
+
+    def _repr_html_(self) -> str:
+        from models.recording_view import recording_html
+
+        return recording_html(self)

@@ -35,6 +35,13 @@ __all__ = [
 class LawSpec:
     """A friction law or an effect by name, with its parameters.
 
+    Parameters
+    ----------
+    name : str
+        Of a file in `sim.friction` or of an effect in `sim.effects`.
+    parameters : mapping of str to float or str
+        Those that differ from the law's own.
+
     Examples
     --------
     >>> str(LawSpec("slip_pulse", {"amplitude": 120.0}))

@@ -54,6 +54,10 @@ _PLAIN_BUSHING = {
 def material_names() -> tuple[str, ...]:
     """Names of the materials that are shipped.
 
+    Returns
+    -------
+    tuple of str
+
     Examples
     --------
     >>> "PDMS" in material_names()
@@ -65,6 +69,15 @@ def material_names() -> tuple[str, ...]:
 
 def load_material_rig(material: str) -> Rig:
     """Return the shipped bench with a bushing of `material`; case does not matter.
+
+    Parameters
+    ----------
+    material : str
+        One of `material_names`.
+
+    Returns
+    -------
+    Rig
 
     Raises
     ------
@@ -82,10 +95,28 @@ def load_material_rig(material: str) -> Rig:
 def load_rig(path: str | Path) -> Rig:
     """Read a rig file.
 
+    Parameters
+    ----------
+    path : path-like
+        TOML file of what differs from the shipped bench.
+
+    Returns
+    -------
+    Rig
+
     Raises
     ------
     ParameterError
         If the file cannot be read, or holds what cannot be used; the message names the key.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "rig.toml"
+    ...     size = path.write_text('material = "PDMS"', encoding="utf-8")
+    ...     load_rig(path).material
+    'PDMS'
     """
     path = Path(path)
     try:

@@ -6,7 +6,28 @@
 >>> [segment.label for segment in noise.label_recording(run.recording, noise.load_classifier())]
 ['squeal']
 
-Names are loaded when they are first used, so that ``import noise`` itself is quick.
+Simulate: `load_rig`, `load_material_rig`, `material_names`, `simulate`, `Run`, `Acquisition`,
+`ConstantSpeed`, `SpeedRamp`, `Oscillation`, `LoggedSpeed`, `Condition`, `FIXED`.
+
+Listen: `find_recordings`, `read_recording`, `write_recording`, `Recording`, `Channel`, `plot_run`,
+`write_picture`.
+
+Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segments`, `LABELS`,
+`Classifier`, `load_classifier`, `train`, `Inference`, `Inferred`, `Interval`, `load_inference`,
+`train_inference`.
+
+Screen: `Sweep`, `SweptFeatures`, `sweep_torque`, `plot_sweep`, `critical_speeds`,
+`critical_damping`.
+
+Diagnose: `diagnose`, `Diagnosis`.
+
+Review: `write_report`, `ReportEntry`.
+
+What goes wrong: `BushingNoiseError`, `ParameterError`, `RecordingError`.
+
+Recordings, runs, sweeps, labels, diagnoses and models show themselves in a notebook, and what says
+something as a picture has a ``plot`` that returns the axes of matplotlib. Names are loaded when
+they are first used, so that ``import noise`` itself is quick.
 """
 
 from __future__ import annotations
@@ -25,9 +46,10 @@ _EXPORTS = {
     "noise.classifier.training": ("train",),
     "noise.diagnosis.outcome": ("Diagnosis",),
     "noise.diagnosis.run": ("diagnose",),
-    "noise.inference": ("Inference", "Interval", "load_inference"),
+    "noise.inference": ("Inference", "Inferred", "Interval", "load_inference"),
     "noise.inference.training": ("train_inference",),
-    "noise.labels": ("Segment", "file_label", "label_recording"),
+    "noise.labels": ("LabelTable", "Segment", "Segments", "file_label", "label_recording"),
+    "noise.labels.files": ("label",),
     "noise.pictures.files": ("write_picture",),
     "noise.pictures.run": ("plot_run",),
     "noise.pictures.speeds": ("plot_sweep",),
@@ -41,6 +63,7 @@ _EXPORTS = {
     "sim.run": ("Run", "simulate"),
     "sim.shaft": ("ConstantSpeed", "LoggedSpeed", "Oscillation", "SpeedRamp"),
     "sim.sweep": ("Sweep",),
+    "sim.swept": ("SweptFeatures",),
 }
 """What a notebook finds here, by the module it lives in."""
 

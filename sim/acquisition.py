@@ -47,6 +47,11 @@ class Acquisition:
         are a quiet room (32 dB re 20 uPa up to 15 kHz) and good amplifiers; assumed.
     converter : bool
         Whether the samples pass the 12-bit converter (and clip at its range).
+
+    Examples
+    --------
+    >>> Acquisition(rate=48e3).noise["torque"]
+    0.005
     """
 
     rate: float = 30e3

@@ -87,12 +87,30 @@ class LumpedBushing:
 
 
 def lumped_bushing(rig: Rig, interference: float, support_stiffness: float) -> LumpedBushing:
-    """Return the lumped model of a rig at an interference [m] and a support stiffness [Nm/rad].
+    """Return the lumped model of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+
+    Returns
+    -------
+    LumpedBushing
 
     Raises
     ------
     ParameterError
         If the support stiffness is not positive.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> lumped_bushing(load_material_rig("PDMS"), 0.279e-3, math.inf).clamp_is_fixed
+    True
     """
     if not support_stiffness > 0.0:
         raise ParameterError(

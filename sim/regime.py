@@ -30,6 +30,14 @@ class Regime(StrEnum):
 def friction_regime(motion: Motion) -> Regime:
     """Return the regime that a motion at constant speed has settled to, judged on its last half.
 
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    Regime
+
     Examples
     --------
     >>> from models.rig_file import load_material_rig

@@ -24,6 +24,7 @@ from sim.shaft import ConstantSpeed, ShaftMotion
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from models.rig import Rig
@@ -58,12 +59,57 @@ class Run:
         Sound pressure at the microphone at ``motion.rate``, free of noise [Pa].
     pulse_pressure : ndarray, shape (n,)
         The part of `pressure` that slip pulses make through the plate [Pa].
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
+    >>> run.motion.rate, run.pressure.shape
+    (90000.0, (9000,))
     """
 
     recording: Recording
     motion: Motion
     pressure: NDArray[np.float64]
     pulse_pressure: NDArray[np.float64]
+
+    def plot(
+        self, ax: Axes | None = None, *, start: float | None = None, end: float | None = None
+    ) -> Axes:
+        """Draw the torques in contact and elastomer over time.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+        start, end : float, optional
+            What is shown [s]; by default the last tenth of a second.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is nothing of the run between them.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> from models.rig_file import load_material_rig
+        >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
+        >>> run.plot(Figure().subplots()).get_title("left")
+        'PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s'
+        """
+        from sim.run_view import draw_torques
+
+        return draw_torques(self, ax, start=start, end=end)
+
+    def _repr_html_(self) -> str:
+        from sim.run_view import run_html
+
+        return run_html(self)
 
 
 def simulate(

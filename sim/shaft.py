@@ -49,7 +49,14 @@ class ConstantSpeed:
 
 @dataclass(frozen=True)
 class SpeedRamp:
-    """A run-up: speed changes linearly from `start` to `end` [rad/s] over `duration` [s].
+    """A run-up: the speed changes linearly, and stays at its end.
+
+    Parameters
+    ----------
+    start, end : float
+        [rad/s]
+    duration : float
+        [s]
 
     Examples
     --------

@@ -27,6 +27,7 @@ from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 from sim.sweep_features import FEATURES, motion_features, plain_features
 from sim.sweep_systems import packed_systems
+from sim.swept import SweptFeatures, conditions_html
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
     from sim.shaft import ShaftMotion
 
 __all__ = ["FEATURES", "Sweep"]
+
+_CONDITIONS = ("rig", "speed", "interference", "support_stiffness")
+"""What may differ between runs."""
 
 _CHUNK = 64
 """Runs of the plain model in one compiled call."""
@@ -84,13 +88,13 @@ class Sweep:
     seed: int = 0
     workers: int = -1
 
-    def features(self) -> dict[str, NDArray[np.float64]]:
+    def features(self) -> SweptFeatures:
         """Simulate, and return features of each run.
 
         Returns
         -------
-        dict of str to ndarray, shape as broadcast
-            One array for each of `FEATURES`.
+        SweptFeatures
+            A dict of str to ndarray, of the shape as broadcast: one array for each of `FEATURES`.
 
         Raises
         ------
@@ -117,7 +121,9 @@ class Sweep:
             positions, self._each(columns, positions, motion_features), strict=True
         ):
             features[i] = found
-        return {name: features[:, i].reshape(columns[0].shape) for i, name in enumerate(FEATURES)}
+        shape = columns[0].shape
+        by_name = {name: features[:, i].reshape(shape) for i, name in enumerate(FEATURES)}
+        return SweptFeatures(by_name, dict(zip(_CONDITIONS, columns, strict=True)))
 
     def torque(self, every: int = 10) -> NDArray[np.float32]:
         """Simulate, and return the torque of each run, decimated.
@@ -154,6 +160,9 @@ class Sweep:
         columns = self._columns()
         rows = self._each(columns, range(columns[0].size), decimated)
         return np.array(rows, dtype=np.float32).reshape(*columns[0].shape, -1)
+
+    def _repr_html_(self) -> str:
+        return conditions_html(dict(zip(_CONDITIONS, self._columns(), strict=True)), self.seconds)
 
     def _columns(self) -> tuple[NDArray[Any], ...]:
         """Rig, speed, interference and support stiffness of all runs, as arrays of one shape."""

@@ -46,8 +46,8 @@ def labelled(monkeypatch):
         end = recording.duration
         return [Segment("all", 0.0, end, "squeal", certain, 1046.0, None, -20.0)]
 
-    monkeypatch.setattr("noise.classifier.load_classifier", load_classifier)
-    monkeypatch.setattr("noise.labels.segments.label_recording", label_recording)
+    monkeypatch.setattr("noise.labels.labelling.load_classifier", load_classifier)
+    monkeypatch.setattr("noise.labels.labelling.label_recording", label_recording)
     return asked
 
 
@@ -138,7 +138,8 @@ def test_what_was_done_before_an_interrupt_is_in_the_table(
         return recordings_read(path, **about)
 
     recordings_read = recordings.read_recording
-    monkeypatch.setattr(recordings, "read_recording", read_recording)
+    for place in ("noise.recordings", "noise.labels.labelling"):
+        monkeypatch.setattr(f"{place}.read_recording", read_recording)
     assert main([command, "runs", "--out", "t.csv"]) == 130
     assert [row["file"] for row in read_table("t.csv")] == ["a.wav", "b.wav"]
     assert "interrupted: 2 of 3 recordings" in capsys.readouterr().err

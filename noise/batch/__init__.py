@@ -5,6 +5,7 @@ is the same, byte for byte, as that of one process that nobody disturbed.
 """
 
 from noise.batch.identity import file_digest, file_identity
+from noise.batch.jobs import find_jobs
 from noise.batch.journal import Journal, journal_path, open_journal
 from noise.batch.run import perform_all
 from noise.batch.work import Done, Job, Work
@@ -16,6 +17,7 @@ __all__ = [
     "Work",
     "file_digest",
     "file_identity",
+    "find_jobs",
     "journal_path",
     "open_journal",
     "perform_all",

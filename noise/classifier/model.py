@@ -47,6 +47,13 @@ class Classifier:
         For sound alone, and for sound with what else was measured.
     card : mapping
         How it was trained: seed, counts, scores.
+
+    Examples
+    --------
+    >>> shipped = load_classifier()
+    >>> missing = np.full((1, len(shipped.feature_names)), np.nan, dtype=np.float32)
+    >>> float(shipped.predict_proba(missing).sum().round(6))
+    1.0
     """
 
     feature_names: tuple[str, ...]
@@ -87,6 +94,15 @@ class Classifier:
         with atomic(path) as temporary, temporary.open("wb") as file:
             np.savez_compressed(file, header=np.array(json.dumps(header)), **arrays)
 
+    def _repr_html_(self) -> str:
+        from noise.classifier.card import card_html
+
+        facts = [
+            ["labels", ", ".join(LABELS)],
+            ["features", f"{len(self.feature_names)} of windows"],
+        ]
+        return card_html("Classifier", facts, self.card)
+
 
 def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> NDArray[np.bool_]:
     """Whether windows have features of other channels than the pressure, shape (n_windows,).
@@ -103,6 +119,15 @@ def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> 
 
 def load_classifier(path: str | Path | None = None) -> Classifier:
     """Load a classifier, by default the one that is shipped.
+
+    Parameters
+    ----------
+    path : path-like, optional
+        NPZ file that `Classifier.save` wrote.
+
+    Returns
+    -------
+    Classifier
 
     Raises
     ------

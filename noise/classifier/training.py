@@ -126,6 +126,12 @@ def train(
     ------
     ParameterError
         Too few samples to hold every label.
+
+    Examples
+    --------
+    It takes some ten minutes:
+
+    >>> train(seed=1).save("mine.npz")  # doctest: +SKIP
     """
     n_made_up = round(_MADE_UP * n_training)
     total = n_made_up + n_training + n_calibration + n_test

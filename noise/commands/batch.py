@@ -13,7 +13,6 @@ from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
 from noise.commands.targets import check_target
 from noise.progress import counted, note, say, track
 from noise.tables import check_table_path, write_table
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
     Rows = list[dict[str, object]]
 
-__all__ = ["add_batch", "check_batch", "find_jobs", "run_batch"]
+__all__ = ["add_batch", "check_batch", "run_batch"]
 
 _INTERRUPTED = 130  # 128 + SIGINT
 _TERMINATED = 143  # 128 + SIGTERM
@@ -79,23 +78,6 @@ def check_batch(options: Namespace) -> None:
         from noise.batch.cluster import check_cluster
 
         check_cluster()
-
-
-def find_jobs(paths: Sequence[Path]) -> list[Job]:
-    """Find the recordings, each once however often it is named.
-
-    Raises
-    ------
-    ParameterError
-        A path does not exist, or there are no recordings.
-    """
-    from noise.batch import Job
-    from noise.recordings import find_recordings
-
-    found = {(path.absolute(), name): path for path, name in find_recordings(paths)}
-    if not found:
-        raise ParameterError(f"{', '.join(map(str, paths))}: there are no recordings in it")
-    return [Job(index, path, name) for index, ((_, name), path) in enumerate(found.items())]
 
 
 def run_batch(

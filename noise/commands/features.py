@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from noise.commands import options as opt
-from noise.commands.batch import add_batch, check_batch, find_jobs, run_batch
+from noise.commands.batch import add_batch, check_batch, run_batch
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -40,6 +40,8 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Compute the features and write the table."""
     check_batch(options)
+    from noise.batch import find_jobs
+
     work = Featuring(options.full_scale, options.pitch)
     return run_batch(options, work, find_jobs(options.paths))
 

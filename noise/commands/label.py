@@ -6,14 +6,12 @@ again.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.commands import options as opt
-from noise.commands.batch import add_batch, check_batch, find_jobs, run_batch
+from noise.commands.batch import add_batch, check_batch, run_batch
 from noise.commands.targets import check_target
 from noise.pictures.files import check_picture_path
 from noise.progress import counted, note
@@ -22,10 +20,7 @@ from noise.tables import TABLE_ENDINGS, write_table
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
-    from noise.classifier import Classifier
-    from noise.inference import Inference
-
-__all__ = ["Labelling", "configure", "run"]
+__all__ = ["configure", "run"]
 
 
 def configure(parser: ArgumentParser) -> None:
@@ -76,85 +71,20 @@ def run(options: Namespace) -> int:
     _check_exports(options)
     if all(path.suffix.lower() in TABLE_ENDINGS for path in options.paths):
         return _from_tables(options)
+    from noise.batch import find_jobs
+
     jobs = find_jobs(options.paths)
     if options.audacity is not None:
         from noise.labels.audacity import track_paths
 
         track_paths(options.audacity, [job.name for job in jobs])
+    from noise.labels.labelling import Labelling
+
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(*models, full_scale=options.full_scale)
     return run_batch(options, work, jobs, lambda rows: _export(options, rows))
-
-
-@dataclass(frozen=True)
-class Labelling:
-    """A `noise.batch.Work`: the labelled segments of a recording."""
-
-    classifier: Path | None = None
-    inference: Path | None = None
-    full_scale: float | None = None
-
-    doing = "labelling"
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Of the label table."""
-        from noise.labels.table import COLUMNS
-
-        return COLUMNS
-
-    def prepare(self) -> None:
-        """Load the classifier, and what infers conditions."""
-        import noise.labels.segments
-        import noise.recordings  # noqa: F401
-
-        _ = self._loaded, self._inference
-
-    def identity(self) -> dict[str, str | float | None]:
-        """Return what decides the rows: the options, and the models by their content."""
-        from noise.batch import file_digest
-
-        # The shipped ones are part of the program.
-        models = {"classifier": self.classifier, "inference": self.inference}
-        said: dict[str, str | float | None] = {"full_scale": self.full_scale}
-        for name, path in models.items():
-            said[name] = None if path is None else file_digest(path)
-        return said
-
-    def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
-        """Return the rows of a recording, and whether it is calibrated."""
-        from noise.labels.segments import label_recording
-        from noise.labels.table import label_rows
-        from noise.recordings import read_recording
-        from noise.recordings.blocks import open_blocks
-
-        with open_blocks(path, full_scale=self.full_scale) as blocks:
-            recording = blocks or read_recording(path, full_scale=self.full_scale)
-            segments = label_recording(recording, self._loaded, per_track=_names_no_channels(path))
-            rows = label_rows(name, recording, segments, self._inference)
-            return rows, recording.calibrated
-
-    @cached_property
-    def _loaded(self) -> Classifier:
-        from noise.classifier import load_classifier
-
-        return load_classifier(self.classifier)
-
-    @cached_property
-    def _inference(self) -> Inference:
-        from noise.inference import load_inference
-
-        return load_inference(self.inference)
-
-    def __getstate__(self) -> dict[str, object]:
-        """Leave the loaded models here: elsewhere they are loaded again."""
-        return {
-            "classifier": self.classifier,
-            "inference": self.inference,
-            "full_scale": self.full_scale,
-        }
 
 
 def _check_exports(options: Namespace) -> None:
@@ -215,11 +145,3 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         write_table(table, MAP_COLUMNS, map_rows(places))
         written += [options.map, table]
     return written
-
-
-def _names_no_channels(path: Path) -> bool:
-    """Whether it is a plain sound file, whose tracks stand for themselves."""
-    from noise.recordings.sidecar import find_sidecar, read_sidecar
-
-    sidecar = find_sidecar(path)
-    return sidecar is None or read_sidecar(sidecar).channels is None

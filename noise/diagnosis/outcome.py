@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from matplotlib.axes import Axes
+
     from models.recording import Recording
 
 __all__ = [
@@ -155,6 +157,13 @@ class Diagnosis:
         What is missing and what that costs; channels in bad health.
     heard : tuple of Heard
     illustrations : tuple of Illustration
+
+    Examples
+    --------
+    >>> hum = Diagnosis(("mains_hum",), (), None, {}, (), {"mains_hum": 0.97}, {}, "", (),
+    ...                 5.0, 1.0, 1e-6, 20.0)
+    >>> hum.verdict, hum.probabilities["mains_hum"], hum.gap
+    (('mains_hum',), 0.97, 5.0)
     """
 
     verdict: tuple[str, ...]
@@ -173,6 +182,27 @@ class Diagnosis:
     notes: tuple[str, ...] = ()
     heard: tuple[Heard, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw how probable each cause is.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from noise.diagnosis.shown import draw_causes
+
+        return draw_causes(self, ax)
+
+    def _repr_html_(self) -> str:
+        from noise.diagnosis.shown import diagnosis_html
+
+        return diagnosis_html(self)
 
 
 def as_json(diagnosis: Diagnosis) -> dict[str, Any]:

@@ -42,6 +42,16 @@ def diagnose(
     ------
     ParameterError
         Rig file or recordings cannot be used.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     rig = Path(folder) / "rig.toml"
+    ...     size = rig.write_text('name = "bench"', encoding="utf-8")
+    ...     diagnose(folder, rig)
+    Traceback (most recent call last):
+    models.errors.ParameterError: ...
     """
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     return diagnose_case(read_case(paths, load_rig(rig)), quick=quick, seed=seed)

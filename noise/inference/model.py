@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.html_table import html_table
 from noise.atomic import atomic
 from noise.inference.described import KINDS, described, n_described, of_subset, subset_of
 from noise.inference.quantile_forest import QuantileForest
@@ -36,11 +37,14 @@ if TYPE_CHECKING:
 
     from models.condition import Condition
 
-__all__ = ["TELLING", "Inference", "Interval", "load_inference", "others_of"]
+__all__ = ["TELLING", "Inference", "Inferred", "Interval", "load_inference", "others_of"]
 
 TELLING = 0.8
 """An interval as wide as this share of the one known beforehand, or wider, tells nothing."""
 
+_UNITS = {
+    "speed": (1.0, "rad/s"), "interference": (1e3, "mm"), "support_stiffness": (1.0, "Nm/rad"),
+}  # fmt: skip
 _FORMAT = 1
 _ARRAYS = tuple(field.name for field in fields(QuantileForest))
 
@@ -55,11 +59,37 @@ class Interval:
         As likely too high as too low.
     low, high : float
         Bounds of 90 %; the bolted clamp is ``math.inf``.
+
+    Examples
+    --------
+    >>> speed = Interval(5.0, 4.1, 6.3)
+    >>> speed.low <= speed.value <= speed.high
+    True
     """
 
     value: float
     low: float
     high: float
+
+
+class Inferred(dict[str, Interval]):
+    """Conditions that a segment tells of, by name.
+
+    Examples
+    --------
+    >>> found = Inferred(interference=Interval(0.279e-3, 0.25e-3, 0.31e-3))
+    >>> "0.279 mm" in found._repr_html_()
+    True
+    """
+
+    def _repr_html_(self) -> str:
+        rows = []
+        for name, found in self.items():
+            factor, unit = _UNITS[name]
+            values = [f"{factor * x:.4g} {unit}" for x in (found.value, found.low, found.high)]
+            rows.append([name.replace("_", " "), *values])
+        header = ["condition", "value", "lowest", "highest"]
+        return html_table("Inferred, with bounds of 90 %", rows, header=header)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +113,11 @@ class Inference:
         there is. -1 where there is never one.
     card : mapping
         How it was trained: seed, counts, coverage.
+
+    Examples
+    --------
+    >>> load_inference().prior.shape[0] == len(QUANTITIES)
+    True
     """
 
     names: tuple[str, ...]
@@ -99,7 +134,7 @@ class Inference:
         *,
         kinds: Sequence[str],
         calibrated: bool,
-    ) -> dict[str, Interval]:
+    ) -> Inferred:
         """Infer what is not logged.
 
         Parameters
@@ -115,9 +150,9 @@ class Inference:
 
         Returns
         -------
-        dict of str to Interval
-            By `QUANTITIES`; those that are logged, and those that the signal does not tell, are
-            left out.
+        Inferred
+            A dict of str to Interval, by `QUANTITIES`; those that are logged, and those that the
+            signal does not tell, are left out.
 
         Examples
         --------
@@ -127,7 +162,7 @@ class Inference:
         """
         known = places(logged)
         table = np.array([[features.get(name, np.nan) for name in self.names]])
-        found: dict[str, Interval] = {}
+        found = Inferred()
         for index, name in enumerate(QUANTITIES):
             if not np.isnan(known[index]):
                 continue
@@ -169,6 +204,11 @@ class Inference:
         width = values[:, -1 - cuts[1]] - values[:, cuts[0]]
         return np.asarray(width < TELLING * (high - low))
 
+    def _repr_html_(self) -> str:
+        from noise.classifier.card import card_html
+
+        return card_html("Inference of " + ", ".join(QUANTITIES), [], self.card)
+
     def save(self, path: str | Path) -> None:
         """Write the model into an NPZ file, whole or not at all."""
         header = {"format": _FORMAT, "names": self.names, "card": dict(self.card)}
@@ -203,10 +243,24 @@ def others_of(known: NDArray[np.float64], index: int) -> int:
 def load_inference(path: str | Path | None = None) -> Inference:
     """Load a model, by default the one that is shipped.
 
+    Parameters
+    ----------
+    path : path-like, optional
+        NPZ file that `Inference.save` wrote.
+
+    Returns
+    -------
+    Inference
+
     Raises
     ------
     ParameterError
         If the file is none that `Inference.save` wrote.
+
+    Examples
+    --------
+    >>> load_inference().card["seed"]
+    0
     """
     return _shipped() if path is None else _load(Path(path))
 

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 from features.registry import recording_features
 from noise.inference.described import KINDS
 from noise.inference.hearing import RATES
+from noise.inference.model import Inferred
 from noise.inference.population import LONGEST_LOOK, MATERIAL, SHORTEST_LOOK
 
 if TYPE_CHECKING:
     from models.condition import Condition
-    from noise.inference.model import Inference, Interval
+    from noise.inference.model import Inference
     from noise.recordings.blocks import RecordingBlocks
 
 __all__ = ["infer_stretch"]
@@ -19,7 +20,7 @@ __all__ = ["infer_stretch"]
 
 def infer_stretch(
     blocks: RecordingBlocks, first: int, last: int, logged: Condition, inference: Inference
-) -> dict[str, Interval]:
+) -> Inferred:
     """Infer what is not logged of a stretch that creaks, squawks or squeals.
 
     Parameters
@@ -33,7 +34,7 @@ def infer_stretch(
 
     Returns
     -------
-    dict of str to Interval
+    Inferred
         As `Inference.infer` gives it; nothing where the recording is none of those that the
         intervals hold for: shorter, sampled more slowly, or of another material.
 
@@ -52,9 +53,9 @@ def infer_stretch(
     """
     kinds = [kind for kind in KINDS if blocks.first(kind) is not None]
     if not kinds or blocks.rate < min(RATES) or last - first < SHORTEST_LOOK * blocks.rate:
-        return {}
+        return Inferred()
     if (logged.material or MATERIAL).lower() != MATERIAL:
-        return {}
+        return Inferred()
     spare = max(0, last - first - round(LONGEST_LOOK * blocks.rate))
     look = blocks.cut(first + spare // 2, last - (spare - spare // 2))
     return inference.infer(

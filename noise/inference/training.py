@@ -92,6 +92,12 @@ def train_inference(
     -------
     Inference
         Its card tells how often the intervals held on the last of the three sets.
+
+    Examples
+    --------
+    It takes minutes:
+
+    >>> train_inference(seed=1).save("conditions.npz")  # doctest: +SKIP
     """
     total = n_training + n_calibration + n_test
     children = np.random.SeedSequence(seed).spawn(total)

@@ -1,6 +1,16 @@
 """Labels in time, and the table that links them to operating conditions."""
 
 from noise.labels.segments import Segment, file_label, label_recording
+from noise.labels.shown import LabelTable, Segments
 from noise.labels.table import COLUMNS, error_row, label_rows
 
-__all__ = ["COLUMNS", "Segment", "error_row", "file_label", "label_recording", "label_rows"]
+__all__ = [
+    "COLUMNS",
+    "LabelTable",
+    "Segment",
+    "Segments",
+    "error_row",
+    "file_label",
+    "label_recording",
+    "label_rows",
+]

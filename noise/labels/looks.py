@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from noise.classifier.model import LABELS
 
-__all__ = ["LABEL_COLOURS", "LABEL_LOOKS", "Look"]
+__all__ = ["DARK_LABELS", "LABEL_COLOURS", "LABEL_LOOKS", "Look"]
 
 
 class Look(NamedTuple):
@@ -42,6 +42,9 @@ LABEL_LOOKS = {
     "unknown": Look("#f6f6f6", "#55606b", "crosses", "?"),
 }
 """By label; vermilion and orange are those of Okabe and Ito (Color universal design, 2008)."""
+
+DARK_LABELS = ("creak", "squeal")
+"""On whose colours text is white."""
 
 LABEL_COLOURS = {label: LABEL_LOOKS[label].colour for label in LABELS}
 """Of areas."""

@@ -16,6 +16,7 @@ from noise.classifier.model import LABELS
 from noise.labels.boundaries import change_points
 from noise.labels.frequencies import segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
+from noise.labels.shown import Segments
 from noise.labels.smoothing import named_course
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings.blocks import RecordingBlocks
@@ -65,6 +66,11 @@ class Segment:
         Sound pressure level [dB re 20 uPa]; ``None`` where not calibrated.
     level_dbfs : float or None
         Root mean square of the samples relative to full scale 1.0 [dB]; ``None`` for digital zero.
+
+    Examples
+    --------
+    >>> Segment("all", 0.5, 2.0, "creak", {"creak": 0.9, "none": 0.1}, 152.0, 78.3, -12.0).label
+    'creak'
     """
 
     channel: str
@@ -79,7 +85,7 @@ class Segment:
 
 def label_recording(
     recording: Recording | RecordingBlocks, classifier: Classifier, *, per_track: bool = False
-) -> list[Segment]:
+) -> Segments:
     """Label a recording.
 
     Parameters
@@ -92,8 +98,8 @@ def label_recording(
 
     Returns
     -------
-    list of Segment
-        In order of time, without gaps; track by track.
+    Segments
+        A list of `Segment`, in order of time, without gaps; track by track.
 
     Examples
     --------
@@ -106,16 +112,25 @@ def label_recording(
     """
     blocks = RecordingBlocks.of(recording)
     if per_track and len(blocks.channels) > 1:
-        return [
+        return Segments(
             segment
             for row in range(len(blocks.channels))
             for segment in _label(blocks.track(row), classifier, str(row + 1))
-        ]
-    return _label(blocks, classifier, "all")
+        )
+    return Segments(_label(blocks, classifier, "all"))
 
 
 def file_label(segments: list[Segment]) -> Segment:
     """Return the segment that names a file: the longest that is not ``none``.
+
+    Parameters
+    ----------
+    segments : list of Segment
+        One or more.
+
+    Returns
+    -------
+    Segment
 
     Examples
     --------

@@ -1,26 +1,30 @@
-"""What all pictures have in common: style, colours, frequency axes, and how much is drawn.
+"""What all pictures of several panels have in common: their width, title, legend and colours.
 
-A curve is thinned to what the paper can show, the lowest and the highest point of each column, so
-that an hour costs no more than a second and no peak is lost. An axis spans no less than what a
-reader would call a change, or else rounding errors would look like a vibration.
+Style, thinning and frequency axes are those of everything that draws, in `models.drawing`.
 """
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-import matplotlib.style
-import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from models.drawing import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    STYLE,
+    VERMILION,
+    frequency_axis,
+    levels,
+    padded,
+    styled,
+    thinned,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
 __all__ = [
     "BLUE",
@@ -40,9 +44,6 @@ __all__ = [
     "thinned",
 ]
 
-BLUE, VERMILION, GREEN, ORANGE, GREY = "#0072b2", "#d55e00", "#008060", "#e69f00", "#666666"
-"""Told apart by every eye (Okabe and Ito, Color universal design, 2008)."""
-
 MODEL_COLOURS = {
     "listing": GREEN,
     "equations, exact": BLUE,
@@ -53,50 +54,6 @@ MODEL_COLOURS = {
 
 WIDTH = 12.0
 """Of a picture [inch]."""
-
-STYLE: dict[str, object] = {
-    "svg.fonttype": "path",  # the same on every machine, whatever fonts it has
-    "svg.hashsalt": "bushing-noise",
-    "font.family": "DejaVu Sans",
-    "font.size": 11.0,
-    "axes.titlesize": 11.5,
-    "axes.titlelocation": "left",
-    "axes.labelsize": 11.0,
-    "xtick.labelsize": 10.0,
-    "ytick.labelsize": 10.0,
-    "legend.fontsize": 10.0,
-    "legend.frameon": True,
-    "legend.framealpha": 0.9,
-    "legend.edgecolor": "none",
-    "legend.borderpad": 0.25,
-    "legend.handlelength": 1.8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#444444",
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.7,
-    "lines.linewidth": 1.3,
-    "savefig.dpi": 150,
-}
-"""Settings of matplotlib, beside its defaults, under which pictures are made and written."""
-
-_COLUMNS = 1200
-"""Steps across a picture that the eye can tell apart."""
-
-_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 10e3, 15e3, 20e3, 50e3, 100e3, 200e3)
-"""Of a frequency axis [Hz]."""
-
-_SMALLEST = 1e-60  # stands for a density of zero
-
-
-@contextmanager
-def styled() -> Iterator[None]:
-    """Make figures in the style of this project, leaving the caller's as it is."""
-    with matplotlib.style.context(["default", STYLE]):
-        yield
 
 
 def new_figure(height: float, title: str) -> Figure:
@@ -112,59 +69,6 @@ def new_figure(height: float, title: str) -> Figure:
     return figure
 
 
-def thinned(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    *,
-    position: NDArray[np.float64] | None = None,
-    columns: int = _COLUMNS,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Keep the lowest and the highest point of each column, where it is too narrow to show more.
-
-    Parameters
-    ----------
-    x, y : ndarray, shape (n,)
-        A curve; `x` rises.
-    position : ndarray, shape (n,), optional
-        Where on the axis each point is drawn, if not in proportion to `x`.
-    columns : int
-
-    Returns
-    -------
-    x, y : ndarray, shape (m,)
-        Of no more than ``2 * columns + 2`` points.
-
-    Examples
-    --------
-    >>> x, y = thinned(np.arange(1e6), np.sin(np.arange(1e6)))
-    >>> x.size < 2500, bool(y.max() > 0.9999)
-    (True, True)
-    """
-    if x.size <= 2 * columns:
-        return x, y
-    place = x if position is None else position
-    edges = np.searchsorted(place, np.linspace(place[0], place[-1], columns + 1)[1:-1])
-    kept = {0, x.size - 1}
-    for start, stop in zip([0, *edges], [*edges, x.size], strict=True):
-        if stop > start:
-            kept.add(int(start + y[start:stop].argmin()))
-            kept.add(int(start + y[start:stop].argmax()))
-    chosen = np.array(sorted(kept))
-    return x[chosen], y[chosen]
-
-
-def padded(low: float, high: float, least: float) -> tuple[float, float]:
-    """Return limits of an axis somewhat wider than from `low` to `high`, and wider than `least`.
-
-    Examples
-    --------
-    >>> padded(0.0, 100.0, 1.0), padded(5.0, 5.0, 1.0)
-    ((-4.0, 104.0), (4.46, 5.54))
-    """
-    middle, half = (low + high) / 2.0, max(high - low, least) / 2.0
-    return middle - 1.08 * half, middle + 1.08 * half
-
-
 def legend_below(figure: Figure, *, columns: int) -> None:
     """Put one legend for all panels under them; what several of them show is named once."""
     named: dict[str, Artist] = {}
@@ -175,28 +79,3 @@ def legend_below(figure: Figure, *, columns: int) -> None:
         list(named.values()), list(named), loc="outside lower center", ncols=columns,
         columnspacing=1.5,
     )  # fmt: skip
-
-
-def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64]:
-    """Levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz.
-
-    Examples
-    --------
-    >>> levels(np.array([1.0, 0.01]), 1.0).tolist()
-    [0.0, -20.0]
-    """
-    return np.asarray(10.0 * np.log10(np.maximum(density / reference**2, _SMALLEST)))
-
-
-def frequency_axis(axes: Axes, low: float, high: float) -> None:
-    """Make the horizontal axis one of frequency, logarithmic from `low` to `high` [Hz]."""
-    axes.set_xscale("log")
-    axes.set_xlim(low, high)
-    shown = [tick for tick in _TICKS if low <= tick <= high]
-    axes.xaxis.set_major_locator(FixedLocator(shown))
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.xaxis.set_major_formatter(FuncFormatter(_frequency))
-
-
-def _frequency(hertz: float, _: object) -> str:
-    return f"{hertz / 1e3:g}k" if hertz >= 1e3 else f"{hertz:g}"

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from models.errors import ParameterError
 from noise.classifier import LABELS
-from noise.labels.looks import LABEL_COLOURS
+from noise.labels.looks import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure, styled
 from noise.pictures.speeds import support_words
 
@@ -26,9 +26,8 @@ if TYPE_CHECKING:
 
     from noise.labels.conditions import Place, Range
 
-__all__ = ["LABEL_COLOURS", "plot_conditions"]
+__all__ = ["plot_conditions"]
 
-_DARK = ("creak", "squeal")  # on which numbers are white
 
 _ACROSS = 3  # panels
 _ROW = 0.42  # height of a place [inch]
@@ -141,7 +140,7 @@ def _draw(axes: Axes, place: Place, at: tuple[int, int], row_height: float) -> N
         if height * row_height >= _LEAST:
             axes.text(
                 at[0], bottom + height / 2.0, f"{number}", ha="center", va="center_baseline",
-                fontsize=8.0, color="white" if label in _DARK else "#222222",
+                fontsize=8.0, color="white" if label in DARK_LABELS else "#222222",
             )  # fmt: skip
         bottom += height
 

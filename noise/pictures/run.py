@@ -26,6 +26,7 @@ from noise.pictures.axes import (
 )
 from noise.pictures.window import Window, run_window
 from noise.report.traces import KINDS
+from sim.run_view import torque_curves
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from sim.motion import Motion
     from sim.run import Run
+    from sim.run_view import Curve
 
 __all__ = ["condition_words", "plot_run"]
 
@@ -55,9 +57,6 @@ _ORBIT = 20_000
 
 _LEAST_TORQUE, _LEAST_ANGLE, _LEAST_SPEED = 0.1, 0.1, 0.1
 """What an axis spans at least [Nm], [mrad], [rad/s]."""
-
-_Curve = tuple["NDArray[np.float64]", str, str, float]
-"""Values, colour, label (empty for none) and line width."""
 
 
 def plot_run(run: Run) -> Figure:
@@ -110,17 +109,8 @@ def condition_words(condition: Condition, motion: Motion) -> str:
     >>> condition_words(run.recording.condition, run.motion)
     'PDMS, 0.279 mm, 2214 Nm/rad, 0 to 5 rad/s'
     """
-    words = []
-    if condition.material is not None:
-        words.append(condition.material)
-    if condition.interference is not None:
-        words.append(f"{1e3 * condition.interference:.4g} mm")
-    if condition.support_stiffness is not None:
-        fixed = math.isinf(condition.support_stiffness)
-        words.append("clamp fixed" if fixed else f"{condition.support_stiffness:g} Nm/rad")
-    if condition.speed is not None:
-        words.append(f"{condition.speed:g} rad/s")
-    else:
+    words = condition.words
+    if condition.speed is None:
         low, high = float(motion.shaft_speed.min()), float(motion.shaft_speed.max())
         words.append(f"{low:.3g} to {high:.3g} rad/s")
     return ", ".join(words)
@@ -172,18 +162,15 @@ def _cycles_title(window: Window, *, both: bool) -> str:
     return name if window.frequency is None else f"{name}, {window.frequency:.4g} cycles a second"
 
 
-def _motion_curves(motion: Motion, part: slice) -> tuple[list[_Curve], ...]:
+def _motion_curves(motion: Motion, part: slice) -> tuple[list[Curve], ...]:
     """Curves of the three time histories, the more important ones later and so on top."""
-    displacements: list[_Curve] = [
+    displacements: list[Curve] = [
         (1e3 * motion.interface_angle[part], BLUE, "elastomer's surface", 1.3)
     ]
     if np.any(motion.clamp_angle):
         displacements.append((1e3 * motion.clamp_angle[part], ORANGE, "clamp", 1.3))
     return (
-        [
-            (motion.friction_torque[part], ORANGE, "contact", 0.9),
-            (motion.torque[part], BLUE, "elastomer", 1.3),
-        ],
+        torque_curves(motion, part),
         displacements,
         [
             (motion.sliding_speed[part], BLUE, "sliding (shaft - surface)", 1.3),

@@ -83,6 +83,10 @@ def sweep_torque(
     support_stiffness : sequence of float
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
 
+    Returns
+    -------
+    SweptTorque
+
     Raises
     ------
     ParameterError

@@ -52,6 +52,15 @@ class ReportEntry:
         A remark shown with the entry; line breaks are kept.
     full_scale : float, optional
         What full scale of `audio` is worth [Pa]; without it the page says that it is not known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from noise.labels import Segment
+    >>> hum = Recording(np.zeros((1, 48000)), 48e3, (Channel("pressure"),))
+    >>> ReportEntry("run07", hum, Segment("all", 0.0, 1.0, "none", {}, None, 30.0, -90.0)).title
+    'run07'
     """
 
     title: str

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.spectra import Spectrum, autospectrum
+from models.drawing import CHANNEL_LOOKS
 from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
@@ -66,11 +67,15 @@ class Kind:
     quiet: float
 
 
+_COLOURS = {kind: look.colour for kind, look in CHANNEL_LOOKS.items()}
+
 KINDS = {
-    "torque": Kind("Torque", "Nm", "#0072b2", 1.0, "(1 Nm)²/Hz", 0.1, -40.0),
-    "acceleration": Kind("Beam acceleration", "m/s²", "#008060", 1e-6, "(1 µm/s²)²/Hz", 0.1, 80.0),
+    "torque": Kind("Torque", "Nm", _COLOURS["torque"], 1.0, "(1 Nm)²/Hz", 0.1, -40.0),
+    "acceleration": Kind(
+        "Beam acceleration", "m/s²", _COLOURS["acceleration"], 1e-6, "(1 µm/s²)²/Hz", 0.1, 80.0
+    ),
     "pressure": Kind(
-        "Sound pressure", "Pa", "#222222", REFERENCE_PRESSURE, "(20 µPa)²/Hz", 1e-3, 40.0
+        "Sound pressure", "Pa", _COLOURS["pressure"], REFERENCE_PRESSURE, "(20 µPa)²/Hz", 1e-3, 40.0
     ),
 }
 """The kinds of channel that are shown, in their order. Blue, green and near-black are told apart

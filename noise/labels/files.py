@@ -1,0 +1,88 @@
+"""Many recordings labelled in one call, as a notebook makes it."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.batch import find_jobs, perform_all
+from noise.labels.labelling import Labelling
+from noise.labels.shown import LabelTable
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from noise.batch import Done
+
+__all__ = ["label"]
+
+
+def label(
+    paths: str | Path | Sequence[str | Path],
+    *,
+    classifier: str | Path | None = None,
+    inference: str | Path | None = None,
+    full_scale: float | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
+) -> LabelTable:
+    """Label recordings; a file that cannot be read is a row that says why.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        Recordings, or folders that are searched at any depth.
+    classifier, inference : path, optional
+        Files that ``bushing-noise train`` made; by default those that are shipped.
+    full_scale : float, optional
+        Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    workers : int
+        Processes that share the work; with more than one, a script needs
+        ``if __name__ == "__main__":`` around the call.
+    scheduler : str, optional
+        Address of a Dask cluster that does the work instead.
+
+    Returns
+    -------
+    LabelTable
+        A list of one dict a segment, by `noise.labels.COLUMNS`, in the order of the files.
+
+    Raises
+    ------
+    ParameterError
+        A path does not exist, there are no recordings, or a model or the cluster cannot be used.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.rig_file import load_material_rig
+    >>> from noise.recordings import write_recording
+    >>> from sim.run import simulate
+    >>> silent = simulate(load_material_rig("PDMS"), 5.0).recording
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_recording(Path(folder) / "run07", silent)
+    ...     [(row["file"], row["label"], row["speed_rad_s_source"]) for row in label(folder)]
+    [('run07.wav', 'none', 'logged')]
+    """
+    if workers < 1:
+        raise ParameterError(f"workers = {workers} must be 1 or more")
+    given = [paths] if isinstance(paths, str | Path) else paths
+    jobs = find_jobs([Path(path) for path in given])
+    work = Labelling(_absolute(classifier), _absolute(inference), full_scale)
+    work.prepare()
+    outcomes: dict[int, Done] = {}
+    with closing(perform_all(work, jobs, workers=workers, scheduler=scheduler)) as advancing:
+        for job, done in advancing:
+            outcomes[job.index] = done
+    return LabelTable(
+        dict(zip(work.columns, row, strict=True))
+        for index in sorted(outcomes)
+        for row in outcomes[index].rows
+    )
+
+
+def _absolute(path: str | Path | None) -> Path | None:
+    """Return a path that other processes and machines find."""
+    return None if path is None else Path(path).absolute()
