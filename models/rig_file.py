@@ -25,7 +25,14 @@ from models.rig import Fit, LawSpec, Rig
 if TYPE_CHECKING:
     from models.measured import MeasuredResponse
 
-__all__ = ["load_material_rig", "load_rig", "material_names", "parse_spec"]
+__all__ = [
+    "load_material_rig",
+    "load_rig",
+    "material_names",
+    "parse_spec",
+    "read_toml",
+    "rig_from",
+]
 
 _DATA = resources.files("models") / "data"
 
@@ -118,15 +125,41 @@ def load_rig(path: str | Path) -> Rig:
     ...     load_rig(path).material
     'PDMS'
     """
-    path = Path(path)
+    path, where = Path(path), f"rig file {path}"
+    return rig_from(read_toml(path, where), path.parent, where)
+
+
+def read_toml(path: Path, where: str) -> dict[str, Any]:
+    """Read a TOML file; `where` is what messages call it.
+
+    Raises
+    ------
+    ParameterError
+        If the file cannot be read or is no TOML.
+    """
     try:
-        given = tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise ParameterError(f"rig file {path}: {error.strerror or error}") from None
+        raise ParameterError(f"{where}: {error.strerror or error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ParameterError(f"rig file {path}: no valid TOML: {error}") from None
-    where = f"rig file {path}"
-    measured = _measured(given.pop("measured_response", None), path.parent, where)
+        raise ParameterError(f"{where}: no valid TOML: {error}") from None
+
+
+def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:
+    """Build a rig from what a rig file holds; `folder` is that of the files it names.
+
+    Raises
+    ------
+    ParameterError
+        If it holds what cannot be used; the message begins with `where` and names the key.
+
+    Examples
+    --------
+    >>> rig_from({"material": "PDMS"}, Path(), "rig").friction.name
+    'lugre'
+    """
+    given = dict(content)
+    measured = _measured(given.pop("measured_response", None), folder, where)
     refuse_unknown(given, _KEYS, where)
     base = _bench()
     if "fit" in given:

@@ -16,12 +16,13 @@ Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segme
 `Classifier`, `load_classifier`, `train`, `Inference`, `Inferred`, `Interval`, `load_inference`,
 `train_inference`.
 
-Screen: `Sweep`, `SweptFeatures`, `sweep_torque`, `plot_sweep`, `critical_speeds`,
-`critical_damping`.
+Screen: `screen`, `Screening`, `load_design`, `Design`, `Use`, `Swinging`, `Sweep`,
+`plot_screen`, `robustness`, `Robustness`, `SweptFeatures`, `sweep_torque`, `plot_sweep`,
+`critical_speeds`, `critical_damping`.
 
 Diagnose: `diagnose`, `Diagnosis`.
 
-Review: `write_report`, `ReportEntry`.
+Review: `review`, `Review`, `write_report`, `ReportEntry`.
 
 What goes wrong: `BushingNoiseError`, `ParameterError`, `RecordingError`.
 
@@ -52,9 +53,13 @@ _EXPORTS = {
     "noise.labels.files": ("label",),
     "noise.pictures.files": ("write_picture",),
     "noise.pictures.run": ("plot_run",),
+    "noise.pictures.screening": ("plot_screen",),
     "noise.pictures.speeds": ("plot_sweep",),
     "noise.pictures.sweep": ("sweep_torque",),
     "noise.recordings": ("find_recordings", "read_recording", "write_recording"),
+    "noise.screening.design": ("Design", "Swinging", "Use", "load_design"),
+    "noise.screening.robustness": ("Robustness", "robustness"),
+    "noise.screening.screen": ("Screening", "screen"),
     "noise.report": ("ReportEntry", "write_report"),
     "noise.report.review.build": ("Review", "review"),
     "sim.acquisition": ("Acquisition",),

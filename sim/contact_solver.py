@@ -25,7 +25,7 @@ from sim.dormand_prince import N_MOTION, N_STAGES
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["LONGEST_STEP", "MOST_HOOKS", "ContactRun", "Hook", "solve_contact"]
+__all__ = ["LONGEST_STEP", "MOST_HOOKS", "ContactRun", "Hook", "no_law", "solve_contact"]
 
 MOST_HOOKS = 8
 """Effects that can act on the contact at once."""
@@ -56,7 +56,8 @@ def _no_hook(context, values, state, state_rates, contact):
 
 
 @njit(LAW_SIGNATURE, cache=True)
-def _no_law(sliding_speed, coefficients, contact, state, state_rates):  # noqa: ARG001
+def no_law(sliding_speed, coefficients, contact, state, state_rates):  # noqa: ARG001
+    """Stand in for a law where the contact truly sticks."""
     return 0.0
 
 
@@ -126,7 +127,7 @@ class ContactRun:
         functions = [hook.function for hook in hooks] + [_no_hook] * (MOST_HOOKS - len(hooks))
         self._constants = (
             np.array([*system, *mobilities, critical_torque, kinetic_torque]),
-            law or _no_law,
+            law or no_law,
             law is not None,
             np.zeros(1) if coefficients is None else coefficients,
             *functions,

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
-__all__ = ["STICK_SPEED_SHARE", "Motion", "simulate_motion"]
+__all__ = ["STICK_SPEED_SHARE", "Motion", "contact_hooks", "simulate_motion"]
 
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""
@@ -98,6 +98,7 @@ def simulate_motion(
     rate: float,
     effects: Sequence[ActiveEffect] = (),
     rng: np.random.Generator | None = None,
+    tolerance: float | None = None,
 ) -> Motion:
     """Simulate the rig from rest.
 
@@ -119,6 +120,9 @@ def simulate_motion(
         Those of drive and friction act, in this order; the others are left to others.
     rng : numpy.random.Generator, optional
         Of effects that scatter; by default seeded with 0.
+    tolerance : float, optional
+        Error of a step where the motion has no exact solution; by default that of the friction law,
+        which is less than regimes and spectra need.
 
     Returns
     -------
@@ -152,7 +156,7 @@ def simulate_motion(
     for active in effects:
         if active.effect.drive is not None:
             drive = active.effect.drive(drive, rate, active.form, active.values, rng)
-    hooks = _hooks(effects, rng)
+    hooks = contact_hooks(effects, rng)
     torques = fit.critical_torque, fit.kinetic_torque
     if law.torque is None and not hooks:
         states, _, _ = solve_stick_slip(system.packed(), *torques, drive, step)
@@ -163,7 +167,7 @@ def simulate_motion(
         states, _ = solve_contact(
             system.packed(), *torques, drive, step, law=law.torque, coefficients=coefficients,
             law_state=law.state(coefficients), hooks=hooks, name=_friction(law.name, effects),
-            tolerance=law.tolerance,
+            tolerance=tolerance or law.tolerance,
         )  # fmt: skip
         speed = states[:, 6]
     _refuse_overflow(states, system, rig, drive)
@@ -180,7 +184,7 @@ def simulate_motion(
     )
 
 
-def _hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
+def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
     """List what acts on the contact, in the order of the effects."""
     acting = [active for active in effects if active.effect.contact is not None]
     if len(acting) > MOST_HOOKS:

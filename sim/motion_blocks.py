@@ -16,7 +16,7 @@ from models.errors import ParameterError
 from sim.bushing import lumped_bushing
 from sim.contact_solver import LONGEST_STEP, ContactRun
 from sim.friction import friction_law
-from sim.motion import Motion, _friction, _hooks, _integral, _refuse_fast, _refuse_overflow
+from sim.motion import Motion, _friction, _integral, _refuse_fast, _refuse_overflow, contact_hooks
 from sim.parameters import resolve
 from sim.stick_slip import advance_stick_slip, rest_state
 
@@ -106,7 +106,7 @@ def motion_blocks(
     packed, fit = system.packed(), rig.fit(interference)
     law = friction_law(rig.friction.name)
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
-    hooks = _hooks(effects, rng)
+    hooks = contact_hooks(effects, rng)
     torques = fit.critical_torque, fit.kinetic_torque
     starts = range(0, n_samples, block)
     start_speed = float(shaft.speed(np.zeros(1))[0])

@@ -67,7 +67,7 @@ def write_campaign(folder):
     return folder
 
 
-def screen_rows(design="fluorocarbon", environment="nominal"):
+def screen_rows(design="fluorocarbon", environment="dry"):
     """Five speeds by four interferences: creak, squawk, squeal, none, none from slow to fast."""
     labels = ("creak", "squawk", "squeal", "none", "none")
     return [

@@ -268,7 +268,7 @@ def test_a_screen_brings_a_map_a_design_and_sounds_of_every_label(tmp_path):
     assert made.sounds == 5
     assert {one["label"] for one in page.about.values()} == {"creak", "squawk", "squeal", "none"}
     assert page.html.count("data-map data-speed") == 2
-    assert "the rig file of design mine is not at hand; name mine.toml" in page.html
+    assert "the file of design mine is not at hand; name mine.toml" in page.html
 
 
 def test_patterns_and_marks_tell_labels_apart_without_colour():

@@ -83,10 +83,10 @@ def test_a_recording_whose_condition_is_not_known_is_counted_and_not_drawn():
 
 def test_a_screen_is_read_map_by_map(tmp_path):
     folder = write_screen(tmp_path / "s", screen_rows() + screen_rows(environment="wet"))
-    nominal, wet = read_screen(folder / "map.csv")
-    assert (nominal.environment, wet.environment) == ("nominal", "wet")
-    assert nominal.temperature == 23.0
-    assert len(nominal.points) == 20
+    dry, wet = read_screen(folder / "map.csv")
+    assert (dry.environment, wet.environment) == ("dry", "wet")
+    assert dry.temperature == 23.0
+    assert len(dry.points) == 20
 
 
 def test_a_design_is_a_rig_file_beside_the_screen_or_a_shipped_material(tmp_path):

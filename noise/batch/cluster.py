@@ -6,10 +6,14 @@ handed out they are asked which program they run: another version would give ano
 Dask hands the recordings of a worker that died to another one, and gives a recording up after some
 workers (``distributed.scheduler.allowed-failures``, 3) died at it. joblib would wait forever for
 what was given up; here it is a recording refused, and the others go on.
+
+What is spread over the machines need not be recordings: `cluster` hands out any calls, as those of
+a screen's points, by the same rules.
 """
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,11 +22,11 @@ from noise.batch.identity import program_identity
 from noise.batch.work import Job, one_thread, perform, refusal
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 
     from noise.batch.work import Done, Work
 
-__all__ = ["check_cluster", "perform_on_cluster"]
+__all__ = ["check_cluster", "cluster", "perform_on_cluster"]
 
 _DIED = "the workers of the cluster that worked on it died; do they have enough memory?"
 
@@ -57,21 +61,55 @@ def perform_on_cluster(
     ParameterError
         There is no scheduler, it has no workers, or they run another version of the program.
     """
+    by_index = {job.index: job for job in jobs}
+    calls = [(work, job.index, str(job.path), str(job.path.absolute()), job.name) for job in jobs]
+    with cluster(scheduler) as spread:
+        for index, done in spread(_perform, calls):
+            job = by_index[index]
+            yield job, done or refusal(work, job.name, _DIED)
+
+
+@contextmanager
+def cluster(
+    scheduler: str,
+) -> Iterator[
+    Callable[
+        [Callable[..., tuple[int, Any]], Iterable[tuple[Any, ...]]], Generator[tuple[int, Any]]
+    ]
+]:
+    """Give a function that spreads calls over a cluster.
+
+    Parameters
+    ----------
+    scheduler : str
+        Its address.
+
+    Yields
+    ------
+    callable
+        ``spread(perform, calls)``: calls `perform` with the arguments of each call, of which the
+        second is its index, and yields what it returns, ``(index, result)``, in the order in which
+        calls are done; the result is None where workers died at it.
+
+    Raises
+    ------
+    ParameterError
+        There is no scheduler, it has no workers, or they run another version of the program.
+    """
     check_cluster()
     from joblib import Parallel, delayed, parallel_config
 
-    by_index = {job.index: job for job in jobs}
+    def spread(
+        perform: Callable[..., tuple[int, Any]], calls: Iterable[tuple[Any, ...]]
+    ) -> Generator[tuple[int, Any]]:
+        parallel = Parallel(batch_size=1, pre_dispatch="all", return_as="generator_unordered")
+        yield from parallel(delayed(perform)(*call) for call in calls)
+
     with (
         _client(scheduler) as client,
         parallel_config(backend=_surviving_backend()(client=client)),
     ):
-        found = Parallel(batch_size=1, pre_dispatch="all", return_as="generator_unordered")(
-            delayed(_perform)(work, job.index, str(job.path), str(job.path.absolute()), job.name)
-            for job in jobs
-        )
-        for index, done in found:
-            job = by_index[index]
-            yield job, done or refusal(work, job.name, _DIED)
+        yield spread
 
 
 def _client(scheduler: str) -> Any:

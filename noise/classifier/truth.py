@@ -39,9 +39,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from sim.motion import Motion
     from sim.run import Run
 
-__all__ = ["LEAST_LEVEL", "Evidence", "evidence", "is_ambiguous", "noise_of"]
+__all__ = ["LEAST_LEVEL", "Evidence", "evidence", "evidence_of", "is_ambiguous", "noise_of"]
 
 LEAST_LEVEL = 35.0
 """Sound below it is not heard in a quiet room [dB(A) re 20 uPa]."""
@@ -127,17 +128,40 @@ def evidence(run: Run) -> Evidence:
     >>> evidence(simulate(load_material_rig("PDMS"), 5.0)).swing < 1e-3
     True
     """
-    rate = run.motion.rate
-    last = run.motion.since(run.motion.torque.size // 2)
-    mean = abs(float(np.mean(last.torque)))
-    lines = find_lines(autospectrum(last.torque, rate), low=20.0, high=5e3)
-    blows = _level(run.pulse_pressure, rate) - _level(run.pressure - run.pulse_pressure, rate)
+    settled = run.motion.since(run.motion.torque.size // 2)
+    return evidence_of(settled, run.pressure, run.pulse_pressure)
+
+
+def evidence_of(
+    motion: Motion, pressure: NDArray[np.float64], pulse_pressure: NDArray[np.float64]
+) -> Evidence:
+    """Measure what the name follows from, of a motion that has settled and of its sound.
+
+    Parameters
+    ----------
+    motion : Motion
+        At constant speed, or so nearly that its lines stay lines.
+    pressure, pulse_pressure : ndarray, shape (n,)
+        At the motion's rate [Pa]: the sound, and the part of it that slip pulses make.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.5)
+    >>> evidence_of(run.motion, run.pressure, run.pulse_pressure).name
+    'none'
+    """
+    rate = motion.rate
+    mean = abs(float(np.mean(motion.torque)))
+    lines = find_lines(autospectrum(motion.torque, rate), low=20.0, high=5e3)
+    blows = _level(pulse_pressure, rate) - _level(pressure - pulse_pressure, rate)
     return Evidence(
-        level=_level(run.pressure, rate) - LEAST_LEVEL,
+        level=_level(pressure, rate) - LEAST_LEVEL,
         blows=-math.inf if math.isnan(blows) else blows + _CREAK_MARGIN,
-        swing=float(np.std(last.torque)) / mean / LEAST_OSCILLATION,
+        swing=float(np.std(motion.torque)) / mean / LEAST_OSCILLATION,
         audible=math.sqrt(lines.total) / mean / LEAST_OSCILLATION,
-        stick=float(np.mean(last.stuck)) / LEAST_STICK,
+        stick=float(np.mean(motion.stuck)) / LEAST_STICK,
         second=_second(lines) + _LINE_RANGE,
         share=lines.strongest_share / _LEAST_SHARE,
     )

@@ -44,6 +44,10 @@ COMMANDS = {
     "render": Entry("noise.commands.render", "a recording or a condition -> an audible WAV"),
     "features": Entry("noise.commands.features", "recordings -> a table of features"),
     "label": Entry("noise.commands.label", "recordings -> a table of labelled segments"),
+    "screen": Entry(
+        "noise.commands.screen",
+        "bushing designs -> maps of which noise occurs where, margins, ranking",
+    ),
     "frf": Entry("noise.commands.frf", "hammer hits -> frequency response, coherence and modes"),
     "diagnose": Entry(
         "noise.commands.diagnose",

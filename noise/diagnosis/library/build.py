@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 from joblib import Parallel, delayed
 
 from models.errors import ParameterError
@@ -13,6 +15,10 @@ from noise.diagnosis.training import Known
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from noise.diagnosis.summary import CaseTable
 
 __all__ = ["known_cases", "known_cases_of_a_rig"]
 
@@ -31,7 +37,7 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
         try:
             case = draw_case(seed)
             nominal = nominal or NominalNumbers(case.rig)
-            table = case_table(case.recordings, case.rig, nominal=nominal)
+            table = _rounded(case_table(case.recordings, case.rig, nominal=nominal))
             known.append(Known(table, case.truth, seed // SHARED))
         except ParameterError:
             continue
@@ -45,3 +51,17 @@ def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
         delayed(known_cases_of_a_rig)(rig) for rig in rigs
     )
     return (case for cases in drawn for case in cases)
+
+
+def _rounded(table: CaseTable) -> CaseTable:
+    """Round to single precision: a library stored in half the space is still the same one."""
+    return replace(
+        table,
+        measured=_single(table.measured),
+        nominal=_single(table.nominal),
+        scatter=_single(table.scatter),
+    )
+
+
+def _single(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    return x.astype(np.float32).astype(np.float64)

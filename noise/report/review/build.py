@@ -57,6 +57,12 @@ class Review:
         To how many seconds sounds were cut so as to keep to the budget; None where none was.
     refused : tuple of Refusal
         Inputs that could not be used.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> Review(Path("review/report.html"), 12, None, ()).path.name
+    'report.html'
     """
 
     path: Path

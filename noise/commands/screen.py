@@ -1,0 +1,204 @@
+"""``bushing-noise screen``: bushing designs into maps of their noise, margins and a ranking."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.commands import options as opt
+from noise.commands.targets import check_target
+from noise.progress import say
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+    from collections.abc import Callable
+
+    from noise.screening.design import Swinging, Use
+    from noise.screening.screen import Screening
+
+__all__ = ["configure", "run"]
+
+_TABLES = ("map.csv", "critical_speeds.csv", "designs.csv")
+
+
+def configure(parser: ArgumentParser) -> None:
+    """Declare description and options."""
+    from noise.screening.environments import environment_names
+
+    parser.description = (
+        "Screen bushing designs before tooling: map which noise occurs where over speed, "
+        "interference, support and temperature, with its level; critical speeds by simulation and "
+        "by stability with their margins to the use; and rank the designs, the quietest first. "
+        "Only boundaries are simulated finely; the output says how each point is known. A design "
+        "is a rig file with the tables [design] and [tolerances], or the name of a material. The "
+        "ranking is printed."
+    )
+    parser.epilog = (
+        "example: bushing-noise screen design-a.toml design-b.toml --environment dry,hot "
+        "--out screen"
+    )
+    parser.add_argument(
+        "designs", nargs="+", metavar="DESIGN", help="design file, or name of a material"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FOLDER",
+        help="folder for map.csv, critical_speeds.csv, designs.csv, and a picture of each map",
+    )
+    group = parser.add_argument_group(
+        "conditions",
+        "In place of the designs' own. Each is a number, a list 1,2.5,5 or a range LOW..HIGH, "
+        "with LOW..HIGH/N of N points.",
+    )
+    group.add_argument("--speed", metavar="V", help="in rad/s (default: the designs', or 0.25..13)")
+    group.add_argument(
+        "--oscillate",
+        metavar="DEG,HZ",
+        help="the shaft swings by +-DEG degrees, HZ times a second, which may be a range such as "
+        "15,0.5..4; without --speed instead of turning",
+    )
+    group.add_argument("--interference", metavar="MM", help="in mm (default: the designs' fits)")
+    group.add_argument(
+        "--support-stiffness",
+        metavar="K",
+        help="in Nm/rad, or fixed (default: those that the damping is given for)",
+    )
+    group.add_argument(
+        "--temperature", metavar="C", help="in degree Celsius (default: the designs', or 23)"
+    )
+    group.add_argument(
+        "--environment",
+        metavar="NAME",
+        default="dry",
+        help=f"one or several of {', '.join(environment_names())}; all but dry are assumed sets of "
+        "friction parameters, with a temperature of their own (default: dry)",
+    )
+    parser.add_argument(
+        "--loudness",
+        action="store_true",
+        help="tell loudness N10 as well (ISO 532-1): heard at the loudest point of each region, "
+        'carried on by level; needs pip install "bushing-noise[sound-quality]"',
+    )
+    parser.add_argument(
+        "--simulations",
+        type=_simulations,
+        metavar="N",
+        help="of each map, more or less, or all for every boundary to the end (default: 500)",
+    )
+    shared = parser.add_mutually_exclusive_group()
+    shared.add_argument(
+        "--workers", type=_workers, default=-1, metavar="N", help="threads (default: one a core)"
+    )
+    shared.add_argument(
+        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates instead"
+    )
+    opt.add_seed(parser, "accepted as by every command; nothing here is drawn")
+
+
+def run(options: Namespace) -> int:
+    """Screen; print the ranking, write tables and pictures."""
+    if options.out is not None:
+        if options.out.is_file():
+            raise ParameterError(f"--out {options.out}: is a file; name a folder")
+        check_target(options.out / _TABLES[0])
+    say("preparing")
+    from noise.screening.screen import DEFAULT_SIMULATIONS, screen
+    from noise.screening.tables import summary_lines
+
+    simulations = options.simulations or DEFAULT_SIMULATIONS
+    found = screen(
+        options.designs,
+        _given(options),
+        environments=[name for name in options.environment.split(",") if name.strip()],
+        loudness=options.loudness,
+        simulations=None if math.isinf(simulations) else int(simulations),
+        workers=options.workers,
+        scheduler=options.scheduler,
+        progress=say,
+    )
+    for name, reason in found.refused:
+        say(f"{name}: {reason}")
+    for line in summary_lines(found):
+        print(line)
+    if options.out is not None:
+        _write(options.out, found)
+    return 1 if found.refused else 0
+
+
+def _given(options: Namespace) -> Use:
+    from noise.screening.axes import text_values
+    from noise.screening.design import SPEED_STEP, Use
+    from noise.screening.tolerances import ABSOLUTE_ZERO
+
+    def read(option: str, text: str | None, **more: object) -> tuple[float, ...]:
+        values: Callable[..., tuple[float, ...]] = text_values
+        return () if text is None else values(text, option, **more)
+
+    fits = read("--interference", options.interference)
+    if fits and fits[-1] > 10.0:
+        raise ParameterError(f"--interference is {fits[-1]:g} mm; it must be at most 10")
+    return Use(
+        speed=read("--speed", options.speed, step=SPEED_STEP),
+        interference=tuple(1e-3 * fit for fit in fits),
+        support_stiffness=read("--support-stiffness", options.support_stiffness, fixed=True),
+        temperature=read(
+            "--temperature", options.temperature, points=3, low=ABSOLUTE_ZERO, open_low=False
+        ),
+        swinging=None if options.oscillate is None else _swinging(options.oscillate),
+    )
+
+
+def _swinging(text: str) -> Swinging:
+    from noise.screening.axes import text_values
+    from noise.screening.design import FREQUENCY_STEP, Swinging
+
+    degrees, comma, frequency = text.partition(",")
+    if not comma:
+        raise ParameterError(
+            f"--oscillate is {text!r}, expected degrees and Hz, such as 15,2 or 15,0.5..4"
+        )
+    (amplitude,) = text_values(degrees, "--oscillate")[:1]
+    return Swinging(
+        math.radians(amplitude), text_values(frequency, "--oscillate", step=FREQUENCY_STEP)
+    )
+
+
+def _write(folder: Path, found: Screening) -> None:
+    from noise.pictures.files import write_picture
+    from noise.pictures.screening import plot_screen
+    from noise.screening import tables
+    from noise.tables import write_table
+
+    contents = (
+        (tables.MAP_COLUMNS, tables.map_rows(found)),
+        (tables.CRITICAL_COLUMNS, tables.critical_rows(found)),
+        (tables.DESIGN_COLUMNS, tables.design_rows(found)),
+    )
+    for name, (columns, rows) in zip(_TABLES, contents, strict=True):
+        write_table(folder / name, columns, rows)
+        print(folder / name)
+    single = len(found.maps) == 1
+    for number, mapped in enumerate(found.maps, start=1):
+        path = folder / ("map.png" if single else f"map-{number}.png")
+        write_picture(path, plot_screen(mapped))
+        print(path)
+
+
+def _simulations(text: str) -> float:
+    if text.strip().lower() == "all":
+        return math.inf
+    if not text.strip().isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(
+            f"is {text!r}, expected a whole number of 1 or more, or all"
+        )
+    return int(text)
+
+
+def _workers(text: str) -> int:
+    if not text.strip().isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
+    return int(text)

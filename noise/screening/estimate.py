@@ -1,0 +1,33 @@
+"""A number that was estimated from samples, with the bounds it has at a stated confidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Estimate"]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """An estimate and its confidence interval.
+
+    Parameters
+    ----------
+    value : float
+    low, high : float
+        Bounds, at the confidence that whoever made the estimate was given.
+
+    Examples
+    --------
+    >>> Estimate(0.5, 0.25, 0.75).half_width
+    0.25
+    """
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def half_width(self) -> float:
+        """Half the length of the interval."""
+        return 0.5 * (self.high - self.low)

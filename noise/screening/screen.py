@@ -1,0 +1,212 @@
+"""Designs before tooling: which noise each makes where, how far its use is from it, which is best.
+
+Each design is mapped in each environment, at constant speed and, where it says so or the caller
+does, swinging to and fro. A design that cannot be simulated is refused by name; the others go on.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from models.errors import BushingNoiseError, ParameterError
+from noise.screening.batches import judging
+from noise.screening.design import Design, Swinging, Use, load_design
+from noise.screening.environments import DRY, environment, in_environment
+from noise.screening.grid import grid_of
+from noise.screening.mapping import map_design
+from noise.screening.margins import critical_points
+from noise.screening.ranking import standings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from noise.screening.batches import Judge
+    from noise.screening.mapping import DesignMap
+    from noise.screening.margins import CriticalPoint
+    from noise.screening.ranking import Standing
+
+__all__ = ["DEFAULT_SIMULATIONS", "Screening", "screen"]
+
+DEFAULT_SIMULATIONS = 500
+"""Of a map, more or less: what two cores do of the calibrated fluorocarbon in eight seconds."""
+
+
+@dataclass(frozen=True)
+class Screening:
+    """What a screen found.
+
+    Parameters
+    ----------
+    maps : tuple of DesignMap
+        One for each design, environment and motion.
+    critical : tuple of CriticalPoint
+        Critical speeds and margins, by simulation and by stability.
+    standings : tuple of Standing
+        The designs ranked, the quietest first; one for each map.
+    refused : tuple of (str, str)
+        Designs that could not be screened, and why.
+    seconds : float
+        How long it took.
+
+    Examples
+    --------
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
+    >>> found.refused, found.standings[0].shares["none"]
+    ((), 1.0)
+    """
+
+    maps: tuple[DesignMap, ...]
+    critical: tuple[CriticalPoint, ...]
+    standings: tuple[Standing, ...]
+    refused: tuple[tuple[str, str], ...]
+    seconds: float
+
+    def count(self, how: str) -> int:
+        """How many points of all maps are known in a way: `DesignMap.how`."""
+        return sum(found.count(how) for found in self.maps)
+
+    @property
+    def points(self) -> int:
+        """How many points the maps have."""
+        return sum(found.label.size for found in self.maps)
+
+
+def screen(
+    designs: Sequence[str | Path | Design],
+    given: Use | None = None,
+    *,
+    environments: Sequence[str] = (DRY,),
+    loudness: bool = False,
+    simulations: int | None = DEFAULT_SIMULATIONS,
+    workers: int = -1,
+    scheduler: str | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Screening:
+    """Map bushing designs over their conditions, and rank them.
+
+    Parameters
+    ----------
+    designs : sequence of str, Path or Design
+        Design files, names of materials, or designs.
+    given : Use, optional
+        Conditions of the maps, in place of the designs' own; with speeds alone, or with a swing
+        alone, only that is mapped.
+    environments : sequence of str
+        Of `noise.screening.environments`.
+    loudness : bool
+        Whether to tell loudness as well; needs the extra ``sound-quality``.
+    simulations : int, optional
+        Of a map, more or less; None follows every boundary to the end.
+    workers : int
+        Threads; -1 is one a core.
+    scheduler : str, optional
+        Address of a Dask cluster that simulates instead.
+    progress : callable
+        Is told what is being done.
+
+    Returns
+    -------
+    Screening
+
+    Raises
+    ------
+    ParameterError
+        An environment is unknown, an extra is missing, there are no designs, or all are refused.
+
+    Examples
+    --------
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,)))
+    >>> found.standings[0].shares["none"], found.critical[0].margin_v_crit2
+    (1.0, inf)
+    """
+    started = time.perf_counter()
+    if not designs:
+        raise ParameterError("there is no design to screen")
+    surroundings = [environment(name) for name in dict.fromkeys(environments)]
+    if loudness:
+        from features.sound_quality import check_available
+
+        check_available()
+    maps: list[DesignMap] = []
+    refused: list[tuple[str, str]] = []
+    names: set[str] = set()
+    with judging(workers=workers, scheduler=scheduler) as judge:
+        for one in designs:
+            called = one.name if isinstance(one, Design) else str(one)
+            try:
+                design = one if isinstance(one, Design) else load_design(one)
+                design = _renamed(design, names)
+                found: list[DesignMap] = []
+                outside = _outside(design, given)
+                if outside:
+                    progress(f"{design.name}: {outside}")
+                for where in surroundings:
+                    progress(f"mapping {design.name}, {where.name}")
+                    found += [
+                        _mapped(design, given, where.name, swinging, judge, simulations, loudness)
+                        for swinging in _motions(design, given)
+                    ]
+            except BushingNoiseError as error:
+                refused.append((called, str(error)))
+                continue
+            names.add(design.name)
+            maps += found
+    if not maps:
+        raise ParameterError(refused[0][1])
+    critical = tuple(point for found in maps for point in critical_points(found))
+    return Screening(
+        maps=tuple(maps),
+        critical=critical,
+        standings=standings(maps, critical),
+        refused=tuple(refused),
+        seconds=time.perf_counter() - started,
+    )
+
+
+def _renamed(design: Design, taken: set[str]) -> Design:
+    """Two designs of one name are told apart by a number."""
+    name, number = design.name, 2
+    while name in taken:
+        name, number = f"{design.name} ({number})", number + 1
+    return replace(design, name=name)
+
+
+def _outside(design: Design, given: Use | None) -> str:
+    """Say so where a map reaches beyond the fits that the design's properties are given for."""
+    asked = grid_of(design, given).interference
+    low, high = (1e3 * limit for limit in design.rig.interference_range)
+    if 1e3 * asked[0] >= low * (1.0 - 1e-9) and 1e3 * asked[-1] <= high * (1.0 + 1e-9):
+        return ""
+    fits = f"{low:g} mm" if low == high else f"{low:g} to {high:g} mm"
+    return f"fits are given for {fits} alone; beyond, those of the nearest are used"
+
+
+def _motions(design: Design, given: Use | None) -> list[Swinging | None]:
+    """How the shaft moves: None is constant speed."""
+    if given is not None and given.swinging is not None:
+        return [None, given.swinging] if given.speed else [given.swinging]
+    if design.use.swinging is not None and not (given is not None and given.speed):
+        return [None, design.use.swinging]
+    return [None]
+
+
+def _mapped(
+    design: Design,
+    given: Use | None,
+    where: str,
+    swinging: Swinging | None,
+    judge: Judge,
+    simulations: int | None,
+    loudness: bool,
+) -> DesignMap:
+    rig = in_environment(design.rig, environment(where))
+    grid = grid_of(design, given, where=where, swinging=swinging)
+    found = map_design(rig, grid, judge, design=design.name, environment=where, most=simulations)
+    if loudness:
+        from noise.screening.loudness import with_loudness
+
+        found = with_loudness(found, rig)
+    return found
