@@ -1,4 +1,4 @@
-"""How much closes, with what certainty; and what fits say of which cause it is."""
+"""How much closes, and with what certainty."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, strategies as st
 
 from noise.diagnosis.closing import Scores, closed_interval, closed_share
-from noise.diagnosis.fit_evidence import gaps_left, reranked
 from noise.diagnosis.pattern_search import pattern_search
 
 squares = st.lists(st.floats(0.2, 400.0), min_size=1, max_size=6).map(np.array)
@@ -36,21 +35,6 @@ def test_more_recordings_make_an_interval_narrower():
 def test_nothing_closes_where_there_is_no_gap():
     assert closed_share(np.ones(3), np.ones(3)) is None
     assert closed_interval(Scores(np.ones(3), np.ones(3), np.ones(3))) is None
-
-
-def test_the_cause_that_leaves_less_gains_and_the_rest_stays():
-    first = {"clipping": 0.45, "gain_error": 0.45, "none": 0.05, "unknown": 0.05}
-    scores = {
-        name: Scores(np.full(2, 16.0), np.full(2, 16.0), np.full(2, left))
-        for name, left in (("clipping", 9.0), ("gain_error", 0.5))
-    }
-    gaps = gaps_left(scores)
-    assert gaps == {"clipping": 3.0, "gain_error": 1.0}
-    again = reranked(first, gaps)
-    assert again["gain_error"] > 2.0 * again["clipping"]
-    assert (again["none"], again["unknown"]) == (0.05, 0.05)
-    assert sum(again.values()) == pytest.approx(1.0)
-    assert reranked(first, gaps, 0.0) == pytest.approx(first)
 
 
 def test_a_search_walks_over_steps_and_stays_within_what_is_finite():
