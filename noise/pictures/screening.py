@@ -15,8 +15,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from noise.pictures.axes import new_figure, styled
 from noise.labels.looks import LABEL_COLOURS
+from noise.pictures.axes import new_figure, styled
 from noise.pictures.speeds import support_words
 from sim.regime import Regime
 
