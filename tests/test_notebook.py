@@ -100,8 +100,23 @@ def sweep():
     return noise.Sweep(rig(), [1.0, 2.0])
 
 
-DRAWN = (recording, run, swept, segments, label_table, one_effect, frf, modes)
-SHOWN = (*DRAWN, sweep, noise.load_classifier, noise.load_inference, inferred)
+@cache
+def screening():
+    use = noise.Use(speed=(1.0, 5.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
+    return noise.screen(["PDMS", "fluorocarbon-thesis"], use)
+
+
+def design():
+    return noise.load_design("PDMS")
+
+
+@cache
+def stands():
+    return noise.robustness(design(), np.random.default_rng(0), half_width=0.2, samples=64)
+
+
+DRAWN = (screening, recording, run, swept, segments, label_table, one_effect, frf, modes)
+SHOWN = (*DRAWN, design, stands, sweep, noise.load_classifier, noise.load_inference, inferred)
 
 
 class Outline(HTMLParser):

@@ -2,10 +2,17 @@
 
 import csv
 import os
+from functools import partial
 
 import pytest
 
+from models.errors import ParameterError
 from noise.cli import main
+from noise.report.review.design_rig import rig_of
+from noise.report.review.screens import read_screen
+from noise.screening.design import load_design
+from noise.screening.lever import Lever
+from noise.screening.robustness import robustness
 
 QUICK = ["--speed", "1,5,9", "--support-stiffness", "2214"]
 BAD = """\
@@ -47,7 +54,9 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     critical = rows(out / "critical_speeds.csv")
     assert [row["v_crit2_stability_rad_s"] for row in critical] == ["0.0", "0.0"]
     printed = capsys.readouterr().out
-    assert printed.startswith("1. PDMS, dry: quiet at all 3 points of use; nothing vibrates")
+    assert printed.startswith(
+        "1. PDMS, dry: risk 1 (no risk); quiet at all 3 points of use; nothing vibrates"
+    )
     assert "6 points in " in printed
     assert "6 simulated" in printed
 
@@ -73,6 +82,81 @@ def test_one_bad_design_among_several_is_named_and_the_others_are_screened(tmp_p
     last = rows(tmp_path / "out" / "designs.csv")[-1]
     assert last["design"] == str(bad)
     assert "unknown key 'colour'" in last["error"]
+
+
+STATED = """\
+material = "fluorocarbon-thesis"
+[design]
+name = "mine"
+interference_mm = 0.279
+support_stiffness_Nm_rad = 3745
+[tolerances]
+damping = 0.1
+kinetic_torque = 0.05
+"""
+
+
+@pytest.fixture
+def rough(monkeypatch):
+    """Wide intervals and one lever, which take a tenth of the time."""
+    quick = partial(robustness, half_width=0.2, samples=64, levers=(Lever("damping", 0.5, 2.0),))
+    monkeypatch.setattr("noise.screening.statistics.robustness", quick)
+
+
+@pytest.mark.slow
+def test_a_design_with_tolerances_tells_what_its_parts_do_and_what_helps(tmp_path, capsys, rough):
+    given = tmp_path / "given.toml"
+    given.write_text(STATED, encoding="utf-8")
+    out = tmp_path / "out"
+    assert main(["screen", str(given), "PDMS", "--speed", "5,7,9", "--out", str(out)]) == 0
+    told = {row["design"]: row for row in rows(out / "designs.csv")}
+    assert told["PDMS"]["tolerances"] == told["PDMS"]["p_none_high"] == ""
+    assert (told["PDMS"]["risk"], told["PDMS"]["risk_band"]) == ("1", "no risk")
+    mine = told["mine"]
+    assert mine["tolerances"] == "stated"
+    noises = ("creak", "squawk", "squeal", "none")
+    assert sum(float(mine[f"p_{name}"]) for name in noises) == pytest.approx(1.0, abs=1e-3)
+    for name in noises:
+        assert float(mine[f"p_{name}_low"]) <= float(mine[f"p_{name}"])
+        assert float(mine[f"p_{name}"]) <= float(mine[f"p_{name}_high"])
+    scattering = {row["parameter"] for row in rows(out / "sensitivities.csv")}
+    assert scattering == {"damping", "kinetic_torque"}
+    advice = rows(out / "advice.csv")
+    assert {row["design"] for row in advice} == {"mine"}
+    changed = next(row for row in advice if row["parameter"] == "damping")
+    nominal, advised = float(changed["nominal"]), float(changed["advised"])
+    assert advised / nominal - 1.0 == pytest.approx(float(changed["change"]), abs=1e-4)
+    assert "   parts: " in capsys.readouterr().out
+    assert load_design(out / "designs" / "mine.toml").tolerances == load_design(given).tolerances
+    given.unlink()
+    seen = next(one for one in read_screen(out / "map.csv") if one.design == "mine")
+    assert rig_of(seen, out, []).material == "fluorocarbon-thesis"
+
+
+def test_tolerances_can_be_assumed_or_left_out(tmp_path, rough):
+    given = tmp_path / "given.toml"
+    given.write_text(STATED, encoding="utf-8")
+    assert main(["screen", str(given), *QUICK, "--no-tolerances", "--out", str(tmp_path)]) == 0
+    assert not (tmp_path / "advice.csv").exists()
+    assert rows(tmp_path / "designs.csv")[0]["p_none"] == ""
+    assert main(["screen", "PDMS", *QUICK, "--tolerances", "--out", str(tmp_path)]) == 0
+    assert rows(tmp_path / "designs.csv")[0]["tolerances"] == "assumed"
+
+
+def test_a_failing_statistic_is_told_and_loses_nothing_else(tmp_path, capsys, monkeypatch):
+    def fails(design, **_):
+        if design.name == "PDMS":
+            raise ParameterError("no fit")
+        return 6
+
+    monkeypatch.setattr("noise.screening.statistics.use_risk", fails)
+    given = ["PDMS", "fluorocarbon-thesis", "--interference", "0.279", *QUICK]
+    assert main(["screen", *given, "--out", str(tmp_path)]) == 1
+    assert "risk: no fit" in capsys.readouterr().err
+    first, last = rows(tmp_path / "designs.csv")
+    assert (first["design"], first["rank"], first["risk"]) == ("fluorocarbon-thesis", "1", "6")
+    assert (last["design"], last["rank"], last["risk"]) == ("PDMS", "2", "")
+    assert last["error"] == "risk: no fit"
 
 
 @pytest.mark.parametrize(

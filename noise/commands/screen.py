@@ -17,11 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from noise.screening.design import Swinging, Use
-    from noise.screening.screen import Screening
+    from noise.screening.outcome import Screening
 
 __all__ = ["configure", "run"]
-
-_TABLES = ("map.csv", "critical_speeds.csv", "designs.csv")
 
 
 def configure(parser: ArgumentParser) -> None:
@@ -31,7 +29,8 @@ def configure(parser: ArgumentParser) -> None:
     parser.description = (
         "Screen bushing designs before tooling: map which noise occurs where over speed, "
         "interference, support and temperature, with its level; critical speeds by simulation and "
-        "by stability with their margins to the use; and rank the designs, the quietest first. "
+        "by stability with their margins to the use; grade each design's risk from 1 to 10; tell "
+        "what its tolerances do and which change helps; and rank the designs, the quietest first. "
         "Only boundaries are simulated finely; the output says how each point is known. A design "
         "is a rig file with the tables [design] and [tolerances], or the name of a material. The "
         "ranking is printed."
@@ -47,7 +46,9 @@ def configure(parser: ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="FOLDER",
-        help="folder for map.csv, critical_speeds.csv, designs.csv, and a picture of each map",
+        help="folder for map.csv, critical_speeds.csv, designs.csv, sensitivities.csv and "
+        "advice.csv where tolerances are looked at, a picture of each map, and copies of the "
+        "design files for a review",
     )
     group = parser.add_argument_group(
         "conditions",
@@ -83,6 +84,22 @@ def configure(parser: ArgumentParser) -> None:
         help="tell loudness N10 as well (ISO 532-1): heard at the loudest point of each region, "
         'carried on by level; needs pip install "bushing-noise[sound-quality]"',
     )
+    parts = parser.add_mutually_exclusive_group()
+    parts.add_argument(
+        "--tolerances",
+        action="store_true",
+        default=None,
+        help="tell of all designs how probable each noise is among parts, which tolerance matters "
+        "most and which change helps, with assumed tolerances where none are stated; takes some "
+        "seconds a design and environment (default: of designs that state [tolerances])",
+    )
+    parts.add_argument(
+        "--no-tolerances",
+        dest="tolerances",
+        action="store_false",
+        default=None,
+        help="tell it of none; the risk number is of all designs either way",
+    )
     parser.add_argument(
         "--simulations",
         type=_simulations,
@@ -94,9 +111,9 @@ def configure(parser: ArgumentParser) -> None:
         "--workers", type=_workers, default=-1, metavar="N", help="threads (default: one a core)"
     )
     shared.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates instead"
+        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
     )
-    opt.add_seed(parser, "accepted as by every command; nothing here is drawn")
+    opt.add_seed(parser, "of the parts within tolerances")
 
 
 def run(options: Namespace) -> int:
@@ -104,8 +121,10 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         if options.out.is_file():
             raise ParameterError(f"--out {options.out}: is a file; name a folder")
-        check_target(options.out / _TABLES[0])
+        check_target(options.out / "map.csv")
     say("preparing")
+    import numpy as np
+
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
     from noise.screening.tables import summary_lines
 
@@ -115,18 +134,20 @@ def run(options: Namespace) -> int:
         _given(options),
         environments=[name for name in options.environment.split(",") if name.strip()],
         loudness=options.loudness,
+        tolerances=options.tolerances,
+        rng=np.random.default_rng(options.seed or 0),
         simulations=None if math.isinf(simulations) else int(simulations),
         workers=options.workers,
         scheduler=options.scheduler,
         progress=say,
     )
-    for name, reason in found.refused:
+    for name, reason in (*found.refused, *found.failed):
         say(f"{name}: {reason}")
     for line in summary_lines(found):
         print(line)
     if options.out is not None:
         _write(options.out, found)
-    return 1 if found.refused else 0
+    return 1 if found.refused or found.failed else 0
 
 
 def _given(options: Namespace) -> Use:
@@ -170,17 +191,26 @@ def _swinging(text: str) -> Swinging:
 def _write(folder: Path, found: Screening) -> None:
     from noise.pictures.files import write_picture
     from noise.pictures.screening import plot_screen
-    from noise.screening import tables
+    from noise.screening import parts_tables as parts, tables
+    from noise.screening.design_files import copy_design_file
     from noise.tables import write_table
 
-    contents = (
-        (tables.MAP_COLUMNS, tables.map_rows(found)),
-        (tables.CRITICAL_COLUMNS, tables.critical_rows(found)),
-        (tables.DESIGN_COLUMNS, tables.design_rows(found)),
-    )
-    for name, (columns, rows) in zip(_TABLES, contents, strict=True):
+    contents = {
+        "map.csv": (tables.MAP_COLUMNS, tables.map_rows(found)),
+        "critical_speeds.csv": (tables.CRITICAL_COLUMNS, tables.critical_rows(found)),
+        "designs.csv": (tables.DESIGN_COLUMNS, tables.design_rows(found)),
+    }
+    if any(one.robustness is not None for one in found.statistics):
+        contents["sensitivities.csv"] = (parts.SENSITIVITY_COLUMNS, parts.sensitivity_rows(found))
+        contents["advice.csv"] = (parts.ADVICE_COLUMNS, parts.advice_rows(found))
+    for name, (columns, rows) in contents.items():
         write_table(folder / name, columns, rows)
         print(folder / name)
+    for name, path in found.files:
+        try:
+            print(copy_design_file(name, path, folder / "designs"))
+        except ParameterError as error:
+            say(str(error))
     single = len(found.maps) == 1
     for number, mapped in enumerate(found.maps, start=1):
         path = folder / ("map.png" if single else f"map-{number}.png")

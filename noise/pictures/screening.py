@@ -15,6 +15,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from models.drawing import axes_or_new
 from noise.labels.looks import LABEL_COLOURS
 from noise.pictures.axes import new_figure, styled
 from noise.pictures.speeds import support_words
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
     from noise.screening.mapping import DesignMap
 
-__all__ = ["plot_screen"]
+__all__ = ["plot_map", "plot_screen"]
 
 _LABELS = ("none", "squeal", "squawk", "creak")
 _FEW_ROWS = 8
@@ -60,58 +61,117 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
     """
     grid = found.grid
     n = len(grid.support_stiffness)
-    speed, fit = np.array(grid.speed), 1e3 * np.array(grid.interference)
-    few = fit.size <= _FEW_ROWS
-    rows = np.arange(fit.size, dtype=np.float64) if few else fit
+    speed, rows, few = _places(found)
     moving = "swinging" if grid.frequency else "at constant speed"
     title = f"{found.design}, {found.environment}, {grid.temperature[temperature]:g} °C, {moving}"
-    codes = np.select([found.label[temperature] == label for label in _LABELS], range(len(_LABELS)))
     with styled():
-        figure = new_figure(7.6 if not few else 3.4 + 0.5 * fit.size, title)
+        figure = new_figure(7.6 if not few else 3.4 + 0.5 * rows.size, title)
         axes = figure.subplots(2, n, sharex=True, sharey=True, squeeze=False)
         images = []
         for k in range(n):
             above, below = axes[:, k]
             above.set_title(support_words(grid.support_stiffness[k]))
-            colours = ListedColormap([LABEL_COLOURS[label] for label in _LABELS])
-            across, up = _edges(speed), _edges(rows)
-            above.pcolormesh(across, up, codes[k], cmap=colours, vmin=-0.5, vmax=3.5)
+            _draw_labels(above, found, temperature, k)
             below.set_facecolor(_QUIET)
             level = np.where(
                 found.label[temperature, k] == "none", np.nan, found.level[temperature, k]
             )
             images.append(
                 below.pcolormesh(
-                    across, up, level, cmap="magma_r", vmin=_LEVELS[0], vmax=_LEVELS[1]
+                    _edges(speed),
+                    _edges(rows),
+                    level,
+                    cmap="magma_r",
+                    vmin=_LEVELS[0],
+                    vmax=_LEVELS[1],
                 )
             )
-            for panel in (above, below):
-                panel.grid(visible=False)
-            sticks = found.regime[temperature, k] == Regime.STICK_SLIP.value
-            _outline(above, speed, rows, np.where(sticks, 1.0, -1.0), "#222222", few=few)
-            growth = found.growth[temperature, k]
-            if np.isfinite(growth).all():
-                _outline(above, speed, rows, growth, "white", few=few)
-            below.set_xlabel("Peak speed [rad/s]" if grid.frequency else "Speed [rad/s]")
+            below.grid(visible=False)
+            below.set_xlabel(_speed_words(found))
         for panel in axes[:, 0]:
-            panel.set_ylabel("Interference [mm]")
-            if few:
-                panel.set_yticks(rows, [f"{value:.3g}" for value in fit])
+            _name_fits(panel, found)
         bar = figure.colorbar(images[0], ax=axes[1, :].tolist(), pad=0.01, aspect=12)
         bar.set_label("L_AFmax [dB]")
         figure.legend(
-            handles=[
-                *(
-                    Patch(facecolor=LABEL_COLOURS[label], edgecolor="#444444", label=label)
-                    for label in _LABELS[::-1]
-                ),
-                Line2D([], [], color="#222222", label="stick ends"),
-                *_stability_handle(found),
-            ],
+            handles=_handles(found),
             loc="outside lower center",
             ncols=6,
         )
     return figure
+
+
+def plot_map(
+    found: DesignMap, ax: Axes | None = None, *, support: int = 0, temperature: int = 0
+) -> Axes:
+    """Draw which noise a design makes where, with one support, on axes.
+
+    Parameters
+    ----------
+    found : DesignMap
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+    support, temperature : int
+        Which of the map's.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    grid = found.grid
+    where = support_words(grid.support_stiffness[support])
+    with axes_or_new(ax) as axes:
+        _draw_labels(axes, found, temperature, support)
+        axes.set_xlabel(_speed_words(found))
+        _name_fits(axes, found)
+        axes.set_title(
+            f"{found.design}, {found.environment}, {grid.temperature[temperature]:g} °C, {where}"
+        )
+        axes.legend(handles=_handles(found), fontsize="small")
+    return axes
+
+
+def _places(found: DesignMap) -> tuple[NDArray[np.float64], NDArray[np.float64], bool]:
+    """Where the points of a map stand, across and up, and whether rows are few."""
+    fit = 1e3 * np.array(found.grid.interference)
+    few = fit.size <= _FEW_ROWS
+    rows = np.arange(fit.size, dtype=np.float64) if few else fit
+    return np.array(found.grid.speed), rows, few
+
+
+def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -> None:
+    speed, rows, few = _places(found)
+    label = found.label[temperature, support]
+    codes = np.select([label == name for name in _LABELS], range(len(_LABELS)))
+    colours = ListedColormap([LABEL_COLOURS[name] for name in _LABELS])
+    axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=3.5)
+    axes.grid(visible=False)
+    sticks = found.regime[temperature, support] == Regime.STICK_SLIP.value
+    _outline(axes, speed, rows, np.where(sticks, 1.0, -1.0), "#222222", few=few)
+    growth = found.growth[temperature, support]
+    if np.isfinite(growth).all():
+        _outline(axes, speed, rows, growth, "white", few=few)
+
+
+def _speed_words(found: DesignMap) -> str:
+    return "Peak speed [rad/s]" if found.grid.frequency else "Speed [rad/s]"
+
+
+def _name_fits(axes: Axes, found: DesignMap) -> None:
+    _, rows, few = _places(found)
+    axes.set_ylabel("Interference [mm]")
+    if few:
+        axes.set_yticks(rows, [f"{1e3 * fit:.3g}" for fit in found.grid.interference])
+
+
+def _handles(found: DesignMap) -> list[Patch | Line2D]:
+    return [
+        *(
+            Patch(facecolor=LABEL_COLOURS[label], edgecolor="#444444", label=label)
+            for label in _LABELS[::-1]
+        ),
+        Line2D([], [], color="#222222", label="stick ends"),
+        *_stability_handle(found),
+    ]
 
 
 def _stability_handle(found: DesignMap) -> list[Line2D]:

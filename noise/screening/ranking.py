@@ -1,21 +1,25 @@
-"""Which design is quieter: one number each, and the order that follows.
+"""How each design does in each environment and motion, and its rank among all.
 
-A point of use counts by how loud it is: 2 to the power of (L_AFmax - 40 dB) / 10, Stevens' rule
-that ten decibels are twice as loud, and nothing where there is no noise. The mean over all points
-of use is a design's exposure. Shares of points alone would rank a faint squeal with a loud creak,
-and the loudest point alone would not see how much of the use is noisy. Between designs that are
-equally quiet the larger margin goes first.
+The rank is that of `noise.screening.risk.ranked`: by risk, by how probably there is noise, and by
+margin, the worst of a design's environments and motions counting. How probably is told by the parts
+where those of all designs were looked at; else by the share of the points of use that are noisy, of
+all designs alike, since the two must not be compared with each other.
+
+The exposure stands beside it, and says how loud the use is: a point counts 2 to the power of
+(L_AFmax - 40 dB) / 10, Stevens' rule that ten decibels are twice as loud, and nothing where there
+is no noise.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from noise.screening.batches import LABELS
+from noise.screening.estimate import Estimate
+from noise.screening.risk import Candidate, ranked
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,10 +28,9 @@ if TYPE_CHECKING:
 
     from noise.screening.mapping import DesignMap
     from noise.screening.margins import CriticalPoint
+    from noise.screening.statistics import Statistics
 
 __all__ = ["Standing", "loudness_weight", "standings"]
-
-_DECIMALS = 9
 
 
 @dataclass(frozen=True)
@@ -37,8 +40,10 @@ class Standing:
     Parameters
     ----------
     rank : int
-        Of the design among all, by its mean exposure over environments and motions; 1 is quietest.
+        Of the design among all, 1 being quietest; those whose risk is not known share the last.
     design, environment, motion : str
+    risk : int, optional
+        From 1 to 10 at constant speed; None if it is not known.
     exposure : float
         Mean of the points of use, 1 being 40 dB(A) throughout.
     shares : dict of str to float
@@ -57,6 +62,7 @@ class Standing:
     design: str
     environment: str
     motion: str
+    risk: int | None
     exposure: float
     shares: dict[str, float]
     loudest_level: float
@@ -79,25 +85,59 @@ def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(2.0 ** ((level - 40.0) / 10.0))
 
 
-def standings(maps: Sequence[DesignMap], critical: Sequence[CriticalPoint]) -> tuple[Standing, ...]:
-    """Rank mapped designs, the quietest first."""
-    found = [_standing(mapped, critical) for mapped in maps]
-    means: dict[str, tuple[float, float]] = {}
-    for design in dict.fromkeys(one.design for one in found):
-        own = [one for one in found if one.design == design]
-        margins = [one.margin_v_crit2 for one in own if not np.isnan(one.margin_v_crit2)]
-        exposure = round(float(np.mean([one.exposure for one in own])), _DECIMALS)
-        means[design] = exposure, -min(margins, default=0.0)
-    order = sorted(means, key=lambda design: means[design])
-    rank = {design: 1 + order.index(design) for design in order}
-    for before, after in pairwise(order):
-        if means[before] == means[after]:
-            rank[after] = rank[before]
-    placed = [replace(one, rank=rank[one.design]) for one in found]
+def standings(
+    maps: Sequence[DesignMap],
+    critical: Sequence[CriticalPoint],
+    statistics: Sequence[Statistics],
+) -> tuple[Standing, ...]:
+    """Tell how mapped designs do, the quietest first.
+
+    Parameters
+    ----------
+    maps : sequence of DesignMap
+    critical : sequence of CriticalPoint
+    statistics : sequence of Statistics
+        One for each design and environment.
+
+    Returns
+    -------
+    tuple of Standing
+        One a map.
+    """
+    risks = {(one.design, one.environment): one.risk for one in statistics}
+    found = [
+        _standing(mapped, critical, risks[mapped.design, mapped.environment]) for mapped in maps
+    ]
+    places = ranked(_candidates(found, statistics))
+    rank = {place.candidate.name: place.place for place in places}
+    placed = [replace(one, rank=rank.get(one.design, 1 + len(places))) for one in found]
     return tuple(sorted(placed, key=lambda one: (one.rank, one.design)))
 
 
-def _standing(mapped: DesignMap, critical: Sequence[CriticalPoint]) -> Standing:
+def _candidates(found: Sequence[Standing], statistics: Sequence[Statistics]) -> list[Candidate]:
+    by_parts = all(one.robustness is not None for one in statistics)
+    candidates = []
+    for design in dict.fromkeys(one.design for one in found):
+        risks = [one.risk for one in statistics if one.design == design]
+        known = [risk for risk in risks if risk is not None]
+        if len(known) < len(risks):
+            continue
+        own = [one for one in found if one.design == design]
+        noisy = max(1.0 - one.shares["none"] for one in own)
+        noise = Estimate(noisy, noisy, noisy)
+        if by_parts:
+            noises = [
+                one.robustness.noises.any_but()
+                for one in statistics
+                if one.design == design and one.robustness is not None
+            ]
+            noise = max(noises, key=lambda estimate: estimate.value)
+        margins = [one.margin_v_crit2 for one in own if not np.isnan(one.margin_v_crit2)]
+        candidates.append(Candidate(design, max(known), noise, min(margins, default=np.nan)))
+    return candidates
+
+
+def _standing(mapped: DesignMap, critical: Sequence[CriticalPoint], risk: int | None) -> Standing:
     speed = np.array(mapped.grid.speed)
     low, high = mapped.grid.use
     used = (speed >= low * (1.0 - 1e-9)) & (speed <= high * (1.0 + 1e-9))
@@ -118,6 +158,7 @@ def _standing(mapped: DesignMap, critical: Sequence[CriticalPoint]) -> Standing:
         design=mapped.design,
         environment=mapped.environment,
         motion=mapped.motion,
+        risk=risk,
         exposure=float(np.sum(loudness_weight(level[noisy])) / label.size),
         shares={name: float(np.mean(label == name)) for name in LABELS},
         loudest_level=float(level[loudest]) if noisy.any() else nothing,

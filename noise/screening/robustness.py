@@ -93,6 +93,14 @@ class Robustness:
         From 1 to 10.
     assumed : bool
         Whether the tolerances are `ASSUMED` rather than the design's own.
+
+    Examples
+    --------
+    >>> from noise.screening.design import load_design
+    >>> design = load_design("PDMS")
+    >>> found = robustness(design, np.random.default_rng(0), half_width=0.1, samples=64)
+    >>> found.clear.value, found.candidate.margin, "assumed" in found._repr_html_()
+    (1.0, inf, True)
     """
 
     design: str
@@ -111,6 +119,12 @@ class Robustness:
         """What the ranking needs to know of it."""
         return Candidate(self.design, self.risk, self.noises.any_but(_QUIET), self.margin)
 
+    def _repr_html_(self) -> str:
+        """Show what parts do, what matters, and what helps."""
+        from noise.screening.shown import robustness_html
+
+        return robustness_html(self)
+
 
 def robustness(
     design: Design,
@@ -122,6 +136,7 @@ def robustness(
     gain: float = 1.0,
     levers: Sequence[Lever] = LEVERS,
     budget: float = math.inf,
+    risk: int | None = None,
     workers: int = -1,
 ) -> Robustness:
     """Tell how a design stands with the parts that are made of it.
@@ -141,6 +156,8 @@ def robustness(
         What may be changed, as factors by the names of `noise.screening.tolerances.PARAMETERS`.
     budget : float
         That no change may cost more than, in the unit of the levers' costs.
+    risk : int, optional
+        The design's risk number, where it is known already.
     workers : int
         Threads; -1 is one a core.
 
@@ -215,7 +232,7 @@ def robustness(
         ending=ending(labels(changed), levers, set(NOISES) - {_QUIET}, budget=budget)
         if noise != _QUIET
         else (),
-        risk=use_risk(design, workers=workers),
+        risk=use_risk(design, workers=workers) if risk is None else risk,
         assumed=not design.tolerances,
     )
 

@@ -1,14 +1,18 @@
 """Designs before tooling: which noise each makes where, how far its use is from it, which is best.
 
 Each design is mapped in each environment, at constant speed and, where it says so or the caller
-does, swinging to and fro. A design that cannot be simulated is refused by name; the others go on.
+does, swinging to and fro; then graded, and its parts are looked at. A design that cannot be
+simulated is refused by name, and what else fails is told; the others go on.
 """
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.screening.batches import judging
@@ -17,61 +21,20 @@ from noise.screening.environments import DRY, environment, in_environment
 from noise.screening.grid import grid_of
 from noise.screening.mapping import map_design
 from noise.screening.margins import critical_points
+from noise.screening.outcome import Screening
 from noise.screening.ranking import standings
+from noise.screening.statistics import statistics_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from pathlib import Path
 
     from noise.screening.batches import Judge
     from noise.screening.mapping import DesignMap
-    from noise.screening.margins import CriticalPoint
-    from noise.screening.ranking import Standing
 
-__all__ = ["DEFAULT_SIMULATIONS", "Screening", "screen"]
+__all__ = ["DEFAULT_SIMULATIONS", "screen"]
 
 DEFAULT_SIMULATIONS = 500
 """Of a map, more or less: what two cores do of the calibrated fluorocarbon in eight seconds."""
-
-
-@dataclass(frozen=True)
-class Screening:
-    """What a screen found.
-
-    Parameters
-    ----------
-    maps : tuple of DesignMap
-        One for each design, environment and motion.
-    critical : tuple of CriticalPoint
-        Critical speeds and margins, by simulation and by stability.
-    standings : tuple of Standing
-        The designs ranked, the quietest first; one for each map.
-    refused : tuple of (str, str)
-        Designs that could not be screened, and why.
-    seconds : float
-        How long it took.
-
-    Examples
-    --------
-    >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
-    >>> found.refused, found.standings[0].shares["none"]
-    ((), 1.0)
-    """
-
-    maps: tuple[DesignMap, ...]
-    critical: tuple[CriticalPoint, ...]
-    standings: tuple[Standing, ...]
-    refused: tuple[tuple[str, str], ...]
-    seconds: float
-
-    def count(self, how: str) -> int:
-        """How many points of all maps are known in a way: `DesignMap.how`."""
-        return sum(found.count(how) for found in self.maps)
-
-    @property
-    def points(self) -> int:
-        """How many points the maps have."""
-        return sum(found.label.size for found in self.maps)
 
 
 def screen(
@@ -80,6 +43,8 @@ def screen(
     *,
     environments: Sequence[str] = (DRY,),
     loudness: bool = False,
+    tolerances: bool | None = None,
+    rng: np.random.Generator | None = None,
     simulations: int | None = DEFAULT_SIMULATIONS,
     workers: int = -1,
     scheduler: str | None = None,
@@ -98,12 +63,17 @@ def screen(
         Of `noise.screening.environments`.
     loudness : bool
         Whether to tell loudness as well; needs the extra ``sound-quality``.
+    tolerances : bool, optional
+        Whether to tell what tolerances do, of all designs, with assumed ones where they state none;
+        by default only of those that state some. Takes several seconds a design.
+    rng : numpy.random.Generator, optional
+        Of the parts within tolerances; by default of seed 0.
     simulations : int, optional
         Of a map, more or less; None follows every boundary to the end.
     workers : int
         Threads; -1 is one a core.
     scheduler : str, optional
-        Address of a Dask cluster that simulates instead.
+        Address of a Dask cluster that simulates the maps instead.
     progress : callable
         Is told what is being done.
 
@@ -121,6 +91,8 @@ def screen(
     >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,)))
     >>> found.standings[0].shares["none"], found.critical[0].margin_v_crit2
     (1.0, inf)
+    >>> found.standings[0].risk
+    1
     """
     started = time.perf_counter()
     if not designs:
@@ -132,13 +104,14 @@ def screen(
         check_available()
     maps: list[DesignMap] = []
     refused: list[tuple[str, str]] = []
-    names: set[str] = set()
+    screened: dict[str, Design] = {}
+    files: list[tuple[str, Path]] = []
     with judging(workers=workers, scheduler=scheduler) as judge:
         for one in designs:
             called = one.name if isinstance(one, Design) else str(one)
             try:
                 design = one if isinstance(one, Design) else load_design(one)
-                design = _renamed(design, names)
+                design = _renamed(design, set(screened))
                 found: list[DesignMap] = []
                 outside = _outside(design, given)
                 if outside:
@@ -152,17 +125,38 @@ def screen(
             except BushingNoiseError as error:
                 refused.append((called, str(error)))
                 continue
-            names.add(design.name)
+            screened[design.name] = design
             maps += found
+            if not isinstance(one, Design) and Path(one).is_file():
+                files.append((design.name, Path(one)))
     if not maps:
         raise ParameterError(refused[0][1])
+    mapped = time.perf_counter()
     critical = tuple(point for found in maps for point in critical_points(found))
+    first: dict[tuple[str, str], DesignMap] = {}
+    for each in maps:
+        first.setdefault((each.design, each.environment), each)
+    streams = (rng or np.random.default_rng(0)).spawn(len(first))
+    statistics = tuple(
+        statistics_of(
+            screened[each.design],
+            each,
+            stream,
+            tolerances=tolerances,
+            workers=workers,
+            progress=progress,
+        )
+        for each, stream in zip(first.values(), streams, strict=True)
+    )
     return Screening(
         maps=tuple(maps),
         critical=critical,
-        standings=standings(maps, critical),
+        statistics=statistics,
+        standings=standings(maps, critical, statistics),
         refused=tuple(refused),
-        seconds=time.perf_counter() - started,
+        files=tuple(files),
+        seconds=mapped - started,
+        statistics_seconds=time.perf_counter() - mapped,
     )
 
 

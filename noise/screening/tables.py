@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.screening.batches import LABELS
+from noise.screening.parts_tables import PROBABILITY_COLUMNS, parts_lines, probability_cells
+from noise.screening.risk import risk_band
+from noise.screening.shown import risk_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from noise.screening.mapping import DesignMap
     from noise.screening.margins import CriticalPoint
+    from noise.screening.outcome import Screening
     from noise.screening.ranking import Standing
-    from noise.screening.screen import Screening
+    from noise.screening.statistics import Statistics
 
 __all__ = [
     "CRITICAL_COLUMNS",
@@ -62,6 +66,9 @@ DESIGN_COLUMNS = (
     "design",
     "environment",
     "motion",
+    "risk",
+    "risk_band",
+    *PROBABILITY_COLUMNS,
     "exposure",
     *(f"share_{label}" for label in LABELS),
     "loudest_level_db",
@@ -127,17 +134,20 @@ def _critical_row(point: CriticalPoint) -> dict[str, object]:
 def design_rows(screening: Screening) -> Iterator[dict[str, object]]:
     """Rows of ``designs.csv``, the quietest first, those refused last."""
     for one in screening.standings:
-        yield _design_row(one)
+        yield _design_row(one, screening.statistics_of(one.design, one.environment))
     for name, reason in screening.refused:
         yield {"design": name, "error": reason}
 
 
-def _design_row(one: Standing) -> dict[str, object]:
+def _design_row(one: Standing, told: Statistics) -> dict[str, object]:
     return {
         "rank": one.rank,
         "design": one.design,
         "environment": one.environment,
         "motion": one.motion,
+        "risk": one.risk,
+        "risk_band": None if one.risk is None else risk_band(one.risk),
+        **probability_cells(told),
         "exposure": _short(one.exposure),
         **{f"share_{label}": round(share, 4) for label, share in one.shares.items()},
         "loudest_level_db": round(one.loudest_level, 2),
@@ -147,11 +157,12 @@ def _design_row(one: Standing) -> dict[str, object]:
         "margin_v_crit1_rad_s": _short(one.margin_v_crit1),
         "margin_v_crit2_rad_s": _short(one.margin_v_crit2),
         "margin_stability_rad_s": _short(one.margin_stability),
+        "error": "; ".join(told.failed) or None,
     }
 
 
 def summary_lines(screening: Screening) -> list[str]:
-    """Tell what a screen found, a line a design and motion, and how it is known.
+    """Tell what a screen found, a line a design and motion, its parts below, and how it is known.
 
     Examples
     --------
@@ -159,9 +170,16 @@ def summary_lines(screening: Screening) -> list[str]:
     >>> from noise.screening.screen import screen
     >>> lines = summary_lines(screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,))))
     >>> lines[0]
-    '1. PDMS, dry: quiet at all 4 points of use; nothing vibrates'
+    '1. PDMS, dry: risk 1 (no risk); quiet at all 4 points of use; nothing vibrates'
     """
-    lines = [_standing_line(one, screening) for one in screening.standings]
+    lines = []
+    told: set[tuple[str, str]] = set()
+    for one in screening.standings:
+        lines.append(_standing_line(one, screening))
+        where = one.design, one.environment
+        if where not in told:
+            told.add(where)
+            lines += [f"   {line}" for line in parts_lines(screening.statistics_of(*where))]
     how = ", ".join(
         f"{screening.count(way)} {words}"
         for way, words in (
@@ -175,6 +193,7 @@ def summary_lines(screening: Screening) -> list[str]:
     left = sum(found.open for found in screening.maps)
     boundary = f" ({left} beside a boundary, as their nearest neighbour)" if left else ""
     lines.append(f"{screening.points} points in {screening.seconds:.1f} s: {how}{boundary}")
+    lines.append(f"risk and tolerances in {screening.statistics_seconds:.1f} s")
     return lines
 
 
@@ -189,7 +208,7 @@ def _standing_line(one: Standing, screening: Screening) -> str:
     low, high = mapped.grid.use
     speed = np.array(mapped.grid.speed)
     used = mapped.label[..., (speed >= low * 0.999999) & (speed <= high * 1.000001)].size
-    head = f"{one.rank}. {one.design}, {where}: "
+    head = f"{one.rank}. {one.design}, {where}: risk {risk_words(one.risk)}; "
     noisy = {name: share for name, share in one.shares.items() if name != "none" and share > 0.0}
     if not noisy:
         text = f"quiet at all {used} points of use"

@@ -1,0 +1,138 @@
+"""What a screen found, as one object that shows itself and draws its maps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.screening.environments import DRY
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+
+    from noise.screening.mapping import DesignMap
+    from noise.screening.margins import CriticalPoint
+    from noise.screening.ranking import Standing
+    from noise.screening.statistics import Statistics
+
+__all__ = ["Screening"]
+
+
+@dataclass(frozen=True)
+class Screening:
+    """What a screen found.
+
+    Parameters
+    ----------
+    maps : tuple of DesignMap
+        One for each design, environment and motion.
+    critical : tuple of CriticalPoint
+        Critical speeds and margins, by simulation and by stability.
+    statistics : tuple of Statistics
+        Risk and, where it was asked for, robustness; one for each design and environment.
+    standings : tuple of Standing
+        The designs ranked, the quietest first; one for each map.
+    refused : tuple of (str, str)
+        Designs that could not be screened, and why.
+    files : tuple of (str, Path)
+        Files that designs were read from, by the names that the screen calls them.
+    seconds, statistics_seconds : float
+        How long the maps took, and risk and robustness.
+
+    Examples
+    --------
+    >>> from noise.screening.design import Use
+    >>> from noise.screening.screen import screen
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
+    >>> found.refused, found.standings[0].shares["none"], found.statistics_of("PDMS").risk
+    ((), 1.0, 1)
+    """
+
+    maps: tuple[DesignMap, ...]
+    critical: tuple[CriticalPoint, ...]
+    statistics: tuple[Statistics, ...]
+    standings: tuple[Standing, ...]
+    refused: tuple[tuple[str, str], ...]
+    files: tuple[tuple[str, Path], ...]
+    seconds: float
+    statistics_seconds: float
+
+    def count(self, how: str) -> int:
+        """How many points of all maps are known in a way: `DesignMap.how`."""
+        return sum(found.count(how) for found in self.maps)
+
+    @property
+    def points(self) -> int:
+        """How many points the maps have."""
+        return sum(found.label.size for found in self.maps)
+
+    @property
+    def failed(self) -> tuple[tuple[str, str], ...]:
+        """Designs of which something could not be told, and what and why."""
+        return tuple((one.design, why) for one in self.statistics for why in one.failed)
+
+    def statistics_of(self, design: str, environment: str = DRY) -> Statistics:
+        """Risk and robustness of a design in an environment."""
+        for one in self.statistics:
+            if (one.design, one.environment) == (design, environment):
+                return one
+        raise ParameterError(f"there is no design {design!r} in environment {environment!r}")
+
+    def plot(
+        self,
+        ax: Axes | None = None,
+        *,
+        number: int = 0,
+        support: int = 0,
+        temperature: int = 0,
+    ) -> Axes:
+        """Draw which noise a design makes where, with one support.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+        number : int
+            Of the map among `maps`, from 0.
+        support, temperature : int
+            Which of the map's, from 0.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is no such map, support or temperature.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> from noise.screening.design import Use
+        >>> from noise.screening.screen import screen
+        >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
+        >>> found.plot(Figure().subplots()).get_ylabel()
+        'Interference [mm]'
+        """
+        from noise.pictures.screening import plot_map
+
+        _check_index("map", number, len(self.maps))
+        found = self.maps[number]
+        _check_index("support", support, len(found.grid.support_stiffness))
+        _check_index("temperature", temperature, len(found.grid.temperature))
+        return plot_map(found, ax, support=support, temperature=temperature)
+
+    def _repr_html_(self) -> str:
+        """Show the ranking."""
+        from noise.screening.shown import screening_html
+
+        return screening_html(self)
+
+
+def _check_index(what: str, index: int, there: int) -> None:
+    if not 0 <= index < there:
+        raise ParameterError(f"there is no {what} {index}; there are 0 to {there - 1}")
