@@ -7,7 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from noise.diagnosis.location import STAGES, locate, null_maxima, stage_findings, stage_of
+from noise.diagnosis.location import (
+    STAGES,
+    differences,
+    locate,
+    null_maxima,
+    stage_findings,
+    stage_of,
+)
 from noise.diagnosis.path_summary import BAND_EDGES
 from sim.effects import EFFECTS
 from tests.made_posteriors import MOVES, NAMES, made_posterior, made_table
@@ -130,3 +137,21 @@ def test_a_gap_is_one_between_repeats_and_bounded_where_a_number_hardly_scatters
 )  # fmt: skip
 def test_every_number_has_a_stage(name, stage):
     assert stage_of(name) == stage
+
+
+def test_the_map_has_the_guilty_place_first_and_every_place_once(posterior):
+    places = differences(_table({"pressure_gain_9": 30.0}), posterior)
+    keys = [(p.stage, p.channels, p.band, p.phase) for p in places]
+    assert len(set(keys)) == len(keys)
+    first = places[0]
+    assert (first.stage, first.channels) == ("radiation", ("pressure",))
+    assert first.band == pytest.approx((BAND_EDGES[8], BAND_EDGES[9]))
+    p_values = [place.p_value for place in places]
+    assert p_values == sorted(p_values)
+    assert 0.0 < p_values[0] <= 1.0
+
+
+def test_without_a_cause_no_place_is_sure(posterior):
+    rng = np.random.default_rng(78)
+    least = [differences(made_table(rng), posterior)[0].p_value for _ in range(40)]
+    assert np.mean(np.array(least) < 0.2) < 0.4  # five stages' worth of looks, corrected

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from noise.diagnosis.equivalence import equivalent_pairs, next_measurement
 from noise.diagnosis.fits import with_fits
 from noise.diagnosis.floor import case_gap
-from noise.diagnosis.location import locate, stage_findings
+from noise.diagnosis.location import differences, locate, stage_findings
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
 from noise.diagnosis.posterior import load_posterior
 from noise.diagnosis.summary import case_table
@@ -90,6 +90,7 @@ def diagnose_case(
         p_value=gap.p_value,
         seconds=time.perf_counter() - started,
         notes=_notes(case),
+        differences=differences(table, posterior),
     )
     if not quick:
         diagnosis = with_fits(case, diagnosis, table, posterior, library, known, seed, tell)

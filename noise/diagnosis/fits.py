@@ -14,6 +14,7 @@ import numpy as np
 
 from noise.diagnosis.bench import Bench, Model
 from noise.diagnosis.closing import Scores, closed_interval, closed_share, root
+from noise.diagnosis.contact_course import contact_courses
 from noise.diagnosis.fit_effect import fit_effect, strength_of
 from noise.diagnosis.fit_parameters import Fitted, fit_parameters, split
 from noise.diagnosis.heard import heard_of
@@ -216,12 +217,18 @@ def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
 def _illustrations(
     case: Case, bench: Bench, held: Sequence[int], after: Model | None
 ) -> tuple[Illustration, ...]:
-    return tuple(
-        Illustration(
-            case.names[i],
-            case.recordings[i],
-            bench.simulated(Model(), case.recordings[i], 7),
-            None if after is None else bench.simulated(after, case.recordings[i], 7),
-        )
-        for i in held[:2]
+    return tuple(_illustration(case, bench, i, after) for i in held[:2])
+
+
+def _illustration(case: Case, bench: Bench, i: int, after: Model | None) -> Illustration:
+    shown = {
+        "measured": case.recordings[i],
+        "before": bench.simulated(Model(), case.recordings[i], 7),
+    }
+    if after is not None:
+        shown["after"] = bench.simulated(after, case.recordings[i], 7)
+    courses = {name: contact_courses(recording, case.rig) for name, recording in shown.items()}
+    contacts = {name: course for name, course in courses.items() if course is not None}
+    return Illustration(
+        case.names[i], shown["measured"], shown["before"], shown.get("after"), contacts
     )

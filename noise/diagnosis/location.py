@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.posterior import Posterior
     from noise.diagnosis.summary import CaseTable
 
-__all__ = ["STAGES", "locate", "null_maxima", "stage_findings", "stage_of"]
+__all__ = ["STAGES", "differences", "locate", "null_maxima", "stage_findings", "stage_of"]
 
 STAGES = tuple(stage.value for stage in Stage)
 """In the order of the chain."""
@@ -45,6 +45,9 @@ nothing of the channel's own stage."""
 
 _LARGEST_GAP = 100.0
 """Of a stage: larger ones come from numbers that hardly scatter, and are all alike."""
+
+_WHOLE_BAND = (0.0, 1800.0)
+"""Of a difference that is in no band: where the contact's cycle lives [Hz]."""
 
 _STICK = ("creep", "stick", "stiffness", "calm", "after", "before", "ring", "slow_")
 
@@ -138,7 +141,7 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
     top = names[int(strongest[0])]
     channels = {_channel(names[int(i)]) for i in strongest}
     bands = [band for i in strongest if (band := _band(names[int(i)])) is not None]
-    low, high = (min(b[0] for b in bands), max(b[1] for b in bands)) if bands else (0.0, 1800.0)
+    low, high = (min(b[0] for b in bands), max(b[1] for b in bands)) if bands else _WHOLE_BAND
     return Location(
         stage=stage,
         channels=tuple(c for c in ("torque", "acceleration", "pressure", "angle") if c in channels),
@@ -147,6 +150,41 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
         conditions=_where(table, posterior, strongest),
         p_value=findings[stage].p_value,
     )
+
+
+def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
+    """Look at every stage, channel, band and phase of the cycle.
+
+    Parameters
+    ----------
+    table : CaseTable
+    posterior : Posterior
+
+    Returns
+    -------
+    tuple of Location
+        The surest first. A p-value is that of the place's largest difference among the largest ones
+        that whole stages have without a cause, so it is corrected for all looks.
+    """
+    names = posterior.names
+    size = np.abs(_sure(table, names, posterior.scale))
+    places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
+    for i, name in enumerate(names):
+        if np.isfinite(size[i]):
+            key = (stage_of(name), _channel(name), _band(name), _phase(name))
+            places.setdefault(key, []).append(i)
+    found = []
+    for (stage, channel, band, phase), numbers in places.items():
+        largest = np.array(numbers)[np.argsort(-size[numbers])][:3]
+        most = float(size[largest[0]])
+        null = posterior.null[:, STAGES.index(stage)]
+        p_value = len(STAGES) * (1.0 + np.count_nonzero(null >= most)) / (len(null) + 1.0)
+        place = Location(
+            stage, (channel,), band or _WHOLE_BAND, phase, _where(table, posterior, largest),
+            min(1.0, float(p_value)),
+        )  # fmt: skip
+        found.append((place.p_value, -most, place))
+    return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
 
 
 def _sure(

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from models.recording import Recording
+    from noise.diagnosis.contact_course import ContactCourses
 
 __all__ = [
     "Diagnosis",
@@ -123,6 +124,8 @@ class Illustration:
     measured: Recording
     before: Recording
     after: Recording | None
+    contacts: Mapping[str, ContactCourses] = field(default_factory=dict)
+    """The friction torque of each, by ``measured``, ``before`` and ``after``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,6 +160,9 @@ class Diagnosis:
         What is missing and what that costs; channels in bad health.
     heard : tuple of Heard
     illustrations : tuple of Illustration
+    differences : tuple of Location
+        Every stage, channel, band and phase with its p-value, corrected for the number of looks;
+        the surest first.
 
     Examples
     --------
@@ -182,6 +188,7 @@ class Diagnosis:
     notes: tuple[str, ...] = ()
     heard: tuple[Heard, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
+    differences: tuple[Location, ...] = ()
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw how probable each cause is.
@@ -214,20 +221,11 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
     >>> as_json(nothing)["verdict"], as_json(nothing)["location"]
     ([], None)
     """
-    location = diagnosis.location
     return {
         "verdict": list(diagnosis.verdict),
         "equivalent": [list(pair) for pair in diagnosis.equivalent],
-        "location": None
-        if location is None
-        else {
-            "stage": location.stage,
-            "channels": list(location.channels),
-            "band_hz": [_rounded(f, 1) for f in location.band],
-            "phase": location.phase,
-            "conditions": location.conditions,
-            "p_value": _rounded(location.p_value),
-        },
+        "location": None if diagnosis.location is None else _location(diagnosis.location),
+        "map": [_location(place) for place in diagnosis.differences],
         "stages": {
             name: {
                 "gap": _rounded(stage.gap), "share": _rounded(stage.share),
@@ -262,6 +260,17 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
     }  # fmt: skip
+
+
+def _location(place: Location) -> dict[str, Any]:
+    return {
+        "stage": place.stage,
+        "channels": list(place.channels),
+        "band_hz": [_rounded(f, 1) for f in place.band],
+        "phase": place.phase,
+        "conditions": place.conditions,
+        "p_value": _rounded(place.p_value),
+    }
 
 
 def _effect(effect: EffectFinding) -> dict[str, Any]:

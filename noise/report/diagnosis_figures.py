@@ -30,7 +30,10 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from noise.diagnosis.outcome import Illustration
 
-__all__ = ["CURVES", "Curve", "cycle_window", "illustration_panels", "sixth_octaves"]
+__all__ = [
+    "CURVES", "Curve", "as_svg", "cycle_window", "illustration_panels", "new_panel",
+    "sixth_octaves",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -184,7 +187,7 @@ def _cycles(shown: dict[str, Recording]) -> Panel:
         if (signal := _signal(recording, "torque")) is not None
     }
     length = _length(*signals["measured"]) if "measured" in signals else _LONGEST
-    figure, axes = _panel("Torque, around a slip of each")
+    figure, axes = new_panel("Torque, around a slip of each")
     unaligned, low, high = [], np.inf, -np.inf
     for name, (signal, rate) in signals.items():
         start, aligned = cycle_window(signal, rate, length)
@@ -204,7 +207,7 @@ def _cycles(shown: dict[str, Recording]) -> Panel:
         text = f"no slip: {', '.join(unaligned)}"
         axes.set_title(text, loc="right", fontsize=9.5, color="#555555")
         alt = f"{alt} There is {text}."
-    return Panel(_svg(figure), alt)
+    return Panel(as_svg(figure), alt)
 
 
 def _length(torque: NDArray[np.float64], rate: float) -> float:
@@ -216,7 +219,7 @@ def _length(torque: NDArray[np.float64], rate: float) -> float:
 
 def _spectra(shown: dict[str, Recording], kind: str) -> Panel:
     about = KINDS[kind]
-    figure, axes = _panel(f"{about.name}, sixth octaves")
+    figure, axes = new_panel(f"{about.name}, sixth octaves")
     tops, bottoms, overall = [], [], []
     for name, recording in shown.items():
         signal = _signal(recording, kind)
@@ -239,7 +242,7 @@ def _spectra(shown: dict[str, Recording], kind: str) -> Panel:
     axes.set_xlabel("Frequency [Hz]")
     reference = about.density.removesuffix("²/Hz").strip("()")
     axes.set_ylabel(f"dB re {reference}")
-    return Panel(_svg(figure), f"{about.name} in sixth octaves: over all, {', '.join(overall)}.")
+    return Panel(as_svg(figure), f"{about.name} in sixth octaves: over all, {', '.join(overall)}.")
 
 
 def _draw(axes: Axes, name: str, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
@@ -248,7 +251,8 @@ def _draw(axes: Axes, name: str, x: NDArray[np.float64], y: NDArray[np.float64])
     axes.plot(x, y, color=curve.colour, linewidth=curve.width, linestyle=style, label=curve.label)
 
 
-def _panel(title: str) -> tuple[Figure, Axes]:
+def new_panel(title: str) -> tuple[Figure, Axes]:
+    """Begin a panel of the page."""
     figure = Figure(figsize=(5.2, 2.5))
     axes = figure.add_axes((0.14, 0.2, 0.84, 0.68))
     axes.set_title(title, fontweight="bold", color="#222222")
@@ -256,7 +260,8 @@ def _panel(title: str) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _svg(figure: Figure) -> bytes:
+def as_svg(figure: Figure) -> bytes:
+    """Write a figure out, the same one as the same bytes."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
     return buffer.getvalue()

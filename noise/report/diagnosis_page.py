@@ -21,6 +21,7 @@ from noise.diagnosis.sentences import (
     verdict_sentence,
 )
 from noise.diagnosis.words import p_number
+from noise.report.contact_figures import contact_panels
 from noise.report.diagnosis_figures import CURVES, illustration_panels
 from noise.report.diagnosis_sounds import played_sounds
 from noise.report.diagnosis_view import (
@@ -28,6 +29,7 @@ from noise.report.diagnosis_view import (
     cause_rows,
     number,
     parameter_rows,
+    place_rows,
     stage_boxes,
 )
 from noise.report.templating import template
@@ -115,6 +117,7 @@ def _html(diagnosis: Diagnosis) -> str:
         curves=CURVES,
         gain=sounds.words,
         full_scale=sounds.full_scale,
+        places=place_rows(diagnosis.differences),
         parameters=parameter_rows(diagnosis.parameters),
         held_out=diagnosis.held_out,
         heard=[_heard_row(heard) for heard in diagnosis.heard],
@@ -140,7 +143,7 @@ def _shown(illustration: Illustration, uris: dict[str, str], heard: tuple[Heard,
         for role in roles
         if role in uris
     )
-    panels = illustration_panels(illustration)
+    panels = (*illustration_panels(illustration), *contact_panels(illustration.contacts))
     condition = _condition(illustration.measured.condition)
     return _Shown(illustration.name, condition, roles, players, panels)
 

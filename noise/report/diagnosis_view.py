@@ -15,9 +15,9 @@ from noise.diagnosis.words import STAGES, cause_of, evidence, p_number, percent
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
-    from noise.diagnosis.outcome import Diagnosis, EffectFinding
+    from noise.diagnosis.outcome import Diagnosis, EffectFinding, Location
 
 __all__ = [
     "NOT_DETERMINED",
@@ -27,6 +27,7 @@ __all__ = [
     "cause_rows",
     "number",
     "parameter_rows",
+    "place_rows",
     "stage_boxes",
 ]
 
@@ -39,6 +40,7 @@ _PASSED_ON = {
     "radiation": "pressure",
 }
 _SMALL_P = 0.05
+_MOST_PLACES = 12
 _LIKELY_ENOUGH = 0.05
 _FEWEST, _MOST = 3, 6
 _BESIDE_EFFECTS = ("none", "parameters", "unknown")
@@ -210,6 +212,28 @@ def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> tuple[Parame
             )
         )
     return tuple(rows)
+
+
+def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
+    """Return the places that differ most surely: stage, channel, where in it, conditions, p-value.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Location
+    >>> place_rows([Location("friction", ("torque",), (0.0, 1800.0), "stick", "all", 0.004)])
+    (('friction', 'torque', 'stick', 'all', 'p = 0.0040'),)
+    """
+    sure = [place for place in places if place.p_value <= _SMALL_P][:_MOST_PLACES]
+    return tuple(
+        (
+            place.stage,
+            ", ".join(place.channels),
+            place.phase if place.phase != "all" else f"{place.band[0]:g} to {place.band[1]:g} Hz",
+            place.conditions.replace("speed_rad_s", "speed [rad/s]"),
+            p_number(place.p_value),
+        )
+        for place in sure
+    )
 
 
 def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
