@@ -36,7 +36,7 @@ AudioNode.prototype.connect = function (target, ...rest) {
 def page_file(tmp_path_factory):
     folder = tmp_path_factory.mktemp("review")
     write_campaign(folder / "day1")
-    write_screen(folder / "screen", screen_rows() + screen_rows(environment="wet"))
+    write_screen(folder / "screen", screen_rows() + screen_rows(environment="mud"))
     write_diagnosis(folder / "diagnosis", one_effect())
     (folder / "day1" / "recordings" / "broken.wav").write_bytes(b"RIFF no more")
     review(folder, folder / "out" / "review.html", title="A review & more", simulated=4)
@@ -284,8 +284,8 @@ def test_arrows_go_from_spot_to_spot_on_a_map(opened):
 
 
 def test_a_map_that_cannot_be_heard_says_why(opened):
-    wet = opened.page.locator("[data-map]", has_text="wet")
-    assert "No sounds: what the environment wet changes" in wet.text_content()
+    mud = opened.page.locator("[data-map]", has_text="mud")
+    assert "No sounds: environment 'mud' is unknown" in mud.text_content()
 
 
 def test_measured_and_simulated_of_a_diagnosis_can_be_compared(opened):
