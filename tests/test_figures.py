@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
+from models.drawing import thinned
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
@@ -102,7 +103,7 @@ def test_thinning_keeps_every_peak():
     position = np.linspace(0.0, 1.0, 20_000)
     spikes = np.zeros(20_000)
     spikes[137::613] = 1.0
-    _, kept = figures._thinned(position, position, spikes)
+    _, kept = thinned(position, spikes, columns=figures._COLUMNS)
     assert kept.size < 2000
     assert np.count_nonzero(kept) == np.count_nonzero(spikes)
 
@@ -110,7 +111,7 @@ def test_thinning_keeps_every_peak():
 @given(st.integers(1, 4000), st.integers(0, 2**32 - 1))
 def test_thinning_keeps_ends_order_and_extremes(size, seed):
     x, y = np.arange(float(size)), np.random.default_rng(seed).normal(size=size)
-    kept_x, kept_y = figures._thinned(x, x, y)
+    kept_x, kept_y = thinned(x, y, columns=figures._COLUMNS)
     assert np.all(np.diff(kept_x) > 0)
     assert (kept_x[0], kept_x[-1]) == (x[0], x[-1])
     assert (kept_y.min(), kept_y.max()) == (y.min(), y.max())

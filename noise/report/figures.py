@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 
+from models.drawing import thinned
 from models.errors import ParameterError
 from noise.report.traces import HIGHEST, KINDS, LOWEST, Trace, common_scales, traces
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
     from models.recording import Recording
     from noise.labels.segments import Segment
@@ -157,7 +157,9 @@ def _time_panel(trace: Trace, scale: Scale) -> Panel:
     t = np.arange(trace.samples.size, dtype=np.float64) * (1e3 / trace.rate)
     length = 1e3 * trace.samples.size / trace.rate
     figure, axes = _panel(kind.name)
-    axes.plot(*_thinned(t, t, factor * trace.samples), color=kind.colour, linewidth=1.2)
+    axes.plot(
+        *thinned(t, factor * trace.samples, columns=_COLUMNS), color=kind.colour, linewidth=1.2
+    )
     axes.set_xlim(0.0, length)
     axes.set_ylim(factor * (middle - swing), factor * (middle + swing))
     axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
@@ -181,7 +183,8 @@ def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Pane
     if frequency is not None and LOWEST <= frequency <= HIGHEST:
         axes.axvline(frequency, color="#777777", linewidth=1.0, linestyle=(0, (4, 3)))
     drawn = np.maximum(levels, bottom - 5.0)
-    axes.plot(*_thinned(np.log(f), f, drawn), color=kind.colour, linewidth=1.0)
+    curve = thinned(f, drawn, position=np.log(f), columns=_COLUMNS)
+    axes.plot(*curve, color=kind.colour, linewidth=1.0)
     axes.set_xscale("log")
     axes.set_xlim(LOWEST, HIGHEST)
     axes.set_ylim(bottom, scale.top)
@@ -219,21 +222,6 @@ def _display_unit(kind: Kind, reach: float, *, calibrated: bool) -> tuple[float,
         if reach < below:
             return factor, f"{prefix}{kind.unit}" if calibrated else f"{share}FS"
     return 1.0, kind.unit if calibrated else "FS"
-
-
-def _thinned(
-    position: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Keep the lowest and highest point of each column, where it is too narrow to show more."""
-    if x.size <= 2 * _COLUMNS:
-        return x, y
-    edges = np.linspace(position[0], position[-1], _COLUMNS + 1)[1:-1]
-    kept = {0, x.size - 1}
-    for column in np.split(np.arange(x.size), np.searchsorted(position, edges)):
-        if column.size:
-            kept |= {int(column[y[column].argmin()]), int(column[y[column].argmax()])}
-    chosen = np.array(sorted(kept))
-    return x[chosen], y[chosen]
 
 
 def _panel(title: str) -> tuple[Figure, Axes]:
