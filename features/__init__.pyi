@@ -1,4 +1,4 @@
-from .bands import (
+from .kernels.bands import (
     NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
     REFERENCES as REFERENCES,
     THESIS_BANDS as THESIS_BANDS,
@@ -9,38 +9,52 @@ from .bands import (
     third_octave_edges as third_octave_edges,
     third_octave_levels as third_octave_levels,
 )
-from .feature import (
-    Feature as Feature,
-)
-from .hammer import (
-    Hit as Hit,
-    TransferEstimate as TransferEstimate,
-    check_hit as check_hit,
-    transfer_estimate as transfer_estimate,
-)
-from .harmonics import (
+from .kernels.harmonics import (
     Harmonics as Harmonics,
     analyse_harmonics as analyse_harmonics,
 )
-from .levels import (
+from .kernels.levels import (
     SoundLevels as SoundLevels,
     a_weighted as a_weighted,
     fast_levels as fast_levels,
     sound_levels as sound_levels,
 )
-from .lines import (
+from .kernels.lines import (
     Lines as Lines,
     find_lines as find_lines,
 )
-from .modal_fit import (
-    fit_modes as fit_modes,
-)
-from .modes import (
-    Modes as Modes,
-)
-from .pitch import (
+from .kernels.pitch import (
     PitchTrack as PitchTrack,
     pitch_track as pitch_track,
+)
+from .kernels.slip_drops import (
+    TorqueSlips as TorqueSlips,
+    torque_slips as torque_slips,
+)
+from .kernels.slip_pulses import (
+    Pulses as Pulses,
+    acoustic_slips as acoustic_slips,
+)
+from .kernels.spectra import (
+    SpectralShape as SpectralShape,
+    Spectrum as Spectrum,
+    autospectrum as autospectrum,
+    spectral_shape as spectral_shape,
+)
+from .modal.hammer import (
+    Hit as Hit,
+    TransferEstimate as TransferEstimate,
+    check_hit as check_hit,
+    transfer_estimate as transfer_estimate,
+)
+from .modal.modal_fit import (
+    fit_modes as fit_modes,
+)
+from .modal.modes import (
+    Modes as Modes,
+)
+from .named.feature import (
+    Feature as Feature,
 )
 from .registry import (
     FEATURES as FEATURES,
@@ -50,23 +64,9 @@ from .registry import (
     recording_feature_names as recording_feature_names,
     recording_features as recording_features,
 )
-from .slip_drops import (
-    TorqueSlips as TorqueSlips,
-    torque_slips as torque_slips,
-)
-from .slip_pulses import (
-    Pulses as Pulses,
-    acoustic_slips as acoustic_slips,
-)
 from .sound_quality import (
     SoundQuality as SoundQuality,
     sound_quality_of as sound_quality_of,
-)
-from .spectra import (
-    SpectralShape as SpectralShape,
-    Spectrum as Spectrum,
-    autospectrum as autospectrum,
-    spectral_shape as spectral_shape,
 )
 from .transformer import (
     RecordingFeatures as RecordingFeatures,

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from features.band_features import BAND_FEATURES
-from features.prepared import ACOUSTIC_KINDS, prepare
-from features.spectral_features import SPECTRAL_FEATURES
-from features.stick_rate import stick_rate_of
-from features.temporal_features import TEMPORAL_FEATURES
-from features.torque_features import TORQUE_FEATURES
+from features.kernels.stick_rate import stick_rate_of
+from features.named.band_features import BAND_FEATURES
+from features.named.prepared import ACOUSTIC_KINDS, prepare
+from features.named.spectral_features import SPECTRAL_FEATURES
+from features.named.temporal_features import TEMPORAL_FEATURES
+from features.named.torque_features import TORQUE_FEATURES
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from features.feature import Feature
+    from features.named.feature import Feature
     from models.recording import Recording
     from models.rig import Rig
 

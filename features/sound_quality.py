@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from features.conditioning import checked_signal
+from features.kernels.conditioning import checked_signal
 from models.errors import ParameterError, not_installed
 
 if TYPE_CHECKING:

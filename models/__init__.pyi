@@ -1,21 +1,3 @@
-from .beams_exact import (
-    BeamResponse as BeamResponse,
-    forced_response as forced_response,
-    mode_shape as mode_shape,
-    natural_frequencies as natural_frequencies,
-)
-from .beams_fit import (
-    AnchorFit as AnchorFit,
-    fit_anchors as fit_anchors,
-)
-from .beams_stiffness import (
-    beam_length as beam_length,
-    torsional_stiffness as torsional_stiffness,
-)
-from .beams_waves import (
-    ClampOnBeams as ClampOnBeams,
-    RootMotion as RootMotion,
-)
 from .condition import (
     FIXED as FIXED,
     Condition as Condition,
@@ -25,19 +7,9 @@ from .errors import (
     ParameterError as ParameterError,
     RecordingError as RecordingError,
 )
-from .frf import (
-    Frf as Frf,
-)
-from .frf_file import (
-    read_frf as read_frf,
-    write_frf as write_frf,
-)
-from .measured import (
-    MeasuredResponse as MeasuredResponse,
-)
-from .plate import (
-    PlateModes as PlateModes,
-    plate_modes as plate_modes,
+from .radiation.sound_power_bands import (
+    BandPower as BandPower,
+    third_octave_power as third_octave_power,
 )
 from .recording import (
     CHANNEL_UNITS as CHANNEL_UNITS,
@@ -53,12 +25,40 @@ from .rig import (
     Plate as Plate,
     Rig as Rig,
 )
-from .rig_file import (
+from .rig_files.rig_file import (
     load_material_rig as load_material_rig,
     load_rig as load_rig,
     material_names as material_names,
 )
-from .sound_power_bands import (
-    BandPower as BandPower,
-    third_octave_power as third_octave_power,
+from .structure.beams_exact import (
+    BeamResponse as BeamResponse,
+    forced_response as forced_response,
+    mode_shape as mode_shape,
+    natural_frequencies as natural_frequencies,
+)
+from .structure.beams_fit import (
+    AnchorFit as AnchorFit,
+    fit_anchors as fit_anchors,
+)
+from .structure.beams_stiffness import (
+    beam_length as beam_length,
+    torsional_stiffness as torsional_stiffness,
+)
+from .structure.beams_waves import (
+    ClampOnBeams as ClampOnBeams,
+    RootMotion as RootMotion,
+)
+from .structure.plate import (
+    PlateModes as PlateModes,
+    plate_modes as plate_modes,
+)
+from .transfer_functions.files import (
+    read_frf as read_frf,
+    write_frf as write_frf,
+)
+from .transfer_functions.measured import (
+    MeasuredResponse as MeasuredResponse,
+)
+from .transfer_functions.transfer_function import (
+    Frf as Frf,
 )

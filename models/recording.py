@@ -176,11 +176,11 @@ class Recording:
         >>> tone.plot(ax=Figure().subplots()).get_ylabel()
         'Sound pressure [Pa]'
         """
-        from models.recording_view import draw_channel
+        from models.recording_display import draw_channel
 
         return draw_channel(self, channel, ax)
 
     def _repr_html_(self) -> str:
-        from models.recording_view import recording_html
+        from models.recording_display import recording_html
 
         return recording_html(self)

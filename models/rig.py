@@ -1,6 +1,6 @@
 """The test rig as plain data: what it is made of, where the sensors sit.
 
-Reading and checking rig files is the business of `models.rig_file`.
+Reading and checking rig files is the business of `models.rig_files.rig_file`.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, Plate
+from models.rig_files.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, Plate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from models.measured import MeasuredResponse
+    from models.transfer_functions.measured import MeasuredResponse
 
 __all__ = [
     "EDGES",

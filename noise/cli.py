@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from models.errors import BushingNoiseError
+from noise.base.progress import discard, note, say
 from noise.commands import COMMANDS, load_command
-from noise.progress import discard, note, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

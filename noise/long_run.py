@@ -65,7 +65,7 @@ def simulate_to_file(
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from noise.recordings import read_recording
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = simulate_to_file(

@@ -1,6 +1,10 @@
 from .acquisition import (
     Acquisition as Acquisition,
 )
+from .analysis.regime import (
+    Regime as Regime,
+    friction_regime as friction_regime,
+)
 from .bushing import (
     LumpedBushing as LumpedBushing,
     lumped_bushing as lumped_bushing,
@@ -8,10 +12,6 @@ from .bushing import (
 from .motion import (
     Motion as Motion,
     simulate_motion as simulate_motion,
-)
-from .regime import (
-    Regime as Regime,
-    friction_regime as friction_regime,
 )
 from .run import (
     Run as Run,

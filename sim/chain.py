@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import bilinear, fftconvolve, lfilter
 
-from models.modal import DECAY_EXPONENT
+from models.structure.modal import DECAY_EXPONENT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-    from models.response import Response
+    from models.radiation.impulse_responses import Response
     from sim.effects.effect import ActiveEffect
 
 __all__ = ["HIGHEST_SHARE", "changed_chain", "resonance", "through", "total"]
@@ -52,7 +52,7 @@ def changed_chain(
 
     Examples
     --------
-    >>> from models.response import Response
+    >>> from models.radiation.impulse_responses import Response
     >>> from sim.effects import EFFECTS
     >>> one = np.ones(1)
     >>> plain = Response(48e3, one, one, one, one)
@@ -133,7 +133,7 @@ def through(paths: Response, taps: NDArray[np.float64]) -> Response:
 
     Examples
     --------
-    >>> from models.response import Response
+    >>> from models.radiation.impulse_responses import Response
     >>> one = np.ones(1)
     >>> through(Response(48e3, one, one, one, one), np.array([1.0, 0.5])).torque_to_pressure
     array([1. , 0.5])

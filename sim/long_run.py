@@ -17,7 +17,7 @@ import numpy as np
 
 from models.condition import Condition
 from models.errors import ParameterError
-from models.radiation import response
+from models.radiation.rig_response import response
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation import Response
+    from models.radiation.rig_response import Response
     from models.recording import Channel
     from models.rig import Rig
     from sim.effects.effect import ActiveEffect, Effect
@@ -106,7 +106,7 @@ def simulate_blocks(
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> run = simulate_blocks(load_material_rig("PDMS"), 5.0, seconds=0.5, block_seconds=0.2)
     >>> run.n_samples, sum(block.shape[1] for block in run.blocks)
     (15000, 15000)

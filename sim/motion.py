@@ -10,10 +10,10 @@ import numpy as np
 
 from models.errors import ParameterError
 from sim.bushing import LumpedBushing, lumped_bushing
-from sim.contact_solver import MOST_HOOKS, Hook, solve_contact
 from sim.friction import friction_law
 from sim.parameters import resolve
-from sim.stick_slip import solve_stick_slip
+from sim.solvers.contact_solver import MOST_HOOKS, Hook, solve_contact
+from sim.solvers.stick_slip import solve_stick_slip
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -135,7 +135,7 @@ def simulate_motion(
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.shaft import ConstantSpeed
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> run = simulate_motion(rig, ConstantSpeed(1.0), interference=0.279e-3,

@@ -14,11 +14,11 @@ import numpy as np
 
 from models.errors import ParameterError
 from sim.bushing import lumped_bushing
-from sim.contact_solver import LONGEST_STEP, ContactRun
 from sim.friction import friction_law
 from sim.motion import Motion, _friction, _integral, _refuse_fast, _refuse_overflow, contact_hooks
 from sim.parameters import resolve
-from sim.stick_slip import advance_stick_slip, rest_state
+from sim.solvers.contact_solver import LONGEST_STEP, ContactRun
+from sim.solvers.stick_slip import advance_stick_slip, rest_state
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -90,7 +90,7 @@ def motion_blocks(
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.shaft import ConstantSpeed
     >>> blocks = motion_blocks(
     ...     load_material_rig("fluorocarbon-thesis"), ConstantSpeed(1.0), interference=0.279e-3,

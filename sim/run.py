@@ -11,7 +11,7 @@ import numpy as np
 
 from models.condition import Condition
 from models.errors import ParameterError
-from models.radiation import radiate, response
+from models.radiation.rig_response import radiate, response
 from models.recording import Channel, Recording
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
@@ -62,7 +62,7 @@ class Run:
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
     >>> run.motion.rate, run.pressure.shape
     (90000.0, (9000,))
@@ -97,17 +97,17 @@ class Run:
         Examples
         --------
         >>> from matplotlib.figure import Figure
-        >>> from models.rig_file import load_material_rig
+        >>> from models.rig_files.rig_file import load_material_rig
         >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
         >>> run.plot(Figure().subplots()).get_title("left")
         'PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s'
         """
-        from sim.run_view import draw_torques
+        from sim.run_display import draw_torques
 
         return draw_torques(self, ax, start=start, end=end)
 
     def _repr_html_(self) -> str:
-        from sim.run_view import run_html
+        from sim.run_display import run_html
 
         return run_html(self)
 
@@ -161,7 +161,7 @@ def simulate(
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
     >>> run.recording.channel_names, run.recording.samples.shape
     (('torque', 'acceleration', 'pressure', 'angle'), (4, 3000))

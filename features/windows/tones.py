@@ -2,7 +2,7 @@
 
 A bin is 3.9 Hz wide and three overlapping spectra of a quarter of a second are averaged, so that a
 squawk of 100 Hz shows each of its harmonics. What stands 10 dB above its surroundings and falls to
-either side before the next rises is a line, as in `features.lines`.
+either side before the next rises is a line, as in `features.kernels.lines`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from scipy import fft
 
-from features.bands import a_weighting
+from features.kernels.bands import a_weighting
 from features.windows.lines import (
     BLOCK,
     FIRST,

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import fft
 
-from features.conditioning import USABLE_SHARE, WORKING_LIMIT
+from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,8 +11,8 @@ import math
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
-from features.bands import NOMINAL_THIRD_OCTAVES
-from features.levels import SoundLevels, sound_levels
+from features.kernels.bands import NOMINAL_THIRD_OCTAVES
+from features.kernels.levels import SoundLevels, sound_levels
 from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from noise.atomic import atomic
 from noise.audio.gain import least_full_scale
 from noise.audio.sound import pressure_channel
 from noise.audio.wav import BITS, largest_sample, wav_bytes, with_full_scale
+from noise.base.atomic import atomic
 from noise.recordings.sidecar import sidecar_text
 
 if TYPE_CHECKING:

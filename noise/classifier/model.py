@@ -1,7 +1,7 @@
 """The classifier: features of windows in, probabilities of the five labels out.
 
 Trained on simulation alone, it ships with the package (``data/classifier.npz``); how it is
-trained is the business of `noise.classifier.training`.
+trained is the business of `noise.training.classifier.fit`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from models.errors import ParameterError
-from noise.atomic import atomic
+from noise.base.atomic import atomic
 from noise.classifier.calibration import Calibration
 from noise.classifier.trees import Trees
 

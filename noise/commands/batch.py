@@ -13,9 +13,9 @@ from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from noise.base.progress import counted, note, say, track
+from noise.base.tables import check_table_path, write_table
 from noise.commands.targets import check_target
-from noise.progress import counted, note, say, track
-from noise.tables import check_table_path, write_table
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace

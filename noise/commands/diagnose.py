@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.progress import say
 from noise.commands import options as opt
 from noise.commands.targets import check_target
-from noise.progress import say
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -58,7 +58,7 @@ def run(options: Namespace) -> int:
             raise ParameterError(f"--out {options.out}: is a file; name a folder")
         check_target(options.out / "report.html")
     say("preparing")
-    from models.rig_file import load_rig
+    from models.rig_files.rig_file import load_rig
     from noise.commands.user_effects import effect_library
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import diagnose_case
@@ -76,7 +76,7 @@ def run(options: Namespace) -> int:
 
         print(json.dumps(as_json(diagnosis), indent=2))
     else:
-        from noise.report.diagnosis_page import write_diagnosis
+        from noise.pages.diagnosis.page import write_diagnosis
 
         write_diagnosis(options.out, diagnosis)
         print(options.out / "report.html")

@@ -83,7 +83,7 @@ class Featuring:
 
 def _pitch(recording: Recording) -> dict[str, float]:
     """Pitch of the first pressure channel."""
-    from features.pitch import pitch_track
+    from features.kernels.pitch import pitch_track
 
     row = recording.first("pressure")
     if row is None:

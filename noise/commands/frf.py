@@ -10,18 +10,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
-from noise.atomic import atomic
+from noise.base.atomic import atomic
+from noise.base.progress import counted, note, say, track
+from noise.base.tables import check_table_path, write_table
 from noise.commands import options as opt
 from noise.commands.targets import check_target
-from noise.progress import counted, note, say, track
-from noise.tables import check_table_path, write_table
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
-    from features.hammer import Hit, TransferEstimate
-    from features.modal_fit import Modes
-    from models.frf import Frf
+    from features.modal.hammer import Hit, TransferEstimate
+    from features.modal.modal_fit import Modes
+    from models.transfer_functions.transfer_function import Frf
 
 __all__ = ["configure", "run"]
 
@@ -119,14 +119,14 @@ def run(options: Namespace) -> int:
     say(f"{counted(len(hits), 'hit')} averaged, {refused} refused")
     if not hits:
         return 1
-    from features.hammer import transfer_estimate
+    from features.modal.hammer import transfer_estimate
 
     estimate = transfer_estimate(hits)
     frf = _chosen(estimate, options, unit)
     _tell_coherence(frf, options.coherence)
     modes = None
     if options.modes is not None:
-        from features.modal_fit import fit_modes
+        from features.modal.modal_fit import fit_modes
 
         say("fitting modes")
         low, high = options.band or _default_band(frf)
@@ -138,7 +138,7 @@ def run(options: Namespace) -> int:
 
 
 def _check(options: Namespace) -> None:
-    from models.frf_file import check_frf_path
+    from models.transfer_functions.files import check_frf_path
 
     for path in options.hits:
         if not path.exists():
@@ -155,8 +155,8 @@ def _check(options: Namespace) -> None:
 
 def _read(options: Namespace) -> tuple[list[Hit], str, int]:
     """Usable hits, cut to the same length, the unit of the response, and how many were refused."""
-    from features.hammer import Hit, check_hit
-    from noise.hits import read_hit
+    from features.modal.hammer import Hit, check_hit
+    from noise.recordings.hits import read_hit
 
     hits: list[Hit] = []
     units: list[str] = []
@@ -190,7 +190,7 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
 
 
 def _chosen(estimate: TransferEstimate, options: Namespace, unit: str) -> Frf:
-    from models.frf import Frf
+    from models.transfer_functions.transfer_function import Frf
 
     return Frf(
         estimate.frequency,
@@ -206,7 +206,7 @@ def _tell_coherence(frf: Frf, least: float) -> None:
     if frf.coherence is None:
         note("a single hit has no coherence; hit at least three times to see what can be trusted")
         return
-    from models.frf import bands_below
+    from models.transfer_functions.transfer_function import bands_below
 
     bands = bands_below(frf, least)
     if not bands:
@@ -221,14 +221,14 @@ def _tell_coherence(frf: Frf, least: float) -> None:
 
 
 def _default_band(frf: Frf) -> tuple[float, float]:
-    from models.frf import trusted_band
+    from models.transfer_functions.transfer_function import trusted_band
 
     return trusted_band(frf)
 
 
 def _write(options: Namespace, frf: Frf, modes: Modes | None) -> None:
     """All outputs, whole or not at all."""
-    from models.frf_file import write_frf, write_frf_csv
+    from models.transfer_functions.files import write_frf, write_frf_csv
 
     with ExitStack() as outputs:
         if options.out is not None:

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
+from noise.base.progress import note, say
 from noise.commands import options as opt
 from noise.commands.user_effects import effect_library
-from noise.progress import note, say
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -142,7 +142,7 @@ def _or(given: float | None, default: float) -> float:
 
 
 def _rig(options: Namespace, library: Mapping[str, Effect]) -> Rig:
-    from models.rig_file import load_material_rig, load_rig
+    from models.rig_files.rig_file import load_material_rig, load_rig
 
     if options.rig is None:
         try:

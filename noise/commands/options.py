@@ -244,7 +244,7 @@ def _support_stiffness(text: str) -> float:
 
 def _effect(text: str) -> LawSpec:
     from models.errors import ParameterError
-    from models.rig_file import parse_spec
+    from models.rig_files.rig_file import parse_spec
 
     try:
         return parse_spec(text)
@@ -253,6 +253,6 @@ def _effect(text: str) -> LawSpec:
 
 
 def _materials() -> tuple[str, ...]:
-    from models.rig_file import material_names
+    from models.rig_files.rig_file import material_names
 
     return material_names()

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
+from noise.base.progress import counted, note, say, track
 from noise.commands import options as opt
 from noise.commands.targets import check_target
-from noise.progress import counted, note, say, track
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -210,8 +210,8 @@ def _keep_inputs(out: Path, sources: list[Source], plans: list[_Plan]) -> None:
 
 def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> int:
     from noise.audio.rendering import COLUMNS, render, survey
+    from noise.base.tables import write_table
     from noise.commands.render_gain import full_scales
-    from noise.tables import write_table
 
     surveys: dict[str, Survey] = {}
     refused: dict[str, str] = {}

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from noise.base.progress import counted, note, say
 from noise.commands import options as opt
 from noise.commands.targets import check_target
-from noise.progress import counted, note, say
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -87,7 +87,7 @@ def configure(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the page."""
-    from noise.report.review.build import page_path, review
+    from noise.pages.review.build import page_path, review
 
     target = page_path(options.out)
     check_target(target)

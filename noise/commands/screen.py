@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.progress import say
 from noise.commands import options as opt
 from noise.commands.targets import check_target
-from noise.progress import say
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
     from collections.abc import Callable
 
-    from noise.screening.design import Swinging, Use
+    from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
 
 __all__ = ["configure", "run"]
@@ -24,7 +24,7 @@ __all__ = ["configure", "run"]
 
 def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
-    from noise.screening.environments import environment_names
+    from noise.screening.design.environments import environment_names
 
     parser.description = (
         "Screen bushing designs before tooling: map which noise occurs where over speed, "
@@ -126,7 +126,7 @@ def run(options: Namespace) -> int:
     import numpy as np
 
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
-    from noise.screening.tables import summary_lines
+    from noise.screening.tables.tables import summary_lines
 
     simulations = options.simulations or DEFAULT_SIMULATIONS
     found = screen(
@@ -151,9 +151,9 @@ def run(options: Namespace) -> int:
 
 
 def _given(options: Namespace) -> Use:
-    from noise.screening.axes import text_values
-    from noise.screening.design import SPEED_STEP, Use
-    from noise.screening.tolerances import ABSOLUTE_ZERO
+    from noise.screening.design.design import SPEED_STEP, Use
+    from noise.screening.design.tolerances import ABSOLUTE_ZERO
+    from noise.screening.map.axes import text_values
 
     def read(option: str, text: str | None, **more: object) -> tuple[float, ...]:
         values: Callable[..., tuple[float, ...]] = text_values
@@ -174,8 +174,8 @@ def _given(options: Namespace) -> Use:
 
 
 def _swinging(text: str) -> Swinging:
-    from noise.screening.axes import text_values
-    from noise.screening.design import FREQUENCY_STEP, Swinging
+    from noise.screening.design.design import FREQUENCY_STEP, Swinging
+    from noise.screening.map.axes import text_values
 
     degrees, comma, frequency = text.partition(",")
     if not comma:
@@ -189,11 +189,11 @@ def _swinging(text: str) -> Swinging:
 
 
 def _write(folder: Path, found: Screening) -> None:
+    from noise.base.tables import write_table
     from noise.pictures.files import write_picture
     from noise.pictures.screening import plot_screen
-    from noise.screening import parts_tables as parts, tables
-    from noise.screening.design_files import copy_design_file
-    from noise.tables import write_table
+    from noise.screening.design.design_files import copy_design_file
+    from noise.screening.tables import parts_tables as parts, tables
 
     contents = {
         "map.csv": (tables.MAP_COLUMNS, tables.map_rows(found)),

@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
+from noise.base.progress import counted, say, track
 from noise.commands import options as opt
 from noise.commands.targets import check_target
-from noise.progress import counted, say, track
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
     from collections.abc import Iterable, Mapping, Sequence
 
     from noise.classifier import Classifier
-    from noise.classifier.own_samples import OwnSample
+    from noise.training.classifier.own_samples import OwnSample
 
     _Sample = TypeVar("_Sample")
 
@@ -89,7 +89,7 @@ def run(options: Namespace) -> int:
         say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
     print(options.out)
     if options.inference is not None:
-        from noise.inference.training import train_inference
+        from noise.training.inference.fit import train_inference
 
         train_inference(seed=options.seed, progress=_progress).save(options.inference)
         print(options.inference)
@@ -97,7 +97,7 @@ def run(options: Namespace) -> int:
 
 
 def _trained(seed: int, n_samples: int | None, added: Sequence[OwnSample]) -> Classifier:
-    from noise.classifier.training import train
+    from noise.training.classifier.fit import train
 
     if n_samples is None:
         return train(seed=seed, added=added, progress=_progress)
@@ -121,8 +121,8 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     """Return the user's own samples, and whether something was refused, which is then named."""
     if not folders:
         return [], False
-    from noise.classifier.own_recordings import read_labelled
-    from noise.classifier.own_samples import own_samples
+    from noise.training.classifier.own_recordings import read_labelled
+    from noise.training.classifier.own_samples import own_samples
 
     for folder in folders:
         if not folder.is_dir():

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
-from noise.diagnosis.reconstruction import LEAD, TAIL
+from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:

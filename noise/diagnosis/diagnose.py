@@ -10,21 +10,21 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.equivalence import equivalent_pairs, next_measurement
-from noise.diagnosis.fits import with_fits
-from noise.diagnosis.floor import case_gap
-from noise.diagnosis.location import differences, locate, stage_findings
+from noise.diagnosis.causes.equivalence import equivalent_pairs, next_measurement
+from noise.diagnosis.causes.location import differences, locate, stage_findings
+from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.causes.verdict import verdict_of
+from noise.diagnosis.evidence.summary import case_table
+from noise.diagnosis.fit.fits import with_fits
+from noise.diagnosis.gap.floor import case_gap
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
-from noise.diagnosis.posterior import load_posterior
-from noise.diagnosis.summary import case_table
-from noise.diagnosis.verdict import verdict_of
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from noise.diagnosis.case import Case
-    from noise.diagnosis.posterior import Posterior
+    from noise.diagnosis.causes.posterior import Posterior
     from sim.effects.effect import Effect
 
 __all__ = ["diagnose_case"]

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from models.recording import Recording
-    from noise.diagnosis.contact_course import ContactCourses
+    from noise.diagnosis.evidence.contact_course import ContactCourses
 
 __all__ = [
     "Diagnosis",
@@ -202,12 +202,12 @@ class Diagnosis:
         -------
         matplotlib.axes.Axes
         """
-        from noise.diagnosis.shown import draw_causes
+        from noise.diagnosis.text.diagnosis_display import draw_causes
 
         return draw_causes(self, ax)
 
     def _repr_html_(self) -> str:
-        from noise.diagnosis.shown import diagnosis_html
+        from noise.diagnosis.text.diagnosis_display import diagnosis_html
 
         return diagnosis_html(self)
 

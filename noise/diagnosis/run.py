@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models.rig_file import load_rig
+from models.rig_files.rig_file import load_rig
 from noise.diagnosis.case import read_case
 from noise.diagnosis.diagnose import diagnose_case
 from noise.diagnosis.outcome import as_json

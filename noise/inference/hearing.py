@@ -1,8 +1,9 @@
 """What lies between a bushing and the recordings that the inferred intervals hold for.
 
-Room, microphone and noise are simpler here than the classifier's (`noise.classifier.hearing`): to
-be called by its name a sound has to be known through a telephone too, but an interval of 90 % is a
-statement about one population, and stays what it was when the classifier learns to hear more.
+Room, microphone and noise are simpler here than the classifier's
+(`noise.training.classifier.augmentation`): to be called by its name a sound has to be known through
+a telephone too, but an interval of 90 % is a statement about one population, and stays what it was
+when the classifier learns to hear more.
 """
 
 from __future__ import annotations

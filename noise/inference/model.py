@@ -8,7 +8,7 @@ bolted clamp, which is a place by itself, needs no treatment of its own. Where s
 tell more by themselves than all together, as the torque does of the interference, those are asked.
 An interval hardly narrower than what is known beforehand tells nothing, and is none.
 
-What the intervals hold for is written down in `noise.inference.population`.
+What the intervals hold for is written down in `noise.training.inference.population`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.html_table import html_table
-from noise.atomic import atomic
+from noise.base.atomic import atomic
 from noise.inference.described import KINDS, described, n_described, of_subset, subset_of
 from noise.inference.quantile_forest import QuantileForest
 from noise.inference.quantities import QUANTITIES, places, value_at
@@ -267,7 +267,7 @@ def load_inference(path: str | Path | None = None) -> Inference:
 
 @lru_cache(maxsize=1)
 def _shipped() -> Inference:
-    with resources.as_file(resources.files("noise.classifier") / "data" / "conditions.npz") as path:
+    with resources.as_file(resources.files("noise.inference") / "data" / "conditions.npz") as path:
         return _load(path)
 
 

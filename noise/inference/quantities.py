@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import FIXED
-from noise.inference.population import INTERFERENCE_RANGE, SPEED_RANGE, SUPPORT_RANGE
+from noise.training.inference.population import INTERFERENCE_RANGE, SPEED_RANGE, SUPPORT_RANGE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

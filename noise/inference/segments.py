@@ -8,7 +8,7 @@ from features.registry import recording_features
 from noise.inference.described import KINDS
 from noise.inference.hearing import RATES
 from noise.inference.model import Inferred
-from noise.inference.population import LONGEST_LOOK, MATERIAL, SHORTEST_LOOK
+from noise.training.inference.population import LONGEST_LOOK, MATERIAL, SHORTEST_LOOK
 
 if TYPE_CHECKING:
     from models.condition import Condition
@@ -41,7 +41,7 @@ def infer_stretch(
     Examples
     --------
     >>> from models.condition import Condition
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from noise.inference import load_inference
     >>> from noise.recordings.blocks import RecordingBlocks
     >>> from sim.run import simulate

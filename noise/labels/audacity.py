@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
-from noise.atomic import atomic
+from noise.base.atomic import atomic
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -136,7 +136,7 @@ def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
 
 
 def map_rows(places: Sequence[Place]) -> list[dict[str, object]]:
-    """Return the map as rows of `MAP_COLUMNS`, for `noise.tables.write_table`."""
+    """Return the map as rows of `MAP_COLUMNS`, for `noise.base.tables.write_table`."""
     rows = []
     for place in places:
         row: dict[str, object] = {"material": place.material}

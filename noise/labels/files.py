@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.batch import find_jobs, perform_all
 from noise.labels.labelling import Labelling
-from noise.labels.shown import LabelTable
+from noise.labels.table_display import LabelTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,7 +57,7 @@ def label(
     Examples
     --------
     >>> import tempfile
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from noise.recordings import write_recording
     >>> from sim.run import simulate
     >>> silent = simulate(load_material_rig("PDMS"), 5.0).recording

@@ -12,9 +12,9 @@ import math
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
+from noise.base.tables import check_table_path
 from noise.classifier import LABELS
 from noise.labels.table import COLUMNS
-from noise.tables import check_table_path
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -16,8 +16,8 @@ from noise.classifier.model import LABELS
 from noise.labels.boundaries import change_points
 from noise.labels.frequencies import segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
-from noise.labels.shown import Segments
-from noise.labels.smoothing import named_course
+from noise.labels.table_display import Segments
+from noise.labels.viterbi import named_course
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings.blocks import RecordingBlocks
 
@@ -103,7 +103,7 @@ def label_recording(
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from noise.classifier import load_classifier
     >>> from sim.run import simulate
     >>> silent = simulate(load_material_rig("PDMS"), 5.0).recording

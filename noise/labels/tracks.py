@@ -53,7 +53,7 @@ def draw_tracks(
     """
     from matplotlib.patches import Patch
 
-    from noise.labels.looks import DARK_LABELS, LABEL_COLOURS
+    from noise.labels.label_display import DARK_LABELS, LABEL_COLOURS
 
     stretches = [stretch for of_one in tracks.values() for stretch in of_one]
     if not stretches:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.conditioning import USABLE_SHARE, WORKING_LIMIT
-from features.prepared import ACOUSTIC_KINDS
+from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
+from features.named.prepared import ACOUSTIC_KINDS
 from features.registry import feature_names, feature_vector
 from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_page, window_count
 from features.windows.working import FRAME_RATE, MARGIN, RATE, block_length, working_block

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.slip_drops import torque_slips
+from features.kernels.slip_drops import torque_slips
 from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, rig_of
-from sim.critical_damping import with_damping
+from sim.analysis.critical_damping import with_damping
+from sim.analysis.thesis_listing import STEP
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
-from sim.thesis_listing import STEP
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

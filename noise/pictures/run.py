@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.spectra import autospectrum
+from features.kernels.spectra import autospectrum
+from noise.pages.traces import KINDS
 from noise.pictures.axes import (
     BLUE,
     GREY,
@@ -25,8 +26,7 @@ from noise.pictures.axes import (
     thinned,
 )
 from noise.pictures.window import Window, run_window
-from noise.report.traces import KINDS
-from sim.run_view import torque_curves
+from sim.run_display import torque_curves
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from sim.motion import Motion
     from sim.run import Run
-    from sim.run_view import Curve
+    from sim.run_display import Curve
 
 __all__ = ["condition_words", "plot_run"]
 
@@ -81,7 +81,7 @@ def plot_run(run: Run) -> Figure:
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> figure = plot_run(simulate(load_material_rig("fluorocarbon-thesis"), 1.0, seconds=0.2))
     >>> figure.get_suptitle()
@@ -102,7 +102,7 @@ def condition_words(condition: Condition, motion: Motion) -> str:
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> from sim.shaft import SpeedRamp
     >>> run = simulate(load_material_rig("PDMS"), SpeedRamp(0.0, 5.0, 0.1), seconds=0.1)

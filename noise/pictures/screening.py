@@ -16,17 +16,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from models.drawing import axes_or_new
-from noise.labels.looks import LABEL_COLOURS
+from noise.labels.label_display import LABEL_COLOURS
 from noise.pictures.axes import new_figure, styled
 from noise.pictures.speeds import support_words
-from sim.regime import Regime
+from sim.analysis.regime import Regime
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from noise.screening.mapping import DesignMap
+    from noise.screening.map.mapping import DesignMap
 
 __all__ = ["plot_map", "plot_screen"]
 
@@ -53,7 +53,7 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
 
     Examples
     --------
-    >>> from noise.screening.design import Use
+    >>> from noise.screening.design.design import Use
     >>> from noise.screening.screen import screen
     >>> one = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
     >>> [axes.get_title("left") for axes in plot_screen(one.maps[0]).axes[:1]]

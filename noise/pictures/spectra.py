@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.spectra import autospectrum
+from features.kernels.spectra import autospectrum
 from noise.pictures.axes import (
     BLUE,
     GREY,

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.lines import find_lines
-from features.spectra import autospectrum
+from features.kernels.lines import find_lines
+from features.kernels.spectra import autospectrum
 from noise.pictures.window import oscillates, repetition_rate
-from sim.sweep import Sweep
+from sim.analysis.sweep import Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -94,7 +94,7 @@ def sweep_torque(
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> sweep = sweep_torque(rig, [1.0, 2.5], interference=0.279e-3, support_stiffness=[3745.0])
     >>> sweep.slip_frequency.round(), sweep.mean.round(1)

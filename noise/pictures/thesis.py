@@ -30,8 +30,8 @@ from noise.thesis.runs import (
     listing_stick_share,
     rig_of,
 )
-from sim.critical_damping import critical_damping, largest_sticking
-from sim.regime import LEAST_STICK
+from sim.analysis.critical_damping import critical_damping, largest_sticking
+from sim.analysis.regime import LEAST_STICK
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.harmonics import analyse_harmonics
-from features.slip_drops import torque_slips
-from sim.regime import LEAST_OSCILLATION
+from features.kernels.harmonics import analyse_harmonics
+from features.kernels.slip_drops import torque_slips
+from sim.analysis.regime import LEAST_OSCILLATION
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -56,7 +56,7 @@ def run_window(run: Run) -> Window:
 
     Examples
     --------
-    >>> from models.rig_file import load_material_rig
+    >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("fluorocarbon-thesis"), 1.0, support_stiffness=3745.0)
     >>> window = run_window(run)
@@ -112,5 +112,5 @@ def repetition_rate(torque: NDArray[np.floating], rate: float) -> float | None:
 
 
 def oscillates(torque: NDArray[np.floating]) -> bool:
-    """Whether a torque oscillates, as `sim.regime` has it."""
+    """Whether a torque oscillates, as `sim.analysis.regime` has it."""
     return bool(np.std(torque) > LEAST_OSCILLATION * abs(np.mean(torque)))

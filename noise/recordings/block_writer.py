@@ -13,9 +13,9 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.recording import Recording
-from noise.atomic import atomic
+from noise.base.atomic import atomic
 from noise.recordings.files import MIN_SAMPLES, _wav_path
-from noise.recordings.float_wav import float_wav_header
+from noise.recordings.formats.float_wav import float_wav_header
 from noise.recordings.sidecar import sidecar_text
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ import soundfile
 
 from models.errors import RecordingError
 from models.recording import Channel, Recording
-from noise.recordings.bext import bext_description, missing_bytes
 from noise.recordings.files import MIN_SAMPLES
+from noise.recordings.formats.bext import bext_description, missing_bytes
 from noise.recordings.meaning import check_finite, describe
 from noise.recordings.readers import READERS, RawSamples
 
@@ -173,7 +173,9 @@ def open_blocks(
 def _opened(path: Path) -> Any:
     """Return a large sound file that is sound, opened; None for any other."""
     try:
-        if not READERS.get(path.suffix.lower(), "").startswith("noise.recordings.sound_file:"):
+        if not READERS.get(path.suffix.lower(), "").startswith(
+            "noise.recordings.formats.sound_file:"
+        ):
             return None
         if missing_bytes(path):
             return None

@@ -13,8 +13,8 @@ import numpy as np
 
 from models.errors import ParameterError, RecordingError
 from models.recording import Recording
-from noise.atomic import atomic
-from noise.recordings.float_wav import write_float_wav
+from noise.base.atomic import atomic
+from noise.recordings.formats.float_wav import write_float_wav
 from noise.recordings.meaning import check_finite, chosen_rows, describe
 from noise.recordings.readers import READERS, read_raw
 from noise.recordings.sidecar import sidecar_text

@@ -23,7 +23,7 @@ import numpy as np
 
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel
-from noise.recordings.full_scale import stated_full_scale
+from noise.recordings.formats.full_scale import stated_full_scale
 from noise.recordings.sidecar import Sidecar, find_sidecar, read_sidecar
 
 if TYPE_CHECKING:

@@ -63,11 +63,11 @@ class RawSamples:
 
 Reader = Callable[[Path], RawSamples]
 
-_SOUND = "noise.recordings.sound_file:read_sound_file"
-_HDF5 = "noise.recordings.hdf5_file:read_hdf5_file"
-_MDF = "noise.recordings.mdf_file:read_mdf_file"
-_TDMS = "noise.recordings.tdms_file:read_tdms_file"
-_UNIVERSAL = "noise.recordings.universal_file:read_universal_file"
+_SOUND = "noise.recordings.formats.sound_file:read_sound_file"
+_HDF5 = "noise.recordings.formats.hdf5_file:read_hdf5_file"
+_MDF = "noise.recordings.formats.mdf_file:read_mdf_file"
+_TDMS = "noise.recordings.formats.tdms_file:read_tdms_file"
+_UNIVERSAL = "noise.recordings.formats.universal_file:read_universal_file"
 
 READERS = {
     ".aif": _SOUND,

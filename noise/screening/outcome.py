@@ -6,17 +6,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.screening.environments import DRY
+from noise.screening.design.environments import DRY
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.axes import Axes
 
-    from noise.screening.mapping import DesignMap
-    from noise.screening.margins import CriticalPoint
-    from noise.screening.ranking import Standing
-    from noise.screening.statistics import Statistics
+    from noise.screening.map.mapping import DesignMap
+    from noise.screening.parts.statistics import Statistics
+    from noise.screening.ranking.margins import CriticalPoint
+    from noise.screening.ranking.ranking import Standing
 
 __all__ = ["Screening"]
 
@@ -44,7 +44,7 @@ class Screening:
 
     Examples
     --------
-    >>> from noise.screening.design import Use
+    >>> from noise.screening.design.design import Use
     >>> from noise.screening.screen import screen
     >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
     >>> found.refused, found.standings[0].shares["none"], found.statistics_of("PDMS").risk
@@ -112,7 +112,7 @@ class Screening:
         Examples
         --------
         >>> from matplotlib.figure import Figure
-        >>> from noise.screening.design import Use
+        >>> from noise.screening.design.design import Use
         >>> from noise.screening.screen import screen
         >>> found = screen(["PDMS"], Use(speed=(1.0, 9.0), support_stiffness=(2214.0,)))
         >>> found.plot(Figure().subplots()).get_ylabel()
@@ -128,7 +128,7 @@ class Screening:
 
     def _repr_html_(self) -> str:
         """Show the ranking."""
-        from noise.screening.shown import screening_html
+        from noise.screening.tables.screening_display import screening_html
 
         return screening_html(self)
 

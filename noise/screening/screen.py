@@ -15,21 +15,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
-from noise.screening.batches import judging
-from noise.screening.design import Design, Swinging, Use, load_design
-from noise.screening.environments import DRY, environment, in_environment
-from noise.screening.grid import grid_of
-from noise.screening.mapping import map_design
-from noise.screening.margins import critical_points
+from noise.screening.design.design import Design, Swinging, Use, load_design
+from noise.screening.design.environments import DRY, environment, in_environment
+from noise.screening.map.batches import judging
+from noise.screening.map.grid import grid_of
+from noise.screening.map.mapping import map_design
 from noise.screening.outcome import Screening
-from noise.screening.ranking import standings
-from noise.screening.statistics import statistics_of
+from noise.screening.parts.statistics import statistics_of
+from noise.screening.ranking.margins import critical_points
+from noise.screening.ranking.ranking import standings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from noise.screening.batches import Judge
-    from noise.screening.mapping import DesignMap
+    from noise.screening.map.batches import Judge
+    from noise.screening.map.mapping import DesignMap
 
 __all__ = ["DEFAULT_SIMULATIONS", "screen"]
 
@@ -60,7 +60,7 @@ def screen(
         Conditions of the maps, in place of the designs' own; with speeds alone, or with a swing
         alone, only that is mapped.
     environments : sequence of str
-        Of `noise.screening.environments`.
+        Of `noise.screening.design.environments`.
     loudness : bool
         Whether to tell loudness as well; needs the extra ``sound-quality``.
     tolerances : bool, optional
@@ -200,7 +200,7 @@ def _mapped(
     grid = grid_of(design, given, where=where, swinging=swinging)
     found = map_design(rig, grid, judge, design=design.name, environment=where, most=simulations)
     if loudness:
-        from noise.screening.loudness import with_loudness
+        from noise.screening.map.loudness import with_loudness
 
         found = with_loudness(found, rig)
     return found

@@ -6,7 +6,7 @@ import math
 
 from noise.thesis.row import Column, Row, between, number
 from sim.acquisition import CONVERTER_GAIN
-from sim.thesis_listing import STEP
+from sim.analysis.thesis_listing import STEP
 
 __all__ = ["converter", "lengths"]
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from models.beams_fit import AnchorFit, fit_anchors
-from models.beams_stiffness import torsional_stiffness
+from models.structure.beams_fit import AnchorFit, fit_anchors
+from models.structure.beams_stiffness import torsional_stiffness
 from noise.thesis.modes import clamp_on_beams
 from noise.thesis.row import Row, number
 from noise.thesis.runs import LONG, SHORT, THESIS, rig_of

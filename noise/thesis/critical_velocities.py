@@ -20,9 +20,9 @@ from noise.thesis.runs import (
     rig_of,
     stick_share,
 )
-from sim.critical_damping import with_damping
-from sim.critical_speeds import SPEEDS, critical_speeds, stick_slip_ranges
-from sim.regime import LEAST_STICK
+from sim.analysis.critical_damping import with_damping
+from sim.analysis.critical_speeds import SPEEDS, critical_speeds, stick_slip_ranges
+from sim.analysis.regime import LEAST_STICK
 
 __all__ = ["MEASURED", "contradiction", "simulated", "transitions"]
 

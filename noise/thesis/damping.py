@@ -13,8 +13,8 @@ from noise.thesis.runs import (
     rig_of,
     stick_share,
 )
-from sim.critical_damping import critical_damping, largest_sticking
-from sim.regime import LEAST_STICK
+from sim.analysis.critical_damping import critical_damping, largest_sticking
+from sim.analysis.regime import LEAST_STICK
 
 __all__ = ["critical", "measured"]
 

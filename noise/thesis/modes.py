@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.beams import beam_structure
-from models.beams_exact import natural_frequencies
-from models.beams_waves import ClampOnBeams, RootMotion
+from models.structure.beams import beam_structure
+from models.structure.beams_exact import natural_frequencies
+from models.structure.beams_waves import ClampOnBeams, RootMotion
 from noise.thesis.row import Row, number
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, strongest_line
 from sim.bushing import lumped_bushing

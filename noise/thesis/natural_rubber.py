@@ -13,7 +13,7 @@ from noise.thesis.runs import (
     strongest_line,
     strongest_share,
 )
-from sim.regime import LEAST_OSCILLATION
+from sim.analysis.regime import LEAST_OSCILLATION
 
 __all__ = ["natural_rubber"]
 

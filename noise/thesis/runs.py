@@ -14,25 +14,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.harmonics import analyse_harmonics
-from features.lines import find_lines
-from features.slip_drops import torque_slips
-from features.spectra import autospectrum
+from features.kernels.harmonics import analyse_harmonics
+from features.kernels.lines import find_lines
+from features.kernels.slip_drops import torque_slips
+from features.kernels.spectra import autospectrum
 from models.condition import FIXED
-from models.rig_file import load_material_rig
-from sim.critical_damping import with_damping
+from models.rig_files.rig_file import load_material_rig
+from sim.analysis.critical_damping import with_damping
+from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime
+from sim.analysis.thesis_listing import STEP, run_listing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
-from sim.regime import LEAST_OSCILLATION, Regime, friction_regime
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
-from sim.thesis_listing import STEP, run_listing
 
 if TYPE_CHECKING:
     from models.rig import Rig
+    from sim.analysis.thesis_listing import ListingRun
     from sim.motion import Motion
-    from sim.thesis_listing import ListingRun
 
 __all__ = [
     "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "acceleration", "listing_peak_speed",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from models.beams_stiffness import torsional_stiffness
-from models.shaft import fixed_free_frequencies, free_free_frequencies
+from models.structure.beams_stiffness import torsional_stiffness
+from models.structure.shaft import fixed_free_frequencies, free_free_frequencies
 from noise.thesis.row import Row, number
 from noise.thesis.runs import LONG, SHORT, THESIS, rig_of
 

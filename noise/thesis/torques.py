@@ -20,7 +20,7 @@ from noise.thesis.runs import (
     peak_speed,
     rig_of,
 )
-from sim.regime import LEAST_OSCILLATION
+from sim.analysis.regime import LEAST_OSCILLATION
 from sim.run import simulate
 
 __all__ = ["creak", "first_slip", "friction", "peaks", "silicone"]

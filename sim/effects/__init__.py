@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from sim.effects.effect import Effect
-from sim.library import Library
+from sim.registry import Library
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -18,7 +18,7 @@ At amount zero there is none of them. The torque is what it was: the contact doe
 With the clamp bolted to the baseplate there are no beams, and nothing changes. The defaults of r
 and m are assumed: a third of the first torsional mode's constant, half of a beam's mass.
 
->>> from models.response import Response
+>>> from models.radiation.impulse_responses import Response
 >>> none, one = np.zeros(1), np.ones(1)
 >>> values = {"amount": 1.0, "frequency": 4500.0, "damping_ratio": 0.01, "constant": 2.0,
 ...           "anchor_mass": 0.04}
@@ -41,7 +41,7 @@ from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from models.response import Response
+    from models.radiation.impulse_responses import Response
     from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from models.response import Response
+    from models.radiation.impulse_responses import Response
     from models.rig import LawSpec
     from sim.motion import Motion
     from sim.parameters import Parameter

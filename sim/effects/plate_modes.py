@@ -15,7 +15,7 @@ each of peak 1, so that amount a = 1 doubles the sound at a lonely resonance (6 
 
 At amount zero there is none of them.
 
->>> from models.response import Response
+>>> from models.radiation.impulse_responses import Response
 >>> one = np.ones(1)
 >>> values = {"amount": 1.0, "frequency": 1000.0, "damping_ratio": 0.015, "spacing": 400.0}
 >>> rung = _chain(Response(96e3, one, one, one, one), "single", values, np.random.default_rng(0))
@@ -37,7 +37,7 @@ from sim.parameters import Parameter
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from models.response import Response
+    from models.radiation.impulse_responses import Response
     from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]

@@ -15,7 +15,7 @@ alpha = 1 - exp(-0.161 V / (T S)) (Eyring 1930, J. Acoust. Soc. Am. 1, 217), at 
 Levels are relative to the direct sound as it is, which neither its directivity nor its distance in
 the rig changes: `distance` is the room's own. At amount zero there is no room.
 
->>> from models.response import Response
+>>> from models.radiation.impulse_responses import Response
 >>> one = np.ones(1)
 >>> values = {name: parameter.default for name, parameter in EFFECT.parameters.items()}
 >>> heard = _chain(Response(96e3, one, one, one, one), "floor", values, np.random.default_rng(0))
@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.rayleigh import SOUND_SPEED
+from models.radiation.rayleigh import SOUND_SPEED
 from sim.chain import through
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
@@ -38,7 +38,7 @@ from sim.parameters import Parameter
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from models.response import Response
+    from models.radiation.impulse_responses import Response
     from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from sim.library import Library
+from sim.registry import Library
 
 if TYPE_CHECKING:
     from models.rig import LawSpec
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LAWS", "at_temperature", "friction_law"]
 
-LAWS: Library[FrictionLaw] = Library(__name__, __path__, "LAW", besides=("law",))
+LAWS: Library[FrictionLaw] = Library(__name__, __path__, "LAW", besides=("law", "shared"))
 """Every friction law by name."""
 
 

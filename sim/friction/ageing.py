@@ -7,11 +7,11 @@ r"""Static friction that grows with the time of contact, exponentially.
     g = T_{kin} + (T_{crit} - T_{kin}) (1 - e^{-\varphi / \tau})
 
 The growth is that of the strengthening laws reviewed by Baumberger and Caroli (2006), in the form
-that saturates. z is the shear of the contact, phi its age [s]; w is that of `sim.bristle`, whose
-bound the rate of renewal observes as well. The contact is that of Dupont et al. (2002): alpha is
-zero up to x = 0.7 and rises smoothly to one at x = 1, so that below 70 % of its strength the
-contact truly sticks and ages with the clock, and slip alone renews it. Bristles that creep at any
-load would lose their age before they break.
+that saturates. z is the shear of the contact, phi its age [s]; w is that of
+`sim.friction.shared.bristle`, whose bound the rate of renewal observes as well. The contact is that
+of Dupont et al. (2002): alpha is zero up to x = 0.7 and rises smoothly to one at x = 1, so that
+below 70 % of its strength the contact truly sticks and ages with the clock, and slip alone renews
+it. Bristles that creep at any load would lose their age before they break.
 
 Limits: steady sliding gives T = g at phi = D/|v|, hence T_kin where D << |v| tau; broken after a
 rest of t, a contact much stiffer than T_crit / D has held T_kin + (T_crit - T_kin)
@@ -26,9 +26,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from sim.bristle import FASTEST, shear_speed
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
+from sim.friction.shared.bristle import FASTEST, shear_speed
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ r"""Master curve of rubber friction: a bell over the speed reduced by temperatur
 Grosch (1963) found friction of rubber at all temperatures on one bell over log(a_T v); Persson
 (2001) derives the bell from the losses in the rubber. The shift is that of Williams, Landel and
 Ferry (1955), whose constants the thesis misprints (2.1) as 8.88 and 101.5. The peak is p_1 T_crit,
-the floor on both sides p_0 T_kin; the contact is that of `sim.bristle`, its stiffness going with
-the floor. Below its speed friction rises with speed and sliding is
-stable, above it falls: a low glass temperature moves the peak beyond the rig's speeds, and that is
-why silicone is silent there.
+the floor on both sides p_0 T_kin; the contact is that of `sim.friction.shared.bristle`, its
+stiffness going with the floor. Below its speed friction rises with speed and sliding is stable,
+above it falls: a low glass temperature moves the peak beyond the rig's speeds, and that is why
+silicone is silent there.
 
 Limits: steady sliding gives T = g(v); at the peak's speed v_p / a_T that is p_1 T_crit; equal
 torques and shares, or w -> infinity with the peak in place of T_kin, give a constant friction; at
@@ -28,9 +28,9 @@ import numpy as np
 from numba import njit
 
 from models.errors import ParameterError
-from sim.bristle import BRISTLE_PARAMETERS, shear_speed, unbent
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed, unbent
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:

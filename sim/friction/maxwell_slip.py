@@ -9,7 +9,8 @@ Iwan (1966); with a strength that falls with speed, Al-Bender, Lampaert and Swev
 thresholds s_i g / 16 are spread evenly between 1 - spread and 1 + spread about their mean, so the
 contact gives way element by element while it is loaded, and remembers where it was turned back.
 alpha rises smoothly from zero at x = 0.5 to one at x = 1: an element that yields at once would cost
-the solver its order. The elements do not pull at each other. w is that of `sim.bristle`.
+the solver its order. The elements do not pull at each other. w is that of
+`sim.friction.shared.bristle`.
 
 Limits: steady sliding gives T = g(v); slow loading from rest is nearly the sum of elements that
 each hold up to their threshold, linear at first and settling at T_crit beyond
@@ -25,9 +26,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from sim.bristle import shear_speed
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
+from sim.friction.shared.bristle import shear_speed
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:

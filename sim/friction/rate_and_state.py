@@ -7,9 +7,10 @@ r"""Rate-and-state friction: strength by the age of the contact, and by speed di
 
 After Dieterich (1979) and Ruina (1983), with Dieterich's law of ageing; their logarithm of the age,
 which has no bound, is replaced by a share that saturates at T_crit. phi is the age of the contact
-[s], s the speed at which it slips, a the direct effect; w is that of `sim.bristle`, whose bound the
-rate |s|/D observes as well. Slip alone renews the contact, not its elastic shear, as in the
-original, whose speed is that of slip; `contact_with_memory` counts both and has no direct effect.
+[s], s the speed at which it slips, a the direct effect; w is that of `sim.friction.shared.bristle`,
+whose bound the rate |s|/D observes as well. Slip alone renews the contact, not its elastic shear,
+as in the original, whose speed is that of slip; `contact_with_memory` counts both and has no direct
+effect.
 
 Limits: steady sliding gives T = g at phi = D/|v|; it weakens with speed while the direct effect
 is small, and strengthens beyond the speed where that overtakes; equal torques and a = 0, or
@@ -24,9 +25,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from sim.bristle import BRISTLE_PARAMETERS, FASTEST, shear_speed
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS, FASTEST, shear_speed
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ r"""Friction that falls with speed over one or two scales, exponentially.
         f(x) = e^{-|x|}
 
 Bo and Pavelescu (1982), exponent one: it falls steepest at rest. The elastic contact and what the
-scales share are those of `sim.stribeck`.
+scales share are those of `sim.friction.shared.stribeck`.
 
 Limits: steady sliding gives T = g(v), which is T_crit at rest and T_kin at high speed; equal
 torques give a constant friction; s = 0 is one scale, and so is v_1 = v_2 with any s.
@@ -17,10 +17,10 @@ import math
 
 from numba import njit
 
-from sim.bristle import unbent
 from sim.contact import LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.stribeck import STRIBECK_PARAMETERS, stribeck_torque
+from sim.friction.shared.bristle import unbent
+from sim.friction.shared.stribeck import STRIBECK_PARAMETERS, stribeck_torque
 
 __all__ = ["LAW"]
 

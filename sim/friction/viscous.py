@@ -4,8 +4,8 @@ r"""Friction that rises in proportion to speed, on an elastic contact.
     T = K z + \sigma \dot z + T_{kin} v / v_0, \qquad g = T_{kin}
 
 The textbook's sum of Coulomb and viscous friction, whose jump at rest the elastic contact of Dahl
-(1968), with the shear z of `sim.bristle`, makes smooth. There is no strength beyond T_kin: T_crit
-has no part in it.
+(1968), with the shear z of `sim.friction.shared.bristle`, makes smooth. There is no strength beyond
+T_kin: T_crit has no part in it.
 
 Limits: steady sliding gives T = T_kin (1 + v / v_0) along v; v_0 -> infinity gives constant
 friction; the torque never falls with speed, so that sliding is stable at any.
@@ -15,9 +15,9 @@ from __future__ import annotations
 
 from numba import njit
 
-from sim.bristle import BRISTLE_PARAMETERS, shear_speed, unbent
 from sim.contact import KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed, unbent
 from sim.parameters import Parameter
 
 __all__ = ["LAW"]

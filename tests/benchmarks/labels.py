@@ -24,9 +24,9 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np
 import soundfile
 
-from models.rig_file import load_material_rig
-from noise.classifier.hearing.backgrounds import coloured_noise
+from models.rig_files.rig_file import load_material_rig
 from noise.cli import main
+from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from sim.acquisition import Acquisition
 from sim.run import simulate
 

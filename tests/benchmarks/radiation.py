@@ -17,18 +17,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
-from models.modal import acceleration_section
-from models.plate import plate_modes
-from models.radiation import radiate, response
-from models.response import convolve
+from models.radiation.impulse_responses import convolve
+from models.radiation.rig_response import radiate, response
+from models.radiation.sound_power_bands import third_octave_power
 from models.rig import HIGHEST_PLATE_FREQUENCY
-from models.rig_file import load_material_rig
-from models.sound_power_bands import third_octave_power
+from models.rig_files.rig_file import load_material_rig
+from models.structure.modal import acceleration_section
+from models.structure.plate import plate_modes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from models.plate import PlateModes
+    from models.structure.plate import PlateModes
 
 RATE = 48e3
 TORQUE = np.random.default_rng(1).normal(size=round(RATE))

@@ -16,16 +16,16 @@ import time
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from models.rig_file import load_material_rig
-from noise.screening.axes import spread
-from noise.screening.design import Use
-from noise.screening.point import judge
+from models.rig_files.rig_file import load_material_rig
+from noise.screening.design.design import Use
+from noise.screening.map.axes import spread
+from noise.screening.map.point import judge
 from noise.screening.screen import screen
+from sim.analysis.critical_speeds import regime_at
+from sim.analysis.regime import LEAST_OSCILLATION
 from sim.bushing import lumped_bushing
-from sim.critical_speeds import regime_at
 from sim.friction import friction_law
 from sim.parameters import resolve
-from sim.regime import LEAST_OSCILLATION
 
 RIG = load_material_rig("fluorocarbon")
 SECONDS = 1.2

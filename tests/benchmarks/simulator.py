@@ -16,7 +16,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.rig import LawSpec
-from models.rig_file import load_material_rig
+from models.rig_files.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -24,7 +24,7 @@ from sim.friction import LAWS
 from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
-from sim.stick_slip import solve_stick_slip
+from sim.solvers.stick_slip import solve_stick_slip
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from models.rig_file import load_material_rig
+from models.rig_files.rig_file import load_material_rig
 from noise.long_run import simulate_to_file
+from sim.analysis.sweep import Sweep
+from sim.analysis.sweep_features import motion_features
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
-from sim.sweep import Sweep
-from sim.sweep_features import motion_features
 
 RIG = load_material_rig("fluorocarbon-thesis")
 RUNS = 10_000

@@ -13,9 +13,9 @@ import tempfile
 import warnings
 from pathlib import Path
 
-from models.rig_file import load_rig
+from models.rig_files.rig_file import load_rig
 from noise.diagnosis.case import read_case
-from noise.diagnosis.floor import case_gap
+from noise.diagnosis.gap.floor import case_gap
 
 from ..cases import Case, run_case, write_case
 from ..design import draw_design

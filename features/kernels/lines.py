@@ -1,0 +1,258 @@
+"""Discrete lines of a spectrum: where a tone stands out of what surrounds it.
+
+Squawk has several discrete frequencies and squeal one predominant, so the first question to a
+spectrum is which of its maxima are lines. A line must stand 10 dB above the median of its
+surroundings, by more still where so few segments were averaged that noise alone would do that, and
+fall to either side by 10 dB before the next one rises, so that a broad resonance filled with noise
+is none. Its power is what lies within the window's main lobe and half a per cent of its frequency:
+a friction tone wanders by about that much in a second and is still one tone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy import ndimage, special
+from scipy.signal import find_peaks
+
+from features.kernels.spectra import DEFAULT_RESOLUTION
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from features.kernels.spectra import Spectrum
+
+__all__ = ["Lines", "find_lines", "line_resolution", "noise_floor"]
+
+PROMINENCE_DB = 10.0
+"""A line stands this far above the local floor, and above the saddle to the next one [dB]."""
+
+RANGE_DB = 30.0
+"""Lines weaker than the strongest by more than this are not counted [dB]."""
+
+WANDER = 0.005
+"""Half the width of a line beyond the window's main lobe, as a share of its frequency."""
+
+MAIN_LOBE = 2.0
+"""Half the width of a Hann window's main lobe in bins."""
+
+_FLOOR_WIDTH = 200.0
+"""Width of the surroundings whose median is the floor [Hz] ..."""
+
+_FLOOR_BINS = 31
+"""... but at least as many bins, as the median of few is no floor."""
+
+_FALSE_LINES = 1e-7
+"""Probability that noise makes one bin a line."""
+
+_LEAST_FLOOR = 1e-12
+"""Lowest floor relative to the strongest bin: what rounding leaves of an exact zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Discrete spectral lines, the strongest first.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (n_lines,)
+        [Hz], interpolated between bins.
+    power : ndarray, shape (n_lines,)
+        Mean square of each [unit^2].
+    prominence : ndarray, shape (n_lines,)
+        Level of the peak above the local floor [dB].
+    total : float
+        Mean square of the band that was searched [unit^2].
+    """
+
+    frequency: NDArray[np.float64]
+    power: NDArray[np.float64]
+    prominence: NDArray[np.float64]
+    total: float
+
+    @property
+    def strongest_share(self) -> float:
+        """Share of the band's power in the strongest line, 0 if there is none."""
+        return float(self.power[0] / self.total) if self.power.size else 0.0
+
+    @property
+    def share(self) -> float:
+        """Share of the band's power in all lines together."""
+        return min(1.0, float(self.power.sum() / self.total)) if self.power.size else 0.0
+
+
+def line_resolution(duration: float) -> float:
+    """Spacing of bins [Hz] at which to look for lines in so many seconds.
+
+    A quarter of a second a segment, less where fewer than three segments would be averaged: in a
+    single one noise itself rises 13 dB above its mean.
+
+    Examples
+    --------
+    >>> line_resolution(1.0), line_resolution(0.25)
+    (4.0, 8.0)
+    """
+    return max(DEFAULT_RESOLUTION, 2.0 / duration)
+
+
+def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
+    """Density of the noise between the lines [unit^2/Hz], shape (n_bins,).
+
+    Notes
+    -----
+    Running median over 200 Hz or 31 bins, divided by the median of the chi-square law for the
+    number of averages, so that it is the mean of noise and not its median.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from features.kernels.spectra import autospectrum
+    >>> noise = autospectrum(np.random.default_rng(1).normal(size=64_000), 16e3)
+    >>> bool(abs(noise_floor(noise).mean() / noise.density.mean() - 1.0) < 0.05)
+    True
+    """
+    p = spectrum.density
+    width = min(max(_FLOOR_BINS, 2 * round(0.5 * _FLOOR_WIDTH / spectrum.spacing) + 1), p.size)
+    half = 0.5 * spectrum.degrees_of_freedom
+    median_of_noise = float(special.gammaincinv(half, 0.5)) / half
+    floor = ndimage.median_filter(p, size=width, mode="reflect") / median_of_noise
+    return np.asarray(np.maximum(floor, _LEAST_FLOOR * p.max()))
+
+
+def find_lines(
+    spectrum: Spectrum,
+    *,
+    low: float,
+    high: float,
+    floor: NDArray[np.float64] | None = None,
+) -> Lines:
+    """Find the discrete lines of a spectrum between two frequencies.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+    low, high : float
+        Limits of the search [Hz].
+    floor : ndarray, shape (n_bins,), optional
+        `noise_floor` of the spectrum, if it is at hand.
+
+    Returns
+    -------
+    Lines
+        Within 30 dB of the strongest, at least 10 dB above the floor.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from features.kernels.spectra import autospectrum
+    >>> t = np.arange(16000) / 16e3
+    >>> tones = np.sin(2 * np.pi * 700 * t) + 0.5 * np.sin(2 * np.pi * 1130 * t)
+    >>> lines = find_lines(autospectrum(tones, 16e3), low=150.0, high=7000.0)
+    >>> lines.frequency.round().tolist(), round(lines.strongest_share, 2)
+    ([700.0, 1130.0], 0.8)
+    """
+    p, f, spacing = spectrum.density, spectrum.frequency, spectrum.spacing
+    floor = noise_floor(spectrum) if floor is None else floor
+    inside = (f >= low) & (f <= high)
+    total = float(p[inside].sum()) * spacing
+    empty = np.empty(0)
+    if not total > 0.0:
+        return Lines(empty, empty, empty, 0.0)
+    level = 10.0 * np.log10(np.maximum(p, _LEAST_FLOOR * p.max()))
+    above = level - 10.0 * np.log10(floor)
+    peaks, _ = find_peaks(
+        level,
+        height=float(level[inside].max()) - RANGE_DB,
+        prominence=PROMINENCE_DB,
+        wlen=max(9, 2 * round(_FLOOR_WIDTH / spacing) + 1),
+    )
+    inside &= f >= MAIN_LOBE * spacing
+    peaks = peaks[inside[peaks] & (above[peaks] >= max(PROMINENCE_DB, _chance_level(spectrum)))]
+    peaks = _separate(peaks, level, f, spacing)
+    if peaks.size == 0:
+        return Lines(empty, empty, empty, total)
+    power = line_powers(spectrum, floor, f[peaks], spacing=_nearest_neighbour(f[peaks]))
+    power = np.clip(power, 0.0, total)
+    order = np.argsort(power)[::-1]
+    frequency = interpolated(level, peaks) * spacing
+    return Lines(frequency[order], power[order], above[peaks][order], total)
+
+
+def line_powers(
+    spectrum: Spectrum,
+    floor: NDArray[np.float64],
+    frequency: NDArray[np.float64],
+    *,
+    spacing: NDArray[np.float64] | float,
+) -> NDArray[np.float64]:
+    """Power above the floor about given frequencies [unit^2], shape (n_lines,).
+
+    A line reaches as far as the window's main lobe and its wander, but not beyond half of
+    `spacing`, the distance to the next one [Hz].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from features.kernels.spectra import autospectrum
+    >>> tone = autospectrum(np.sin(2 * np.pi * 700 * np.arange(16000) / 16e3), 16e3)
+    >>> at = np.array([700.0])
+    >>> line_powers(tone, noise_floor(tone), at, spacing=700.0).round(3).tolist()
+    [0.5]
+    """
+    reach = MAIN_LOBE * spectrum.spacing + WANDER * frequency
+    reach = np.minimum(reach, 0.5 * spacing)
+    excess = np.append(0.0, np.cumsum(spectrum.density - floor)) * spectrum.spacing
+    edges = np.append(spectrum.frequency, spectrum.frequency[-1] + spectrum.spacing)
+    edges = edges - 0.5 * spectrum.spacing
+    power: NDArray[np.float64] = np.interp(frequency + reach, edges, excess) - np.interp(
+        frequency - reach, edges, excess
+    )
+    return power
+
+
+def interpolated(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Position of local maxima between samples, from the parabola through three of them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> interpolated(np.array([0.0, 2.0, 2.0, 0.0]), np.array([1])).tolist()
+    [1.5]
+    """
+    left, middle, right = values[peaks - 1], values[peaks], values[peaks + 1]
+    curvature = left - 2.0 * middle + right
+    safe = np.where(curvature < 0.0, curvature, -1.0)
+    return np.asarray(peaks + np.where(curvature < 0.0, 0.5 * (left - right) / safe, 0.0))
+
+
+def _chance_level(spectrum: Spectrum) -> float:
+    """How far above its mean noise puts a bin by chance [dB]."""
+    half = 0.5 * spectrum.degrees_of_freedom
+    return 10.0 * float(np.log10(special.gammainccinv(half, _FALSE_LINES) / half))
+
+
+def _separate(
+    peaks: NDArray[np.intp], level: NDArray[np.float64], f: NDArray[np.float64], spacing: float
+) -> NDArray[np.intp]:
+    """Keep the strongest of peaks that lie within each other's width."""
+    if peaks.size < 2:
+        return peaks
+    at = f[peaks]
+    reach = MAIN_LOBE * spacing + WANDER * at
+    if bool((np.diff(at) > reach[1:]).all()):
+        return peaks
+    free = np.ones(peaks.size, dtype=np.bool_)
+    kept = np.zeros(peaks.size, dtype=np.bool_)
+    for i in np.argsort(level[peaks])[::-1].tolist():
+        if free[i]:
+            kept[i] = True
+            free &= np.abs(at - at[i]) > reach[i]
+    return np.asarray(peaks[kept])
+
+
+def _nearest_neighbour(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of each of rising frequencies to the nearest other one."""
+    gaps = np.concatenate([[np.inf], np.diff(frequency), [np.inf]])
+    return np.asarray(np.minimum(gaps[:-1], gaps[1:]))

@@ -1,0 +1,1 @@
+"""Modal analysis: hammer hits, response estimates, fitted modes."""

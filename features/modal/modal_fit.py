@@ -1,0 +1,262 @@
+"""Modes of measured response functions: poles, damping and residues.
+
+`features.modal.lscf` finds the poles. Residues follow from all poles together by linear least
+squares, poles that add next to nothing to any response are dropped, and a few steps of Gauss and
+Newton then fit poles and residues at once: a linear fit of a quotient weights lines by its
+denominator, which makes damping too small where there is noise.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from features.modal.lscf import LARGEST_DAMPING, Pole, lasting_poles, line_weights, without_doubles
+from features.modal.modes import (
+    Modes,
+    least_squares,
+    modal_basis,
+    modes_of_poles,
+    real_and_imaginary,
+)
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Modes", "fit_modes"]
+
+FEWEST_LINES = 32
+
+MOST_STEPS = 12
+"""Of the fit of poles and residues at once."""
+
+SWEEPS = 3
+"""Times that all poles are fitted again."""
+
+GROUP, MARGIN = 12, 60.0
+"""Poles fitted at a time, and lines on either side of them in widths of the widest."""
+
+EDGE = 8.0
+"""Lines at the band's ends in which poles are not looked for: they would fit what lies beyond."""
+
+NEGLIGIBLE = 0.02
+"""A mode whose peak is a smaller share of the response about it is dropped."""
+
+_ENOUGH = 1e-3  # relative gain of a step that is worth no further one
+
+
+def fit_modes(
+    frequency: ArrayLike,
+    responses: ArrayLike,
+    *,
+    low: float,
+    high: float,
+    coherence: ArrayLike | None = None,
+) -> Modes:
+    """Fit modes to response functions between two frequencies.
+
+    Parameters
+    ----------
+    frequency : array_like, shape (n,)
+        [Hz], rising.
+    responses : array_like, shape (n,) or (n_responses, n), complex
+        For one input, in any unit.
+    low, high : float
+        Limits of the band [Hz].
+    coherence : array_like, shape of `responses`, optional
+        Weights the lines.
+
+    Returns
+    -------
+    Modes
+        None at all where no pole lasts.
+
+    Raises
+    ------
+    ParameterError
+        The band holds too few lines.
+
+    Examples
+    --------
+    >>> f = np.arange(1.0, 501.0)
+    >>> H = sum(1 / (n**2 - f**2 + 2j * zeta * n * f) for n, zeta in ((100, 0.02), (300, 0.01)))
+    >>> modes = fit_modes(f, H, low=20.0, high=450.0)
+    >>> modes.frequency.round(2), modes.damping_ratio.round(4)
+    (array([100., 300.]), array([0.02, 0.01]))
+    """
+    f = np.asarray(frequency, dtype=np.float64)
+    h = np.atleast_2d(np.asarray(responses, dtype=np.complex128))
+    weight = np.ones(h.shape) if coherence is None else np.atleast_2d(np.asarray(coherence, float))
+    inside = (f >= low) & (f <= high) & (f > 0.0)
+    f, h, weight = f[inside], h[:, inside], weight[:, inside]
+    if f.size < FEWEST_LINES:
+        raise ParameterError(
+            f"{f.size} lines lie between {low:g} and {high:g} Hz; modes need {FEWEST_LINES} or more"
+        )
+    # Many small products: threads that wait for each other take twenty times as long as one.
+    with threadpool_limits(limits=1, user_api="blas"):
+        edge = EDGE * float(f[1] - f[0])
+        first, last = float(f[0]) + edge, float(f[-1]) - edge
+        scale = line_weights(h, weight)
+        poles = lasting_poles(f, h, weight)
+        for sweep in range(SWEEPS + 1):
+            within = without_doubles([pole for pole in poles if first < pole.frequency < last])
+            modes = _pruned(within, f, h, scale)
+            if sweep < SWEEPS:
+                poles = _refined(modes, f, h, scale)
+        return modes
+
+
+def _pruned(
+    poles: list[Pole],
+    f: NDArray[np.float64],
+    h: NDArray[np.complex128],
+    scale: NDArray[np.float64],
+) -> Modes:
+    """Modes of those poles that show in a response."""
+    poles = sorted(poles)
+    while True:
+        modes = modes_of_poles(poles, f, h, scale)
+        share = _share(modes, f, h)
+        if share.size == 0 or share.min() >= NEGLIGIBLE:
+            return modes
+        # The weakest go together; one that is just below may show once they are gone.
+        limit = max(share.min(), 0.25 * NEGLIGIBLE)
+        poles = [pole for pole, its in zip(poles, share, strict=True) if its > limit]
+
+
+def _refined(
+    modes: Modes,
+    f: NDArray[np.float64],
+    h: NDArray[np.complex128],
+    scale: NDArray[np.float64],
+) -> list[Pole]:
+    """Poles after Gauss-Newton steps, a few neighbours at a time with all others as they are."""
+    poles = _poles_of(modes)
+    refined: list[Pole] = []
+    for group in _groups(modes.frequency):
+        first, last = modes.frequency[group][[0, -1]]
+        width = MARGIN * float(np.max(modes.frequency[group] * modes.damping_ratio[group]))
+        lines = (f >= first - width) & (f <= last + width)
+        if np.count_nonzero(lines) < FEWEST_LINES:
+            lines = np.abs(f - 0.5 * (first + last)) <= 0.5 * FEWEST_LINES * (f[1] - f[0])
+        alone = _with_only(modes, group).response(f[lines])
+        target = h[:, lines] - modes.response(f[lines]) + alone
+        refined += _moved(poles[group], f[lines], target, scale[:, lines])
+    return refined
+
+
+def _groups(frequency: NDArray[np.float64]) -> list[slice]:
+    """Neighbours that are fitted together, parted at the widest gaps."""
+    limits = [0]
+    while frequency.size - limits[-1] > GROUP:
+        start = limits[-1]
+        gaps = np.diff(np.log(frequency[start + GROUP // 2 - 1 : start + GROUP + 1]))
+        limits.append(start + GROUP // 2 + int(np.argmax(gaps)))
+    limits.append(frequency.size)
+    return [slice(a, b) for a, b in itertools.pairwise(limits) if b > a]
+
+
+def _moved(
+    poles: list[Pole],
+    f: NDArray[np.float64],
+    h: NDArray[np.complex128],
+    scale: NDArray[np.float64],
+) -> list[Pole]:
+    """Poles after as many steps as bring the model nearer."""
+    modes = modes_of_poles(poles, f, h, scale)
+    error = _misfit(modes, f, h, scale)
+    for _ in range(MOST_STEPS):
+        new = modes_of_poles(_stepped(modes, f, h, scale), f, h, scale)
+        new_error = _misfit(new, f, h, scale)
+        if new_error >= error:
+            break
+        modes, gain, error = new, error - new_error, new_error
+        if gain < _ENOUGH * error:
+            break
+    return _poles_of(modes)
+
+
+def _with_only(modes: Modes, group: slice) -> Modes:
+    """Leave some of the modes, without residuals."""
+    return Modes(
+        modes.frequency[group],
+        modes.damping_ratio[group],
+        modes.residues[:, group],
+        np.zeros_like(modes.residuals),
+        modes.orders[group],
+        modes.highest,
+    )
+
+
+def _poles_of(modes: Modes) -> list[Pole]:
+    return [
+        Pole(float(frequency), float(ratio), int(orders))
+        for frequency, ratio, orders in zip(
+            modes.frequency, modes.damping_ratio, modes.orders, strict=True
+        )
+    ]
+
+
+def _stepped(
+    modes: Modes,
+    f: NDArray[np.float64],
+    h: NDArray[np.complex128],
+    scale: NDArray[np.float64],
+) -> list[Pole]:
+    """Poles moved by one step, each by no more than its width."""
+    n, s = modes.frequency.size, 2j * np.pi * f
+    poles = modes.poles
+    here = 1 / (s - poles[:, None]) ** 2
+    there = 1 / (s - poles.conj()[:, None]) ** 2
+    basis = modal_basis(poles, f, modes.highest)
+    model = modes.response(f)
+    size = 2 * n
+    matrix, right = np.zeros((size, size)), np.zeros(size)
+    for row, (one, w) in enumerate(zip(h, scale, strict=True)):
+        turned = modes.residues[row][:, None]
+        a, b = turned * here, turned.conj() * there
+        moves = np.vstack([a + b, 1j * (a - b)]) * w
+        other = basis * w
+        left = (one - model[row]) * w
+        # What residues can take up on their own is projected out.
+        solved = least_squares(other, np.vstack([moves, left]))
+        rest = real_and_imaginary(np.vstack([moves, left])) - solved @ real_and_imaginary(other)
+        gram = rest @ rest.T
+        matrix += gram[:size, :size]
+        right += gram[:size, size]
+    norm = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
+    step = np.linalg.lstsq(matrix / np.outer(norm, norm), right / norm, rcond=1e-10)[0] / norm
+    move = step[:n] + 1j * step[n:]
+    width = -poles.real
+    move *= np.minimum(1.0, 0.5 * width / np.maximum(np.abs(move), np.finfo(float).tiny))
+    moved = poles + move
+    natural = np.abs(moved)
+    ratio = np.clip(-moved.real / natural, 1e-6, LARGEST_DAMPING)
+    return [
+        Pole(float(omega / (2 * np.pi)), float(zeta), int(orders))
+        for omega, zeta, orders in zip(natural, ratio, modes.orders, strict=True)
+    ]
+
+
+def _misfit(
+    modes: Modes,
+    f: NDArray[np.float64],
+    h: NDArray[np.complex128],
+    scale: NDArray[np.float64],
+) -> float:
+    return float(np.sum((scale * np.abs(h - modes.response(f))) ** 2))
+
+
+def _share(modes: Modes, f: NDArray[np.float64], h: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Peak of each mode relative to the responses within its width, at best."""
+    shares = np.empty(modes.frequency.size)
+    for r, (frequency, ratio) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True)):
+        peak = np.abs(modes.residues[:, r]) / (2 * np.pi * frequency * ratio)
+        near = np.abs(f - frequency) <= max(ratio * frequency, f[1] - f[0])
+        shares[r] = float(np.max(peak / np.abs(h[:, near]).max(axis=1)))
+    return shares

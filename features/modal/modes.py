@@ -1,0 +1,203 @@
+"""Modes of a structure, and the residues that given poles need to make up its responses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
+
+    from features.modal.lscf import Pole
+
+__all__ = ["Modes", "least_squares", "modal_basis", "modes_of_poles", "real_and_imaginary"]
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Modes of one or several response functions of a structure.
+
+    H(omega) = sum_r [R_r / (i omega - s_r) + conj(R_r) / (i omega - conj(s_r))] + residuals,
+    with the poles s_r = 2 pi f_r (-zeta_r + i sqrt(1 - zeta_r^2)).
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (n_modes,)
+        Undamped natural frequencies [Hz], rising.
+    damping_ratio : ndarray, shape (n_modes,)
+        Fractions of critical damping.
+    residues : ndarray, shape (n_responses, n_modes), complex
+        R_r [unit of the response times rad/s].
+    residuals : ndarray, shape (n_responses, 4)
+        Real factors of 1/(i omega)^2, 1, i omega and (i omega)^2, relative to the highest omega:
+        what modes outside the band leave in it.
+    orders : ndarray, shape (n_modes,)
+        Through how many orders each pole stayed.
+    highest : float
+        Upper end of the band [Hz].
+
+    Examples
+    --------
+    >>> one = np.ones(1)
+    >>> none = np.zeros((1, 4))
+    >>> mode = Modes(100 * one, 0.02 * one, 1j * one[None], none, one.astype(int), 200.0)
+    >>> mode.poles.round(1)
+    array([-12.6+628.2j])
+    """
+
+    frequency: NDArray[np.float64]
+    damping_ratio: NDArray[np.float64]
+    residues: NDArray[np.complex128]
+    residuals: NDArray[np.float64]
+    orders: NDArray[np.intp]
+    highest: float
+
+    @property
+    def poles(self) -> NDArray[np.complex128]:
+        """The poles s_r [rad/s], shape (n_modes,)."""
+        return _poles(self.frequency, self.damping_ratio)
+
+    def response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Response functions at frequencies [Hz], shape (n_responses, n)."""
+        basis = modal_basis(self.poles, np.asarray(frequency, dtype=np.float64), self.highest)
+        coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
+        response: NDArray[np.complex128] = coefficients @ basis
+        return response
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the magnitudes of the responses that the modes make up, and where the modes are.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw, such as on the measured response; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is no mode.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> one = np.ones(1)
+        >>> mode = Modes(100 * one, 0.02 * one, 1j * one[None], np.zeros((1, 4)), one, 200.0)
+        >>> axes = mode.plot(Figure().subplots())
+        >>> axes.get_xlabel(), len(axes.lines)
+        ('Frequency [Hz]', 2)
+        """
+        from features.modal.modes_display import draw_modes
+
+        return draw_modes(self, ax)
+
+    def _repr_html_(self) -> str:
+        from features.modal.modes_display import modes_html
+
+        return modes_html(self)
+
+
+def modes_of_poles(
+    poles: list[Pole],
+    f: NDArray[np.float64],
+    h: NDArray[np.complex128],
+    scale: NDArray[np.float64],
+) -> Modes:
+    """Modes with given poles: residues and residuals by linear least squares.
+
+    Parameters
+    ----------
+    poles : list of Pole
+    f : ndarray, shape (n,)
+        [Hz]
+    h : ndarray, shape (n_responses, n), complex
+    scale : ndarray, shape (n_responses, n)
+        Weights of the lines.
+
+    Examples
+    --------
+    >>> from features.modal.lscf import Pole
+    >>> f = np.arange(50.0, 151.0)
+    >>> H = 1 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f) / (2 * np.pi) ** 2
+    >>> modes = modes_of_poles([Pole(100.0, 0.02, 1)], f, H[None], np.ones((1, 101)))
+    >>> bool(np.allclose(modes.response(f), H))
+    True
+    """
+    frequency = np.array([pole.frequency for pole in poles])
+    ratio = np.array([pole.damping_ratio for pole in poles])
+    basis = modal_basis(_poles(frequency, ratio), f, float(f[-1]))
+    n = frequency.size
+    coefficients = np.array(
+        [least_squares(basis * w, one * w) for one, w in zip(h, scale, strict=True)]
+    )
+    return Modes(
+        frequency,
+        ratio,
+        coefficients[:, :n] + 1j * coefficients[:, n : 2 * n],
+        coefficients[:, 2 * n :],
+        np.array([pole.orders for pole in poles], dtype=np.intp),
+        float(f[-1]),
+    )
+
+
+def modal_basis(
+    poles: NDArray[np.complex128], f: NDArray[np.float64], highest: float
+) -> NDArray[np.complex128]:
+    """Return what unit residues, real and imaginary, and unit residuals make.
+
+    Shape (2 n_modes + 4, n).
+
+    Examples
+    --------
+    >>> modal_basis(np.array([-1.0 + 10j]), np.array([1.0, 2.0]), 2.0).shape
+    (6, 2)
+    """
+    s = 2j * np.pi * f
+    here = 1 / (s - poles[:, None])
+    there = 1 / (s - poles.conj()[:, None])
+    x = s / (2 * np.pi * highest)
+    return np.vstack([here + there, 1j * (here - there), x**-2, np.ones_like(x), x, x**2])
+
+
+def least_squares(
+    basis: NDArray[np.complex128], wanted: NDArray[np.complex128]
+) -> NDArray[np.float64]:
+    """Real factors with which the rows of `basis` make up `wanted`, by normal equations.
+
+    Examples
+    --------
+    >>> least_squares(np.array([[1.0, 1j], [0.0, 1j]]), np.array([2.0, 5j])).round(6)
+    array([2., 3.])
+    """
+    parts = real_and_imaginary(basis)
+    scale = np.sqrt(np.maximum(np.sum(parts**2, axis=1), np.finfo(float).tiny))
+    parts /= scale[:, None]
+    factors = np.linalg.lstsq(parts @ parts.T, parts @ real_and_imaginary(wanted).T, rcond=1e-13)[0]
+    result: NDArray[np.float64] = factors.T / scale
+    return result
+
+
+def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Real and imaginary parts one after the other along the last axis.
+
+    Examples
+    --------
+    >>> real_and_imaginary(np.array([1 + 2j]))
+    array([1., 2.])
+    """
+    return np.concatenate([values.real, values.imag], axis=-1)
+
+
+def _poles(
+    frequency: NDArray[np.float64], damping_ratio: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    poles: NDArray[np.complex128] = (
+        2 * np.pi * frequency * (-damping_ratio + 1j * np.sqrt(1 - damping_ratio**2))
+    )
+    return poles

@@ -1,0 +1,1 @@
+"""The named features of a recording, declared one by one."""

@@ -1,0 +1,299 @@
+"""A signal made ready: what several features need is computed once, when first asked for.
+
+Sound and acceleration are described from 150 Hz up to 7 kHz, at a rate of 16 kHz whatever they were
+recorded at; what lies above has bands of its own, which are empty where the recording does not
+reach them. A torque is described from 5 Hz. Everything but levels is computed of the signal divided
+by its rms value, so that no constant in here can depend on the gain.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.kernels.bands import THESIS_BANDS, band_power, fine_third_octaves
+from features.kernels.conditioning import (
+    ACOUSTIC_FROM,
+    NOTHING,
+    WORKING_LIMIT,
+    band_analytic,
+    band_signal,
+    checked_signal,
+    forward,
+    usable_limit,
+)
+from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
+from features.kernels.modulation import Modulation, modulation
+from features.kernels.slip_drops import TorqueSlips, torque_slips
+from features.kernels.slip_pulses import (
+    Pulses,
+    envelope_kurtosis,
+    pulse_band_from,
+    pulses_of,
+    squared,
+)
+from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
+from features.kernels.time_course import TimeCourse, time_course
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from features.kernels.conditioning import Transform
+
+__all__ = ["ACOUSTIC_KINDS", "TOP_BANDS", "Prepared", "prepare"]
+
+ACOUSTIC_KINDS = ("pressure", "acceleration")
+"""Kinds of channel that are described as noise."""
+
+TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
+"""Bands above the common limit [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
+
+_LEAST_IN_BAND = 1e-5
+"""Power of the band described, relative to the whole, below which it holds leakage only."""
+
+_LEVEL_RESOLUTION = 25.0
+"""Spacing of the bins from which the weighted level is summed [Hz]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """One channel and what has been computed of it so far. Made by `prepare`.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n_samples,)
+        In the channel's unit.
+    rate : float
+        Sampling rate [Hz].
+    kind : str
+        Of channel: pressure, acceleration or torque.
+    calibrated : bool
+        Whether the samples are in physical units.
+    mean : float
+        [unit]
+    rms : float
+        About the mean [unit]; 0 for a signal that is constant but for rounding.
+    stick_rate : float
+        How fast the torque rises in true stick [N m/s]: k_EFF times the shaft's speed (thesis,
+        (5.1)); NaN where that is not known.
+    """
+
+    samples: NDArray[np.float64]
+    rate: float
+    kind: str
+    calibrated: bool
+    mean: float
+    rms: float
+    stick_rate: float = math.nan
+
+    @property
+    def low(self) -> float:
+        """Lower limit of the band that is described [Hz]."""
+        return ACOUSTIC_FROM if self.kind in ACOUSTIC_KINDS else LOWEST
+
+    @property
+    def limit(self) -> float:
+        """Upper limit of the band that is described [Hz]: 7 kHz, or what the rate allows."""
+        return min(WORKING_LIMIT, usable_limit(self.rate))
+
+    @cached_property
+    def silent(self) -> bool:
+        """Whether the band that is described holds nothing but leakage and rounding."""
+        return self.rms == 0.0 or self.low >= self.limit or self.in_band_share < _LEAST_IN_BAND
+
+    @cached_property
+    def transform(self) -> Transform:
+        """Of the signal about its mean, divided by its rms value."""
+        return forward((self.samples - self.mean) / self.rms, self.rate)
+
+    @cached_property
+    def below(self) -> tuple[NDArray[np.float64], float]:
+        """All below the limit, at the working rate, and that rate [Hz]."""
+        return band_signal(self.transform, 0.0, self.limit)
+
+    @cached_property
+    def in_band(self) -> tuple[NDArray[np.float64], float]:
+        """Part within the band that is described, at the working rate, and that rate [Hz]."""
+        return band_signal(self.transform, self.low, self.limit)
+
+    @cached_property
+    def in_band_power(self) -> float:
+        """Mean square of that part."""
+        return float(np.mean(self.in_band[0] ** 2))
+
+    @cached_property
+    def in_band_share(self) -> float:
+        """Share of the power below the limit that lies within the band that is described."""
+        whole = float(np.mean(self.below[0] ** 2))
+        return self.in_band_power / whole if whole > 0.0 else 0.0
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        """Of the part within the band that is described."""
+        x, rate = self.in_band
+        return welch(x, rate, line_resolution(x.size / rate))
+
+    @cached_property
+    def floor(self) -> NDArray[np.float64]:
+        """Noise floor of the spectrum [1/Hz]."""
+        return noise_floor(self.spectrum)
+
+    @cached_property
+    def lines(self) -> Lines:
+        """Discrete lines of the spectrum."""
+        return find_lines(self.spectrum, low=self.low, high=self.limit, floor=self.floor)
+
+    @cached_property
+    def harmonics(self) -> Harmonics:
+        """Fundamental and harmonics."""
+        return harmonics_of(
+            self.in_band[0],
+            self.spectrum,
+            self.floor,
+            self.lines,
+            lowest=LOWEST,
+            highest=min(HIGHEST, self.limit),
+        )
+
+    @cached_property
+    def shape(self) -> SpectralShape:
+        """Shape of the spectrum."""
+        return spectral_shape(self.spectrum, low=self.low, high=self.limit)
+
+    @cached_property
+    def course(self) -> TimeCourse:
+        """How it changes with time."""
+        x, rate = self.in_band
+        return time_course(x, rate, low=self.low, high=self.limit)
+
+    @cached_property
+    def analytic(self) -> tuple[NDArray[np.complex128], float]:
+        """Analytic signal of the band that is described, and its rate [Hz]."""
+        return band_analytic(self.transform, self.low, self.limit)
+
+    @cached_property
+    def pulses(self) -> Pulses:
+        """Pulses and their rhythm."""
+        high, rate = band_analytic(self.transform, pulse_band_from(self.limit), self.limit)
+        start = self.transform.lead / self.rate
+        return pulses_of(self.analytic[0], high, rate, start=start)
+
+    @cached_property
+    def modulation(self) -> Modulation:
+        """Modulation of the envelope."""
+        analytic, rate = self.analytic
+        return modulation(np.sqrt(squared(analytic)), rate)
+
+    @cached_property
+    def torque_slips(self) -> TorqueSlips:
+        """Slips of a torque, in its own unit."""
+        return torque_slips(self.samples, self.rate)
+
+    @cached_property
+    def level_spectrum(self) -> Spectrum:
+        """Of the samples as they are, over all that the rate holds."""
+        return welch(self.samples, self.rate, _LEVEL_RESOLUTION)
+
+    @cached_property
+    def fine_spectrum(self) -> Spectrum:
+        """Of the signal divided by its rms value, over all that the rate holds, in finest bins."""
+        return whole_spectrum(self.transform)
+
+    @cached_property
+    def third_octaves(self) -> dict[str, float]:
+        """Levels of the samples as they are [dB re 1 unit], by nominal mid-band frequency."""
+        return fine_third_octaves(self.samples, self.rate, reference=1.0)
+
+    def thesis_band(self, number: int) -> float:
+        """Level of one of the thesis's bands relative to the band described [dB]; or NaN."""
+        low, high = THESIS_BANDS[number]
+        if high > usable_limit(self.rate):
+            return math.nan
+        part, whole = band_power(self.fine_spectrum, [low, self.low], [high, self.limit])
+        return relative_db(float(part), float(whole))
+
+    def share_db(self, low: float, high: float) -> float:
+        """Level of a part of the band relative to the whole of it [dB]; NaN if not reached."""
+        if high > 1.001 * self.limit:
+            return math.nan
+        part, whole = band_power(self.spectrum, [low, self.low], [high, self.limit])
+        return relative_db(float(part), float(whole))
+
+    @cached_property
+    def top_bands(self) -> tuple[tuple[float, float], ...]:
+        """Level of each top band re the band described [dB], and its kurtosis; or NaN."""
+        return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
+
+    def _top_band(self, low: float, high: float) -> tuple[float, float]:
+        if high > usable_limit(self.rate):
+            return math.nan, math.nan
+        top, _ = band_analytic(self.transform, low, high)
+        power = squared(top)
+        level = relative_db(0.5 * float(power.mean()), self.in_band_power)
+        return level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan
+
+
+LEAST_SHARE_DB = -80.0
+"""Lowest relative level that is told from nothing [dB]."""
+
+
+def relative_db(part: float, whole: float) -> float:
+    """Level of a part relative to a whole [dB], at least -80 dB.
+
+    Examples
+    --------
+    >>> relative_db(0.5, 5.0), relative_db(0.0, 1.0)
+    (-10.0, -80.0)
+    """
+    return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))
+
+
+def prepare(
+    signal: ArrayLike,
+    rate: float,
+    kind: str,
+    *,
+    calibrated: bool = True,
+    stick_rate: float = math.nan,
+) -> Prepared:
+    """Check a signal and make it ready for features.
+
+    Parameters
+    ----------
+    signal : array_like, shape (n_samples,)
+        One channel, in its unit or, not calibrated, in fractions of full scale.
+    rate : float
+        Sampling rate [Hz].
+    kind : str
+        Of channel.
+    calibrated : bool
+        Whether the samples are in physical units.
+    stick_rate : float
+        Of a torque [N m/s].
+
+    Returns
+    -------
+    Prepared
+
+    Raises
+    ------
+    ParameterError
+        A signal that can't be analysed.
+
+    Examples
+    --------
+    >>> prepare([1.0] * 480, 48e3, "pressure").silent
+    True
+    """
+    x = checked_signal(signal, rate)
+    largest = float(np.abs(x).max())
+    mean = float(x.mean())
+    scale = largest if largest > 0.0 else 1.0
+    rms = scale * math.sqrt(float(np.mean(((x - mean) / scale) ** 2)))
+    rms = rms if rms > NOTHING * largest else 0.0
+    return Prepared(x, rate, kind, calibrated, mean, rms, stick_rate)

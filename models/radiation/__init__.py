@@ -1,0 +1,1 @@
+"""From forces to sound pressure and sound power."""

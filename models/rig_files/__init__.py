@@ -1,0 +1,1 @@
+"""Rig files: what a TOML file says of a rig."""

@@ -1,0 +1,1 @@
+"""Clamp, beams, plate and shaft: their modes and responses."""

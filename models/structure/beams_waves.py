@@ -1,0 +1,219 @@
+"""The four waves of a beam between clamp and anchor, and the conditions at its ends.
+
+Two of the waves are scaled to be largest at either end, or they would cancel: the cosh of the usual
+form exceeds 1e7 at 15 kHz. By the rig's symmetry the clamp either turns about the shaft or moves
+sideways, and one beam stands for both. Thin beams (Bernoulli): at 15 kHz a half-wave is still seven
+times the thickness.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.structure.beams_stiffness import bending_stiffness, mass_per_length
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from models.rig import Beams
+
+__all__ = [
+    "ClampOnBeams",
+    "RootMotion",
+    "boundary_conditions",
+    "wave_frequency",
+    "wavenumber",
+    "waves_at",
+]
+
+
+class RootMotion(Enum):
+    """How the root of a beam moves: with the clamp, which turns or shifts, or without any."""
+
+    TURNING = "turning"
+    SIDEWAYS = "sideways"
+    LOOSE = "loose"
+
+
+@dataclass(frozen=True)
+class ClampOnBeams:
+    """A rigid clamp between two beams of one length, with the bushing in it.
+
+    Parameters
+    ----------
+    beams : Beams
+        With the stiffness of their anchors.
+    length : float
+        Of each, from anchor to clamp [m].
+    clamp_mass, clamp_inertia : float
+        Of the clamp alone [kg] and [kg m2].
+    lateral_stiffness, torsional_stiffness : float, optional
+        Of the bushing on the shaft [N/m] and [Nm/rad].
+    """
+
+    beams: Beams
+    length: float
+    clamp_mass: float
+    clamp_inertia: float
+    lateral_stiffness: float = 0.0
+    torsional_stiffness: float = 0.0
+
+
+def boundary_conditions(
+    structure: ClampOnBeams,
+    frequency: NDArray[np.float64],
+    motion: RootMotion,
+    loss_factor: float,
+    *,
+    scaled: bool = True,
+) -> NDArray[np.complex128]:
+    """Set up the conditions at clamp and anchor on the amplitudes of the waves.
+
+    Parameters
+    ----------
+    structure : ClampOnBeams
+    frequency : ndarray, shape (n,)
+        [Hz]
+    motion : RootMotion
+    loss_factor : float
+        Of the beams.
+    scaled : bool, optional
+        Whether the largest coefficient of each condition is made 1.
+
+    Returns
+    -------
+    ndarray, shape (n, 4, 4), complex
+        In rows: two at the clamp, of which the second balances the load on it [Nm or N], then
+        deflection and slope at the anchor.
+
+    Examples
+    --------
+    At a natural frequency the conditions can be met without a load:
+
+    >>> from models.rig import Beams
+    >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
+    >>> loose = ClampOnBeams(steel, 0.123, 0.0, 0.0)
+    >>> cantilever = wave_frequency(loose, np.array([1.8751]))
+    >>> conditions = boundary_conditions(loose, cantilever, RootMotion.LOOSE, 0.0)
+    >>> bool(abs(np.linalg.det(conditions)[0]) < 1e-4)
+    True
+    """
+    beams, length = structure.beams, structure.length
+    wave = wavenumber(structure, frequency, loss_factor) * length
+    stiffness = bending_stiffness(beams) * (1.0 + 1j * loss_factor)
+    omega2 = (2.0 * np.pi * frequency[:, None]) ** 2
+    root = [waves_at(wave, 0.0, n) / length**n for n in range(4)]
+    end = [waves_at(wave, 1.0, n) / length**n for n in range(4)]
+    if motion is RootMotion.TURNING:
+        dynamic = structure.torsional_stiffness - structure.clamp_inertia * omega2
+        at_clamp = [
+            root[0] - beams.lever * root[1],
+            dynamic * root[1] + 2.0 * stiffness * (beams.lever * root[3] - root[2]),
+        ]
+    elif motion is RootMotion.SIDEWAYS:
+        dynamic = structure.lateral_stiffness - structure.clamp_mass * omega2
+        at_clamp = [root[1], dynamic * root[0] + 2.0 * stiffness * root[3]]
+    else:
+        at_clamp = [root[2], root[3]]
+    at_anchor = [
+        end[0] - stiffness / beams.anchor_translation * end[3],
+        end[1] + stiffness / beams.anchor_rotation * end[2],
+    ]
+    rows = np.stack([*at_clamp, *at_anchor], axis=-2)
+    if scaled:
+        rows = rows / np.abs(rows).max(axis=-1, keepdims=True)
+    conditions: NDArray[np.complex128] = rows
+    return conditions
+
+
+def waves_at(
+    wave: NDArray[np.complex128],
+    position: NDArray[np.float64] | float,
+    derivative: int,
+) -> NDArray[np.complex128]:
+    """Give the four waves or one of their derivatives by the position.
+
+    Parameters
+    ----------
+    wave : ndarray, shape (...), complex
+        Wavenumber times length.
+    position : float or ndarray, broadcast with `wave`
+        From 0 at the clamp to 1 at the anchor.
+    derivative : int
+
+    Returns
+    -------
+    ndarray, shape (..., 4), complex
+
+    Examples
+    --------
+    >>> waves_at(np.array([np.pi + 0j]), 1.0, 0).real.round(3)
+    array([[-1.   ,  0.   ,  0.043,  1.   ]])
+    """
+    forth, back = wave * position, wave * (1.0 - np.asarray(position))
+    turned = forth + 0.5 * np.pi * derivative
+    decay = (-1) ** derivative * np.exp(-forth)
+    shapes = np.stack([np.cos(turned), np.sin(turned), decay, np.exp(-back)], axis=-1)
+    result: NDArray[np.complex128] = wave[..., None] ** derivative * shapes
+    return result
+
+
+def wavenumber(
+    structure: ClampOnBeams, frequency: ArrayLike, loss_factor: float = 0.0
+) -> NDArray[np.complex128]:
+    """Give the wavenumber of bending waves (rho S omega^2 / (E I))^(1/4).
+
+    Parameters
+    ----------
+    structure : ClampOnBeams
+    frequency : array_like, shape (...)
+        [Hz]
+    loss_factor : float, optional
+
+    Returns
+    -------
+    ndarray, shape (...), complex
+        [rad/m]
+
+    Examples
+    --------
+    >>> from models.rig import Beams
+    >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
+    >>> wavenumber(ClampOnBeams(steel, 0.123, 0.96, 1 / 1050), [1000.0]).real.round(1)
+    array([37.])
+    """
+    omega = 2.0 * np.pi * np.asarray(frequency, dtype=np.complex128)
+    stiffness = bending_stiffness(structure.beams) * (1.0 + 1j * loss_factor)
+    return (mass_per_length(structure.beams) * omega**2 / stiffness) ** 0.25
+
+
+def wave_frequency(structure: ClampOnBeams, wave: ArrayLike) -> NDArray[np.float64]:
+    """Give the frequency at which wavenumber times length has a value; undamped.
+
+    Parameters
+    ----------
+    structure : ClampOnBeams
+    wave : array_like, shape (...)
+
+    Returns
+    -------
+    ndarray, shape (...)
+        [Hz]
+
+    Examples
+    --------
+    The first mode of a cantilever:
+
+    >>> from models.rig import Beams
+    >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
+    >>> round(float(wave_frequency(ClampOnBeams(steel, 0.123, 0.0, 0.0), 1.8751)), 1)
+    169.5
+    """
+    per_metre = np.asarray(wave, dtype=np.float64) / structure.length
+    speed = math.sqrt(bending_stiffness(structure.beams) / mass_per_length(structure.beams))
+    return per_metre**2 * speed / (2.0 * np.pi)

@@ -1,0 +1,1 @@
+"""Transfer functions, modelled or measured, and their files."""

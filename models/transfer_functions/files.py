@@ -1,0 +1,287 @@
+"""Files of frequency response functions: NPZ, CSV and universal files, by their ending.
+
+NPZ: ``frequency_hz``, ``response`` (complex), ``coherence`` (optional), ``input_unit``,
+``output_unit``. CSV: the columns ``frequency_hz, real, imag``, and ``coherence`` where there is
+one; it names no units, so those that the reader expects are taken. Universal files (dataset 58)
+hold a frequency response, and its coherence as a function of its own; where they label no units,
+the same holds.
+"""
+
+from __future__ import annotations
+
+import csv
+import zipfile
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from models.errors import ParameterError
+from models.transfer_functions.transfer_function import Frf, check_frf, same_unit
+from models.transfer_functions.uff import (
+    COHERENCE,
+    FREQUENCY_RESPONSE,
+    UFF_ENDINGS,
+    UffFunction,
+    check_uff_library,
+    read_uff_functions,
+    write_uff_functions,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from typing import TextIO
+
+    from numpy.typing import NDArray
+
+__all__ = ["FRF_ENDINGS", "check_frf_path", "read_frf", "write_frf", "write_frf_csv"]
+
+FRF_ENDINGS = (".npz", ".csv", *UFF_ENDINGS)
+"""Endings of the formats that responses are read from and written to."""
+
+_COLUMNS = ("frequency_hz", "real", "imag")
+
+
+def check_frf_path(path: Path) -> None:
+    """Refuse a path of no known format, or one whose library is not installed.
+
+    Raises
+    ------
+    ParameterError
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> check_frf_path(Path("hammer.mat"))
+    Traceback (most recent call last):
+    models.errors.ParameterError: hammer.mat: responses end in .npz, .csv, .uff or .unv
+    """
+    ending = path.suffix.lower()
+    if ending not in FRF_ENDINGS:
+        raise ParameterError(
+            f"{path}: responses end in {', '.join(FRF_ENDINGS[:-1])} or {FRF_ENDINGS[-1]}"
+        )
+    if ending in UFF_ENDINGS:
+        check_uff_library(path)
+
+
+def read_frf(path: Path, *, input_unit: str, output_unit: str) -> Frf:
+    """Read a frequency response function.
+
+    Parameters
+    ----------
+    path : Path
+    input_unit, output_unit : str
+        Taken for the units where the file names none.
+
+    Returns
+    -------
+    Frf
+        In the units that the file names.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, or what it holds cannot be used.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> f = np.arange(1.0, 11.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "beam.npz"
+    ...     write_frf(path, Frf(f, 1j * f, None, "N m", "m/s^2"))
+    ...     read_frf(path, input_unit="N m", output_unit="m/s^2").response[1]
+    np.complex128(2j)
+    """
+    check_frf_path(path)
+    ending = path.suffix.lower()
+    try:
+        if ending == ".npz":
+            frf = _read_npz(path)
+        elif ending == ".csv":
+            frf = _read_csv(path, input_unit, output_unit)
+        else:
+            frf = _read_uff(path, input_unit, output_unit)
+    except OSError as error:
+        raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from None
+    return check_frf(frf)
+
+
+def write_frf(path: Path, frf: Frf) -> None:
+    """Write a frequency response function in the format of the ending.
+
+    Parameters
+    ----------
+    path : Path
+        A file that does not exist yet, in a folder that does.
+    frf : Frf
+
+    Raises
+    ------
+    ParameterError
+        The ending is unknown, or the library of the format is not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> f = np.arange(1.0, 11.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "torque_to_acceleration.npz"
+    ...     write_frf(path, Frf(f, 1j * f, None, "N m", "m/s^2"))
+    ...     read_frf(path, input_unit="N m", output_unit="m/s^2").spacing
+    1.0
+    """
+    check_frf_path(path)
+    ending = path.suffix.lower()
+    if ending == ".npz":
+        arrays: dict[str, Any] = {
+            "frequency_hz": frf.frequency,
+            "response": frf.response,
+            "input_unit": np.array(frf.input_unit),
+            "output_unit": np.array(frf.output_unit),
+        }
+        if frf.coherence is not None:
+            arrays["coherence"] = frf.coherence
+        np.savez(path, **arrays)
+    elif ending == ".csv":
+        with path.open("w", encoding="utf-8", newline="") as file:
+            write_frf_csv(file, frf)
+    else:
+        function = UffFunction(
+            FREQUENCY_RESPONSE,
+            frf.frequency,
+            frf.response,
+            frf.output_unit,
+            frf.input_unit,
+            "frequency response",
+        )
+        functions = [function]
+        if frf.coherence is not None:
+            functions.append(
+                UffFunction(COHERENCE, frf.frequency, frf.coherence, "", "", "coherence")
+            )
+        write_uff_functions(path, functions)
+
+
+def write_frf_csv(file: TextIO, frf: Frf) -> None:
+    """Write a frequency response function as CSV to an open file.
+
+    Examples
+    --------
+    >>> import sys
+    >>> f = np.array([1.0, 2.0])
+    >>> write_frf_csv(sys.stdout, Frf(f, 1j * f, None, "N m", "m/s^2"))
+    frequency_hz,real,imag,coherence
+    1.0,0.0,1.0,
+    2.0,0.0,2.0,
+    """
+    coherence = [""] * frf.frequency.size if frf.coherence is None else frf.coherence.tolist()
+    real, imag = frf.response.real.tolist(), frf.response.imag.tolist()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow([*_COLUMNS, "coherence"])
+    writer.writerows(zip(frf.frequency.tolist(), real, imag, coherence, strict=True))
+
+
+def _read_npz(path: Path) -> Frf:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            held = {key: file[key] for key in file.files}
+    except (ValueError, EOFError, zipfile.BadZipFile, AttributeError) as error:
+        raise ParameterError(f"{path}: is damaged or no NPZ file ({error})") from None
+    for key in ("frequency_hz", "response", "input_unit", "output_unit"):
+        if key not in held:
+            raise ParameterError(f"{path}: has no {key}; it holds {', '.join(held) or 'nothing'}")
+    for key in ("frequency_hz", "response", "coherence"):
+        if key in held and held[key].dtype.kind not in ("iufc" if key == "response" else "iuf"):
+            raise ParameterError(f"{path}: {key} has type {held[key].dtype}; it must be numbers")
+    if held["response"].dtype.kind != "c":
+        raise ParameterError(
+            f"{path}: response has type {held['response'].dtype}; it must be complex"
+        )
+    coherence = held.get("coherence")
+    return Frf(
+        held["frequency_hz"].astype(np.float64),
+        held["response"].astype(np.complex128),
+        None if coherence is None else coherence.astype(np.float64),
+        _unit(held["input_unit"], "input_unit", path),
+        _unit(held["output_unit"], "output_unit", path),
+        str(path),
+    )
+
+
+def _unit(value: NDArray[np.generic], key: str, path: Path) -> str:
+    if value.size != 1 or value.dtype.kind not in "US":
+        raise ParameterError(f"{path}: {key} is {value!r}; it must be a text")
+    text = value.reshape(()).item()
+    return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
+
+
+def _read_csv(path: Path, input_unit: str, output_unit: str) -> Frf:
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ParameterError(f"{path}: is no CSV text ({error})") from None
+    header = [cell.strip() for cell in rows[0]] if rows else []
+    for column in _COLUMNS:
+        if column not in header:
+            raise ParameterError(
+                f"{path}: has no column {column}; expected {', '.join(_COLUMNS)}, coherence"
+            )
+    columns = {name: _column(rows, header.index(name), name, path) for name in _COLUMNS}
+    coherence = None
+    if "coherence" in header:
+        position = header.index("coherence")
+        if any(len(row) > position and row[position].strip() for row in rows[1:]):
+            coherence = _column(rows, position, "coherence", path)
+    return Frf(
+        columns["frequency_hz"],
+        columns["real"] + 1j * columns["imag"],
+        coherence,
+        input_unit,
+        output_unit,
+        str(path),
+    )
+
+
+def _column(rows: list[list[str]], position: int, name: str, path: Path) -> NDArray[np.float64]:
+    values = np.empty(len(rows) - 1)
+    for line, row in enumerate(rows[1:]):
+        text = row[position] if position < len(row) else ""
+        try:
+            values[line] = float(text)
+        except ValueError:
+            raise ParameterError(
+                f"{path}: {name} is {text!r} at line {line + 1}; it must be a number"
+            ) from None
+    return values
+
+
+def _read_uff(path: Path, input_unit: str, output_unit: str) -> Frf:
+    if not path.is_file():
+        raise FileNotFoundError(2, "No such file or directory")
+    functions = read_uff_functions(path)
+    responses = [function for function in functions if function.kind == FREQUENCY_RESPONSE]
+    if len(responses) > 1:
+        responses = [function for function in responses if same_unit(function.unit, output_unit)]
+    if len(responses) != 1:
+        raise ParameterError(
+            f"{path}: holds {len(responses)} frequency response functions in {output_unit}; "
+            "it must be one"
+        )
+    (found,) = responses
+    coherences = [
+        function.y.real
+        for function in functions
+        if function.kind == COHERENCE and np.array_equal(function.x, found.x)
+    ]
+    return Frf(
+        found.x,
+        found.y.astype(np.complex128),
+        coherences[0].astype(np.float64) if len(coherences) == 1 else None,
+        found.denominator_unit or input_unit,
+        found.unit or output_unit,
+        str(path),
+    )

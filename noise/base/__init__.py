@@ -1,0 +1,1 @@
+"""What every part of the program uses: whole files, tables, progress."""

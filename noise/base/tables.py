@@ -1,0 +1,160 @@
+"""Tables as files: CSV, JSON Lines or Parquet by the ending, CSV on standard output without one.
+
+One value is written alike in all formats: nothing where there is none (an undefined number is
+none, too), ``true`` and ``false``, and numbers with as many digits as give the same number back.
+A table appears whole or not at all, and a target that cannot be written is refused before the work
+whose result it is to hold.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import numbers
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError, not_installed
+from noise.base.atomic import atomic
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from typing import TextIO
+
+    Cell = bool | int | float | str | None
+
+__all__ = ["TABLE_ENDINGS", "check_table_path", "write_table"]
+
+TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
+"""Endings of the formats that tables are written in."""
+
+
+def check_table_path(path: str | Path | None) -> None:
+    """Refuse a path that no table can be written to, before the work is done.
+
+    Parameters
+    ----------
+    path : path-like or None
+        None is standard output.
+
+    Raises
+    ------
+    ParameterError
+        The ending is none of `TABLE_ENDINGS`, the path is a folder, or the library that writes the
+        format is not installed.
+
+    Examples
+    --------
+    >>> check_table_path("features.xlsx")
+    Traceback (most recent call last):
+    models.errors.ParameterError: features.xlsx: tables end in .csv, .jsonl or .parquet
+    """
+    if path is None:
+        return
+    path = Path(path)
+    ending = path.suffix.lower()
+    if ending not in TABLE_ENDINGS:
+        raise ParameterError(f"{path}: tables end in .csv, .jsonl or .parquet")
+    if path.is_dir():
+        raise ParameterError(f"{path}: is a folder; name a file to write")
+    if ending == ".parquet":
+        try:
+            import pyarrow as pa  # noqa: F401
+        except ImportError:
+            raise ParameterError(
+                not_installed(f"{path}: Parquet needs", "pyarrow", "parquet")
+            ) from None
+
+
+def write_table(
+    path: str | Path | None, columns: Sequence[str], rows: Iterable[Mapping[str, object]]
+) -> None:
+    """Write a table.
+
+    Parameters
+    ----------
+    path : path-like or None
+        Format by its ending, parent folders are made; None writes CSV to standard output.
+    columns : sequence of str
+        All columns in their order; keys of a row that are not among them are left out.
+    rows : iterable of mapping
+        Column to value: a number, a text, a truth value or None. A missing column is None.
+
+    Raises
+    ------
+    ParameterError
+        The path cannot be written, see `check_table_path`.
+
+    Examples
+    --------
+    >>> rows = [{"file": "run07.wav", "level_db": 81.5}, {"file": "bad.wav", "level_db": None}]
+    >>> write_table(None, ["file", "level_db"], rows)
+    file,level_db
+    run07.wav,81.5
+    bad.wav,
+    """
+    cells = [[_cell(row.get(column)) for column in columns] for row in rows]
+    if path is None:
+        if sys.stdout is None:
+            raise ParameterError("standard output is closed; name a file for the table")
+        _write_csv(sys.stdout, columns, cells)
+        sys.stdout.flush()
+        return
+    path = Path(path)
+    check_table_path(path)
+    ending = path.suffix.lower()
+    with atomic(path) as temporary:
+        if ending == ".parquet":
+            _write_parquet(temporary, columns, cells)
+            return
+        # Names of files may hold what no UTF-8 can: it is written as a backslash and its code.
+        with temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
+            (_write_csv if ending == ".csv" else _write_json_lines)(file, columns, cells)
+
+
+def _cell(value: object) -> Cell:
+    if value is None or isinstance(value, str | bool):
+        return value
+    item = getattr(value, "item", None)  # scalars of numpy
+    if callable(item):
+        return _cell(item())
+    if isinstance(value, numbers.Integral):
+        return int(value)
+    if isinstance(value, numbers.Real):
+        number = float(value)
+        return None if math.isnan(number) else number
+    return str(value)
+
+
+def _write_csv(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(columns)
+    for row in rows:
+        writer.writerow(json.dumps(value) if isinstance(value, bool) else value for value in row)
+
+
+def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    for row in rows:
+        # JSON has no infinity.
+        values = (None if isinstance(v, float) and math.isinf(v) else v for v in row)
+        line = json.dumps(dict(zip(columns, values, strict=True)), ensure_ascii=False)
+        file.write(line + "\n")
+
+
+def _write_parquet(path: Path, columns: Sequence[str], rows: Sequence[Sequence[Cell]]) -> None:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    arrays = {
+        column: pa.array([_utf8(row[index]) for row in rows])
+        for index, column in enumerate(columns)
+    }
+    parquet.write_table(pa.table(arrays), path)
+
+
+def _utf8(value: Cell) -> Cell:
+    if isinstance(value, str):
+        return value.encode("utf-8", "backslashreplace").decode()
+    return value

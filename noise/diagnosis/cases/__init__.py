@@ -1,0 +1,1 @@
+"""Drawn cases: rigs, structures, effects and conditions as a posterior learns from them."""

@@ -1,0 +1,176 @@
+"""Clamp, beams, plate and air of a rig that was never built: modes by chance, and hammer blows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft
+
+from models.radiation.impulse_responses import Response
+from models.transfer_functions.measured import MeasuredResponse
+from models.transfer_functions.transfer_function import Frf
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.bushing import LumpedBushing
+
+__all__ = ["Structure", "draw_structure"]
+
+_LINES = np.arange(10.0, 10_001.0, 2.5)
+"""Of the hammer test [Hz]."""
+
+_BLOWS = 32
+_SOUND_SPEED = 343.0
+_LONGEST = 0.25
+"""Impulse responses are followed so long [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """Ways from torque and from blows in the anchors to acceleration and sound, as sums of modes.
+
+    Parameters
+    ----------
+    bushing : LumpedBushing
+        Whose clamp and support make the torsional mode.
+    beams, plate, anchors : ndarray, shape (3, n_modes)
+        Frequency [Hz], damping ratio and modal constant.
+    lever : float
+        From the torsion to the accelerometer [m].
+    clamp_to_pressure : float
+        [Pa per rad/s2]
+    distance : float
+        Of the microphone [m].
+    """
+
+    bushing: LumpedBushing
+    beams: NDArray[np.float64]
+    plate: NDArray[np.float64]
+    anchors: NDArray[np.float64]
+    lever: float
+    clamp_to_pressure: float
+    distance: float
+
+    def from_torque(
+        self, frequency: NDArray[np.float64]
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Responses of acceleration and pressure to the torque."""
+        late = np.exp(-2j * np.pi * frequency * self.distance / _SOUND_SPEED)
+        acceleration = _modes(frequency, self.beams)
+        pressure = late * _modes(frequency, self.plate)
+        if not self.bushing.clamp_is_fixed:
+            s = 2j * np.pi * frequency
+            turning = (
+                s
+                * s
+                / (
+                    self.bushing.support_stiffness
+                    + self.bushing.support_damping * s
+                    + self.bushing.clamp_inertia * s * s
+                )
+            )
+            acceleration = acceleration + self.lever * turning
+            pressure = pressure + self.clamp_to_pressure * late * turning
+        return acceleration, pressure
+
+    def measured(self, support_stiffness: float, rng: np.random.Generator) -> MeasuredResponse:
+        """Return the responses to the torque as a hammer test finds them."""
+        acceleration, pressure = (_as_measured(h, rng) for h in self.from_torque(_LINES))
+        return MeasuredResponse(
+            support_stiffness,
+            Frf(_LINES, acceleration, None, "N m", "m/s^2", "torque_to_acceleration"),
+            Frf(_LINES, pressure, None, "N m", "Pa", "torque_to_pressure"),
+        )
+
+    def response(self, rate: float) -> Response:
+        """Impulse responses at a sampling rate [Hz]."""
+        n = int(_LONGEST * rate)
+        frequency = np.asarray(np.fft.rfftfreq(2 * n, 1.0 / rate), np.float64)
+        x = np.clip((frequency - 0.4 * rate) / (0.05 * rate), 0.0, 1.0)
+        taper = 0.5 + 0.5 * np.cos(np.pi * x)
+        acceleration, pressure = self.from_torque(frequency)
+        struck = _modes(frequency, self.anchors)
+        late = np.exp(-2j * np.pi * frequency * self.distance / _SOUND_SPEED)
+
+        def impulse(response: NDArray[np.complex128]) -> NDArray[np.float64]:
+            return np.asarray(irfft(response * taper, 2 * n)[:n])
+
+        return Response(
+            rate, impulse(acceleration), impulse(pressure), impulse(struck),
+            impulse(0.02 * late * struck),
+        )  # fmt: skip
+
+
+def draw_structure(bushing: LumpedBushing, rng: np.random.Generator) -> Structure:
+    """Draw the structure of a support; stiffer beams ring higher, a bolted clamp hardly moves."""
+    fixed = bushing.clamp_is_fixed
+    stiffer = 1.0 if fixed else (bushing.support_stiffness / 2214.0) ** 0.67
+    n_beams, n_plate = int(rng.integers(2, 7)), int(rng.integers(12, 40))
+    beams = np.array(
+        [
+            stiffer * _log_uniform(rng, 500.0, 7500.0, n_beams),
+            rng.uniform(0.008, 0.03, n_beams),
+            (0.2 if fixed else 1.0) * rng.uniform(3.0, 18.0, n_beams) * _signs(rng, n_beams),
+        ]
+    )
+    if fixed:
+        n = int(rng.integers(2, 6))
+        low = [
+            _log_uniform(rng, 110.0, 900.0, n),
+            rng.uniform(0.01, 0.03, n),
+            rng.uniform(0.4, 2.5, n),
+        ]
+        beams = np.concatenate([beams, np.array(low)], axis=1)
+    loud = 0.012 * float(_log_uniform(rng, 0.4, 2.5, 1)[0])
+    plate = [
+        _log_uniform(rng, 110.0, 12e3, n_plate),
+        rng.uniform(0.008, 0.035, n_plate),
+        loud * rng.standard_normal(n_plate),
+    ]
+    anchors = [
+        _log_uniform(rng, 1500.0, 12e3, 8),
+        rng.uniform(0.008, 0.04, 8),
+        (0.6 if fixed else 1.2) * rng.standard_normal(8),
+    ]
+    return Structure(
+        bushing,
+        beams,
+        np.array(plate),
+        np.array(anchors),
+        lever=float(rng.uniform(0.06, 0.1)),
+        clamp_to_pressure=6e-5 * float(rng.uniform(0.5, 1.6)),
+        distance=float(rng.uniform(0.3, 1.0)),
+    )
+
+
+def _modes(frequency: NDArray[np.float64], modes: NDArray[np.float64]) -> NDArray[np.complex128]:
+    total = np.zeros(frequency.size, dtype=complex)
+    for f, damping, constant in modes.T.tolist():
+        x = frequency / f
+        total -= constant * x * x / (1.0 - x * x + 2j * damping * x)
+    return total
+
+
+def _as_measured(
+    response: NDArray[np.complex128], rng: np.random.Generator
+) -> NDArray[np.complex128]:
+    """Add the scatter of an average over blows whose coherence falls where little comes through."""
+    size = np.abs(response)
+    floor = 0.006 * float(np.median(size)) * (1.0 + (30.0 / _LINES) ** 2)
+    noise = (floor / size) ** 2 + 1e-3 * (1.0 + (_LINES / 6e3) ** 4)
+    coherence = 1.0 / (1.0 + np.minimum(noise, 9.0))
+    spread = size * np.sqrt((1.0 - coherence) / (2.0 * _BLOWS * coherence))
+    error = rng.standard_normal((2, _LINES.size)) * spread / math.sqrt(2.0)
+    return np.asarray(response + error[0] + 1j * error[1])
+
+
+def _log_uniform(rng: np.random.Generator, low: float, high: float, n: int) -> NDArray[np.float64]:
+    return np.exp(rng.uniform(math.log(low), math.log(high), n))
+
+
+def _signs(rng: np.random.Generator, n: int) -> NDArray[np.float64]:
+    return rng.choice([-1.0, 1.0], n)

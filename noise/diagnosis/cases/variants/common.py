@@ -1,0 +1,166 @@
+"""What the variants have in common: how they are made, and the shapes that many are drawn from.
+
+A monotone shape with random increments stands for the forms that nobody foresees: whoever has
+learnt a hundred such shapes has learnt the effect rather than a formula of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.signal import butter, lfilter
+
+from sim.effects import EFFECTS
+from sim.effects.effect import Effect, Signals
+from sim.parameters import Parameter
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from models.radiation.impulse_responses import Response
+
+Array = NDArray[np.float64]
+
+Recipe = Callable[[float, np.random.Generator], Effect]
+"""Of a strength from 0 to 1, and a generator."""
+
+_N_CURVE = 129
+_SENSED = ("torque", "acceleration", "pressure")
+
+
+def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    """Draw a number whose logarithm is uniform."""
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def _made(name: str, form: str, strength: float, **acting: Any) -> Effect:
+    plain = EFFECTS[name]
+    given = {"strength": Parameter(strength, "", 0.0, 1.0, "nothing at 0")}
+    return Effect(name, plain.stage, (form,), given, "strength", **acting)
+
+
+def on_contact(
+    name: str,
+    form: str,
+    strength: float,
+    hook: Any,
+    numbers: Callable[[np.random.Generator], Array],
+    n_states: int = 0,
+) -> Effect:
+    """Make an effect on the contact; a run's own generator draws the numbers of its hook."""
+    return _made(
+        name, form, strength, contact=hook, pack=lambda _form, _values, rng: numbers(rng),
+        n_states=n_states,
+    )  # fmt: skip
+
+
+def on_drive(
+    name: str,
+    form: str,
+    strength: float,
+    course: Callable[[Array, float, np.random.Generator], Array],
+) -> Effect:
+    """Make an effect on the speed, the relative change of which is `course`."""
+    return _made(
+        name, form, strength,
+        drive=lambda speed, rate, _form, _values, rng: speed * (1.0 + course(speed, rate, rng)),
+    )  # fmt: skip
+
+
+def on_joint(name: str, form: str, strength: float, force: Callable[[Any], Array]) -> Effect:
+    """Make an effect that strikes the joint of the anchors."""
+    return _made(name, form, strength, force=lambda motion, _form, _values: force(motion))
+
+
+def on_chain(
+    name: str,
+    form: str,
+    strength: float,
+    change: Callable[[Response, np.random.Generator], Response],
+) -> Effect:
+    """Make an effect on the way from torque to sound; neutral at strength 0."""
+
+    def chain(response: Response, _form: str, _values: Any, rng: np.random.Generator) -> Response:
+        return change(response, rng) if strength > 0.0 else response
+
+    return _made(name, form, strength, chain=chain)
+
+
+def on_sensors(
+    name: str,
+    form: str,
+    strength: float,
+    shares: dict[str, float],
+    change: Callable[[Array, float, float, np.random.Generator], Array],
+) -> Effect:
+    """Make an effect on channels; ``change(x, share, rate, rng)`` where the share is not 0."""
+
+    def sensors(
+        signals: Signals, rate: float, _form: str, _values: Any, rng: np.random.Generator
+    ) -> Signals:
+        return {
+            channel: change(x, shares.get(channel, 0.0), rate, rng)
+            if strength > 0.0 and shares.get(channel, 0.0) != 0.0
+            else x
+            for channel, x in signals.items()
+        }
+
+    return _made(name, form, strength, sensors=sensors)
+
+
+def draw_shares(
+    rng: np.random.Generator, names: tuple[str, ...] = _SENSED, *, signed: bool = False
+) -> dict[str, float]:
+    """Draw shares of a fault: mostly of one channel alone."""
+    chosen = [str(rng.choice(names))]
+    if rng.random() > 0.65:
+        chosen = [name for name in names if rng.random() < 0.7] or chosen
+    sizes = rng.uniform(0.5, 1.0, len(chosen)) if len(chosen) > 1 else np.ones(1)
+    signs = rng.choice([-1.0, 1.0], len(chosen)) if signed else np.ones(len(chosen))
+    return dict(zip(chosen, (sizes * signs).tolist(), strict=True))
+
+
+def curve(shape: Callable[[Array], Array]) -> Array:
+    """Tabulate a shape over 0 to 1 as hooks read it."""
+    return np.concatenate([[_N_CURVE], shape(np.linspace(0.0, 1.0, _N_CURVE))])
+
+
+def far_curve(shape: Callable[[Array], Array]) -> Array:
+    """Tabulate a shape over x from 0 to infinity, in equal steps of x / (1 + x)."""
+    return curve(lambda u: shape(u / np.maximum(1.0 - u, 1e-6)))
+
+
+def drawn_curve(rng: np.random.Generator) -> Array:
+    """Draw a monotone shape from 0 to 1, with few steep parts or many even ones."""
+    n, evenness = int(rng.integers(4, 9)), log_uniform(rng, 0.6, 4.0)
+    steps = np.cumsum(rng.dirichlet(np.full(n, evenness)))
+    knots = np.linspace(0.0, 1.0, n + 1)
+    return curve(PchipInterpolator(knots, np.concatenate([[0.0], steps])))
+
+
+def noise(rng: np.random.Generator, n: int, rate: float, low: float, high: float) -> Array:
+    """Draw periodic noise of a band, of unit variance."""
+    frequency = np.fft.rfftfreq(n, 1.0 / rate)
+    inside = (frequency >= low) & (frequency <= high)
+    inside[1] |= not inside[1:].any()
+    spectrum = inside * np.exp(2j * np.pi * rng.random(frequency.size))
+    course = np.fft.irfft(spectrum, n)
+    return np.asarray(course / course.std())
+
+
+def wander(rng: np.random.Generator, n: int, rate: float, corner: float) -> Array:
+    """Draw a slow random course of about unit variance."""
+    b, a = butter(2, min(2.0 * corner / rate, 0.9))
+    settling = round(min(2.0 * rate / corner, 4.0 * n))
+    course = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
+    return np.asarray(course * math.sqrt(0.5 * rate / (1.11 * corner)))
+
+
+def telegraph(rng: np.random.Generator, n: int, rate: float, often: float) -> Array:
+    """Draw a course that switches between -1 and 1, so often a second [Hz]."""
+    return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)

@@ -1,0 +1,1 @@
+"""Which cause: posterior, location, equivalence, verdict."""

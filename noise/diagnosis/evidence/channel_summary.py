@@ -1,0 +1,166 @@
+"""The health of a channel in numbers: clipping, offset, hum, noise floor; and of the shaft's angle.
+
+None needs a model: a sensor that fails shows it in its own signal.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+
+from noise.diagnosis.evidence.path_summary import segments
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["angle_summary", "channel_summary", "hum_summary", "shaft_speed"]
+
+Numbers = dict[str, float]
+
+_FLOOR_BANDS = ((100.0, 700.0), (700.0, 2500.0), (2500.0, 6000.0), (6000.0, 10000.0))
+"""[Hz]"""
+
+_MAINS = (50, 60)
+"""[Hz]"""
+
+_SPEED_LIMIT = 60.0
+"""The shaft's speed follows its angle up to so many hertz, half as much again fading."""
+
+
+def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
+    """Summarise a signal's distribution and its noise floor.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+    rate : float
+        [Hz]
+
+    Returns
+    -------
+    dict of str to float
+    """
+    top, bottom = float(x.max()), float(x.min())
+    span = top - bottom + 1e-12
+    mean, spread, median = float(x.mean()), float(x.std()) + 1e-12, float(np.median(x))
+    away = x - mean
+    high, low = x > top - 0.05 * span, x < bottom + 0.05 * span
+    numbers = {
+        "top": _log_share(x > top - 0.02 * span),
+        "bottom": _log_share(x < bottom + 0.02 * span),
+        "crest": math.log(max(top - mean, mean - bottom, 1e-12) / spread),
+        "asymmetry": math.log((top - median + 1e-12) / (median - bottom + 1e-12)),
+        "skewness": float(away @ (away * away)) / x.size / spread**3,
+        "flat": _log_share(np.abs(np.diff(x)) < 1e-3 * span),
+        "dwell_top": _dwell(high),
+        "dwell_bottom": _dwell(low),
+        "offset": mean / spread,
+    }
+    power = np.percentile(np.abs(segments(x, 1024)) ** 2, 10, axis=0)
+    frequency = np.fft.rfftfreq(1024, 1.0 / rate)
+    for i, (first, last) in enumerate(_FLOOR_BANDS):
+        inside = (frequency > first) & (frequency < last)
+        numbers[f"floor_{i}"] = 0.5 * math.log(float(power[inside].mean()) + 1e-16)
+    return numbers
+
+
+def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
+    """Summarise how far the mains' harmonics stand out of what lies beside them."""
+    n = x.size
+    power = np.abs(rfft(_detrended(x) * np.hanning(n))) ** 2
+    spacing = rate / n
+    numbers: Numbers = {}
+    for mains in _MAINS:
+        lines = [_line(power, k * mains / spacing) for k in range(1, 8)]
+        numbers[f"hum_{mains}"] = lines[0]
+        numbers[f"hum_odd_{mains}"] = float(np.mean(lines[2::2]))
+        numbers[f"hum_even_{mains}"] = float(np.mean(lines[1::2]))
+    first, last = math.ceil(44.0 / spacing), math.floor(66.0 / spacing)
+    best = first + int(np.argmax(power[first : last + 1]))
+    numbers["hum_best"] = _line(power, best)
+    numbers["hum_level"] = 0.5 * math.log(16.0 * float(power[best]) / n**2 + 1e-14)
+    return numbers
+
+
+def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numbers:
+    """Summarise how evenly the shaft turns; `speed` is what was set [rad/s]."""
+    n = angle.size
+    time = np.arange(n, dtype=np.float64) / rate
+    mean_speed = _slope(time, angle)
+    left = angle - angle.mean() - mean_speed * (time - time.mean())
+    block = max(1, int(2.5e-3 * rate))
+    means = left[: n // block * block].reshape(-1, block).mean(axis=1)
+    v = np.diff(means) * rate / block / abs(speed)
+    v -= v.mean()
+    spread = float(v.std()) + 1e-9
+    power = np.abs(rfft(v * np.hanning(v.size))) ** 2
+    power[0] = 0.0
+    best = int(np.argmax(power))
+    return {
+        "speed": math.log(max(abs(mean_speed), 1e-3) / abs(speed)),
+        "unevenness": math.log(float(left.std()) + 1e-6),
+        "speed_spread": math.log(spread),
+        "speed_most": math.log(float(np.abs(v).max()) + 1e-6),
+        "speed_kurtosis": float(np.mean(v**4)) / spread**4,
+        "speed_skewness": float(np.mean(v**3)) / spread**3,
+        "speed_line": float(power[best] / (power.sum() + 1e-30)),
+        "speed_line_at": math.log(max(best, 1) * rate / block / v.size),
+    }
+
+
+def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Speed of the shaft from its angle, below 60 Hz [rad/s].
+
+    Examples
+    --------
+    >>> time = np.arange(3000) / 10e3
+    >>> turning = 2.0 * time + 0.01 * np.sin(2 * np.pi * 10.0 * time)
+    >>> round(float(shaft_speed(turning, 10e3)[1000]), 2)  # 2 + 0.2 pi
+    2.63
+    """
+    n = angle.size
+    time = np.arange(n, dtype=np.float64) / rate
+    mean_speed = _slope(time, angle)
+    left = angle - angle.mean() - mean_speed * (time - time.mean())
+    # Turned about its ends, so that neither its value nor its slope jumps there.
+    m = min(round(0.05 * rate), n - 1)
+    before, after = 2.0 * left[0] - left[m:0:-1], 2.0 * left[-1] - left[-2 : -m - 2 : -1]
+    extended = np.concatenate([before, left, after])
+    length = next_fast_len(extended.size, real=True)
+    s = 2j * np.pi * np.fft.rfftfreq(length, 1.0 / rate)
+    x = np.clip((np.abs(s) / (2.0 * np.pi) - _SPEED_LIMIT) / _SPEED_LIMIT, 0.0, 1.0)
+    gain = 0.5 + 0.5 * np.cos(np.pi * x)
+    return np.asarray(mean_speed + irfft(rfft(extended, length) * s * gain, length)[m : m + n])
+
+
+def _line(power: NDArray[np.float64], place: float) -> float:
+    k = round(place)
+    if k + 13 > power.size:
+        return 0.0
+    beside = np.concatenate([power[max(k - 12, 1) : max(k - 4, 1)], power[k + 5 : k + 13]])
+    return math.log(
+        (float(power[max(k - 2, 0) : k + 3].max()) + 1e-30) / (float(np.median(beside)) + 1e-30)
+    )
+
+
+def _detrended(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    time = np.arange(x.size, dtype=np.float64) - 0.5 * (x.size - 1)
+    return np.asarray(x - x.mean() - _slope(time, x) * time)
+
+
+def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
+    away = x - x.mean()
+    return float(away @ (y - y.mean())) / float(away @ away)
+
+
+def _log_share(chosen: NDArray[np.bool_]) -> float:
+    return math.log(float(chosen.mean()) + 1e-4)
+
+
+def _dwell(chosen: NDArray[np.bool_]) -> float:
+    """Mean samples of a stay."""
+    stays = max(int(np.count_nonzero(chosen[1:] & ~chosen[:-1])), 1)
+    return math.log(max(float(chosen.sum()), 1.0) / stays)

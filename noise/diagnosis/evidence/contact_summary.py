@@ -1,0 +1,281 @@
+"""What the contact did, in numbers that no phase enters: stick, slips, cycles, the torque as such.
+
+All come from a `Reconstruction` and are relative to what the rig file says of the condition, so
+that a rig as its file describes it has much the same numbers whatever its fit and speed:
+
+- stick: how fast the surface creeps, by how near the torque is to the critical one; what of that
+  another stiffness, damping or inertia would explain;
+- slip: friction torque by sliding speed, on the way up and on the way down;
+- cycles: peak, drop, duration and interval, their scatter, memory and drift, and how the peak
+  depends on the time in stick;
+- torque: mean, spread, drift and extremes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from noise.diagnosis.evidence.cycle_shape import cycle_shape
+from noise.diagnosis.evidence.torque_by_speed import torque_by_speed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Fit
+    from noise.diagnosis.evidence.reconstruction import Reconstruction
+
+__all__ = ["contact_summary", "slip_starts"]
+
+Numbers = dict[str, float]
+
+_TORQUE_EDGES = np.array([0.0, 0.5, 0.65, 0.8, 0.92, 1.1])
+"""Of classes of the friction torque over the critical one."""
+
+_FEWEST = 8
+"""Samples that make a mean."""
+
+_APART = 2e-4
+"""Slips closer than this are one [s]."""
+
+_AROUND = 4e-4
+"""What the band limit smears a slip over on either side [s]."""
+
+_NEAR_PEAK = 6e-4
+"""In which the torque's peak before and its trough after a slip are looked for [s]."""
+
+
+def slip_starts(found: Reconstruction, speed: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the samples at which the surface begins to slip, and at which it is caught again."""
+    wanted = abs(speed)
+    starts, ends = _slips(
+        found.sliding_speed,
+        max(3.0, 1.3 * wanted + 2.0),
+        0.5 * wanted + 0.8,
+        int(_APART * found.rate),
+    )
+    return starts, ends
+
+
+def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
+    """Summarise what the contact did.
+
+    Parameters
+    ----------
+    found : Reconstruction
+    fit : Fit
+        As the rig file has it.
+    speed : float
+        Of the shaft, as set [rad/s].
+
+    Returns
+    -------
+    dict of str to float
+        NaN, or missing, where a recording does not show it.
+    """
+    starts, ends = slip_starts(found, speed)
+    n = found.torque.size
+    near = _around(starts, ends, n, int(_AROUND * found.rate))
+    wanted = max(abs(speed), 0.05)
+    stick = ~near & (np.abs(found.sliding_speed) < 0.7 * wanted + 1.2)
+    numbers = {
+        "slip_rate": math.log(max(starts.size * found.rate / n, 0.5)),
+        "stick_share": float(stick.mean()),
+        "slip_share": float(near.mean()),
+        "calm_speed": _mean(found.sliding_speed[~near]) / wanted,
+        "calm_spread": float(np.std(found.sliding_speed[~near])) / wanted,
+    }
+    numbers |= _stick(found, fit, stick, wanted)
+    numbers |= _sliding(found, fit, ~near & ~stick)
+    slipping = _around(starts, ends, n, 0)
+    numbers |= torque_by_speed(found, fit, slipping)
+    numbers |= _cycles(found, fit, starts, ends)
+    numbers |= cycle_shape(found, fit, starts, ends)
+    numbers |= _torque(found, fit)
+    return numbers
+
+
+def _stick(found: Reconstruction, fit: Fit, stick: NDArray[np.bool_], speed: float) -> Numbers:
+    creep = found.sliding_speed / speed
+    ratio = found.friction_torque / fit.critical_torque
+    rising = found.torque_rate > 0.0
+    numbers: Numbers = {}
+    for name, chosen in (("up", stick & rising), ("down", stick & ~rising)):
+        place = np.digitize(ratio[chosen], _TORQUE_EDGES)
+        for i in range(1, _TORQUE_EDGES.size):
+            numbers[f"creep_{name}_{i}"] = _mean(creep[chosen][place == i])
+    if stick.sum() < 200:
+        return numbers
+    # What sliding there seems to be in stick, as another stiffness, damping, inertia or speed,
+    # a stiffness that changes with torque, or a contact that gives before it breaks.
+    wound = (found.torque - fit.kinetic_torque) / fit.kinetic_torque
+    columns = {
+        "speed": found.shaft_speed,
+        "stiffness": found.by_stiffness,
+        "softening": found.by_stiffness * wound,
+        "damping": found.by_damping,
+        "clamp": found.by_clamp,
+        "release": found.shaft_speed * np.clip(ratio, 0.0, 1.2) ** 6,
+    }
+    if not found.by_clamp.any():
+        # All of the shaft's speed winds the elastomer: another speed is another stiffness.
+        columns = {name: columns[name] for name in columns if name not in ("speed", "clamp")}
+    a = np.stack([column[stick] for column in columns.values()], axis=1)
+    b = found.sliding_speed[stick]
+    gram = a.T @ a
+    gram += 1e-6 * np.trace(gram) / len(gram) * np.eye(len(gram))
+    x = np.linalg.solve(gram, a.T @ b)
+    numbers |= {f"stick_{name}": float(value) for name, value in zip(columns, x, strict=True)}
+    left = b - a @ x
+    numbers["stick_left"] = float(np.std(left)) / speed
+    numbers["stick_explained"] = 1.0 - float(np.var(left)) / max(float(np.var(b)), 1e-12)
+    wind = found.shaft_speed - found.clamp_speed
+    for name, chosen in (
+        ("all", stick),
+        ("late", stick & rising & (ratio > 0.85)),
+        ("early", stick & rising & (ratio < 0.7)),
+    ):
+        if chosen.sum() > 60:
+            u = wind[chosen]
+            slope = float(found.torque_rate[chosen] @ u) / (float(u @ u) * fit.elastomer_stiffness)
+            numbers[f"stiffness_{name}"] = slope
+    return numbers
+
+
+def _sliding(found: Reconstruction, fit: Fit, sliding: NDArray[np.bool_]) -> Numbers:
+    """Of a contact that slides on and on."""
+    if sliding.mean() < 0.3:
+        return {}
+    v, torque = found.sliding_speed[sliding], found.friction_torque[sliding] / fit.kinetic_torque
+    return {
+        "sliding_torque": float(torque.mean()),
+        "sliding_slope": float(np.cov(v, torque)[0, 1] / max(float(v.var()), 1e-12)),
+        "sliding_torque_spread": float(torque.std()),
+        "sliding_speed_spread": float(v.std()),
+    }
+
+
+def _cycles(
+    found: Reconstruction, fit: Fit, starts: NDArray[np.int64], ends: NDArray[np.int64]
+) -> Numbers:
+    n_slips = starts.size
+    if n_slips < 4:
+        return {}
+    rate, near = found.rate, int(_NEAR_PEAK * found.rate)
+    critical, kinetic = fit.critical_torque, fit.kinetic_torque
+    pairs = list(zip(starts.tolist(), ends.tolist(), strict=True))
+    friction, torque = found.friction_torque, found.torque
+    peak = np.array([friction[max(a - near, 0) : a + 2].max() for a, _ in pairs]) / critical
+    trough = np.array([torque[a : b + near].min() for a, b in pairs]) / kinetic
+    fastest = np.array([found.sliding_speed[a:b].max() for a, b in pairs])
+    sliding = np.array([float(np.median(friction[a:b])) for a, b in pairs]) / kinetic
+    time = starts / rate
+    interval, duration = np.diff(time), (ends - starts) / rate
+    stuck = np.maximum(starts[1:] - ends[:-1], 1) / rate
+    numbers = {
+        "peak": float(np.median(peak)),
+        "peak_spread": float(peak.std()),
+        "peak_range": float(np.subtract(*np.percentile(peak, [90, 10]))),
+        "peak_least": float(peak.min()),
+        "trough": float(np.median(trough)),
+        "trough_spread": float(trough.std()),
+        "fastest": float(np.median(fastest)),
+        "fastest_spread": float(fastest.std()),
+        "kinetic": float(np.median(sliding)),
+        "kinetic_spread": float(sliding.std()),
+        "interval": math.log(float(np.median(interval))),
+        "interval_spread": float(interval.std() / interval.mean()),
+        "duration": math.log(float(np.median(duration))),
+        "duration_spread": float(duration.std() / duration.mean()),
+        "time_stuck": math.log(float(np.median(stuck))),
+        "fastest_drift": _slope(time, fastest) * float(time.std()),
+    }
+    if n_slips >= 8:
+        age, when = np.log(stuck), time[1:] - time[1:].mean()
+        a = np.stack([np.ones_like(age), age - age.mean(), when], axis=1)
+        on_age = np.linalg.lstsq(a, peak[1:], rcond=1e-6)[0]
+        of_sliding = np.linalg.lstsq(a, sliding[1:], rcond=1e-6)[0]
+        spread_in_time = 2.0 * float(when.std())
+        numbers |= {
+            "peak_memory": _correlation(peak[1:], peak[:-1]),
+            "peak_kurtosis": _kurtosis(peak),
+            "peak_by_age": float(on_age[1]) * min(float(age.std()), 1.0),
+            "peak_drift": float(on_age[2]) * spread_in_time,
+            "peak_left": float(np.std(peak[1:] - a @ on_age)),
+            "kinetic_drift": float(of_sliding[2]) * spread_in_time,
+            "peak_with_kinetic": _correlation(peak, sliding),
+        }
+    return numbers
+
+
+def _torque(found: Reconstruction, fit: Fit) -> Numbers:
+    torque = found.torque
+    kinetic, critical = fit.kinetic_torque, fit.critical_torque
+    quarter = torque.size // 4
+    q = torque[: 4 * quarter].reshape(4, quarter).mean(axis=1) / kinetic
+    block = int(0.02 * found.rate)
+    passed = np.cumsum(torque)
+    slow = (passed[block:] - passed[:-block]) / block
+    away = torque - torque.mean()
+    return {
+        "mean": float(torque.mean()) / kinetic,
+        "spread": float(torque.std()) / kinetic,
+        "drift": float(q[3] - q[0]),
+        "bend": float(q[0] + q[3] - q[1] - q[2]),
+        "early_drift": float(q[1] - q[0]),
+        "quarters": float(q.std()),
+        "slow": float(slow.std()) / kinetic,
+        "highest": float(torque.max()) / critical,
+        "lowest": float(torque.min()) / kinetic,
+        "friction_highest": float(found.friction_torque.max()) / critical,
+        "skewness": float(away @ (away * away)) / torque.size / (float(torque.std()) ** 3 + 1e-9),
+    }
+
+
+@njit(cache=True)
+def _slips(v, on, off, apart):
+    starts = np.empty(v.size // 2 + 1, np.int64)
+    ends = np.empty(v.size // 2 + 1, np.int64)
+    count, inside, start = 0, False, 0
+    for i in range(v.size):
+        if not inside:
+            if v[i] > on:
+                inside, start = True, i
+        elif v[i] < off:
+            if count > 0 and start - ends[count - 1] < apart:
+                ends[count - 1] = i
+            else:
+                starts[count], ends[count] = start, i
+                count += 1
+            inside = False
+    return starts[:count], ends[:count]
+
+
+def _around(
+    starts: NDArray[np.int64], ends: NDArray[np.int64], n: int, margin: int
+) -> NDArray[np.bool_]:
+    step = np.zeros(n + 1, np.int64)
+    np.add.at(step, np.maximum(starts - margin, 0), 1)
+    np.add.at(step, np.minimum(ends + margin, n), -1)
+    return np.asarray(np.cumsum(step)[:n] > 0)
+
+
+def _mean(x: NDArray[np.float64]) -> float:
+    return float(x.mean()) if x.size >= _FEWEST else math.nan
+
+
+def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
+    away = x - x.mean()
+    return float(away @ y) / max(float(away @ away), 1e-12)
+
+
+def _correlation(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
+    spread = float(x.std() * y.std())
+    return float(np.mean((x - x.mean()) * (y - y.mean()))) / spread if spread > 1e-12 else 0.0
+
+
+def _kurtosis(x: NDArray[np.float64]) -> float:
+    return float(np.mean((x - x.mean()) ** 4)) / (float(x.var()) ** 2 + 1e-12)

@@ -1,0 +1,168 @@
+"""The friction torque that no sensor sees, rebuilt from the torque that one does.
+
+The torque cell reads T = k_E (theta1 - theta2) + c (theta1' - theta2'), the elastomer's torque on
+the clamp. The clamp's angle follows from it by the clamp's own equation (Figure 4.1),
+J_C theta2'' + c_B theta2' + k_B theta2 = T, the elastomer's twist by the first one, and with the
+surface's acceleration the torque in the contact is T_F = T + J_E theta1''. So drive, contact and
+elastomer can be looked at sample by sample, without a simulation whose phase wanders off.
+Differentiation makes noise of what the cell does not resolve, so everything is band-limited to
+`LIMIT`; the clamp's free decay from before the recording is not known, so `LEAD` is left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.bushing import LumpedBushing
+
+__all__ = ["LEAD", "LIMIT", "TAIL", "Reconstruction", "closed_loop", "reconstruct"]
+
+LIMIT = 8000.0
+"""Highest frequency kept [Hz], at most a third of the rate; its flank ends a third above."""
+
+LEAD = 0.06
+"""Left out at the start, where the clamp still rings from before the recording [s]."""
+
+TAIL = 0.01
+"""Left out at the end, where the band limit has nothing to look at [s]."""
+
+_WAY_BACK = 0.25
+"""In which a signal is led back to where it began, as a transform has it do [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """Motion of the rig over time; all arrays have shape (n,).
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    start : float
+        Time of the first sample within the recording [s].
+    torque, friction_torque : ndarray
+        In the cell, and in the contact [Nm].
+    torque_rate : ndarray
+        [Nm/s]
+    shaft_speed, sliding_speed : ndarray
+        [rad/s]
+    clamp_speed : ndarray
+        [rad/s]
+    by_stiffness, by_damping, by_clamp : ndarray
+        By how much the sliding speed would be more were the elastomer's stiffness, all damping or
+        the clamp's inertia greater, per relative change [rad/s].
+    """
+
+    rate: float
+    start: float
+    torque: NDArray[np.float64]
+    friction_torque: NDArray[np.float64]
+    torque_rate: NDArray[np.float64]
+    shaft_speed: NDArray[np.float64]
+    sliding_speed: NDArray[np.float64]
+    clamp_speed: NDArray[np.float64]
+    by_stiffness: NDArray[np.float64]
+    by_damping: NDArray[np.float64]
+    by_clamp: NDArray[np.float64]
+
+
+def reconstruct(
+    torque: NDArray[np.float64],
+    shaft_speed: NDArray[np.float64],
+    rate: float,
+    bushing: LumpedBushing,
+) -> Reconstruction:
+    """Rebuild the contact's torque and sliding speed from the torque that was measured.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n,)
+        [Nm], at least 0.1 s of it.
+    shaft_speed : ndarray, shape (n,)
+        [rad/s]
+    rate : float
+        [Hz]
+    bushing : LumpedBushing
+
+    Returns
+    -------
+    Reconstruction
+        Shorter by `LEAD` and `TAIL`.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.bushing import lumped_bushing
+    >>> from sim.run import simulate
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> run = simulate(rig, 1.0, interference=0.279e-3, support_stiffness=3745.0, seconds=0.3)
+    >>> torque, speed = run.recording["torque"], np.full(9000, 1.0)
+    >>> found = reconstruct(torque, speed, 30e3, lumped_bushing(rig, 0.279e-3, 3745.0))
+    >>> abs(float(np.median(found.sliding_speed))) < 0.05  # it sticks most of the time
+    True
+    """
+    n = torque.size
+    mean = float(np.mean(torque))
+    closed = closed_loop(torque, rate) - mean
+    length = closed.size
+    s = 2j * np.pi * np.fft.rfftfreq(length, 1.0 / rate)
+    spectrum = rfft(closed) * _low_pass(np.abs(s) / (2.0 * np.pi), rate)
+    of_elastomer = bushing.elastomer_stiffness + bushing.elastomer_damping * s
+    twist = spectrum / of_elastomer
+    by_damping = bushing.elastomer_damping * s * s * twist / of_elastomer
+    clamp = by_clamp = np.zeros_like(spectrum)
+    if not bushing.clamp_is_fixed:
+        of_clamp = (
+            bushing.support_stiffness + bushing.support_damping * s + bushing.clamp_inertia * s * s
+        )
+        clamp = spectrum / of_clamp
+        by_damping = by_damping + bushing.support_damping * s * s * clamp / of_clamp
+        by_clamp = bushing.clamp_inertia * s**3 * clamp / of_clamp
+    kept = slice(round(LEAD * rate), n - round(TAIL * rate))
+
+    def back(x: NDArray[np.complex128]) -> NDArray[np.float64]:
+        return np.asarray(irfft(x, length)[kept])
+
+    smooth = back(spectrum) + mean
+    surface = twist + clamp
+    speed = shaft_speed[kept]
+    return Reconstruction(
+        rate=rate,
+        start=kept.start / rate,
+        torque=smooth,
+        friction_torque=smooth + bushing.elastomer_inertia * back(surface * s * s),
+        torque_rate=back(spectrum * s),
+        shaft_speed=speed,
+        sliding_speed=speed - back(surface * s),
+        clamp_speed=back(clamp * s),
+        by_stiffness=back(bushing.elastomer_stiffness * s * twist / of_elastomer),
+        by_damping=back(by_damping),
+        by_clamp=back(by_clamp),
+    )
+
+
+def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Lead a signal back to its start along half a cosine, so that a transform sees no step.
+
+    Examples
+    --------
+    >>> closed_loop(np.array([0.0, 2.0]), 8.0).round(1)
+    array([0., 2., 2., 0.])
+    """
+    n = signal.size
+    length = next_fast_len(n + round(_WAY_BACK * rate), real=True)
+    turn = 0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, length - n))
+    return np.concatenate([signal, signal[0] + turn * (signal[-1] - signal[0])])
+
+
+def _low_pass(frequency: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    low = min(LIMIT, rate / 3.0)
+    x = np.clip((frequency - low) / (low / 3.0), 0.0, 1.0)
+    return np.asarray(0.5 + 0.5 * np.cos(np.pi * x))

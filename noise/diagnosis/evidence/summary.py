@@ -1,0 +1,262 @@
+"""A recording in some four hundred numbers, and a case as how they differ from the rig file's.
+
+A *case* is what a user brings: recordings of one rig over several conditions, and its file. Each
+number is taken from the recording and from simulated repeats of its condition; what matters is
+the difference, its size against the repeats' own scatter, and how both change from condition to
+condition and between repeats of one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.evidence.channel_summary import (
+    angle_summary,
+    channel_summary,
+    hum_summary,
+    shaft_speed,
+)
+from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
+from noise.diagnosis.evidence.path_summary import (
+    BAND_EDGES,
+    common_residual,
+    path_summary,
+    segments,
+)
+from noise.diagnosis.evidence.reconstruction import reconstruct
+from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.paths import KnownWays, predict
+from sim.bushing import lumped_bushing
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+    from models.recording import Recording
+    from models.rig import Rig
+    from noise.diagnosis.simulated.paths import Way
+    from sim.effects.effect import Effect
+
+__all__ = ["CaseTable", "NominalNumbers", "case_table", "summary", "through_same"]
+
+Numbers = dict[str, float]
+
+N_REPEATS = 3
+"""Simulated repeats a condition."""
+
+_OUTPUTS = ("acceleration", "pressure")
+
+
+@dataclass(frozen=True, eq=False)
+class CaseTable:
+    """The numbers of a case.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Of the columns.
+    measured, nominal, scatter : ndarray, shape (n_recordings, n_numbers)
+        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined.
+    conditions : tuple of Condition
+    rate : float
+        Sampling rate of the recordings [Hz].
+    """
+
+    names: tuple[str, ...]
+    measured: NDArray[np.float64]
+    nominal: NDArray[np.float64]
+    scatter: NDArray[np.float64]
+    conditions: tuple[Condition, ...]
+    rate: float
+
+
+def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Numbers:
+    """Summarise a recording against the rig that it is said to be of.
+
+    Parameters
+    ----------
+    recording : Recording
+        With speed, interference and support stiffness in its condition.
+    rig : Rig
+    found_ways : mapping of str to Way
+        As `noise.diagnosis.simulated.paths.ways` gives them.
+
+    Returns
+    -------
+    dict of str to float
+        What a missing channel would tell is missing.
+    """
+    condition, rate = recording.condition, recording.rate
+    assert condition.speed is not None
+    assert condition.interference is not None
+    assert condition.support_stiffness is not None
+    signal = {
+        kind: recording.samples[row]
+        for kind in ("torque", *_OUTPUTS, "angle")
+        if (row := recording.first(kind)) is not None
+    }
+    numbers: Numbers = {}
+    # Torque and motion change sign together: what turns backwards is looked at from behind.
+    turn, wanted = math.copysign(1.0, condition.speed), abs(condition.speed)
+    speed = np.full(recording.samples.shape[1], wanted)
+    if "angle" in signal:
+        numbers |= _named("angle", angle_summary(turn * signal["angle"], wanted, rate))
+        speed = shaft_speed(turn * signal["angle"], rate)
+    for kind in ("torque", *_OUTPUTS):
+        if kind in signal:
+            numbers |= _named(kind, channel_summary(signal[kind], rate))
+            numbers |= _named(f"{kind}_raw", hum_summary(signal[kind], rate))
+            numbers |= _named(kind, _levels(signal[kind], rate))
+    if "torque" not in signal:
+        return numbers
+    torque = signal["torque"]
+    bushing = lumped_bushing(rig, condition.interference, condition.support_stiffness)
+    found = reconstruct(turn * torque, speed, rate, bushing)
+    fit = rig.fit(condition.interference)
+    numbers |= _named("contact", contact_summary(found, fit, wanted))
+    slips = slip_starts(found, wanted)[0] / rate + found.start
+    residuals = {}
+    for kind in _OUTPUTS:
+        if kind in signal:
+            expected = predict(torque, rate, found_ways[kind])
+            more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
+            numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
+    if len(residuals) == len(_OUTPUTS):
+        numbers |= common_residual(residuals["acceleration"], residuals["pressure"], rate)
+    return numbers
+
+
+@dataclass(frozen=True, eq=False)
+class NominalNumbers:
+    """What the numbers of recordings would be were the rig as its file has it; simulated once.
+
+    Parameters
+    ----------
+    rig : Rig
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
+    seed : int
+        Of the repeats.
+    """
+
+    rig: Rig
+    library: Mapping[str, Effect] | None = None
+    seed: int = 0
+    _kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = field(default_factory=dict)
+
+    @cached_property
+    def ways(self) -> KnownWays:
+        """The rig's, each looked up once."""
+        return KnownWays(self.rig)
+
+    def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
+        """Mean and standard deviation over simulated repeats of a recording's condition."""
+        c = recording.condition
+        at = _condition(recording)
+        like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
+        if like not in self._kept:
+            found_ways = self.ways.at(at[1], at[2])
+            repeats = nominal_recordings(
+                self.rig,
+                c,
+                found_ways,
+                rate=recording.rate,
+                seconds=recording.duration,
+                seeds=[self.seed + i for i in range(N_REPEATS)],
+                library=self.library,
+            )
+            heard = [through_same(repeat, recording) for repeat in repeats]
+            self._kept[like] = _moments([summary(repeat, self.rig, found_ways) for repeat in heard])
+        return self._kept[like]
+
+
+def case_table(
+    recordings: Sequence[Recording],
+    rig: Rig,
+    *,
+    library: Mapping[str, Effect] | None = None,
+    seed: int = 0,
+    nominal: NominalNumbers | None = None,
+) -> CaseTable:
+    """Summarise the recordings of a case, and simulated repeats of each condition.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    rig : Rig
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
+    seed : int
+        Of the repeats.
+    nominal : NominalNumbers, optional
+        Those of this rig, where several cases are of it.
+
+    Returns
+    -------
+    CaseTable
+    """
+    nominal = nominal or NominalNumbers(rig, library, seed)
+    rows = [
+        summary(recording, rig, nominal.ways.at(*_condition(recording)[1:]))
+        for recording in recordings
+    ]
+    means, spreads = zip(*(nominal.like(recording) for recording in recordings), strict=True)
+    names = tuple(sorted({name for row in (*rows, *means) for name in row}))
+
+    def table(numbers: Sequence[Numbers]) -> NDArray[np.float64]:
+        return np.array([[row.get(name, math.nan) for name in names] for row in numbers])
+
+    return CaseTable(
+        names,
+        table(rows),
+        table(means),
+        table(spreads),
+        tuple(recording.condition for recording in recordings),
+        recordings[0].rate,
+    )
+
+
+def _condition(recording: Recording) -> tuple[float, float, float]:
+    c = recording.condition
+    return (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
+
+
+def through_same(repeat: Recording, recording: Recording) -> Recording:
+    """Return a repeat without the channels that a recording lacks."""
+    rows = [i for i, c in enumerate(repeat.channels) if recording.first(c.kind) is not None]
+    return replace(
+        repeat, samples=repeat.samples[rows], channels=tuple(repeat.channels[i] for i in rows)
+    )
+
+
+def _levels(x: NDArray[np.float64], rate: float) -> Numbers:
+    size = 2048 if rate < 40e3 else 4096
+    power = (np.abs(segments(x, size)) ** 2).mean(axis=0)
+    place = np.digitize(np.fft.rfftfreq(size, 1.0 / rate), BAND_EDGES)
+    return {
+        f"band_{i}": 0.5 * math.log(float(power[place == i].mean()) + 1e-14)
+        for i in range(1, BAND_EDGES.size)
+        if BAND_EDGES[i] < 0.42 * rate and (place == i).any()
+    }
+
+
+def _moments(repeats: list[Numbers]) -> tuple[Numbers, Numbers]:
+    mean, spread = {}, {}
+    for name in {name for numbers in repeats for name in numbers}:
+        values = np.array([numbers[name] for numbers in repeats if name in numbers])
+        values = values[np.isfinite(values)]
+        if values.size:
+            mean[name] = float(values.mean())
+            spread[name] = float(values.std(ddof=1)) if values.size > 1 else math.nan
+    return mean, spread
+
+
+def _named(kind: str, numbers: Numbers) -> Numbers:
+    return {f"{kind}_{name}": value for name, value in numbers.items()}

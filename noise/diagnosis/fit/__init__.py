@@ -1,0 +1,1 @@
+"""Fits of parameters and effects to recordings, scored on recordings left out."""

@@ -1,0 +1,219 @@
+"""Effects fitted together with the rig's parameters: many forms tried, the best ones refined.
+
+Nobody knows the form that the real effect has, so a fit begins with many: the simulator's own with
+parameters drawn over all that they may be, forms drawn from the library of variants, and forms
+estimated from the recordings themselves. What comes nearest at a look is searched about.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from models.rig import LawSpec
+from noise.diagnosis.fit.bench import Bench, Model
+from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
+from noise.diagnosis.fit.fit_parameters import (
+    Fitted,
+    different,
+    fit_parameters,
+    offset_cost,
+    spreads,
+)
+from noise.diagnosis.fit.forms.drawn import drawn_forms
+from noise.diagnosis.fit.forms.estimated import estimated_forms
+from noise.diagnosis.fit.pattern_search import pattern_search
+from sim.effects.effect import Stage
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from sim.effects.effect import Effect
+
+__all__ = ["fit_effect", "strength_of"]
+
+_DRAWN = 18
+"""Of the simulator's own forms tried, and of variants."""
+
+_VARIANTS = {
+    Stage.DRIVE: 16, Stage.FRICTION: 16, Stage.STRUCTURE: 16, Stage.RADIATION: 16,
+    Stage.MEASUREMENT: 32,
+}  # fmt: skip
+"""Of an effect whose motion need not be made again more can be tried."""
+
+_LOOKED = 2
+"""Recordings that candidates are looked at with."""
+
+_PROMISING = 6
+"""Candidates that are looked at more closely, with the parameters recalibrated and without."""
+
+_KEPT = 2
+"""Of these, how many are searched about."""
+
+_STEP = 0.5
+_SHRINK = (1.0, 0.5, 0.25)
+"""Of a parameter's logarithm."""
+
+_ROUNDS = 2
+"""Of the search for parameters with the effect, with small steps."""
+
+_SETTLING = (1.0, 0.7, 1.4)
+"""Factors on the strength, tried last."""
+
+_LOOK = 0.3
+_LEAST_SURE = 1.5
+"""So far off the cost is looked at for how sure a strength is, and how unsure it is at most."""
+
+_SHARES = ("torque", "acceleration", "pressure", "angle")
+"""Parameters that say which channel an effect is on; they are drawn, not searched."""
+
+
+def fit_effect(
+    bench: Bench, chosen: Sequence[int], names: Sequence[str], start: Model, seed: int = 0
+) -> Fitted:
+    """Fit effects together with the parameters.
+
+    Parameters
+    ----------
+    bench : Bench
+    chosen : sequence of int
+        Recordings to fit to.
+    names : sequence of str
+        Of effects in the bench's library, the strongest first.
+    start : Model
+        With the parameters as they were recalibrated alone.
+    seed : int
+        Of what is tried.
+    """
+    few = different(bench, chosen)
+    best = Model()
+    for name in names:
+        for form in estimated_forms(bench, chosen, name):
+            bench.forms[name, form.name] = form
+        best = _added(bench, few, best, start.offsets, name, seed)
+    if len(names) > 1:  # what the first had to stand for is the others' now
+        for place in range(len(names)):
+            best = _refined(bench, few, best, place)
+    fitted = fit_parameters(bench, chosen, best, rounds=_ROUNDS)
+    fitted = replace(fitted, model=_settled(bench, few[:_LOOKED], fitted.model))
+    return replace(fitted, spread=(*fitted.spread, *_strength_spread(bench, few, fitted.model)))
+
+
+def _added(
+    bench: Bench,
+    few: Sequence[int],
+    model: Model,
+    offsets: tuple[float, ...],
+    name: str,
+    seed: int,
+) -> Model:
+    """Add the candidates of one effect; return the best model that comes of it."""
+    looked = [
+        (offset_cost(bench, few[:_LOOKED], one, at_a_look=True), one)
+        for spec in _candidates(bench, bench.library[name], seed)
+        for one in [replace(model, effects=(*model.effects, spec))]
+    ]
+    looked.sort(key=lambda pair: pair[0])
+    tried = [
+        (offset_cost(bench, few, one), one)
+        for _, shown in looked[:_PROMISING]
+        for one in [replace(shown, offsets=x) for x in dict.fromkeys((model.offsets, offsets))]
+    ]
+    tried.sort(key=lambda pair: pair[0])
+    refined = [_refined(bench, few, one, len(one.effects) - 1) for _, one in tried[:_KEPT]]
+    return min(refined, key=lambda one: offset_cost(bench, few, one))
+
+
+def _candidates(bench: Bench, effect: Effect, seed: int) -> list[LawSpec]:
+    rng = np.random.default_rng([seed, 7])
+    for form in drawn_forms(effect.name, _VARIANTS[effect.stage], seed):
+        bench.forms[effect.name, form.name] = form
+    further = [form for (name, _), form in bench.forms.items() if name == effect.name]
+    listed = list(drawn_candidates(effect, _DRAWN, rng)) or plain_candidates(effect)
+    for form in further:
+        listed += form.specs()
+    return listed
+
+
+def _refined(bench: Bench, few: Sequence[int], model: Model, place: int) -> Model:
+    """Search about an effect's numbers."""
+    spec = model.effects[place]
+    free = _free(bench, spec)
+
+    def model_at(x: NDArray[np.float64]) -> Model:
+        values = dict(spec.parameters)
+        for (name, base, low, high), log in zip(free, x.tolist(), strict=True):
+            values[name] = float(np.clip(base * math.exp(log), low, high))
+        effects = list(model.effects)
+        effects[place] = LawSpec(spec.name, values)
+        return replace(model, effects=tuple(effects))
+
+    x, _ = pattern_search(
+        lambda x: offset_cost(bench, few, model_at(x)), np.zeros(len(free)),
+        np.full(len(free), _STEP), _SHRINK,
+    )  # fmt: skip
+    return model_at(x)
+
+
+def _settled(bench: Bench, few: Sequence[int], model: Model) -> Model:
+    """Settle the last effect's strength with scattered repeats, as scores are made."""
+    spec = model.effects[-1]
+    name = strength_of(bench, spec)
+    limits = {n: (low, high) for n, _, low, high in _free(bench, spec)}
+    if name not in limits:
+        return model
+    tried = []
+    for factor in _SETTLING:
+        value = float(np.clip(factor * float(spec.parameters[name]), *limits[name]))
+        changed = LawSpec(spec.name, {**spec.parameters, name: value})
+        tried.append(replace(model, effects=(*model.effects[:-1], changed)))
+    return min(tried, key=lambda one: float(np.sum(np.sqrt(bench.squared(one, few)))))
+
+
+def _strength_spread(bench: Bench, few: Sequence[int], model: Model) -> tuple[float, ...]:
+    """Return the standard deviation of the logarithm of the last effect's strength."""
+    spec = model.effects[-1]
+    name = strength_of(bench, spec)
+    value = spec.parameters.get(name)
+    if not isinstance(value, float) or value == 0.0:
+        return ()
+
+    def cost(x: NDArray[np.float64]) -> float:
+        changed = LawSpec(spec.name, {**spec.parameters, name: value * math.exp(float(x[0]))})
+        try:
+            return offset_cost(bench, few, replace(model, effects=(*model.effects[:-1], changed)))
+        except ParameterError:
+            return math.inf
+
+    return spreads(cost, np.zeros(1), np.full(1, _LOOK), _LEAST_SURE)
+
+
+def strength_of(bench: Bench, spec: LawSpec) -> str:
+    """Name of the number that switches an effect off, in the form that it has."""
+    form = bench.forms.get((spec.name, str(spec.parameters.get("form"))))
+    if form is not None:
+        return "strength" if "strength" in form.start else "amount"
+    return bench.library[spec.name].strength
+
+
+def _free(bench: Bench, spec: LawSpec) -> list[tuple[str, float, float, float]]:
+    """Numbers that are fitted: name, value, and how far each may go."""
+    form = bench.forms.get((spec.name, str(spec.parameters.get("form"))))
+    effect = bench.library[spec.name]
+    found = []
+    for name, value in spec.parameters.items():
+        if isinstance(value, str) or value == 0.0 or name in _SHARES:
+            continue
+        low, high = -math.inf, math.inf
+        if form is not None:
+            high = form.highest.get(name, math.inf)
+        else:
+            low, high = effect.parameters[name].low, effect.parameters[name].high
+        found.append((name, float(value), low, high))
+    return found

@@ -1,0 +1,172 @@
+"""The rig's parameters recalibrated, within what a rig file may be wrong by.
+
+What the recalibration closes by itself is told apart, because it may hide the effect that is
+missing (Kennedy and O'Hagan 2001; Brynjarsdottir and O'Hagan 2014).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.cases.rigs import OFFSETS
+from noise.diagnosis.fit.bench import Bench, Model
+from noise.diagnosis.fit.pattern_search import pattern_search
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+
+__all__ = ["Fitted", "different", "fit_parameters", "offset_cost", "split", "spreads"]
+
+PRIOR = 0.12
+"""Relative standard deviation of what a rig file may be wrong by."""
+
+_HOLD = 0.15
+"""Weight of the prior against the distance of one recording."""
+
+_STEP = 0.08
+_SHRINK = (1.0, 0.5, 0.25, 0.125)
+
+_MOST = 4
+"""Recordings that a fit looks at, of different conditions."""
+
+_BY_NUMBERS = ("channel_delay",)
+"""Effects that change phases, of which a signature knows nothing and the summary does."""
+
+_NUMBERS = 20.0
+"""Weight of the summary's numbers, were all of them hopelessly off."""
+
+_LOOK = 0.04
+"""So far off the cost is looked at for how sure an offset is."""
+
+_UNSURE = 0.1
+"""By how much the mean distance of a few repeats is off by chance; assumed."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A model, what it leaves on the recordings it was fitted to, and how well it is known.
+
+    Parameters
+    ----------
+    model : Model
+    cost : float
+        Mean distance of the recordings, and the prior.
+    spread : tuple of float
+        Standard deviation of the logarithm of each offset, and then of the effect's strength.
+    """
+
+    model: Model
+    cost: float
+    spread: tuple[float, ...] = ()
+
+
+def split(conditions: Sequence[Condition]) -> tuple[list[int], list[int]]:
+    """Which recordings are fitted to, and which are held out: whole conditions, about two fifths.
+
+    Examples
+    --------
+    >>> from models.condition import Condition
+    >>> at = [Condition(speed=v) for v in (1.0, 2.0, 2.0, 3.0, 4.0)]
+    >>> split(at)
+    ([0, 3, 4], [1, 2])
+    """
+    different = list(dict.fromkeys(conditions))
+    if len(different) == 1:
+        half = max(1, len(conditions) // 2)
+        return list(range(half)), list(range(half, len(conditions))) or [0]
+    in_order = sorted(different, key=lambda c: (c.interference or 0.0, c.speed or 0.0))
+    out = set(in_order[1::3] if len(in_order) < 5 else in_order[1::5] + in_order[3::5])
+    held = [i for i, c in enumerate(conditions) if c in out]
+    fitted = [i for i, c in enumerate(conditions) if c not in out]
+    return fitted, held
+
+
+def different(bench: Bench, chosen: Sequence[int], most: int = _MOST) -> list[int]:
+    """Choose recordings for a fit: one a condition, as repeats tell it nothing new."""
+    first: dict[Condition, int] = {}
+    for i in chosen:
+        first.setdefault(bench.recordings[i].condition, i)
+    listed = list(first.values())
+    places = np.linspace(0, len(listed) - 1, min(most, len(listed))).round().astype(int)
+    return [listed[k] for k in places.tolist()]
+
+
+def offset_cost(
+    bench: Bench, few: Sequence[int], model: Model, *, at_a_look: bool = False
+) -> float:
+    """Mean distance of recordings from a model, and what its offsets cost."""
+    held = _HOLD * float(np.sum((np.array(model.offsets) / PRIOR) ** 2)) / len(few)
+    if any(spec.name in _BY_NUMBERS for spec in model.effects):
+        held += _NUMBERS * float(np.mean(bench.residuals(model, few) ** 2))
+    return float(np.mean(bench.misfits(model, few, at_a_look=at_a_look))) + held
+
+
+def fit_parameters(
+    bench: Bench, chosen: Sequence[int], start: Model | None = None, *, rounds: int = len(_SHRINK)
+) -> Fitted:
+    """Recalibrate the rig's parameters, whatever effects a model has.
+
+    Parameters
+    ----------
+    bench : Bench
+    chosen : sequence of int
+        Recordings to fit to.
+    start : Model, optional
+        By default the rig as its file has it.
+    rounds : int
+        Of the search, the last of which have the smallest steps.
+    """
+    begin, few = start or Model(), different(bench, chosen)
+
+    def cost(x: NDArray[np.float64]) -> float:
+        return offset_cost(bench, few, replace(begin, offsets=tuple(x.tolist())))
+
+    steps = np.full(len(OFFSETS), _STEP)
+    x, best = pattern_search(cost, np.array(begin.offsets), steps, _SHRINK[-rounds:])
+    model = replace(begin, offsets=tuple(x.tolist()))
+    look = np.full(len(OFFSETS), _LOOK)
+    return Fitted(model, best, spreads(cost, x, look, PRIOR))
+
+
+def spreads(
+    cost: Callable[[NDArray[np.float64]], float],
+    x: NDArray[np.float64],
+    look: NDArray[np.float64],
+    most: float,
+) -> tuple[float, ...]:
+    """How far each number can be off before the cost tells, as a standard deviation.
+
+    Parameters
+    ----------
+    cost : callable
+    x : ndarray, shape (n,)
+        Where it is least.
+    look : ndarray, shape (n,)
+        So far off it is looked at; it is taken to rise as the square from there inwards.
+    most : float
+        Where it does not rise.
+
+    Examples
+    --------
+    >>> steep = spreads(lambda x: 4e3 * float(x @ x), np.zeros(1), np.full(1, 0.04), 0.12)
+    >>> 0.0 < steep[0] < 0.01
+    True
+    """
+    best, found = cost(x), []
+    for i, step in enumerate(look.tolist()):
+        tried = []
+        for sign in (1.0, -1.0):
+            away = x.copy()
+            away[i] += sign * step
+            tried.append(cost(away))
+        rise = max(0.5 * sum(tried) - best, 1e-9)
+        found.append(min(step * math.sqrt(_UNSURE / rise), most))
+    return tuple(found)

@@ -1,0 +1,234 @@
+"""The second part of a diagnosis: how far parameters, and each likely cause, close the gap.
+
+Effects that one verdict names together are fitted together, since each alone would have to stand
+for the others; every further candidate is fitted alone. All are scored on recordings that no fit
+has seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.cases.rigs import OFFSETS
+from noise.diagnosis.causes.location import locate
+from noise.diagnosis.evidence.contact_course import contact_courses
+from noise.diagnosis.fit.bench import Bench, Model
+from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, root
+from noise.diagnosis.fit.fit_effect import fit_effect, strength_of
+from noise.diagnosis.fit.fit_parameters import Fitted, fit_parameters, split
+from noise.diagnosis.fit.heard import heard_of
+from noise.diagnosis.fit.own import with_own
+from noise.diagnosis.outcome import EffectFinding, Illustration
+from sim.effects import EFFECTS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from noise.diagnosis.case import Case
+    from noise.diagnosis.causes.posterior import Posterior
+    from noise.diagnosis.evidence.summary import CaseTable
+    from noise.diagnosis.outcome import Diagnosis
+    from sim.effects.effect import Effect
+
+__all__ = ["fitted_causes", "with_fits"]
+
+_FITTED = 3
+"""Candidates that are fitted."""
+
+_LIKELY = 0.1
+"""Candidates less probable than this are fitted only if nothing else is."""
+
+_SHOWN = 3
+"""Held-out recordings that are listened to."""
+
+_SURE = 1.645
+
+
+def with_fits(
+    case: Case,
+    diagnosis: Diagnosis,
+    table: CaseTable,
+    posterior: Posterior,
+    library: Mapping[str, Effect],
+    known: set[str],
+    seed: int,
+    tell: Callable[[str], None],
+) -> Diagnosis:
+    """Add to a first answer what the fits say.
+
+    Parameters
+    ----------
+    case : Case
+    diagnosis : Diagnosis
+        The first answer.
+    table : CaseTable
+    posterior : Posterior
+    library : mapping of str to Effect
+    known : set of str
+        Effects that the rig file lists.
+    seed : int
+    tell : callable
+        Told what is being done.
+    """
+    bench = Bench(case.rig, case.recordings, library, table, posterior.names, posterior.scale)
+    fitted_to, held = split([recording.condition for recording in case.recordings])
+    diagnosis = replace(diagnosis, held_out=tuple(case.names[i] for i in held))
+    own = [name for name in library if name not in EFFECTS and name not in known]
+    if not diagnosis.verdict and not own:
+        return replace(diagnosis, illustrations=_illustrations(case, bench, held, None))
+    tell("recalibrating the parameters")
+    alone = fit_parameters(bench, fitted_to)
+    named = [name for name in diagnosis.verdict if name in library]
+    groups = [named] if len(named) > 1 else []
+    single = [*_candidates(diagnosis), *own] if diagnosis.verdict else own
+    groups += [[name] for name in single if name not in named or len(named) == 1]
+    fits = fitted_causes(bench, fitted_to, held, groups, alone, seed, tell)
+    findings = {
+        name: _finding(name, bench, diagnosis.probabilities, fitted, scores, seed)
+        for name, (fitted, scores) in fits.items()
+    }
+    was = diagnosis.verdict
+    diagnosis = with_own(diagnosis, findings, own)
+    if diagnosis.verdict != was:
+        stage = library[diagnosis.verdict[0]].stage.value
+        diagnosis = replace(diagnosis, location=locate(table, posterior, stage))
+    if not diagnosis.verdict:
+        return replace(diagnosis, illustrations=_illustrations(case, bench, held, None))
+    effects = [
+        replace(
+            findings.get(effect.name, effect),
+            probability=diagnosis.probabilities.get(effect.name, 0.0),
+        )
+        for effect in (*diagnosis.effects, *(findings[name] for name in own))
+    ]
+    best = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else alone
+    heard = tuple(
+        heard_of(
+            case.names[i],
+            case.recordings[i],
+            bench.simulated(Model(), case.recordings[i], 7),
+            bench.simulated(best.model, case.recordings[i], 7),
+        )
+        for i in held[:_SHOWN]
+    )
+    return replace(
+        diagnosis,
+        effects=tuple(sorted(effects, key=lambda effect: -effect.probability)),
+        parameters=_intervals(best),
+        heard=heard,
+        illustrations=_illustrations(case, bench, held, best.model),
+    )
+
+
+def fitted_causes(
+    bench: Bench,
+    fitted_to: Sequence[int],
+    held: Sequence[int],
+    groups: Sequence[Sequence[str]],
+    alone: Fitted,
+    seed: int = 0,
+    tell: Callable[[str], None] | None = None,
+) -> dict[str, tuple[Fitted, Scores]]:
+    """Fit causes and score them on recordings that no fit has seen.
+
+    Parameters
+    ----------
+    bench : Bench
+    fitted_to, held : sequence of int
+        Recordings, as `noise.diagnosis.fit.fit_parameters.split` divides them.
+    groups : sequence of sequence of str
+        Effects, those of one group together.
+    alone : Fitted
+        The parameters without any effect.
+    seed : int
+    tell : callable, optional
+        Told what is being done.
+
+    Returns
+    -------
+    dict of str to (Fitted, Scores)
+        By the name of the effect; those of one group share their fit.
+    """
+    before, recalibrated = bench.squared(Model(), held), bench.squared(alone.model, held)
+    found: dict[str, tuple[Fitted, Scores]] = {}
+    for names in groups:
+        if tell is not None:
+            tell(f"fitting {' and '.join(names)}")
+        fitted = fit_effect(bench, fitted_to, names, alone.model, seed)
+        scores = Scores(before, recalibrated, bench.squared(fitted.model, held))
+        found |= dict.fromkeys(names, (fitted, scores))
+    return found
+
+
+def _candidates(diagnosis: Diagnosis) -> list[str]:
+    named = [name for name in diagnosis.verdict if name in EFFECTS]
+    likely = [e.name for e in diagnosis.effects if e.probability >= _LIKELY]
+    return list(dict.fromkeys([*named, *likely, diagnosis.effects[0].name]))[:_FITTED]
+
+
+def _finding(
+    name: str,
+    bench: Bench,
+    probabilities: Mapping[str, float],
+    fitted: Fitted,
+    scores: Scores,
+    seed: int,
+) -> EffectFinding:
+    spec = next(spec for spec in fitted.model.effects if spec.name == name)
+    interval = closed_interval(scores, seed)
+    return EffectFinding(
+        name=name,
+        stage=bench.library[name].stage.value,
+        probability=probabilities.get(name, 0.0),
+        parameters=spec.parameters,
+        strength=_strength(fitted, bench) if spec is fitted.model.effects[-1] else None,
+        gap_before=root(scores.before),
+        gap_recalibrated=root(scores.recalibrated),
+        gap_after=root(scores.after),
+        gap_floor=1.0,
+        closed=closed_share(scores.before, scores.after),
+        closed_low=None if interval is None else interval[0],
+        closed_high=None if interval is None else interval[1],
+        closed_by_effect=closed_share(scores.recalibrated, scores.after),
+    )
+
+
+def _strength(fitted: Fitted, bench: Bench) -> tuple[float, float] | None:
+    """Interval of the last effect's strength, of whose logarithm the fit gives an error."""
+    n, spec = len(fitted.model.offsets), fitted.model.effects[-1]
+    value = spec.parameters.get(strength_of(bench, spec))
+    if not isinstance(value, float) or len(fitted.spread) <= n:
+        return None
+    factor = float(np.exp(_SURE * fitted.spread[n]))
+    low, high = sorted((value / factor, value * factor))
+    return low, high
+
+
+def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
+    return {
+        name: (float(np.exp(x - _SURE * s)), float(np.exp(x + _SURE * s)))
+        for name, x, s in zip(OFFSETS, fitted.model.offsets, fitted.spread, strict=False)
+    }
+
+
+def _illustrations(
+    case: Case, bench: Bench, held: Sequence[int], after: Model | None
+) -> tuple[Illustration, ...]:
+    return tuple(_illustration(case, bench, i, after) for i in held[:2])
+
+
+def _illustration(case: Case, bench: Bench, i: int, after: Model | None) -> Illustration:
+    shown = {
+        "measured": case.recordings[i],
+        "before": bench.simulated(Model(), case.recordings[i], 7),
+    }
+    if after is not None:
+        shown["after"] = bench.simulated(after, case.recordings[i], 7)
+    courses = {name: contact_courses(recording, case.rig) for name, recording in shown.items()}
+    contacts = {name: course for name, course in courses.items() if course is not None}
+    return Illustration(
+        case.names[i], shown["measured"], shown["before"], shown.get("after"), contacts
+    )

@@ -1,0 +1,99 @@
+"""Blows at slips, estimated: what each drop of the torque does to acceleration and sound."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.fit.forms.filters import made_effect
+from noise.diagnosis.fit.forms.form import Form
+from noise.diagnosis.fit.forms.transfer import Transfer, estimated_transfer
+from noise.diagnosis.simulated.impulse import impulse_of
+from noise.diagnosis.simulated.paths import Way
+from sim.effects.slip_pulse import torque_drops
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from models.radiation.impulse_responses import Response
+    from noise.diagnosis.fit.forms.compared import Compared
+    from sim.effects.effect import Effect
+    from sim.motion import Motion
+
+__all__ = ["blow_forms"]
+
+_LENGTH = 0.08
+"""How long a blow rings on [s]."""
+
+_POWERS = (0.5, 1.0, 0.0)
+"""Of a drop, to which its blow is proportional."""
+
+_LEAST_DROP = 0.15
+"""Smallest drop that counts, as a share of the torque's range."""
+
+
+def blow_forms(compared: Sequence[Compared]) -> list[Form]:
+    """Estimate the blows.
+
+    Parameters
+    ----------
+    compared : sequence of Compared
+
+    Returns
+    -------
+    list of Form
+        By the power of the drop that a blow is proportional to.
+    """
+    having = [c for c in compared if {"acceleration", "pressure"} <= set(c.expected)]
+    return [_form(having, power) for power in _POWERS] if having else []
+
+
+def _form(compared: Sequence[Compared], power: float) -> Form:
+    rate = compared[0].rate
+    trains = [_train(c.measured["torque"], power) for c in compared]
+    found = {
+        kind: estimated_transfer(
+            [
+                (train, c.measured[kind] - c.expected[kind])
+                for train, c in zip(trains, compared, strict=True)
+            ],
+            rate, _LENGTH, 5e-4, restored=True,
+        )
+        for kind in ("acceleration", "pressure")
+    }  # fmt: skip
+
+    def make(values: Mapping[str, float]) -> Effect:
+        amount = values["amount"]
+
+        def force(motion: Motion, _form: str, _values: object) -> NDArray[np.float64]:
+            return amount * _train(motion.torque, power)
+
+        def chain(
+            paths: Response, _form: str, _values: object, _rng: np.random.Generator
+        ) -> Response:
+            struck, heard = (_kernel(found[k], paths.rate, rate) for k in found)
+            return replace(paths, pulse_to_acceleration=struck, pulse_to_pressure=heard)
+
+        return made_effect("slip_pulse", amount, force=force, chain=chain)
+
+    return Form("slip_pulse", f"estimated, power {power:g}", {"amount": 1.0}, {"amount": 4.0}, make)
+
+
+def _train(torque: NDArray[np.float64], power: float) -> NDArray[np.float64]:
+    """One sample for each drop of the torque, its size a power of the drop's."""
+    train = np.zeros_like(torque)
+    low, high = np.quantile(torque, (0.005, 0.995))
+    turn = -1.0 if torque.mean() < 0.0 else 1.0
+    where, drops = torque_drops(turn * torque, max(_LEAST_DROP * float(high - low), 1e-6))
+    np.add.at(train, where, turn * drops**power)
+    return train
+
+
+def _kernel(found: Transfer, rate: float, estimated_at: float) -> NDArray[np.float64]:
+    """Response to one sample, which is shorter at a higher rate."""
+    taps = impulse_of(Way(found.frequency, found.response), rate, round(_LENGTH * rate))
+    return np.asarray(taps * (rate / estimated_at))

@@ -1,0 +1,105 @@
+"""Recordings beside what their own torque should have made of them: what forms are estimated from.
+
+A torque that was measured is sent along the ways of the rig file, so that nothing that the contact
+does stands between; the shaft's own course is taken from its angle.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.evidence.channel_summary import shaft_speed
+from noise.diagnosis.simulated.paths import predict
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from noise.diagnosis.fit.bench import Bench
+    from noise.diagnosis.simulated.paths import Way
+
+__all__ = ["Compared", "compared"]
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """A recording.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    free : bool
+        Whether the clamp stands on beams, rather than on the baseplate itself.
+    measured : dict of str to ndarray
+        By kind of channel; those that were recorded.
+    expected : dict of str to ndarray
+        Of acceleration and pressure, by the measured torque.
+    ways : mapping of str to Way
+        That they were sent along.
+    course : ndarray, optional
+        Shaft speed over its mean, less 1.
+    signature, nominal, scale : ndarray
+        Of the recording; middle of the simulated repeats, and what they scatter by.
+    """
+
+    rate: float
+    free: bool
+    measured: dict[str, NDArray[np.float64]]
+    expected: dict[str, NDArray[np.float64]]
+    ways: Mapping[str, Way]
+    course: NDArray[np.float64] | None
+    signature: NDArray[np.float64]
+    nominal: NDArray[np.float64]
+    scale: NDArray[np.float64]
+
+
+def compared(bench: Bench, chosen: Sequence[int]) -> list[Compared]:
+    """Compare recordings of a bench.
+
+    Parameters
+    ----------
+    bench : Bench
+    chosen : sequence of int
+
+    Returns
+    -------
+    list of Compared
+        One a recording.
+    """
+    return [_one(bench, i) for i in chosen]
+
+
+def _one(bench: Bench, i: int) -> Compared:
+    recording = bench.recordings[i]
+    c, rate = recording.condition, recording.rate
+    assert c.interference is not None
+    assert c.support_stiffness is not None
+    measured = {
+        kind: recording.samples[row].astype(np.float64)
+        for kind in ("torque", "acceleration", "pressure", "angle")
+        if (row := recording.first(kind)) is not None
+    }
+    expected: dict[str, NDArray[np.float64]] = {}
+    ways: Mapping[str, Way] = {}
+    if "torque" in measured:
+        ways = bench.runs.known_ways.at(c.interference, c.support_stiffness)
+        expected = {
+            kind: predict(measured["torque"], rate, ways[kind])
+            for kind in ("acceleration", "pressure")
+            if kind in measured
+        }
+    course = None
+    if "angle" in measured:
+        speed = shaft_speed(measured.pop("angle"), rate)
+        course = np.asarray(speed / (speed.mean() or 1.0) - 1.0)
+    reference = bench.references[i]
+    return Compared(
+        rate, not math.isinf(c.support_stiffness), measured, expected, ways, course,
+        bench.signatures[i], reference.mean, reference.scale,
+    )  # fmt: skip

@@ -1,0 +1,43 @@
+"""What the user hears of a gap: label and level of a recording and of its simulations."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from features.kernels.bands import overall_level
+from features.kernels.spectra import autospectrum
+from models.recording import REFERENCE_PRESSURE
+from noise.classifier import load_classifier
+from noise.diagnosis.outcome import Heard
+from noise.labels import file_label, label_recording
+
+if TYPE_CHECKING:
+    from models.recording import Recording
+
+__all__ = ["heard_of"]
+
+
+def heard_of(name: str, measured: Recording, before: Recording, after: Recording | None) -> Heard:
+    """Label three recordings of one condition, and give their A-weighted levels."""
+    return Heard(
+        recording=name,
+        label_measured=_label(measured),
+        label_before=_label(before),
+        label_after=None if after is None else _label(after),
+        level_measured=_level(measured),
+        level_before=_level(before),
+        level_after=None if after is None else _level(after),
+    )
+
+
+def _label(recording: Recording) -> str:
+    return file_label(label_recording(recording, load_classifier())).label
+
+
+def _level(recording: Recording) -> float:
+    row = recording.first("pressure")
+    if row is None:
+        return math.nan
+    spectrum = autospectrum(recording.samples[row], recording.rate)
+    return overall_level(spectrum, reference=REFERENCE_PRESSURE, weighting="A")

@@ -1,0 +1,281 @@
+"""The floor of a case: what its own repeats differ by, beside what simulated repeats do.
+
+Simulated repeats scatter as rigs are assumed to. The recordings know better: two of one condition
+differ by what this rig's repeats differ by, and where none was repeated, blocks of a recording tell
+at least how steady it is. Recordings that differ by more than simulated repeats widen the floor in
+proportion; such that differ by less do not narrow it, since two runs on one afternoon say little
+of the next assembly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.gap.blocks import block_signatures
+from noise.diagnosis.gap.distance import (
+    LEAST_SCALE,
+    gap_of,
+    group_costs,
+    reference,
+    scattered_enough,
+)
+from noise.diagnosis.gap.signature import GROUPS, group_of, signature
+from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.paths import KnownWays
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from models.recording import Recording
+    from models.rig import Rig
+    from noise.diagnosis.gap.distance import Gap, Reference
+    from noise.diagnosis.gap.scatter import Scatter
+    from sim.effects.effect import Effect
+
+__all__ = ["case_gap", "condition_key", "references_of", "repeat_gap", "widening"]
+
+N_REPEATS = 12
+"""Simulated repeats a condition."""
+
+_UNUSUAL = 0.99
+"""Quantile of simulated repeats' differences beyond which recorded ones widen the floor."""
+
+_N_SETS, _N_DRAWS = 60, 400
+"""Of repeats of one condition, and of such sets over all conditions."""
+
+
+def case_gap(
+    recordings: Sequence[Recording],
+    rig: Rig,
+    *,
+    scatter: Scatter | None = None,
+    library: Mapping[str, Effect] | None = None,
+    n_repeats: int = N_REPEATS,
+    seed: int = 0,
+) -> Gap:
+    """Gap between the recordings of a case and the rig as its file has it.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        With speed, interference and support stiffness in their conditions.
+    rig : Rig
+    scatter : Scatter, optional
+        Of the simulated repeats.
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
+    n_repeats : int
+        Simulated repeats a condition.
+    seed : int
+
+    Returns
+    -------
+    Gap
+        Its distance is 1 on average, and its p-value uniform, where only chance sets recordings
+        and rig apart.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> at = {"interference": 0.279e-3, "support_stiffness": 3745.0}
+    >>> runs = [simulate(rig, speed, **at, seconds=0.3).recording for speed in (1.0, 2.0, 3.0)]
+    >>> case_gap(runs, rig, n_repeats=6).p_value > 0.05
+    True
+    """
+    simulated: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
+    known_ways = KnownWays(rig)
+    for recording in recordings:
+        key, c = condition_key(recording), recording.condition
+        if key not in simulated:
+            found = known_ways.at(key[1], key[2])
+            runs = nominal_recordings(
+                rig, c, found, rate=recording.rate, seconds=recording.duration,
+                seeds=_seeds(seed, len(simulated), n_repeats), scatter=scatter, library=library,
+            )  # fmt: skip
+            simulated[key] = [signature(run) for run in runs]
+    return repeat_gap(recordings, simulated, least=0.0, seed=seed)
+
+
+def repeat_gap(
+    recordings: Sequence[Recording],
+    repeats: Mapping[tuple[float, ...], Sequence[NDArray[np.float64]]],
+    *,
+    least: float = LEAST_SCALE,
+    seed: int = 0,
+) -> Gap:
+    """Gap between recordings and repeats of their conditions, simulated or recorded.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    repeats : mapping of (float, float, float, float, float) to sequence of ndarray
+        Signatures of at least three repeats, by speed [rad/s], interference [m], support stiffness
+        [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives them.
+    least : float
+        As in `noise.diagnosis.gap.distance.reference`.
+    seed : int
+
+    Returns
+    -------
+    Gap
+    """
+    signatures = [signature(recording) for recording in recordings]
+    references, widened = references_of(recordings, signatures, repeats, least=least, seed=seed)
+    return replace(gap_of(signatures, references, seed=seed), widened=widened)
+
+
+def references_of(
+    recordings: Sequence[Recording],
+    signatures: Sequence[NDArray[np.float64]],
+    repeats: Mapping[tuple[float, ...], Sequence[NDArray[np.float64]]],
+    *,
+    least: float = LEAST_SCALE,
+    seed: int = 0,
+) -> tuple[list[Reference], float]:
+    """Return what each recording is compared with: repeats, as far apart as the recordings' own.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    signatures : sequence of ndarray
+        Of the recordings.
+    repeats, least, seed
+        As of `repeat_gap`.
+
+    Returns
+    -------
+    references : list of Reference
+        One a recording; recordings of one condition share one.
+    widened : float
+        By how much the floor is wider than the repeats alone have it.
+    """
+    own: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
+    for recording, values in zip(recordings, signatures, strict=True):
+        own.setdefault(condition_key(recording), []).append(values)
+    pairs = [(own[key], repeats[key]) for key in own if len(own[key]) > 1]
+    if pairs:
+        wider = widening(pairs)
+    else:
+        first = {condition_key(r): r for r in reversed(recordings)}
+        wider = _widening_of_blocks([(r, repeats[key]) for key, r in first.items()])
+    each = wider[_GROUP_OF]
+    references = {}
+    for key in own:
+        s = np.array(repeats[key])
+        mean = s.mean(axis=0)
+        references[key] = reference(list(mean + each * (s - mean)), least=least, seed=seed)
+    return [references[condition_key(r)] for r in recordings], float(np.sqrt(np.mean(wider**2)))
+
+
+def widening(
+    repeated: Sequence[tuple[Sequence[NDArray[np.float64]], Sequence[NDArray[np.float64]]]],
+) -> NDArray[np.float64]:
+    """By how much the floor is wider than simulated repeats have it.
+
+    Parameters
+    ----------
+    repeated : sequence of (sequence of ndarray, sequence of ndarray)
+        For each condition, signatures of its recordings, at least two, and of its simulated
+        repeats, at least four.
+
+    Returns
+    -------
+    ndarray, shape (n_groups,)
+        One for each of `noise.diagnosis.gap.signature.GROUPS`, at least 1; all 1 where recorded
+        repeats differ by no more than simulated ones do 99 times out of 100.
+    """
+    rng = np.random.default_rng(0)
+    sets = [_sets(np.array(own), scattered_enough(np.array(s)), rng) for own, s in repeated]
+    return _beyond(np.array([one[0] for one in sets]), np.array([one[1:] for one in sets]))
+
+
+def _widening_of_blocks(
+    alone: Sequence[tuple[Recording, Sequence[NDArray[np.float64]]]],
+) -> NDArray[np.float64]:
+    """As `widening`, were the recordings as unsteady from run to run as from block to block."""
+    recorded, simulated = [], []
+    for recording, others in alone:
+        blocks = block_signatures(recording)
+        if blocks is None:
+            continue
+        s = scattered_enough(np.array(others))
+        spread = np.sqrt(s.var(axis=0, ddof=1) + LEAST_SCALE**2)
+        error = np.sqrt(blocks.var(axis=0, ddof=1) / len(blocks))
+        recorded.append(group_costs(error / spread))
+        simulated.append([np.where(np.isfinite(recorded[-1]), 1.0, np.nan)])
+    if not recorded:
+        return np.ones(len(GROUPS))
+    return _beyond(np.array(recorded), np.array(simulated))
+
+
+def _sets(
+    own: NDArray[np.float64], simulated: NDArray[np.float64], rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """How far the recordings differ by group, and after them as many drawn from all.
+
+    Each set is measured by the scatter of those outside it, so that any might be the recordings.
+    """
+    pool = np.concatenate([own, simulated])
+    m = len(own)
+    drawn = [rng.permutation(len(pool))[:m] for _ in range(_N_SETS)]
+    costs = np.empty((1 + _N_SETS, len(GROUPS)))
+    for k, chosen in enumerate([np.arange(m), *drawn]):
+        rest = np.delete(pool, chosen, axis=0)
+        spread = np.sqrt(2.0 * (rest.var(axis=0, ddof=1) + LEAST_SCALE**2))
+        pairs = [group_costs((pool[i] - pool[j]) / spread) for i, j in combinations(chosen, 2)]
+        costs[k] = np.mean(pairs, axis=0)
+    return costs
+
+
+def _beyond(recorded: NDArray[np.float64], simulated: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Ratio of what is recorded to what is simulated, root mean square, where that is unusual."""
+    rng = np.random.default_rng(0)
+    n_conditions, n_sets = simulated.shape[:2]
+    drawn = rng.integers(n_sets, size=(_N_DRAWS, n_conditions))
+    by_chance = np.nanmean(simulated[np.arange(n_conditions), drawn], axis=(1, 2))
+    if np.nanmean(recorded) <= np.quantile(by_chance, _UNUSUAL):
+        return np.ones(len(GROUPS))
+    ratio = np.sqrt(_mean(recorded) / _mean(simulated.reshape(-1, len(GROUPS))))
+    return np.fmax(ratio, 1.0)
+
+
+def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of the columns, NaN where nothing is known."""
+    known = np.isfinite(rows)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.where(known, rows, 0.0).sum(axis=0) / known.sum(axis=0))
+
+
+def condition_key(recording: Recording) -> tuple[float, ...]:
+    """Return what recordings that can be repeats of each other have in common.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    tuple of float
+        Speed, interference, support stiffness, sampling rate and length.
+    """
+    c = recording.condition
+    assert c.speed is not None
+    assert c.interference is not None
+    assert c.support_stiffness is not None
+    return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
+
+
+def _seeds(seed: int, place: int, n: int) -> list[int]:
+    """Conditions share no repeat's rig: it would err in all of them alike."""
+    return [int(x) for x in np.random.SeedSequence([seed, place]).generate_state(n)]
+
+
+_GROUP_OF = group_of()

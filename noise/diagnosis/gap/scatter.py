@@ -1,0 +1,84 @@
+"""What repeats of a run differ by: a rig that is never quite the same twice.
+
+A bushing is pressed in again, warms by a few kelvin, wears: between two runs of one condition its
+stiffness, torques and damping come out a few per cent apart, and nobody's fault. A simulation that
+is to be compared with one recording is therefore run as several replicates, each of a rig drawn
+about the nominal one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from models.rig import Fit, Rig
+
+__all__ = ["Scatter", "scattered"]
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Relative standard deviations from run to run.
+
+    Parameters
+    ----------
+    bushing : float
+        Of the elastomer's stiffness, damping and inertia, the kinetic torque, and what the
+        critical torque exceeds it by, each on its own; assumed.
+    structure : float
+        Of the clamp's inertia, the support's stiffness and the speed; assumed.
+    gain : float
+        Of the sensors' sensitivities; assumed.
+    """
+
+    bushing: float = 0.02
+    structure: float = 0.004
+    gain: float = 0.01
+
+
+def scattered(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
+    """Draw a rig as one of its runs finds it.
+
+    Parameters
+    ----------
+    rig : Rig
+    scatter : Scatter
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    Rig
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> once = scattered(rig, Scatter(), np.random.default_rng(1))
+    >>> 0.9 < once.elastomer_inertia / rig.elastomer_inertia < 1.1
+    True
+    """
+    stiffness, kinetic, drop, damping, inertia = np.exp(scatter.bushing * rng.standard_normal(5))
+    # the support's stiffness scatters too; what counts is the clamp's frequency, hence the root
+    clamp = float(np.exp(math.sqrt(2.0) * scatter.structure * rng.standard_normal()))
+
+    def drawn(fit: Fit) -> Fit:
+        sliding = fit.kinetic_torque * float(kinetic)
+        excess = (fit.critical_torque - fit.kinetic_torque) * float(drop)
+        return replace(
+            fit,
+            elastomer_stiffness=fit.elastomer_stiffness * float(stiffness),
+            kinetic_torque=sliding,
+            critical_torque=sliding + excess,
+            damping={support: c * float(damping) for support, c in fit.damping.items()},
+        )
+
+    return replace(
+        rig,
+        fits=tuple(drawn(fit) for fit in rig.fits),
+        elastomer_inertia=rig.elastomer_inertia * float(inertia),
+        clamp_inertia=rig.clamp_inertia * clamp,
+    )

@@ -1,0 +1,1 @@
+"""Runs of the rig under diagnosis: nominal, scattered, with effects."""

@@ -1,0 +1,232 @@
+"""Runs of models of a rig, each made of what earlier ones have made already.
+
+A fit runs one rig with small changes hundreds of times. What a model shares with the one before is
+not made again: an effect on sensors leaves the motion as it is, and the other channels; one on the
+structure leaves the motion.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
+from noise.diagnosis.gap.floor import condition_key
+from noise.diagnosis.gap.scatter import Scatter, scattered
+from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
+from noise.diagnosis.simulated.chain_run import (
+    chain_of,
+    fine_rate,
+    heard,
+    moving,
+    read_by_sensors,
+    recorded,
+    sampled_at,
+)
+from noise.diagnosis.simulated.paths import KnownWays, moved
+from sim.bushing import lumped_bushing
+from sim.chain import changed_chain
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from models.radiation.impulse_responses import Response
+    from models.recording import Recording
+    from models.rig import LawSpec, Rig
+    from noise.diagnosis.fit.forms.form import Form
+    from sim.effects.effect import ActiveEffect, Effect
+    from sim.motion import Motion
+
+__all__ = ["Model", "ModelRuns"]
+
+T = TypeVar("T")
+
+_EXACT = Scatter(0.0, 0.0, 0.0)
+
+_KEPT = 24
+"""Motions that are kept; one of a second at 90 kHz takes six megabytes."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A rig with offsets and effects.
+
+    Parameters
+    ----------
+    offsets : tuple of float
+        Logarithms of the factors on `OFFSETS`.
+    effects : tuple of LawSpec
+        Beyond those that the rig file lists.
+    """
+
+    offsets: tuple[float, ...] = (0.0,) * len(OFFSETS)
+    effects: tuple[LawSpec, ...] = ()
+
+
+@dataclass(eq=False)
+class ModelRuns:
+    """Runs of models of one rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    library : mapping of str to Effect
+    forms : dict of (str, str) to Form
+        Further forms of effects, by the name of the effect and their own.
+    """
+
+    rig: Rig
+    library: Mapping[str, Effect]
+    forms: dict[tuple[str, str], Form]
+    known_ways: KnownWays = field(init=False)
+    _chains: dict[object, Response] = field(init=False, default_factory=dict)
+    _motions: dict[object, Motion] = field(init=False, default_factory=dict)
+    _signals: dict[object, dict[str, NDArray[np.float64]]] = field(init=False, default_factory=dict)
+    _parts: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.known_ways = KnownWays(self.rig)
+
+    def simulated(
+        self, model: Model, like: Recording, seed: int, scatter: Scatter | None = None
+    ) -> Recording:
+        """Simulate a recording by a model, at the condition, rate and length of another.
+
+        Parameters
+        ----------
+        model : Model
+        like : Recording
+        seed : int
+            Of the scatter, of effects that scatter, and of the sensors' noise.
+        scatter : Scatter, optional
+            By default that of repeats.
+
+        Raises
+        ------
+        ParameterError
+            The model cannot be simulated.
+        """
+        scatter = scatter or Scatter()
+        fine = fine_rate(like.rate)
+        effects = self._active(model)
+        signals = self._heard(model, effects, like, fine, seed, scatter)[1]
+        signals = read_by_sensors(signals, effects, fine, np.random.default_rng([seed, 2]))
+        rng = np.random.default_rng([seed, 3])
+        return recorded(signals, fine, like.rate, like.condition, rng, scatter)
+
+    def seen(self, model: Model, like: Recording, seed: int) -> NDArray[np.float64]:
+        """Return the signature of a run without scatter and noise.
+
+        Parameters
+        ----------
+        model : Model
+        like : Recording
+        seed : int
+            Of effects that are chance.
+
+        Raises
+        ------
+        ParameterError
+            The model cannot be simulated.
+        """
+        effects, fine = self._active(model), fine_rate(like.rate)
+        key, signals = self._heard(model, effects, like, fine, seed, _EXACT)
+        read = read_by_sensors(signals, effects, fine, np.random.default_rng([seed, 2]))
+        parts = {}
+        for kind in KINDS:
+            if like.first(kind) is None:
+                continue
+            known = (key, kind) if read[kind] is signals[kind] else None
+            if known is None or known not in self._parts:
+                sampled = sampled_at(read[kind], fine, like.rate)
+                parts[kind] = channel_signature(sampled, like.rate, kind)
+                if known is not None:
+                    _keep(self._parts, known, parts[kind])
+            else:
+                parts[kind] = self._parts[known]
+        return joined_signature(parts)
+
+    def _active(self, model: Model) -> list[ActiveEffect]:
+        found = []
+        for spec in (*self.rig.effects, *model.effects):
+            form = self.forms.get((spec.name, str(spec.parameters.get("form"))))
+            active = (
+                form.active(spec.parameters)
+                if form is not None
+                else self.library[spec.name].active(spec.parameters)
+            )
+            if not active.is_off:
+                found.append(active)
+        return found
+
+    def _heard(
+        self,
+        model: Model,
+        effects: Sequence[ActiveEffect],
+        like: Recording,
+        fine: float,
+        seed: int,
+        scatter: Scatter,
+    ) -> tuple[object, dict[str, NDArray[np.float64]]]:
+        """Return signals before the sensors, and what tells them from others."""
+        on_way = [a for a in effects if a.effect.chain is not None or a.effect.force is not None]
+        on_motion = [
+            a for a in effects if a.effect.contact is not None or a.effect.drive is not None
+        ]
+        same = (condition_key(like), seed, scatter, model.offsets)
+        of_motion = (*same, _key(on_motion))
+        key = (*of_motion, _key(on_way))
+        if key in self._signals:
+            return key, self._signals[key]
+        c, rng = like.condition, np.random.default_rng([seed, 0])
+        assert c.speed is not None
+        assert c.interference is not None
+        assert c.support_stiffness is not None
+        factors = {n: math.exp(x) for n, x in zip(OFFSETS, model.offsets, strict=True)}
+        once = scattered(with_offsets(self.rig, factors), scatter, rng)
+        speed = c.speed * float(np.exp(scatter.structure * rng.normal()))
+        if of_motion not in self._motions:
+            _keep(self._motions, of_motion, moving(
+                once, c, c.support_stiffness, speed, on_motion, like.duration, fine,
+                np.random.default_rng([seed, 1]),
+            ))  # fmt: skip
+        chain = self._chain(once, c.interference, c.support_stiffness, fine, on_way)
+        changed = changed_chain(chain, on_way, np.random.default_rng(0))
+        _keep(self._signals, key, heard(self._motions[of_motion], on_way, changed))
+        return key, self._signals[key]
+
+    def _chain(
+        self,
+        once: Rig,
+        interference: float,
+        support: float,
+        rate: float,
+        effects: Sequence[ActiveEffect],
+    ) -> Response:
+        blows = bool(effects)
+        lumped = lumped_bushing(once, interference, support)
+        key = (interference, support, rate, blows, repr(lumped))
+        if key not in self._chains:
+            plain = lumped_bushing(self.rig, interference, support)
+            found = self.known_ways.at(interference, support)
+            ways = {name: moved(way, plain, lumped) for name, way in found.items()}
+            _keep(self._chains, key, chain_of(
+                self.rig, interference, support, ways, rate, blows=blows
+            ))  # fmt: skip
+        return self._chains[key]
+
+
+def _key(effects: Sequence[ActiveEffect]) -> tuple[object, ...]:
+    return tuple((a.effect.name, a.form, tuple(a.values.items())) for a in effects)
+
+
+def _keep(kept: dict[object, T], key: object, value: T) -> None:
+    """Keep what was made last."""
+    while len(kept) >= _KEPT:
+        kept.pop(next(iter(kept)))
+    kept[key] = value

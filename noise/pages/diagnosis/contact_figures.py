@@ -1,0 +1,69 @@
+"""The friction torque rebuilt from recordings and simulations, over what it may depend on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from noise.pages.diagnosis.figures import CURVES, as_svg, new_panel
+from noise.pages.figures import Panel
+from noise.pictures.axes import styled
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from noise.diagnosis.evidence.contact_course import ContactCourses
+
+__all__ = ["contact_panels"]
+
+_OVER = {
+    "sliding_speed": ("Friction torque while it slips", "Sliding speed [rad/s]", 1.0),
+    "time_stuck": ("Friction torque as a slip begins", "Time stuck before [ms]", 1e3),
+    "time": ("Friction torque as a slip begins", "Time [s]", 1.0),
+    "angle": ("Friction torque as a slip begins", "Angle turned [rad]", 1.0),
+}
+"""Title, what is across, and its scale."""
+
+
+def contact_panels(contacts: Mapping[str, ContactCourses]) -> tuple[Panel, ...]:
+    """Draw the friction torque with its 90 % interval.
+
+    Parameters
+    ----------
+    contacts : mapping of str to ContactCourses
+        By ``measured``, ``before`` and ``after``.
+
+    Returns
+    -------
+    tuple of Panel
+        None where the measured one is not known.
+
+    Examples
+    --------
+    >>> contact_panels({})
+    ()
+    """
+    if "measured" not in contacts:
+        return ()
+    with styled():
+        return tuple(_panel(name, contacts) for name in _OVER)
+
+
+def _panel(over: str, contacts: Mapping[str, ContactCourses]) -> Panel:
+    title, across, scale = _OVER[over]
+    figure, axes = new_panel(title)
+    words = []
+    for name, courses in contacts.items():
+        course, curve = getattr(courses, over), CURVES[name]
+        if not course.x.size:
+            continue
+        x = scale * course.x
+        axes.fill_between(x, course.low, course.high, color=curve.colour, alpha=0.18, linewidth=0)
+        style = (0.0, (4.0, 1.6)) if curve.dashed else "-"
+        axes.plot(
+            x, course.torque, color=curve.colour, linewidth=curve.width, linestyle=style,
+            marker="o", markersize=3.0,
+        )  # fmt: skip
+        words.append(f"{curve.label} {course.torque.min():.3g} to {course.torque.max():.3g} Nm")
+    axes.set_xlabel(across)
+    axes.set_ylabel("Torque [Nm]")
+    return Panel(as_svg(figure), f"{title}, over {across.lower()}: {'; '.join(words)}.")

@@ -1,0 +1,148 @@
+"""MDF4 files (ASAM MDF, test vehicles and benches) as raw samples: channels of all groups.
+
+Time is the master channel of each group and must rise evenly: events on a bus are no waveform.
+Conditions stand among the common properties of the file's comment. Samples that the file marks as
+invalid are refused; a measurement with holes is not the measurement.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from models.errors import RecordingError, not_installed
+from noise.recordings.formats.bounded import BoundedFile
+from noise.recordings.formats.logged import LoggedChannel, is_ours, raw_samples, refusing
+from noise.recordings.formats.mdf_blocks import COMMENT_LINK, check_mdf_blocks
+from noise.recordings.formats.mdf_comment import comment_properties
+from noise.recordings.sampling import even_rate
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from noise.recordings.readers import RawSamples
+
+__all__ = ["read_mdf_file"]
+
+_FIXED_LENGTH = 0  # type of a channel: a plain value
+_VIRTUAL = (3, 6)  # types of channels that have no bytes in a record
+_HAS_MARK = 1 << 1  # flag of a channel: a bit of each record says whether its value is valid
+_NUMBERS = range(6)  # data types: integers and floating-point values, both byte orders
+_TO_TEXT = (7, 8, 9, 10)  # conversions from value or text to text
+
+
+def read_mdf_file(path: Path) -> RawSamples:
+    """Read the channels of an MDF4 file.
+
+    Parameters
+    ----------
+    path : Path
+        An existing file.
+
+    Returns
+    -------
+    RawSamples
+        Samples in SI, in the order of the file.
+
+    Raises
+    ------
+    RecordingError
+        The file is damaged, holds no channels, or these do not go together; or asammdf is not
+        installed.
+    """
+    try:
+        from asammdf import MDF
+    except ImportError:
+        raise RecordingError(not_installed(f"{path}: MDF files need", "asammdf", "mdf")) from None
+    with refusing(path, "MDF file", "asammdf"), _WithoutComment(path) as stream:
+        with BoundedFile(path) as whole:
+            properties = comment_properties(path, check_mdf_blocks(path, whole))
+        with MDF(stream) as file:
+            groups = range(len(file.groups))
+            logged = [channel for group in groups for channel in _group(path, file, group)]
+            return raw_samples(path, logged, properties)
+
+
+class _WithoutComment(BoundedFile):
+    """An MDF4 file whose header names no comment: the library prints what it cannot follow."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        start = self.tell()
+        data = super().read(size)
+        first, last = (min(max(at - start, 0), len(data)) for at in COMMENT_LINK)
+        return data[:first] + bytes(last - first) + data[last:] if last > first else data
+
+
+def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:
+    """Channels of numbers in one group; events are passed over if they are none of ours."""
+    block = file.groups[group]
+    n, master = int(block.channel_group.cycles_nr), file.masters_db.get(group)
+    plain = [i for i, c in enumerate(block.channels) if i != master and _is_number(c)]
+    if n < 2 or master is None or not plain:
+        return []
+    for index in (master, *plain):
+        _check_place(path, block.channel_group, block.channels[index])
+
+    def times(start: int, stop: int) -> NDArray[np.generic]:
+        stamps = file.get_master(group, record_offset=start, record_count=stop - start)
+        return np.asarray(stamps)
+
+    try:
+        rate = even_rate(n, times, f"{path}: channel {block.channels[master].name!r}")
+    except RecordingError:
+        ours = (is_ours(str(block.channels[i].name), _unit(block.channels[i])) for i in plain)
+        if any(ours):
+            raise
+        return []
+    return [_channel(path, file, group, index, rate) for index in plain]
+
+
+def _channel(path: Path, file: Any, group: int, index: int, rate: float) -> LoggedChannel:
+    block = file.groups[group]
+    channel = block.channels[index]
+
+    def read(start: int, stop: int) -> NDArray[np.generic]:
+        samples, invalid = file.get(
+            group=group,
+            index=index,
+            samples_only=True,
+            record_offset=start,
+            record_count=stop - start,
+            ignore_invalidation_bits=False,
+        )
+        if invalid is not None and np.any(invalid):
+            first = start + int(np.argmax(invalid))
+            raise RecordingError(
+                f"{path}: channel {channel.name!r} is marked as invalid at sample {first} "
+                f"({first / rate:.6g} s)"
+            )
+        return np.asarray(samples)
+
+    n = int(block.channel_group.cycles_nr)
+    return LoggedChannel(str(channel.name), _unit(channel), n, rate, read)
+
+
+def _unit(channel: Any) -> str:
+    return str(channel.unit or getattr(channel.conversion, "unit", "") or "")
+
+
+def _check_place(path: Path, group: Any, channel: Any) -> None:
+    """Refuse a channel that lies outside its group's records, where the library would read on."""
+    where = f"{path}: channel {str(channel.name)!r}"
+    end = int(channel.byte_offset) + (int(channel.bit_offset) + int(channel.bit_count) + 7) // 8
+    if channel.channel_type not in _VIRTUAL and end > int(group.samples_byte_nr):
+        raise RecordingError(
+            f"{where} ends at byte {end} of a record of {int(group.samples_byte_nr)} bytes"
+        )
+    marked = int(channel.flags) & _HAS_MARK
+    if marked and int(channel.pos_invalidation_bit) >= 8 * int(group.invalidation_bytes_nr):
+        raise RecordingError(f"{where} has its mark of validity outside the record")
+
+
+def _is_number(channel: Any) -> bool:
+    converted = channel.conversion is not None and channel.conversion.conversion_type in _TO_TEXT
+    plain = channel.channel_type == _FIXED_LENGTH and channel.data_type in _NUMBERS
+    return plain and not converted and not channel.component_addr

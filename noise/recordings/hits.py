@@ -1,0 +1,165 @@
+"""Hammer hits from files: recordings with a force channel, or plain tables of numbers.
+
+A table (NPY or CSV) has time [s], force [N] and response as its three rows or its three columns,
+as acquisition programs export them; which of the two is told by its shape.
+"""
+
+from __future__ import annotations
+
+import csv
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.modal.hammer import Hit
+from models.errors import ParameterError, RecordingError
+from models.recording import CHANNEL_UNITS, Channel
+from noise.recordings import read_recording
+from noise.recordings.files import MIN_SAMPLES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from models.recording import Recording
+
+__all__ = ["RESPONSES", "read_hit"]
+
+RESPONSES = ("acceleration", "pressure")
+"""Kinds of channel taken for the response where none is named, in this order."""
+
+_UNEVEN = 0.1  # of a sampling interval, as left by a time column of few digits
+_ROUNDING = 1e-5  # of a sampling rate that such a column gives
+
+
+def read_hit(
+    path: Path, *, response: str | None = None, arm: float | None = None
+) -> tuple[Hit, str]:
+    """Read a hit.
+
+    Parameters
+    ----------
+    path : Path
+        A table ending in ``.npy`` or ``.csv``, or a recording.
+    response : str, optional
+        Channel of the recording, or what the table's response is; by default the first
+        acceleration or, where there is none, pressure, and for a table an acceleration.
+    arm : float, optional
+        Lever [m] that makes a torque of the force.
+
+    Returns
+    -------
+    hit : Hit
+        Named as the path is; its force in N, or N m with an `arm`.
+    unit : str
+        Of the response.
+
+    Raises
+    ------
+    RecordingError
+        The file cannot be read, or has no such channels.
+    ParameterError
+        `response` is no channel.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "hit.npy"
+    ...     np.save(path, np.stack([np.arange(100) / 25.6e3, np.ones(100), np.zeros(100)]))
+    ...     hit, unit = read_hit(path, arm=0.05)
+    >>> hit.rate, float(hit.force[0]), unit
+    (25600.0, 0.05, 'm/s^2')
+    """
+    wanted = Channel(response or RESPONSES[0])
+    if path.suffix.lower() in (".npy", ".csv"):
+        time, force, answer = _table(path)
+        rate = _rate(path, time)
+        unit = wanted.unit
+    else:
+        recording = read_recording(path)
+        force = _channel(path, recording, "force")
+        name = response or _first_response(path, recording)
+        answer, unit = _channel(path, recording, name), CHANNEL_UNITS[Channel(name).kind]
+        rate = recording.rate
+    return Hit(force * (1.0 if arm is None else arm), answer, rate, str(path)), unit
+
+
+def _first_response(path: Path, recording: Recording) -> str:
+    for kind in RESPONSES:
+        row = recording.first(kind)
+        if row is not None:
+            return recording.channel_names[row]
+    have = ", ".join(recording.channel_names)
+    raise RecordingError(f"{path}: has no channel {' or '.join(RESPONSES)}; it has {have}")
+
+
+def _channel(path: Path, recording: Recording, name: str) -> NDArray[np.float64]:
+    if not recording.calibrated:
+        raise RecordingError(f"{path}: is not calibrated; a hit needs forces in N")
+    try:
+        return recording[name]
+    except ParameterError:
+        have = ", ".join(recording.channel_names)
+        raise RecordingError(f"{path}: has no channel {name!r}; it has {have}") from None
+
+
+def _table(path: Path) -> NDArray[np.float64]:
+    """Time, force and response, shape (3, n)."""
+    try:
+        if path.suffix.lower() == ".npy":
+            values = np.load(path, allow_pickle=False)
+        else:
+            values = _numbers(path)
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, EOFError) as error:
+        raise RecordingError(f"{path}: is damaged or no table of numbers ({error})") from None
+    if not isinstance(values, np.ndarray) or values.ndim != 2 or 3 not in values.shape:
+        raise RecordingError(
+            f"{path}: has shape {np.shape(values)}, expected three rows or columns: time, force, "
+            "response"
+        )
+    if values.dtype.kind not in "iuf":
+        raise RecordingError(f"{path}: holds {values.dtype}, expected real numbers")
+    rows: NDArray[np.float64] = (values if values.shape[0] == 3 else values.T).astype(np.float64)
+    if rows.shape[1] < MIN_SAMPLES:
+        raise RecordingError(
+            f"{path}: holds {rows.shape[1]} samples, expected at least {MIN_SAMPLES}"
+        )
+    for name, row in zip(("time", "force", "response"), rows, strict=True):
+        if not np.isfinite(row).all():
+            first = int(np.argmin(np.isfinite(row)))
+            raise RecordingError(
+                f"{path}: {name} is {row[first]} at sample {first}, expected finite numbers"
+            )
+    return rows
+
+
+def _numbers(path: Path) -> NDArray[np.float64]:
+    """Cells of a CSV file; a first row of words is a header."""
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    if rows and not _is_number(rows[0][0]):
+        del rows[0]
+    return np.array([[float(cell) for cell in row] for row in rows])
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _rate(path: Path, time: NDArray[np.float64]) -> float:
+    step = (time[-1] - time[0]) / (time.size - 1)
+    even = time[0] + step * np.arange(time.size)
+    if not step > 0.0 or np.abs(time - even).max() > _UNEVEN * step:
+        raise RecordingError(f"{path}: time does not rise evenly")
+    rate = float(1.0 / step)
+    whole = round(rate)
+    return float(whole) if abs(whole - rate) <= _ROUNDING * rate else rate

@@ -1,0 +1,222 @@
+"""A bushing design as a file, and how it is used.
+
+A design file is a rig file with two tables more: ``[design]`` says what the design is called and
+what it will meet in use, ``[tolerances]`` how far built ones lie from it. The name of a material
+that is shipped is a design as well, on the shipped bench. What neither file nor caller says is
+taken from the rig: its fits, its supports.
+
+    [design]
+    name = "softer"
+    speed_rad_s = "0.25..13"           # or a list
+    interference_mm = "0.178..0.381/9"
+    support_stiffness_Nm_rad = [2214, 3745, "fixed"]
+    temperature_C = 23
+    oscillation = { amplitude_deg = 15, frequency_hz = "0.5..4" }
+    [tolerances]
+    elastomer_stiffness = 0.05                # relative standard deviation
+    interference = { absolute = 0.01 }        # the same in mm
+    kinetic_torque = { low = 7.5, high = 8.5 }
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.checks import a_number, a_table, a_text, refuse_unknown
+from models.errors import ParameterError
+from models.rig_files.rig_file import load_material_rig, material_names, read_toml, rig_from
+from noise.screening.design.tolerances import ABSOLUTE_ZERO, read_tolerances
+from noise.screening.map.axes import axis_values
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from models.rig import Rig
+    from noise.screening.design.tolerances import Tolerance
+
+__all__ = ["FREQUENCY_STEP", "SPEED_STEP", "Design", "Swinging", "Use", "load_design"]
+
+SPEED_STEP = 0.125
+"""Of a range of speeds without points of its own [rad/s]."""
+
+FREQUENCY_STEP = 0.25
+"""Likewise of frequencies [Hz]."""
+
+_USE_KEYS = {
+    "name",
+    "speed_rad_s",
+    "interference_mm",
+    "support_stiffness_Nm_rad",
+    "temperature_C",
+    "oscillation",
+}
+
+
+@dataclass(frozen=True)
+class Swinging:
+    """A bar on the road, swinging to and fro.
+
+    Parameters
+    ----------
+    amplitude : float
+        [rad]
+    frequency : tuple of float
+        [Hz]
+
+    Examples
+    --------
+    >>> Swinging(math.radians(15.0), (0.5, 2.0)).peak_speed[1]
+    3.28...
+    """
+
+    amplitude: float
+    frequency: tuple[float, ...]
+
+    @property
+    def peak_speed(self) -> tuple[float, ...]:
+        """Largest speed at each frequency [rad/s]."""
+        return tuple(2.0 * math.pi * f * self.amplitude for f in self.frequency)
+
+
+@dataclass(frozen=True)
+class Use:
+    """What a design meets in use; empty where it is not said.
+
+    Parameters
+    ----------
+    speed : tuple of float
+        [rad/s], rising; the first and the last are the limits of use.
+    interference : tuple of float
+        [m]
+    support_stiffness : tuple of float
+        [Nm/rad]
+    temperature : tuple of float
+        [degree Celsius]
+    swinging : Swinging, optional
+
+    Examples
+    --------
+    >>> Use(speed=(1.0, 5.0)).interference
+    ()
+    """
+
+    speed: tuple[float, ...] = ()
+    interference: tuple[float, ...] = ()
+    support_stiffness: tuple[float, ...] = ()
+    temperature: tuple[float, ...] = ()
+    swinging: Swinging | None = None
+
+
+@dataclass(frozen=True)
+class Design:
+    """A bushing on its rig, how it is used, and how it varies.
+
+    Parameters
+    ----------
+    name : str
+    rig : Rig
+    use : Use
+    tolerances : tuple of Tolerance
+
+    Examples
+    --------
+    >>> Design("soft", load_material_rig("PDMS")).use.speed
+    ()
+    """
+
+    name: str
+    rig: Rig
+    use: Use = Use()
+    tolerances: tuple[Tolerance, ...] = ()
+
+    def _repr_html_(self) -> str:
+        """Show the rig, the use, and the tolerances."""
+        from noise.screening.tables.screening_display import design_html
+
+        return design_html(self)
+
+
+def load_design(given: str | Path) -> Design:
+    """Read a design file, or take a material by its name.
+
+    Parameters
+    ----------
+    given : str or Path
+        Design file, or name of a material.
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    ParameterError
+        There is no such file or material, or the file holds what cannot be used.
+
+    Examples
+    --------
+    >>> load_design("pdms").rig.material
+    'PDMS'
+    """
+    path = Path(given)
+    if not path.suffix and not path.exists():
+        known = {name.lower(): name for name in material_names()}
+        name = known.get(str(given).strip().lower())
+        if name is None:
+            raise ParameterError(
+                f"design {str(given)!r}: neither a file nor a material; there are "
+                f"{', '.join(material_names())}"
+            )
+        return Design(name, load_material_rig(name))
+    where = f"design {path}"
+    content = read_toml(path, where)
+    table = a_table(content.pop("design", {}), "design", where)
+    tolerances = read_tolerances(content.pop("tolerances", {}), where)
+    refuse_unknown(table, _USE_KEYS, f"{where}, design")
+    rig = rig_from(content, path.parent, where)
+    named = table.get("name", content.get("name", path.stem))
+    return Design(
+        name=a_text(named, "name", f"{where}, design"),
+        rig=rig,
+        use=_use(table, f"{where}, design"),
+        tolerances=tolerances,
+    )
+
+
+def _use(table: Mapping[str, object], where: str) -> Use:
+    speed, interference, support, temperature = (
+        table.get(key)
+        for key in ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad", "temperature_C")
+    )
+    fits = () if interference is None else axis_values(interference, f"{where}: interference_mm")
+    if fits and fits[-1] >= 10.0:
+        raise ParameterError(f"{where}: interference_mm = {fits[-1]:g} must be below 10")
+    return Use(
+        speed=() if speed is None else axis_values(speed, f"{where}: speed_rad_s", step=SPEED_STEP),
+        interference=tuple(1e-3 * fit for fit in fits),
+        support_stiffness=()
+        if support is None
+        else axis_values(support, f"{where}: support_stiffness_Nm_rad", fixed=True),
+        temperature=()
+        if temperature is None
+        else axis_values(
+            temperature, f"{where}: temperature_C", points=3, low=ABSOLUTE_ZERO, open_low=False
+        ),
+        swinging=_swinging(table.get("oscillation"), where),
+    )
+
+
+def _swinging(given: object, where: str) -> Swinging | None:
+    if given is None:
+        return None
+    where = f"{where}, oscillation"
+    table = a_table(given, "oscillation", where)
+    refuse_unknown(table, {"amplitude_deg", "frequency_hz"}, where)
+    degrees = a_number(table, "amplitude_deg", where)
+    if "frequency_hz" not in table:
+        raise ParameterError(f"{where}: frequency_hz is missing")
+    frequency = axis_values(table["frequency_hz"], f"{where}: frequency_hz", step=FREQUENCY_STEP)
+    return Swinging(math.radians(degrees), frequency)

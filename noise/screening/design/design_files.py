@@ -1,0 +1,79 @@
+"""Copies of design files beside a screen, so that a review finds what each map is of.
+
+Measured responses that a file names by a path of its own folder go with it. One named by a way out
+of that folder would not be found from the copy, and the copy is refused.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from models.errors import BushingNoiseError, ParameterError
+from models.rig_files.rig_file import read_toml
+from noise.screening.design.design import load_design
+
+__all__ = ["copy_design_file"]
+
+
+def copy_design_file(name: str, source: Path, folder: Path) -> Path:
+    """Copy a design's file to ``folder/NAME.toml``, with the responses that it names.
+
+    Parameters
+    ----------
+    name : str
+        What the screen calls the design.
+    source, folder : Path
+
+    Returns
+    -------
+    Path
+        The copy.
+
+    Raises
+    ------
+    ParameterError
+        The name is none of a file, or the copy is no design; the message says so.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as made:
+    ...     source = Path(made) / "mine.toml"
+    ...     size = source.write_text('material = "PDMS"', encoding="utf-8")
+    ...     copy_design_file("soft", source, Path(made) / "designs").name
+    'soft.toml'
+    """
+    target = folder / f"{name}.toml"
+    where = f"design {source}: cannot be copied to {target}"
+    if Path(name).name != name:
+        raise ParameterError(f"{where}: the design's name is none of a file")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in _named_files(source):
+            if not path.is_absolute() and ".." not in path.parts:
+                (folder / path).parent.mkdir(parents=True, exist_ok=True)
+                _copied(source.parent / path, folder / path)
+        _copied(source, target)
+        load_design(target)
+    except OSError as error:
+        raise ParameterError(f"{where}: {error.strerror or error}") from None
+    except BushingNoiseError as error:
+        target.unlink(missing_ok=True)
+        raise ParameterError(f"{where}: {error}") from None
+    return target
+
+
+def _copied(source: Path, target: Path) -> None:
+    if not (target.exists() and source.samefile(target)):
+        shutil.copyfile(source, target)
+
+
+def _named_files(source: Path) -> list[Path]:
+    tables = read_toml(source, f"design {source}").get("measured_response", [])
+    return [
+        Path(value)
+        for table in tables
+        for key, value in table.items()
+        if key.startswith("torque_to_") and isinstance(value, str)
+    ]

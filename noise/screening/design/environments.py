@@ -1,0 +1,136 @@
+"""Surroundings of a bushing: cold, hot, wet, dust, grease, as sets of friction parameters.
+
+The thesis recommends to study them (Recommendation 5) and measured none. Each set is assumed,
+number by number with its reasoning, in ``environments.toml`` beside this file; a rig in one of them
+lists that among what is assumed. An effect that the rig has already keeps the rig's values.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from importlib import resources
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from models.rig_files.rig_file import parse_spec
+
+if TYPE_CHECKING:
+    from models.rig import Fit, LawSpec, Rig
+
+__all__ = ["DRY", "Environment", "environment", "environment_names", "in_environment"]
+
+DRY = "dry"
+"""What is measured in, as a rule."""
+
+_FACTORS = ("elastomer_stiffness", "damping", "critical_torque", "kinetic_torque")
+
+
+@dataclass(frozen=True)
+class Environment:
+    """One environment.
+
+    Parameters
+    ----------
+    name : str
+    temperature : float
+        [degree Celsius]
+    elastomer_stiffness, damping, critical_torque, kinetic_torque : float
+        Factors on those of each fit.
+    effects : tuple of LawSpec
+        What the contact does beyond its friction law.
+    why : tuple of str
+        Where the numbers come from; all are assumed.
+    """
+
+    name: str
+    temperature: float
+    elastomer_stiffness: float = 1.0
+    damping: float = 1.0
+    critical_torque: float = 1.0
+    kinetic_torque: float = 1.0
+    effects: tuple[LawSpec, ...] = ()
+    why: tuple[str, ...] = ()
+
+
+@lru_cache(maxsize=1)
+def _environments() -> dict[str, Environment]:
+    text = (resources.files("noise.screening.design") / "environments.toml").read_text(
+        encoding="utf-8"
+    )
+    return {
+        name: Environment(
+            name=name,
+            temperature=table["temperature_C"],
+            effects=tuple(parse_spec(effect) for effect in table.get("effects", ())),
+            why=tuple(table["why"]),
+            **{key: table[key] for key in _FACTORS if key in table},
+        )
+        for name, table in tomllib.loads(text).items()
+    }
+
+
+def environment_names() -> tuple[str, ...]:
+    """Names of the environments.
+
+    Examples
+    --------
+    >>> environment_names()
+    ('dry', 'cold', 'hot', 'wet', 'dust', 'grease')
+    """
+    return tuple(_environments())
+
+
+def environment(name: str) -> Environment:
+    """Return an environment by its name; case does not matter.
+
+    Raises
+    ------
+    ParameterError
+        There is none of that name.
+
+    Examples
+    --------
+    >>> environment("Grease").kinetic_torque
+    0.3
+    """
+    found = _environments().get(name.strip().lower())
+    if found is None:
+        raise ParameterError(
+            f"environment {name!r} is unknown; there are {', '.join(environment_names())}"
+        )
+    return found
+
+
+def in_environment(rig: Rig, where: Environment) -> Rig:
+    """Return the rig as it is in an environment.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> wet = in_environment(load_material_rig("fluorocarbon-thesis"), environment("wet"))
+    >>> wet.fit(0.279e-3).kinetic_torque, wet.effects[0].name
+    (4.8, 'velocity_weakening')
+    """
+    if where.name == DRY:
+        return rig
+    has = {effect.name for effect in rig.effects}
+    return replace(
+        rig,
+        fits=tuple(_changed(fit, where) for fit in rig.fits),
+        effects=(*rig.effects, *(e for e in where.effects if e.name not in has)),
+        assumed=(*rig.assumed, *(f"{where.name}: {reason}" for reason in where.why)),
+    )
+
+
+def _changed(fit: Fit, where: Environment) -> Fit:
+    kinetic = fit.kinetic_torque * where.kinetic_torque
+    return replace(
+        fit,
+        elastomer_stiffness=fit.elastomer_stiffness * where.elastomer_stiffness,
+        # What slides at a torque can be held by it.
+        critical_torque=max(fit.critical_torque * where.critical_torque, kinetic),
+        kinetic_torque=kinetic,
+        damping={k: c * where.damping for k, c in fit.damping.items()},
+    )

@@ -1,0 +1,177 @@
+"""Points of a map, simulated on all cores or on a cluster.
+
+A batch is points of one rig in one environment. It is cut into pieces that are independent, so that
+the numbers are the same whoever simulates them; the pieces follow supports, whose structure is
+then made once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from models.errors import BushingNoiseError, ParameterError
+from noise.batch.cluster import cluster
+from noise.batch.work import one_thread
+from noise.screening.map.point import REGIMES, judge
+from sim.shaft import Oscillation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+
+__all__ = ["LABELS", "Batch", "Judge", "judging"]
+
+LABELS = ("none", "creak", "squawk", "squeal")
+"""Of a point, in the order of their codes."""
+
+_PIECE = 8
+"""Points that are handed out at once; on a cluster `_FAR_PIECE`."""
+
+_FAR_PIECE = 32
+
+_DIED = "the workers of the cluster that simulated it died; do they have enough memory?"
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Points to simulate.
+
+    Parameters
+    ----------
+    rig : Rig
+        In its environment.
+    speed : ndarray, shape (n,)
+        Of the shaft, the peak where it swings [rad/s].
+    frequency : ndarray, shape (n,)
+        Of the swing [Hz]; NaN at constant speed.
+    interference, support_stiffness, temperature : ndarray, shape (n,)
+        [m], [Nm/rad], [degree Celsius]
+    """
+
+    rig: Rig
+    speed: NDArray[np.float64]
+    frequency: NDArray[np.float64]
+    interference: NDArray[np.float64]
+    support_stiffness: NDArray[np.float64]
+    temperature: NDArray[np.float64]
+
+    def part(self, chosen: NDArray[np.int64]) -> Batch:
+        """Return some of the points."""
+        return Batch(
+            self.rig,
+            self.speed[chosen],
+            self.frequency[chosen],
+            self.interference[chosen],
+            self.support_stiffness[chosen],
+            self.temperature[chosen],
+        )
+
+
+Judge = Callable[[Batch], "NDArray[np.float64]"]
+"""Returns codes of regime and label, and the level [dB], of each point; shape (n, 3)."""
+
+
+@contextmanager
+def judging(*, workers: int = -1, scheduler: str | None = None) -> Iterator[Judge]:
+    """Give a function that simulates batches.
+
+    Parameters
+    ----------
+    workers : int
+        Threads; -1 is one a core.
+    scheduler : str, optional
+        Address of a Dask cluster that does it instead.
+
+    Yields
+    ------
+    callable
+        From a `Batch` to an array of shape (n, 3).
+
+    Raises
+    ------
+    ParameterError
+        The cluster cannot be used, or a condition cannot be simulated.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> one = np.ones(1)
+    >>> with judging() as judged:
+    ...     judged(Batch(load_material_rig("PDMS"), one, np.nan * one, 3e-4 * one, 2e3 * one, one))
+    array([[ 0.,  0., nan]])
+    """
+    if scheduler is None:
+
+        def here(batch: Batch) -> NDArray[np.float64]:
+            pieces = _pieces(batch, _PIECE)
+            with one_thread():
+                found = Parallel(n_jobs=workers, prefer="threads", batch_size=1)(
+                    delayed(_judged)(batch.part(piece)) for piece in pieces
+                )
+            return _joined(batch, pieces, found)
+
+        yield here
+        return
+    with cluster(scheduler) as spread:
+
+        def there(batch: Batch) -> NDArray[np.float64]:
+            pieces = _pieces(batch, _FAR_PIECE)
+            calls = [(batch.part(piece), index) for index, piece in enumerate(pieces)]
+            found: dict[int, NDArray[np.float64] | str | None] = dict(spread(_judged_there, calls))
+            values: list[NDArray[np.float64]] = []
+            for index in range(len(pieces)):
+                result = found[index]
+                if result is None or isinstance(result, str):
+                    raise ParameterError(result or _DIED)
+                values.append(result)
+            return _joined(batch, pieces, values)
+
+        yield there
+
+
+def _pieces(batch: Batch, size: int) -> list[NDArray[np.int64]]:
+    order = np.lexsort((batch.speed, batch.interference, batch.support_stiffness))
+    return np.array_split(order, math.ceil(order.size / size))
+
+
+def _joined(
+    batch: Batch, pieces: list[NDArray[np.int64]], found: list[NDArray[np.float64]]
+) -> NDArray[np.float64]:
+    judged = np.empty((batch.speed.size, 3))
+    for piece, values in zip(pieces, found, strict=True):
+        judged[piece] = values
+    return judged
+
+
+def _judged_there(batch: Batch, index: int) -> tuple[int, NDArray[np.float64] | str]:
+    try:
+        with one_thread():
+            return index, _judged(batch)
+    except BushingNoiseError as error:
+        return index, str(error)
+
+
+def _judged(batch: Batch) -> NDArray[np.float64]:
+    rows = np.empty((batch.speed.size, 3))
+    for i in range(batch.speed.size):
+        speed, frequency = float(batch.speed[i]), float(batch.frequency[i])
+        swings = math.isfinite(frequency)
+        found = judge(
+            batch.rig,
+            Oscillation(speed / (2.0 * math.pi * frequency), frequency) if swings else speed,
+            interference=float(batch.interference[i]),
+            support_stiffness=float(batch.support_stiffness[i]),
+            temperature=float(batch.temperature[i]),
+        )
+        rows[i] = REGIMES.index(found.regime), LABELS.index(found.label), found.level
+    return rows

@@ -1,0 +1,1 @@
+"""Parts as they scatter: probability of each noise, sensitivities, advice."""

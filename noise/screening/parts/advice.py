@@ -1,0 +1,249 @@
+"""Which change of which parameter buys how much margin, and which one ends a noise.
+
+Margins jump, so a slope at the nominal design misleads; what a change brings is simulated where it
+is advised. One parameter is changed at a time: what two changes do together is not told.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from models.errors import ParameterError
+from noise.screening.parts.smallest_change import smallest_changes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from noise.screening.parts.lever import Lever
+    from noise.screening.parts.smallest_change import Found
+
+__all__ = ["Advice", "ending", "widening"]
+
+_SMALL = 0.02
+"""Change, as a share of the nominal value, on either side over which a slope is taken."""
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One change and what it brings.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter.
+    value : float
+        To set it to.
+    change : float
+        From the nominal value, as a share of it.
+    cost : float
+    enough : bool
+        Whether it brings what was asked for; otherwise it is what serves best within the range.
+    steady : bool
+        Whether a somewhat larger change brings it as well; otherwise it stands on an island.
+    gain : float
+        Margin gained by it; NaN where no margin was asked for.
+    slope : float
+        Margin gained by small changes, over the change as a share of the nominal value; NaN where
+        no margin was asked for, or where it is infinite close by.
+    label : str
+        Noise with the change; empty where none was asked for.
+    """
+
+    name: str
+    value: float
+    change: float
+    cost: float
+    enough: bool
+    steady: bool
+    gain: float = math.nan
+    slope: float = math.nan
+    label: str = ""
+
+
+def widening(
+    margin_of: Callable[[NDArray[np.float64]], ArrayLike],
+    levers: Sequence[Lever],
+    gain: float,
+    *,
+    budget: float = math.inf,
+) -> tuple[Advice, ...]:
+    """Find the smallest change of each parameter that widens a margin by `gain`.
+
+    Parameters
+    ----------
+    margin_of : callable
+        Of parameters, shape (n, d), a row a design; returns n margins, which may be infinite.
+    levers : sequence of Lever, length d
+    gain : float
+        By which the margin shall grow, above 0.
+    budget : float
+        That no change may cost more than.
+
+    Returns
+    -------
+    tuple of Advice
+        One a lever: those that bring enough first, the cheapest first; then the others, by what
+        they bring.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used, or the margin is infinite as it is.
+
+    Examples
+    --------
+    >>> from noise.screening.parts.lever import Lever
+    >>> levers = [Lever("damping", 0.5, 2.0), Lever("stiffness", 0.9, 1.1)]
+    >>> best, other = widening(lambda x: 4.0 * x[:, 0] - x[:, 1], levers, 1.0)
+    >>> best.name, round(best.value, 2), round(best.gain, 1), best.enough
+    ('damping', 1.25, 1.0, True)
+    >>> other.name, round(other.value, 2), round(other.gain, 1), other.enough
+    ('stiffness', 0.9, 0.1, False)
+    """
+    if not 0.0 < gain < math.inf:
+        raise ParameterError(f"advice: gain = {gain:g} must be above 0 and finite")
+    ranges = _ranges(levers, budget)
+    small = [
+        (index, min(max(nominal + side * _SMALL * abs(nominal), low), high))
+        for index, (low, nominal, high) in enumerate(ranges)
+        for side in (-1.0, 1.0)
+    ]
+    now, *around = _margins(margin_of, levers, [(0, levers[0].nominal), *small])
+    if math.isinf(now):
+        raise ParameterError("advice: the margin is infinite as it is; there is nothing to widen")
+
+    def gains(changes: Sequence[tuple[int, float]]) -> NDArray[np.float64]:
+        return np.asarray(_margins(margin_of, levers, changes) - now)
+
+    advice = []
+    for i, found in enumerate(smallest_changes(gains, ranges, gain)):
+        slope = _slope(small[2 * i : 2 * i + 2], around[2 * i : 2 * i + 2], levers[i].nominal)
+        advice.append(_advice(levers[i], found, gain=found.score, slope=slope))
+    return tuple(sorted(advice, key=_order))
+
+
+def ending(
+    label_of: Callable[[NDArray[np.float64]], ArrayLike],
+    levers: Sequence[Lever],
+    noises: Collection[str],
+    *,
+    budget: float = math.inf,
+) -> tuple[Advice, ...]:
+    """Find the smallest change of each parameter that ends a noise.
+
+    Parameters
+    ----------
+    label_of : callable
+        Of parameters, shape (n, d), a row a design; returns n labels.
+    levers : sequence of Lever, length d
+    noises : collection of str
+        The labels that shall not be.
+    budget : float
+        That no change may cost more than.
+
+    Returns
+    -------
+    tuple of Advice
+        As of `widening`, with the label in place of a gain; a change of 0 if there is none of
+        these noises as it is.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    >>> from noise.screening.parts.lever import Lever
+    >>> levers = [Lever("damping", 0.5, 2.0)]
+    >>> [found] = ending(lambda x: np.where(x[:, 0] < 1.3, "creak", "none"), levers, {"creak"})
+    >>> round(found.value, 2), found.label, found.enough
+    (1.3, 'none', True)
+    """
+    if not noises:
+        raise ParameterError("advice: no noise to end is named")
+
+    def labels(changes: Sequence[tuple[int, float]]) -> NDArray[np.object_]:
+        return _called(label_of, levers, changes, object)
+
+    def quiet(changes: Sequence[tuple[int, float]]) -> NDArray[np.float64]:
+        return np.array([0.0 if label in noises else 1.0 for label in labels(changes)])
+
+    found = smallest_changes(quiet, _ranges(levers, budget), 1.0)
+    after = labels([(index, one.value) for index, one in enumerate(found)])
+    advice = [
+        _advice(lever, one, label=str(label))
+        for lever, one, label in zip(levers, found, after, strict=True)
+    ]
+    return tuple(sorted(advice, key=_order))
+
+
+def _slope(changes: Sequence[tuple[int, float]], margins: Sequence[float], nominal: float) -> float:
+    run = (changes[1][1] - changes[0][1]) / abs(nominal)
+    if run == 0.0 or not all(map(math.isfinite, margins)):
+        return math.nan
+    return float((margins[1] - margins[0]) / run)
+
+
+def _advice(
+    lever: Lever, found: Found, gain: float = math.nan, slope: float = math.nan, label: str = ""
+) -> Advice:
+    return Advice(
+        name=lever.name,
+        value=found.value,
+        change=found.value / lever.nominal - 1.0,
+        cost=lever.price(found.value),
+        enough=found.enough,
+        steady=found.steady,
+        gain=gain,
+        slope=slope,
+        label=label,
+    )
+
+
+def _order(advice: Advice) -> tuple[bool, float, float, str]:
+    brought = 0.0 if advice.enough or math.isnan(advice.gain) else advice.gain
+    return not advice.enough, -brought, advice.cost, advice.name
+
+
+def _ranges(levers: Sequence[Lever], budget: float) -> list[tuple[float, float, float]]:
+    """Least, nominal and largest value of each lever."""
+    if not levers:
+        raise ParameterError("advice: there is no lever")
+    if not budget > 0.0:
+        raise ParameterError(f"advice: budget = {budget:g} must be above 0")
+    within = [lever.within(budget) for lever in levers]
+    return [(low, lever.nominal, high) for lever, (low, high) in zip(levers, within, strict=True)]
+
+
+def _margins(
+    margin_of: Callable[[NDArray[np.float64]], ArrayLike],
+    levers: Sequence[Lever],
+    changes: Sequence[tuple[int, float]],
+) -> NDArray[np.float64]:
+    margins: NDArray[np.float64] = _called(margin_of, levers, changes, np.float64)
+    if np.isnan(margins).any():
+        raise ParameterError("advice: a margin is not a number")
+    return margins
+
+
+def _called(
+    call: Callable[[NDArray[np.float64]], ArrayLike],
+    levers: Sequence[Lever],
+    changes: Sequence[tuple[int, float]],
+    kind: type,
+) -> NDArray[Any]:
+    """Results for designs with one lever changed each."""
+    designs = np.tile([lever.nominal for lever in levers], (len(changes), 1))
+    for design, (index, value) in zip(designs, changes, strict=True):
+        design[index] = value
+    found: NDArray[Any] = np.asarray(call(designs), dtype=kind)
+    if found.shape != (len(designs),):
+        raise ParameterError(f"advice: {len(designs)} designs got results of shape {found.shape}")
+    return found

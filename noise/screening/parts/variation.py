@@ -1,0 +1,149 @@
+"""A design with its parameters changed by factors: what a population and an advice are made of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from models.rig import damping_at
+from noise.screening.design.tolerances import ABSOLUTE_ZERO, PARAMETERS
+from noise.screening.map.grid import grid_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from models.rig import Fit, Rig
+    from noise.screening.design.design import Design
+
+__all__ = ["UsePoint", "nominal_values", "use_point", "varied"]
+
+_OF_THE_FIT = ("elastomer_stiffness", "damping", "critical_torque", "kinetic_torque")
+
+
+@dataclass(frozen=True)
+class UsePoint:
+    """One condition of a design's use.
+
+    Parameters
+    ----------
+    speed : float
+        [rad/s]
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]
+    temperature : float
+        [degree Celsius]
+    use : tuple of float
+        Slowest and fastest speed of use, for margins [rad/s].
+    """
+
+    speed: float
+    interference: float
+    support_stiffness: float
+    temperature: float
+    use: tuple[float, float]
+
+
+def use_point(design: Design) -> UsePoint:
+    """Return the middle of a design's use: of its speeds, fits, supports and temperatures.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import load_design
+    >>> point = use_point(load_design("fluorocarbon"))
+    >>> point.interference, point.support_stiffness
+    (0.000279, 3745.0)
+    """
+    grid = grid_of(design)
+    return UsePoint(
+        speed=0.5 * (grid.use[0] + grid.use[1]),
+        interference=_middle(grid.interference),
+        support_stiffness=_middle(grid.support_stiffness),
+        temperature=_middle(grid.temperature),
+        use=grid.use,
+    )
+
+
+def _middle(values: tuple[float, ...]) -> float:
+    return values[(len(values) - 1) // 2]
+
+
+def nominal_values(design: Design, point: UsePoint) -> dict[str, float]:
+    """Nominal values of all that can vary, in the units of `noise.screening.design.tolerances`.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import load_design
+    >>> design = load_design("fluorocarbon-thesis")
+    >>> nominal_values(design, use_point(design))["critical_torque"]
+    10.7
+    """
+    fit = design.rig.fit(point.interference)
+    return {
+        "elastomer_stiffness": fit.elastomer_stiffness,
+        "damping": damping_at(fit, point.support_stiffness),
+        "critical_torque": fit.critical_torque,
+        "kinetic_torque": fit.kinetic_torque,
+        "support_stiffness": point.support_stiffness,
+        "interference": 1e3 * point.interference,
+        "temperature": point.temperature,
+        "speed": point.speed,
+    }
+
+
+def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig, UsePoint]:
+    """Return rig and condition with parameters changed.
+
+    Parameters
+    ----------
+    rig : Rig
+    point : UsePoint
+    factors : mapping of str to float
+        By the names of `noise.screening.design.tolerances.PARAMETERS`. That of the temperature is
+        one of absolute temperature; a critical torque is at least the kinetic one.
+
+    Raises
+    ------
+    ParameterError
+        A name that cannot vary, or a factor that is not positive and finite.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import load_design
+    >>> design = load_design("fluorocarbon-thesis")
+    >>> rig, _ = varied(design.rig, use_point(design), {"kinetic_torque": 1.1})
+    >>> round(rig.fit(0.279e-3).kinetic_torque, 6)
+    8.8
+    """
+    for name, factor in factors.items():
+        if name not in PARAMETERS:
+            raise ParameterError(f"{name!r} cannot vary; what can is {', '.join(PARAMETERS)}")
+        if not 0.0 < factor < math.inf:
+            raise ParameterError(f"the factor {factor:g} on {name} must be above 0 and finite")
+    if any(name in factors for name in _OF_THE_FIT):
+        rig = replace(rig, fits=tuple(_changed(fit, factors) for fit in rig.fits))
+    absolute = point.temperature - ABSOLUTE_ZERO
+    point = replace(
+        point,
+        speed=point.speed * factors.get("speed", 1.0),
+        interference=point.interference * factors.get("interference", 1.0),
+        support_stiffness=point.support_stiffness * factors.get("support_stiffness", 1.0),
+        temperature=absolute * factors.get("temperature", 1.0) + ABSOLUTE_ZERO
+        if "temperature" in factors
+        else point.temperature,
+    )
+    return rig, point
+
+
+def _changed(fit: Fit, factors: Mapping[str, float]) -> Fit:
+    stiffness, damping, critical, kinetic = (factors.get(name, 1.0) for name in _OF_THE_FIT)
+    return replace(
+        fit,
+        elastomer_stiffness=fit.elastomer_stiffness * stiffness,
+        critical_torque=max(fit.critical_torque * critical, fit.kinetic_torque * kinetic),
+        kinetic_torque=fit.kinetic_torque * kinetic,
+        damping={support: value * damping for support, value in fit.damping.items()},
+    )

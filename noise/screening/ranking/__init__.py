@@ -1,0 +1,1 @@
+"""Designs compared: margins to the use, risk numbers, the ranking."""

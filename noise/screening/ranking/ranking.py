@@ -1,0 +1,171 @@
+"""How each design does in each environment and motion, and its rank among all.
+
+The rank is that of `noise.screening.ranking.risk.ranked`: by risk, by how probably there is noise,
+and by margin, the worst of a design's environments and motions counting. How probably is told by
+the parts where those of all designs were looked at; else by the share of the points of use that are
+noisy, of all designs alike, since the two must not be compared with each other.
+
+The exposure stands beside it, and says how loud the use is: a point counts 2 to the power of
+(L_AFmax - 40 dB) / 10, Stevens' rule that ten decibels are twice as loud, and nothing where there
+is no noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.screening.map.batches import LABELS
+from noise.screening.parts.estimate import Estimate
+from noise.screening.ranking.risk import Candidate, ranked
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from noise.screening.map.mapping import DesignMap
+    from noise.screening.parts.statistics import Statistics
+    from noise.screening.ranking.margins import CriticalPoint
+
+__all__ = ["Standing", "loudness_weight", "standings"]
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How a design does in one environment and motion.
+
+    Parameters
+    ----------
+    rank : int
+        Of the design among all, 1 being quietest; those whose risk is not known share the last.
+    design, environment, motion : str
+    risk : int, optional
+        From 1 to 10 at constant speed; None if it is not known.
+    exposure : float
+        Mean of the points of use, 1 being 40 dB(A) throughout.
+    shares : dict of str to float
+        Of the points of use, by label.
+    loudest_level : float
+        L_AFmax of the loudest point of use with a noise [dB re 20 uPa]; NaN if there is none.
+    loudest_label : str
+        Its noise, ``none`` if there is none.
+    v_crit1, v_crit2 : float
+        Largest of all fits, supports and temperatures [rad/s]; NaN where the shaft swings.
+    margin_v_crit1, margin_v_crit2, margin_stability : float
+        Smallest likewise.
+    """
+
+    rank: int
+    design: str
+    environment: str
+    motion: str
+    risk: int | None
+    exposure: float
+    shares: dict[str, float]
+    loudest_level: float
+    loudest_label: str
+    v_crit1: float
+    v_crit2: float
+    margin_v_crit1: float
+    margin_v_crit2: float
+    margin_stability: float
+
+
+def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how loud levels are, 1 at 40 dB(A), doubled every 10 dB.
+
+    Examples
+    --------
+    >>> loudness_weight(np.array([40.0, 60.0]))
+    array([1., 4.])
+    """
+    return np.asarray(2.0 ** ((level - 40.0) / 10.0))
+
+
+def standings(
+    maps: Sequence[DesignMap],
+    critical: Sequence[CriticalPoint],
+    statistics: Sequence[Statistics],
+) -> tuple[Standing, ...]:
+    """Tell how mapped designs do, the quietest first.
+
+    Parameters
+    ----------
+    maps : sequence of DesignMap
+    critical : sequence of CriticalPoint
+    statistics : sequence of Statistics
+        One for each design and environment.
+
+    Returns
+    -------
+    tuple of Standing
+        One a map.
+    """
+    risks = {(one.design, one.environment): one.risk for one in statistics}
+    found = [
+        _standing(mapped, critical, risks[mapped.design, mapped.environment]) for mapped in maps
+    ]
+    places = ranked(_candidates(found, statistics))
+    rank = {place.candidate.name: place.place for place in places}
+    placed = [replace(one, rank=rank.get(one.design, 1 + len(places))) for one in found]
+    return tuple(sorted(placed, key=lambda one: (one.rank, one.design)))
+
+
+def _candidates(found: Sequence[Standing], statistics: Sequence[Statistics]) -> list[Candidate]:
+    by_parts = all(one.robustness is not None for one in statistics)
+    candidates = []
+    for design in dict.fromkeys(one.design for one in found):
+        risks = [one.risk for one in statistics if one.design == design]
+        known = [risk for risk in risks if risk is not None]
+        if len(known) < len(risks):
+            continue
+        own = [one for one in found if one.design == design]
+        noisy = max(1.0 - one.shares["none"] for one in own)
+        noise = Estimate(noisy, noisy, noisy)
+        if by_parts:
+            noises = [
+                one.robustness.noises.any_but()
+                for one in statistics
+                if one.design == design and one.robustness is not None
+            ]
+            noise = max(noises, key=lambda estimate: estimate.value)
+        margins = [one.margin_v_crit2 for one in own if not np.isnan(one.margin_v_crit2)]
+        candidates.append(Candidate(design, max(known), noise, min(margins, default=np.nan)))
+    return candidates
+
+
+def _standing(mapped: DesignMap, critical: Sequence[CriticalPoint], risk: int | None) -> Standing:
+    speed = np.array(mapped.grid.speed)
+    low, high = mapped.grid.use
+    used = (speed >= low * (1.0 - 1e-9)) & (speed <= high * (1.0 + 1e-9))
+    if not used.any():
+        used[np.argmin(np.abs(speed - 0.5 * (low + high)))] = True
+    label, level = mapped.label[..., used], mapped.level[..., used]
+    noisy = (label != "none") & np.isfinite(level)
+    loudest = np.unravel_index(np.argmax(np.where(noisy, level, -np.inf)), level.shape)
+    own = [
+        point
+        for point in critical
+        if (point.design, point.environment) == (mapped.design, mapped.environment)
+        and mapped.motion == "steady"
+    ]
+    nothing = float("nan")
+    return Standing(
+        rank=0,
+        design=mapped.design,
+        environment=mapped.environment,
+        motion=mapped.motion,
+        risk=risk,
+        exposure=float(np.sum(loudness_weight(level[noisy])) / label.size),
+        shares={name: float(np.mean(label == name)) for name in LABELS},
+        loudest_level=float(level[loudest]) if noisy.any() else nothing,
+        loudest_label=str(label[loudest]) if noisy.any() else "none",
+        v_crit1=max((point.v_crit1 for point in own), default=nothing),
+        v_crit2=max((point.v_crit2 for point in own), default=nothing),
+        margin_v_crit1=min((point.margin_v_crit1 for point in own), default=nothing),
+        margin_v_crit2=min((point.margin_v_crit2 for point in own), default=nothing),
+        margin_stability=min((point.margin_stability for point in own), default=nothing),
+    )

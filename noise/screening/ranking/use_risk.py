@@ -1,0 +1,127 @@
+"""The risk number of a design over its use, from runs of its nominal rig.
+
+How hard a blow is, is told by the torque: by how much its swing would accelerate the free clamp
+where the beams hold it. That is what the accelerometer reads in stick-slip, within a factor of two,
+and it does not fall silent where the clamp is bolted down. Impulses are slips, and where nothing
+sticks the periods of the vibration. Static over kinetic friction is that of the fit.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from noise.batch.work import one_thread
+from noise.screening.map.grid import grid_of
+from noise.screening.ranking.risk import design_risk, risk_grades
+from sim.analysis.regime import Regime, friction_regime
+from sim.analysis.sweep_features import FEATURES, motion_features
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.friction import at_temperature
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+    from noise.screening.design.design import Design
+
+__all__ = ["use_grades", "use_risk"]
+
+_SPEEDS = 12
+
+_SECONDS = 1.0
+_RATE = 15e3
+"""Of the runs, judged on their last half as critical speeds are [s, Hz]."""
+
+
+def use_risk(design: Design, *, workers: int = -1) -> int:
+    """Risk number of a design, from 1 to 10.
+
+    Parameters
+    ----------
+    design : Design
+    workers : int
+        Threads; -1 is one a core.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import load_design
+    >>> use_risk(load_design("PDMS"))
+    1
+    """
+    return design_risk(use_grades(design, workers=workers))
+
+
+def use_grades(design: Design, *, workers: int = -1) -> NDArray[np.float64]:
+    """Grade conditions that a design meets in use.
+
+    Parameters
+    ----------
+    design : Design
+    workers : int
+        Threads; -1 is one a core.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        As of `noise.screening.ranking.risk.risk_grades`: twelve speeds of use at the ends and the
+        middle of fits, supports and temperatures.
+
+    Raises
+    ------
+    ParameterError
+        If a condition cannot be simulated.
+    """
+    grid = grid_of(design)
+    conditions = itertools.product(
+        np.linspace(*grid.use, _SPEEDS).tolist(),
+        _few(grid.interference),
+        _few(grid.support_stiffness),
+        _few(grid.temperature),
+    )
+    with one_thread():
+        rows = Parallel(n_jobs=workers, prefer="threads")(
+            delayed(_measured)(design.rig, *condition) for condition in conditions
+        )
+    return risk_grades(*np.array(rows).T)
+
+
+def _few(values: tuple[float, ...]) -> list[float]:
+    last = len(values) - 1
+    return [values[i] for i in sorted({0, last // 2, last})]
+
+
+def _measured(
+    rig: Rig, speed: float, interference: float, support_stiffness: float, temperature: float
+) -> tuple[float, float, float]:
+    """Acceleration [m/s2], impulses on the way [1/rad] and friction's ratio of one condition."""
+    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
+    fit = rig.fit(interference)
+    ratio = fit.critical_torque / fit.kinetic_torque if fit.kinetic_torque > 0.0 else np.inf
+    motion = simulate_motion(
+        rig,
+        ConstantSpeed(speed),
+        interference=interference,
+        support_stiffness=support_stiffness,
+        seconds=_SECONDS,
+        rate=_RATE,
+        effects=activated(rig.effects, EFFECTS),
+    )
+    regime = friction_regime(motion)
+    if regime is Regime.STEADY_SLIDING:
+        return 0.0, 0.0, ratio
+    last = motion.since(motion.torque.size // 2)
+    swing = last.torque - last.torque.mean()
+    acceleration = rig.beams.lever * float(np.abs(swing).max()) / rig.clamp_inertia
+    if regime is Regime.STICK_SLIP:
+        impulses = float(motion_features(last)[FEATURES.index("slip_count")])
+    else:
+        impulses = float(np.sum((swing[:-1] < 0.0) & (swing[1:] >= 0.0)))
+    return acceleration, impulses / (0.5 * _SECONDS * speed), ratio

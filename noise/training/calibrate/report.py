@@ -1,0 +1,113 @@
+"""What a calibration comes to, as a page of text, and the material file that it makes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from models.condition import FIXED
+from noise.noise_definition import noise_of
+from noise.training.calibrate.cells import CELLS, NOISES, THIN_CELLS, Cell
+from noise.training.calibrate.unknowns import UNKNOWNS
+from sim.analysis.critical_speeds import critical_speeds
+from sim.run import simulate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from models.rig import Rig
+    from noise.training.calibrate.search import Found
+
+__all__ = ["material_toml", "measured_speeds", "noises_page", "speeds_page", "values_page"]
+
+_SPEEDS = tuple(0.25 * i for i in range(1, 65))
+"""To 16 rad/s, so that an end beyond the measured 12.5 is found."""
+
+
+def measured_speeds(rig: Rig, cells: Sequence[Cell] = CELLS + THIN_CELLS) -> dict[Cell, float]:
+    """Critical speeds of a rig as `sim.analysis.critical_speeds` defines them [rad/s]."""
+    speeds: dict[Cell, float] = {}
+    for place in dict.fromkeys((cell.interference, cell.support_stiffness) for cell in cells):
+        found = critical_speeds(rig, *place, _SPEEDS)
+        speeds |= {
+            cell: getattr(found, cell.item)
+            for cell in cells
+            if (cell.interference, cell.support_stiffness) == place
+        }
+    return speeds
+
+
+def _log_error(speeds: Mapping[Cell, float]) -> float:
+    """Root mean square of log(simulated / measured)."""
+    errors = [_log(speed / cell.speed) for cell, speed in speeds.items()]
+    return math.sqrt(sum(error * error for error in errors) / len(errors))
+
+
+def speeds_page(title: str, speeds: Mapping[Cell, float]) -> str:
+    """Table of measured and simulated critical speeds, with their error.
+
+    Examples
+    --------
+    >>> print(speeds_page("Fitted", {CELLS[0]: 4.0}))
+    Fitted: log-rms error 0.118
+      v_crit1 at 0.279 mm, 2214 Nm/rad      measured   4.50  simulated   4.00  log -0.118
+    """
+    lines = [f"{title}: log-rms error {_log_error(speeds):.3f}"]
+    lines += [
+        f"  {cell!s:<37} measured {cell.speed:6.2f}  simulated {speed:6.2f}  "
+        f"log {_log(speed / cell.speed):+.3f}"
+        for cell, speed in speeds.items()
+    ]
+    return "\n".join(lines)
+
+
+def noises_page(rig: Rig) -> str:
+    """Table of the noises that the thesis names, and those that the rig makes."""
+    lines = ["Noises, not fitted as such (5.2.3)"]
+    for cell in NOISES:
+        run = simulate(
+            rig, cell.speed,
+            interference=cell.interference, support_stiffness=cell.support_stiffness,
+        )  # fmt: skip
+        lines.append(
+            f"  {1e3 * cell.interference:.3f} mm, {cell.support_stiffness:.0f} Nm/rad, "
+            f"{cell.speed:g} rad/s  named {cell.noise:<7} simulated {noise_of(run)}"
+        )
+    return "\n".join(lines)
+
+
+def values_page(found: Found) -> str:
+    """List what was found of the unknowns, each with its unit."""
+    lines = ["Unknowns"]
+    lines += [
+        f"  {name:<25}{value:12.4g} {UNKNOWNS[name].unit:<9} {UNKNOWNS[name].description}"
+        for name, value in found.values.items()
+    ]
+    return "\n".join(lines)
+
+
+def material_toml(rig: Rig) -> str:
+    """Write the tables of a material file that hold what was searched."""
+    lines = [f"elastomer_damping_share = {rig.elastomer_damping_share:.4g}", "", "[friction]"]
+    lines.append(f'law = "{rig.friction.name}"')
+    lines += [f"{key} = {value:.4g}" for key, value in rig.friction.parameters.items()]
+    for fit in rig.fits:
+        lines += [
+            "",
+            "[[fit]]",
+            f"interference_mm = {1e3 * fit.interference:.3f}",
+            f"elastomer_stiffness_Nm_rad = {fit.elastomer_stiffness:g}",
+            f"critical_torque_Nm = {fit.critical_torque:.4g}",
+            f"kinetic_torque_Nm = {fit.kinetic_torque:.4g}",
+            "damping_Nms_rad = { "
+            + ", ".join(
+                f'"{support:.0f}" = {value:.4g}' if support != FIXED else f"fixed = {value:.4g}"
+                for support, value in fit.damping.items()
+            )
+            + " }",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _log(ratio: float) -> float:
+    return math.log(ratio) if ratio > 0.0 else -math.inf

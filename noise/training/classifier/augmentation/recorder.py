@@ -1,0 +1,144 @@
+"""A sound becomes a recording: through a room, noise, a microphone, at some rate and gain."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import resample_poly
+
+from noise.training.classifier.augmentation.backgrounds import background
+from noise.training.classifier.augmentation.codecs import coded, quantised
+from noise.training.classifier.augmentation.microphones import (
+    clipped,
+    levelled,
+    through_a_microphone,
+)
+from noise.training.classifier.augmentation.rooms import in_a_room
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["RATES", "Heard", "as_recorded", "hear", "resampled"]
+
+RATES = (16_000, 22_050, 30_000, 32_000, 44_100, 48_000, 96_000)
+"""Sampling rates that recordings come in [Hz]."""
+
+_LONGEST = 5.0
+"""Of a clip with what is before and after the sound [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Heard:
+    """A sound as it was recorded.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n,)
+        In fractions of full scale.
+    rate : int
+        [Hz]
+    span : tuple of float
+        From when to when the sound lasts within the clip [s]; the rest is silence or background.
+    """
+
+    samples: NDArray[np.float64]
+    rate: int
+    span: tuple[float, float]
+
+
+def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArray[np.float64]:
+    """Resample to another rate, band-limited; rates are taken to the nearest hertz.
+
+    Examples
+    --------
+    >>> resampled(np.zeros(96), 96_000, 44_100).size
+    45
+    """
+    up, down = round(wanted), round(rate)
+    common = math.gcd(up, down)
+    if up == down:
+        return signal
+    return np.asarray(resample_poly(signal, up // common, down // common, padtype="line"))
+
+
+def as_recorded(
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, phone: bool = False
+) -> NDArray[np.float64]:
+    """Hear a sound in some room through some microphone, with some noise.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        Pressure close to the source.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+    phone : bool
+        Whether the microphone is a phone's.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Of unit standard deviation or, where the sound is zero, noise alone.
+    """
+    heard = in_a_room(sound, rate, rng) if rng.random() < 0.7 else sound
+    heard = through_a_microphone(heard, rate, rng, phone=phone)
+    level = float(heard.std())
+    snr = rng.uniform(6.0, 50.0) if rng.random() < 0.8 else 60.0
+    noise_level = level * 10.0 ** (-snr / 20.0) if level > 0.0 else 1.0
+    heard = heard + noise_level * background(heard.size, rate, rng)
+    return np.asarray(heard / heard.std())
+
+
+def hear(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> Heard:
+    """Record a sound as anybody might: any microphone, rate, gain, codec and cut.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        Pressure close to the source.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Examples
+    --------
+    >>> heard = hear(np.sin(np.arange(24_000.0)), 48e3, np.random.default_rng(0))
+    >>> heard.rate in RATES, bool(np.abs(heard.samples).max() <= 1.0)
+    (True, True)
+    """
+    wanted = int(rng.choice(RATES))
+    phone = bool(rng.random() < 0.3)
+    heard = resampled(as_recorded(sound, rate, rng, phone=phone), rate, wanted)
+    if rng.random() < 0.15:  # it was stored at a lower rate before
+        lower = min(wanted, int(rng.choice((16_000, 22_050, 32_000))))
+        heard = resampled(resampled(heard, wanted, lower), lower, wanted)
+    if rng.random() < (0.6 if phone else 0.1):
+        heard = levelled(heard, wanted, rng)
+    if rng.random() < 0.08:
+        heard = clipped(heard, rng)
+    # To the peak, as editors do, or to any level.
+    peak = 10.0 ** (rng.uniform(-50.0, -1.0) / 20.0) if rng.random() < 0.7 else 0.98
+    heard = heard * (peak / float(np.abs(heard).max()))
+    samples, span = _cut(heard, wanted, rng)
+    if rng.random() < 0.3:
+        samples = np.clip(coded(samples, wanted, rng), -1.0, 1.0)
+    if rng.random() < 0.5:
+        samples = quantised(samples, 8 if rng.random() < 0.06 and peak > 0.3 else 16, rng)
+    return Heard(samples, wanted, span)
+
+
+def _cut(
+    sound: NDArray[np.float64], rate: int, rng: np.random.Generator
+) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    """Put digital silence before or after some of the sounds, as clips of one length have it."""
+    duration = sound.size / rate
+    if rng.random() < 0.75:
+        return sound, (0.0, duration)
+    spare = min(_LONGEST - duration, duration) * rng.uniform(0.1, 1.0)
+    before = int(spare * rate * (rng.random() if rng.random() < 0.4 else 0.0))
+    after = max(int(spare * rate) - before, 0)
+    return np.pad(sound, (before, after)), (before / rate, before / rate + duration)

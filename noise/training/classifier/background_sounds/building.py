@@ -1,0 +1,237 @@
+"""What strangers are built of: pulses, voices, resonances, blows, envelopes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.signal import lfilter
+
+from noise.training.classifier.augmentation.backgrounds import coloured_noise
+from noise.training.classifier.friction_sources.slider import wandering
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "arch",
+    "blow",
+    "harmonics",
+    "log_uniform",
+    "placed",
+    "repeated",
+    "resonance",
+    "through_formants",
+    "voiced",
+]
+
+
+def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
+    """Draw evenly in the logarithm.
+
+    Examples
+    --------
+    >>> 1.0 <= log_uniform(1.0, 100.0, np.random.default_rng(0)) <= 100.0
+    True
+    """
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def harmonics(
+    pitch: NDArray[np.float64], rate: float, roll_off: float, n_most: int = 30
+) -> NDArray[np.float64]:
+    """Sum of the harmonics of a pitch [Hz], whose amplitudes fall as ``k ** -roll_off``.
+
+    Examples
+    --------
+    >>> tone = harmonics(np.full(48_000, 440.0), 48e3, 1.0)
+    >>> int(np.abs(np.fft.rfft(tone)).argmax())
+    440
+    """
+    phase = 2.0 * np.pi * np.cumsum(pitch) / rate
+    n = min(n_most, int(0.48 * rate / float(pitch.max())))
+    before, now, twice = np.zeros(pitch.size), np.sin(phase), 2.0 * np.cos(phase)
+    sound = np.zeros(pitch.size)
+    for k in range(1, max(n, 1) + 1):
+        sound += float(k) ** -roll_off * now
+        before, now = now, twice * now - before
+    return sound
+
+
+def resonance(
+    x: NDArray[np.float64], centre: float, bandwidth: float, rate: float
+) -> NDArray[np.float64]:
+    """Filter by one resonance [Hz].
+
+    Examples
+    --------
+    >>> resonance(np.ones(4), 1e3, 100.0, 48e3).shape
+    (4,)
+    """
+    radius = math.exp(-math.pi * bandwidth / rate)
+    turn = 2.0 * radius * math.cos(2.0 * math.pi * min(centre, 0.45 * rate) / rate)
+    return np.asarray(lfilter([1.0 - radius], [1.0, -turn, radius**2], x))
+
+
+def through_formants(
+    source: NDArray[np.float64], formants: tuple[float, ...], rate: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Put a source through the resonances of a throat, in parallel, besides itself.
+
+    Examples
+    --------
+    >>> through_formants(np.ones(8), (500.0, 1500.0), 48e3, np.random.default_rng(0)).shape
+    (8,)
+    """
+    sound = rng.uniform(0.02, 0.3) * source
+    for k, formant in enumerate(formants):
+        part = resonance(source, formant * rng.uniform(0.85, 1.15), rng.uniform(60, 350), rate)
+        sound = sound + part * rng.uniform(0.5, 3.0) / (1.0 + 0.5 * k)
+    return np.asarray(sound)
+
+
+def arch(n: int, rng: np.random.Generator, attack: float = 0.15) -> NDArray[np.float64]:
+    """Envelope of a call: it rises, holds, and fades.
+
+    Examples
+    --------
+    >>> arch(5, np.random.default_rng(0))[[0, -1]].tolist()
+    [0.0, 0.0]
+    """
+    x = np.linspace(0.0, 1.0, n)
+    rise, fall = rng.uniform(0.3, 1.5) * attack, rng.uniform(0.1, 0.7)
+    return np.asarray(
+        np.minimum(1.0, np.minimum(x / rise, (1.0 - x) / fall)) ** rng.uniform(0.5, 2)
+    )
+
+
+def voiced(
+    n: int,
+    rate: float,
+    pitch: NDArray[np.float64],
+    formants: tuple[float, ...],
+    rng: np.random.Generator,
+    *,
+    roughness: float = 0.0,
+    breath: float = 0.1,
+) -> NDArray[np.float64]:
+    """Draw a throat's call: a pitch with jitter, subharmonics where rough, formants and breath.
+
+    Parameters
+    ----------
+    n : int
+    rate : float
+        [Hz]
+    pitch : ndarray, shape (n,)
+        [Hz]
+    formants : tuple of float
+        [Hz]
+    rng : numpy.random.Generator
+    roughness : float
+        0 is a clear voice; 1 doubles and breaks its periods.
+    breath : float
+        Noise over the voice.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> float(np.abs(voiced(480, 48e3, np.full(480, 300.0), (900.0,), rng)).max())
+    1.0
+    """
+    jitter = coloured_noise(n, 1.5, rng)
+    pitch = pitch * np.exp((0.004 + 0.08 * roughness) * jitter)
+    source = harmonics(pitch, rate, rng.uniform(0.3, 1.6), n_most=40)
+    if roughness > 0.0:
+        half = 2.0 * np.pi * np.cumsum(pitch) / rate / float(rng.choice((2.0, 2.0, 3.0)))
+        source *= 1.0 + roughness * np.cos(half)
+        source *= np.exp(roughness * 0.6 * coloured_noise(n, 0.8, rng))
+    source = source / (source.std() + 1e-12) + breath * coloured_noise(n, 0.3, rng)
+    sound = through_formants(source, formants, rate, rng)
+    return np.asarray(sound / (np.abs(sound).max() + 1e-300))
+
+
+def repeated(
+    n: int,
+    rate: float,
+    lengths: tuple[float, float],
+    gaps: tuple[float, float],
+    make: Callable[[int], NDArray[np.float64]],
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    """Draw calls one after the other, of lengths and gaps in seconds; the first may have begun.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> bool(repeated(4800, 48e3, (0.01, 0.02), (0.01, 0.02), np.ones, rng).min() == 0.0)
+    True
+    """
+    sound = np.zeros(n)
+    start = int(rng.uniform(0.0, min(gaps[1], 0.3)) * rate)
+    while start < n:
+        m = max(64, int(log_uniform(*lengths, rng) * rate))
+        part = make(m)[: n - start] * 10.0 ** (rng.uniform(-6.0, 0.0) / 20.0)
+        sound[start : start + part.size] += part
+        start += m + int(log_uniform(*gaps, rng) * rate)
+    return sound
+
+
+def placed(
+    n: int, times: NDArray[np.float64], strength: NDArray[np.float64], rate: float
+) -> NDArray[np.float64]:
+    """Impulses at times [s].
+
+    Examples
+    --------
+    >>> placed(4, np.array([0.5]), np.array([2.0]), 4.0).tolist()
+    [0.0, 0.0, 2.0, 0.0]
+    """
+    hits = np.zeros(n)
+    index = (np.asarray(times) * rate).astype(int)
+    kept = (index >= 0) & (index < n)
+    np.add.at(hits, index[kept], strength[kept])
+    return hits
+
+
+def blow(
+    rate: float,
+    band: tuple[float, float],
+    decay: tuple[float, float],
+    rng: np.random.Generator,
+    *,
+    n_modes: int = 8,
+    noise: float = 0.5,
+) -> NDArray[np.float64]:
+    """One blow: modes in a band [Hz] that die within decay times (to 1/e) [s], and a noisy knock.
+
+    Examples
+    --------
+    >>> blow(48e3, (500.0, 3000.0), (0.005, 0.02), np.random.default_rng(0)).ndim
+    1
+    """
+    longest = 7.0 * decay[1]
+    time = np.arange(max(16, int(longest * rate))) / rate
+    sound = np.zeros(time.size)
+    for _ in range(n_modes):
+        frequency = min(log_uniform(*band, rng), 0.45 * rate)
+        lasting = log_uniform(*decay, rng)
+        sound += rng.normal() * np.exp(-time / lasting) * np.sin(2 * np.pi * frequency * time)
+    sound /= np.abs(sound).max() + 1e-12
+    knock = rng.standard_normal(time.size) * np.exp(-time / rng.uniform(0.0005, 0.01))
+    return np.asarray(sound + noise * rng.random() * knock)
+
+
+def wavering(
+    n: int, rate: float, frequency: float, depth: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Factor about one that wanders by a share `depth`, `frequency` times a second.
+
+    Examples
+    --------
+    >>> float(wavering(10, 10.0, 1.0, 0.0, np.random.default_rng(0)).max())
+    1.0
+    """
+    return np.asarray(np.exp(depth * wandering(n, rate, frequency, rng)))

@@ -1,0 +1,233 @@
+"""Simulated bushings of the classifier's samples, called by their physics.
+
+A run is called by `noise.noise_definition.noise_of` alone. That is defined at constant speed, so a
+run whose speed varies, or that has not settled, is looked at in pieces of a quarter of a second,
+and only the longest stretch with one noise is kept; a run without half a second of one noise is
+drawn again. Runs that would be much of one noise are thinned by a short preview, and half of the
+squawks that it did not foresee are let go.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.kernels.lines import find_lines
+from features.kernels.spectra import autospectrum
+from models.errors import ParameterError
+from noise.noise_definition import evidence, is_ambiguous, noise_of
+from noise.training.classifier.augmentation import RATES
+from noise.training.classifier.designs import random_design
+from noise.training.classifier.extras import random_extras
+from sim.acquisition import Acquisition
+from sim.analysis.regime import Regime, friction_regime
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.motion import simulate_motion
+from sim.run import Run, simulate
+from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion, SpeedRamp
+
+if TYPE_CHECKING:
+    from noise.training.classifier.designs import Design
+
+__all__ = ["LabelledRun", "random_run", "stretch"]
+
+_SHARES = {"creak": 0.34, "squawk": 0.17, "squeal": 0.32, "none": 0.17}
+"""Of the labels that are looked for."""
+
+_MOST_TRIES = 20
+"""After so many previews, whatever comes is taken."""
+
+_SPARE_SQUAWKS = 0.5
+"""How often a squawk is drawn again where another noise was looked for."""
+
+_WHERE_LIKELY = 0.85
+"""How often a design is drawn again that lies where the noise looked for is rare."""
+
+_PIECE = 0.25
+"""Length of the pieces that a run of varying speed is judged by [s]."""
+
+_SHORTEST = 0.5
+"""Of a stretch with one noise [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledRun:
+    """A run, or the part of one, with the noise that it makes throughout.
+
+    It is ambiguous where `noise.noise_definition.is_ambiguous` says so, of pieces for most of them.
+    """
+
+    run: Run
+    label: str
+    ambiguous: bool = False
+
+
+def random_run(rng: np.random.Generator) -> LabelledRun:
+    """Draw a design and how its shaft turns, simulate it, and say what noise it makes.
+
+    Examples
+    --------
+    >>> drawn = random_run(np.random.default_rng(5))
+    >>> drawn.label in ("creak", "squawk", "squeal", "none")
+    True
+    """
+    labels = list(_SHARES)
+    wanted = labels[int(rng.choice(len(labels), p=list(_SHARES.values())))]
+    for tried in itertools.count():
+        design = random_design(rng)
+        while not _likely(design, wanted) and rng.random() < _WHERE_LIKELY:
+            design = random_design(rng)
+        design = replace(
+            design,
+            rig=replace(
+                design.rig,
+                effects=design.rig.effects + random_extras(design.rig.effects, rng),
+            ),
+        )
+        try:
+            if tried < _MOST_TRIES and _guessed(design) != wanted:
+                continue
+            found = _labelled(design, rng)
+        except ParameterError:  # a drawn design that cannot be built
+            continue
+        if found is None:
+            continue
+        spare = found.label == "squawk" != wanted
+        if not (spare and rng.random() < _SPARE_SQUAWKS):
+            return found
+    raise AssertionError  # the loop has no end
+
+
+def _likely(design: Design, wanted: str) -> bool:
+    """Whether a noise is common where the design runs, so that the rare ones are found soon."""
+    fluorocarbon = design.rig.material == "fluorocarbon"
+    tight = design.interference > 0.31e-3
+    if wanted == "squeal":
+        return fluorocarbon and design.speed > 4.0 and design.interference < 0.34e-3
+    if wanted == "creak":
+        film = design.rig.material == "natural-rubber-film"
+        return (fluorocarbon and tight and design.speed < 11.0) or (film and design.speed > 3.0)
+    return True
+
+
+def _guessed(design: Design) -> str:
+    """Return the noise that a short motion lets expect, without its sound."""
+    rig = design.rig
+    effects = activated(rig.effects, EFFECTS)
+    motion = simulate_motion(
+        rig,
+        ConstantSpeed(design.speed),
+        interference=design.interference,
+        support_stiffness=design.support_stiffness,
+        seconds=0.3,
+        rate=30e3,
+        effects=effects,
+    )
+    regime = friction_regime(motion)
+    if regime is Regime.STEADY_SLIDING:
+        return "none"
+    blows = [a.effect.force(motion, a.form, a.values) for a in effects if a.effect.force]
+    if any(force[force.size // 2 :].any() for force in blows):
+        return "creak"
+    lines = find_lines(
+        autospectrum(motion.torque[motion.torque.size // 2 :], motion.rate), low=20.0, high=5e3
+    )
+    if not lines.power.size:
+        return "creak"
+    strong = lines.power >= 10.0**-1.8 * lines.power[0]
+    return "squeal" if np.count_nonzero(strong) == 1 else "squawk"
+
+
+def _labelled(design: Design, rng: np.random.Generator) -> LabelledRun | None:
+    rate = float(RATES[int(rng.integers(len(RATES)))])
+    seconds = float(rng.uniform(0.6, 3.0) if rng.random() < 0.35 else rng.uniform(0.6, 1.2))
+    shaft = _random_shaft(design.speed, seconds, rng)
+    run = simulate(
+        design.rig,
+        shaft,
+        interference=design.interference,
+        support_stiffness=design.support_stiffness,
+        seconds=seconds,
+        settling=0.5 if isinstance(shaft, ConstantSpeed) else 0.2,
+        acquisition=Acquisition(rate=rate, noise={}),
+        rng=rng,
+    )
+    if isinstance(shaft, ConstantSpeed):
+        seen = evidence(run)
+        label = seen.name
+        half = run.pressure.size // 2 / run.motion.rate
+        found: LabelledRun | None = LabelledRun(run, label, is_ambiguous(seen))
+        if seconds > 2 * _SHORTEST and noise_of(stretch(run, 0.0, half)) != label:
+            found = _uniform_part(run)
+    else:
+        found = _uniform_part(run)
+    if found is None or (found.label != "none" and _drowned(found.run)):
+        return None
+    return found
+
+
+def _random_shaft(speed: float, seconds: float, rng: np.random.Generator) -> ShaftMotion:
+    """Constant, drifting by up to a third, or swinging as a stabilizer bar does."""
+    chance = rng.random()
+    if chance < 0.65:
+        return ConstantSpeed(speed)
+    if chance < 0.85:
+        share = math.exp(rng.uniform(-0.4, 0.4))
+        return SpeedRamp(speed, speed * share, 0.2 + seconds)
+    frequency = math.exp(rng.uniform(math.log(0.15), math.log(1.5)))
+    amplitude = speed / (2.0 * math.pi * frequency)
+    return Oscillation(amplitude, frequency)
+
+
+def stretch(run: Run, start: float, end: float) -> Run:
+    """Return the part of a run between two times [s].
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.2)
+    >>> stretch(run, 0.05, 0.15).recording.samples.shape
+    (4, 3000)
+    """
+    rate = run.motion.rate
+    first, last = round(start * rate), round(end * rate)
+    motion = run.motion.since(first)
+    n = last - first
+    kept = {
+        name: getattr(motion, name)[:n]
+        for name in vars(motion)
+        if isinstance(getattr(motion, name), np.ndarray)
+    }
+    recorded = slice(round(start * run.recording.rate), round(end * run.recording.rate))
+    return Run(
+        recording=replace(run.recording, samples=run.recording.samples[:, recorded]),
+        motion=replace(motion, **kept),
+        pressure=run.pressure[first:last],
+        pulse_pressure=run.pulse_pressure[first:last],
+    )
+
+
+def _uniform_part(run: Run) -> LabelledRun | None:
+    """Return the longest stretch with one noise; ``None`` where it is short."""
+    n = int(run.pressure.size / run.motion.rate / _PIECE)
+    seen = [evidence(stretch(run, i * _PIECE, (i + 1) * _PIECE)) for i in range(n)]
+    labels = [found.name for found in seen]
+    runs = [(label, len(list(group))) for label, group in itertools.groupby(labels)]
+    longest = max(range(len(runs)), key=lambda i: runs[i][1])
+    label, length = runs[longest]
+    if length * _PIECE < _SHORTEST:
+        return None
+    first = sum(count for _, count in runs[:longest])
+    unclear = sum(map(is_ambiguous, seen[first : first + length]))
+    part = stretch(run, first * _PIECE, (first + length) * _PIECE)
+    return LabelledRun(part, label, 2 * unclear > length)
+
+
+def _drowned(run: Run) -> bool:
+    """Whether what the sensors add is more than the sound itself."""
+    return float(run.recording["pressure"].std()) > 1.5 * float(run.pressure.std())

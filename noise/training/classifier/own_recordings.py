@@ -1,0 +1,224 @@
+r"""The user's own labelled recordings, as windows to learn from.
+
+A label is said in one of three ways, the finest of which counts where there are several: by a label
+track as Audacity exports it (``run07.txt`` or ``run07.wav.txt`` beside ``run07.wav``), by a row of
+a label table as ``bushing-noise label`` writes it, or by the name of a folder that the recording
+lies in, at any depth (``creak/run07.wav``). What cannot be used is named in one line and passed
+over: one bad file is no reason to lose the others.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import BushingNoiseError, RecordingError
+from noise.base.tables import TABLE_ENDINGS
+from noise.classifier.model import LABELS
+from noise.labels.audacity import read_label_track
+from noise.labels.reading import read_label_table
+from noise.recordings import find_recordings, read_recording
+from noise.recordings.blocks import RecordingBlocks, open_blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from models.recording import Recording
+
+__all__ = ["MOST_WINDOWS", "OwnWindow", "read_labelled"]
+
+LONGEST_WINDOW = 1.0
+"""What is labelled is cut into equal windows no longer than this [s], so of 0.5 s and more."""
+
+SHORTEST_WINDOW = 0.1
+"""A labelled stretch shorter than this shows nothing of a noise [s]."""
+
+MOST_WINDOWS = 60
+"""Of one stretch, spread evenly over it: an hour of one noise is not an hour of news."""
+
+
+@dataclass(frozen=True, eq=False)
+class OwnWindow:
+    """A window of a labelled recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    label : str
+        One of `noise.classifier.LABELS`.
+    name : str
+        File that it is cut from.
+    """
+
+    recording: Recording
+    label: str
+    name: str
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    label: str
+    start: float = 0.0
+    end: float = math.inf
+    channel: str = "all"
+
+
+def read_labelled(folder: Path) -> tuple[list[OwnWindow], list[str]]:
+    """Read the labelled recordings of a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Searched at any depth for recordings, label tables and label tracks.
+
+    Returns
+    -------
+    windows : list of OwnWindow
+        Of at most 1 s, sorted by file.
+    refusals : list of str
+        One line for each file that cannot be read or has no label, and for each label that there
+        is not.
+
+    Raises
+    ------
+    ParameterError
+        The folder does not exist.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings import write_recording
+    >>> hiss = np.random.default_rng(0).normal(size=(1, 36_000))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     run = Recording(hiss, 16_000.0, (Channel("pressure"),))
+    ...     _ = write_recording(Path(folder) / "none" / "wind", run)
+    ...     windows, refusals = read_labelled(Path(folder))
+    >>> [(window.label, window.recording.duration) for window in windows], refusals
+    ([('none', 0.75), ('none', 0.75), ('none', 0.75)], [])
+    """
+    recordings = find_recordings(folder)
+    refusals: list[str] = []
+    tabled = _from_tables(folder, {path.resolve() for path, _ in recordings}, refusals)
+    windows: list[OwnWindow] = []
+    for path, _ in recordings:
+        try:
+            stretches = (
+                _from_track(path, refusals)
+                or tabled.get(path.resolve())
+                or _from_folders(path, folder)
+            )
+            windows += _windows(path, stretches, refusals)
+        except (BushingNoiseError, OSError) as error:
+            refusals.append(_naming(path, str(error)))
+    return windows, refusals
+
+
+def _from_folders(path: Path, folder: Path) -> list[_Stretch]:
+    """Return what the nearest folder that is named as a label says."""
+    above = (*reversed(path.relative_to(folder).parts[:-1]), folder.resolve().name)
+    label = next((name.lower() for name in above if name.lower() in LABELS), None)
+    if label is None:
+        known = ", ".join(LABELS)
+        raise RecordingError(
+            f"{path}: has no label; put it into a folder called {known}, or beside a label table "
+            "or a label track"
+        )
+    return [_Stretch(label)]
+
+
+def _from_track(path: Path, refusals: list[str]) -> list[_Stretch]:
+    """Return what a label track beside a recording says."""
+    found = []
+    for track in (path.with_suffix(".txt"), path.with_name(f"{path.name}.txt")):
+        if not track.is_file():
+            continue
+        for number, (start, end, channel, label) in enumerate(read_label_track(track), 1):
+            if label.lower() in LABELS:
+                found.append(_Stretch(label.lower(), start, end, channel))
+            else:
+                refusals.append(
+                    f"{track}: label {number} is {label!r}, expected {', '.join(LABELS)}"
+                )
+        if not found:
+            raise RecordingError(f"{track}: holds no label of ours, so {path.name} is left out")
+    return found
+
+
+def _from_tables(
+    folder: Path, recordings: set[Path], refusals: list[str]
+) -> dict[Path, list[_Stretch]]:
+    """Return what the label tables say, by recording; files are relative to their table."""
+    said: dict[Path, list[_Stretch]] = {}
+    tables = (path for path in folder.rglob("*") if path.suffix.lower() in TABLE_ENDINGS)
+    for table in sorted(tables):
+        if not table.is_file() or table.name.startswith("."):
+            continue
+        try:
+            rows = read_label_table(table, refusals)
+        except BushingNoiseError as error:
+            refusals.append(_naming(table, str(error)))
+            continue
+        unknown = set()
+        for row in rows:
+            if row["label"] is None:
+                continue
+            file = str(row["file"])
+            places = (table.parent / file, folder / file)
+            path = next((p.resolve() for p in places if p.resolve() in recordings), None)
+            if path is None:
+                unknown.add(file)
+                continue
+            start, end = row["start_s"], row["end_s"]
+            said.setdefault(path, []).append(
+                _Stretch(
+                    str(row["label"]),
+                    start if isinstance(start, float) else 0.0,
+                    end if isinstance(end, float) else math.inf,
+                    str(row["channel"] or "all"),
+                )
+            )
+        refusals += [f"{table}: names {file}, which is not there" for file in sorted(unknown)]
+    return said
+
+
+def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iterator[OwnWindow]:
+    with open_blocks(path) as opened:
+        whole = opened or RecordingBlocks.of(read_recording(path))
+        for stretch in stretches:
+            number = 0 if stretch.channel == "all" else _track_number(stretch.channel, whole)
+            if number is None:
+                refusals.append(
+                    f"{path}: has no track {stretch.channel!r}; it has {len(whole.channels)}, "
+                    "counted from 1"
+                )
+                continue
+            blocks = whole.track(number - 1) if number else whole
+            first = max(0, round(stretch.start * blocks.rate))
+            last = round(min(stretch.end * blocks.rate, blocks.n_samples))
+            if last - first < SHORTEST_WINDOW * blocks.rate:
+                refusals.append(
+                    f"{path}: {stretch.label} from {stretch.start:g} s on has less than "
+                    f"{SHORTEST_WINDOW:g} s in the recording"
+                )
+                continue
+            n = math.ceil((last - first) / (LONGEST_WINDOW * blocks.rate))
+            edges = np.linspace(first, last, n + 1).round().astype(int)
+            kept = np.unique(np.linspace(0, n - 1, min(n, MOST_WINDOWS)).round().astype(int))
+            for index in kept.tolist():
+                cut = blocks.cut(int(edges[index]), int(edges[index + 1]))
+                yield OwnWindow(cut, stretch.label, str(path))
+
+
+def _track_number(channel: str, blocks: RecordingBlocks) -> int | None:
+    known = channel.isdecimal() and 0 < int(channel) <= len(blocks.channels)
+    return int(channel) if known else None
+
+
+def _naming(path: Path, message: str) -> str:
+    return message if path.name in message else f"{path}: {message}"

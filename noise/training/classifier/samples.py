@@ -1,0 +1,173 @@
+"""What the classifier learns from: recordings drawn at random, each with the name of its noise.
+
+Nothing is measured: bushings are simulated and called by their physics
+(`noise.noise_definition`), other bodies creak, squawk and squeal by the same mechanisms
+(`noise.training.classifier.friction_sources`), strangers and quiet are recipes. All are heard
+through rooms, microphones, recorders and codecs (`noise.training.classifier.augmentation`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+from noise.training.classifier.augmentation import hear
+from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, stranger
+from noise.training.classifier.bushing_recordings import bushing_recording
+from noise.training.classifier.bushings import random_run
+from noise.training.classifier.friction_sources import (
+    CREAKS,
+    SQUAWKS,
+    SQUEALS,
+    creak,
+    squawk,
+    squeal,
+)
+from noise.training.classifier.quiet import quiet
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+
+__all__ = ["SHARES", "SOURCES", "Drawn", "draw", "draw_from"]
+
+_RATE = 48_000.0
+"""At which bodies and strangers sound [Hz]."""
+
+_BODIES = {
+    **{f"body:{kind}_creak": ("creak", kind) for kind in CREAKS},
+    **{f"body:{kind}_squeal": ("squeal", kind) for kind in SQUEALS},
+    **{f"body:{kind}_squawk": ("squawk", kind) for kind in SQUAWKS},
+}
+"""Label and kind by source."""
+
+SHARES = {"bushing": 0.33, "body": 0.27, "stranger": 0.33, "quiet": 0.07}
+"""Of the samples."""
+
+_LABEL_SHARES = {"creak": 0.42, "squeal": 0.42, "squawk": 0.16}
+"""Of the bodies."""
+
+SOURCES = ("bushing", *_BODIES, *(f"stranger:{name}" for name in RECIPES), "quiet")
+"""All that is drawn from."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A sample to learn from.
+
+    Parameters
+    ----------
+    recording : Recording
+        Pressure alone, or all three channels, as somebody would have recorded it.
+    label : str
+        creak, squawk, squeal, none or unknown.
+    condition : Condition or None
+        What a bushing was simulated at; its speed is ``None`` where it varied.
+    source : str
+        One of `SOURCES`.
+    span : tuple of float
+        From when to when the label holds within the recording [s].
+    ambiguous : bool
+        Whether the label hangs on a bound of its definition.
+    """
+
+    recording: Recording
+    label: str
+    condition: Condition | None
+    source: str
+    span: tuple[float, float]
+    ambiguous: bool = False
+
+
+def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
+    """Draw a sample.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+    bushings : bool
+        Whether it may be a simulated bushing, which takes ten times as long as any other.
+
+    Returns
+    -------
+    Drawn
+
+    Examples
+    --------
+    >>> drawn = draw(np.random.default_rng(1))
+    >>> drawn.label in ("creak", "squawk", "squeal", "none", "unknown"), drawn.source in SOURCES
+    (True, True)
+    """
+    shares = {group: share for group, share in SHARES.items() if bushings or group != "bushing"}
+    group = _picked(shares, rng)
+    if group == "stranger":
+        return draw_from(f"stranger:{_picked(WEIGHTS, rng)}", rng)
+    if group == "body":
+        label = _picked(_LABEL_SHARES, rng)
+        kinds = [source for source, (own, _) in _BODIES.items() if own == label]
+        return draw_from(kinds[int(rng.integers(len(kinds)))], rng)
+    return draw_from(group, rng)
+
+
+def draw_from(source: str, rng: np.random.Generator) -> Drawn:
+    """Draw a sample from one source.
+
+    Parameters
+    ----------
+    source : str
+        One of `SOURCES`.
+    rng : numpy.random.Generator
+
+    Raises
+    ------
+    ParameterError
+        If there is no such source.
+
+    Examples
+    --------
+    >>> draw_from("body:chalk_squeal", np.random.default_rng(0)).label
+    'squeal'
+    """
+    if source not in SOURCES:
+        raise ParameterError(f"source {source!r} is unknown; there are {', '.join(SOURCES)}")
+    if source == "bushing":
+        run = random_run(rng)
+        recording, span = bushing_recording(run, rng)
+        return Drawn(recording, run.label, recording.condition, source, span, run.ambiguous)
+    n = int(_length(rng) * _RATE)
+    if source == "quiet":
+        return _heard(quiet(n, _RATE, rng), "none", source, rng)
+    group, _, name = source.partition(":")
+    if group == "stranger":
+        return _heard(stranger(n, _RATE, rng, name), "unknown", source, rng)
+    label, kind = _BODIES[source]
+    make = {"creak": creak, "squeal": squeal, "squawk": squawk}[label]
+    return _heard(make(kind, n, _RATE, rng), label, source, rng)
+
+
+def _length(rng: np.random.Generator) -> float:
+    """Length of a sound [s]: some are just long enough to be looked at."""
+    return float(rng.uniform(0.6, 3.0) if rng.random() < 0.6 else rng.uniform(0.6, 1.2))
+
+
+def _heard(sound: NDArray[np.float64], label: str, source: str, rng: np.random.Generator) -> Drawn:
+    if not sound.any():  # digital silence stays so
+        recording = Recording(sound[None, :], _RATE, (Channel("pressure"),), calibrated=False)
+        return Drawn(recording, label, None, source, (0.0, recording.duration))
+    heard = hear(sound, _RATE, rng)
+    recording = Recording(
+        heard.samples[None, :], float(heard.rate), (Channel("pressure"),), calibrated=False
+    )
+    return Drawn(recording, label, None, source, heard.span)
+
+
+def _picked(shares: Mapping[str, float], rng: np.random.Generator) -> str:
+    weights = np.array(list(shares.values()))
+    return list(shares)[int(rng.choice(weights.size, p=weights / weights.sum()))]

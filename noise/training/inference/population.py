@@ -1,0 +1,201 @@
+"""The rigs, conditions and recordings that the inferred intervals hold for.
+
+An interval of 90 % is a statement about a population, so the population is written down in one
+place: fluorocarbon bushings whose stiffness, torques, inertia and friction differ from the shipped
+rig's by 3 %, as one specimen from the next; interference of 0.15-0.42 mm; supports of 1000-10000
+Nm/rad, or the clamp bolted down; 0.1-15 rad/s; heard as creak, squawk or squeal. Wider scatter, as
+`noise.training.classifier.designs` has it for the classifier, would make the same interval tell
+less: what a creak's rate says of the speed depends on the torque that the contact bears.
+
+Each run is recorded twice. On the *rig* the samples are calibrated, the microphone stands where it
+does in the thesis, and levels tell of the torque. In the *field* nothing is calibrated, and there
+are a room, another microphone, noise and other rates.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.condition import FIXED, Condition
+from models.recording import Channel, Recording
+from models.rig import Fit, LawSpec, Rig
+from models.rig_files.rig_file import load_material_rig
+from noise.inference.hearing import RATES, as_recorded
+from noise.noise_definition import noise_of
+from noise.training.classifier.augmentation import resampled
+from sim.run import simulate
+
+if TYPE_CHECKING:
+    from sim.run import Run
+
+__all__ = [
+    "INTERFERENCE_RANGE",
+    "LONGEST_LOOK",
+    "MATERIAL",
+    "SHORTEST_LOOK",
+    "SPEED_RANGE",
+    "SUPPORT_RANGE",
+    "Heard",
+    "draw_heard",
+]
+
+MATERIAL = "fluorocarbon"
+"""Of all bushings."""
+
+SPEED_RANGE = (0.1, 15.0)
+"""[rad/s]"""
+
+INTERFERENCE_RANGE = (0.15e-3, 0.42e-3)
+"""[m]"""
+
+SUPPORT_RANGE = (1e3, 1e4)
+"""Of the clamp on beams [Nm/rad]."""
+
+SHORTEST_LOOK, LONGEST_LOOK = 0.25, 1.0
+"""Lengths of what is looked at [s]."""
+
+_FIXED_SHARE = 0.25
+_SCATTER = 0.03
+_SHAPES = {"weakening_exponent"}
+"""Parameters that make the friction law what it is, and so do not scatter."""
+
+_GAIN_SCATTER = 0.03
+"""Of calibrations [1]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Heard:
+    """One audible run, recorded twice.
+
+    Parameters
+    ----------
+    label : str
+        Its noise, by physics (`noise.noise_definition`).
+    condition : Condition
+        Speed, interference, support stiffness and material, all known.
+    rig, field : Recording
+        Calibrated on the rig, and uncalibrated in some room; torque, acceleration and pressure.
+    """
+
+    label: str
+    condition: Condition
+    rig: Recording
+    field: Recording
+
+
+def draw_heard(rng: np.random.Generator) -> Heard:
+    """Draw runs until one is heard.
+
+    Examples
+    --------
+    >>> heard = draw_heard(np.random.default_rng(0))
+    >>> heard.label in ("creak", "squawk", "squeal"), heard.rig.calibrated, heard.field.calibrated
+    (True, True, False)
+    """
+    while True:
+        run = _draw_run(rng)
+        label = noise_of(run)
+        if label != "none":
+            break
+    whole = rng.random() < 0.5
+    seconds = LONGEST_LOOK if whole else float(rng.uniform(SHORTEST_LOOK, LONGEST_LOOK))
+    start = float(rng.uniform(0.0, LONGEST_LOOK - seconds))
+    rig = _on_the_rig(run, rng)
+    field = _in_the_field(run, rng)
+    condition = run.recording.condition
+    return Heard(label, condition, _cut(rig, start, seconds), _cut(field, start, seconds))
+
+
+def _draw_run(rng: np.random.Generator) -> Run:
+    low, high = SPEED_RANGE
+    # Evenly by logarithm, for the slow creaks, and evenly, where squawk and squeal part.
+    even = rng.random() < 0.5
+    speed = rng.uniform(low, high) if even else math.exp(rng.uniform(math.log(low), math.log(high)))
+    softest, stiffest = SUPPORT_RANGE
+    support = math.exp(rng.uniform(math.log(softest), math.log(stiffest)))
+    if rng.random() < _FIXED_SHARE:
+        support = FIXED
+    return simulate(
+        _specimen(rng),
+        float(speed),
+        interference=float(rng.uniform(*INTERFERENCE_RANGE)),
+        support_stiffness=support,
+        seconds=LONGEST_LOOK,
+        rng=rng,
+    )
+
+
+def _specimen(rng: np.random.Generator) -> Rig:
+    rig = load_material_rig(MATERIAL)
+
+    def about(value: float) -> float:
+        return value * math.exp(rng.normal(0.0, _SCATTER))
+
+    def jittered(spec: LawSpec) -> LawSpec:
+        return LawSpec(
+            spec.name,
+            {
+                name: about(value) if isinstance(value, float) and name not in _SHAPES else value
+                for name, value in spec.parameters.items()
+            },
+        )
+
+    stiffness, torque, damping = about(1.0), about(1.0), about(1.0)
+    return replace(
+        rig,
+        elastomer_inertia=about(rig.elastomer_inertia),
+        clamp_inertia=about(rig.clamp_inertia),
+        elastomer_damping_share=about(rig.elastomer_damping_share),
+        fits=tuple(_scaled(fit, stiffness, torque, damping) for fit in rig.fits),
+        friction=jittered(rig.friction),
+        effects=tuple(jittered(spec) for spec in rig.effects),
+    )
+
+
+def _scaled(fit: Fit, stiffness: float, torque: float, damping: float) -> Fit:
+    return replace(
+        fit,
+        elastomer_stiffness=fit.elastomer_stiffness * stiffness,
+        critical_torque=fit.critical_torque * torque,
+        kinetic_torque=fit.kinetic_torque * torque,
+        damping={support: c * damping for support, c in fit.damping.items()},
+    )
+
+
+def _on_the_rig(run: Run, rng: np.random.Generator) -> Recording:
+    """Return the recording as sampled there, or at another rate as loggers have."""
+    recording = run.recording
+    rate = recording.rate if rng.random() < 0.5 else float(rng.choice(RATES[1:]))
+    kinds = ("torque", "acceleration", "pressure")
+    gains = np.exp(rng.normal(0.0, _GAIN_SCATTER, (len(kinds), 1)))
+    samples = gains * [resampled(recording[kind], recording.rate, rate) for kind in kinds]
+    return Recording(samples, rate, tuple(Channel(kind) for kind in kinds))
+
+
+def _in_the_field(run: Run, rng: np.random.Generator) -> Recording:
+    rate = float(rng.choice(RATES))
+    recording, computed = run.recording, run.motion.rate
+    torque, acceleration = recording["torque"], recording["acceleration"]
+    torque = torque + 10.0 ** rng.uniform(-3.5, -1.5) * np.abs(torque).mean() * rng.standard_normal(
+        torque.size
+    )
+    acceleration = acceleration + 10.0 ** rng.uniform(-3.0, 0.5) * rng.standard_normal(torque.size)
+    rows = (
+        resampled(torque, recording.rate, rate),
+        resampled(acceleration, recording.rate, rate),
+        resampled(as_recorded(run.pressure, computed, rng), computed, rate),
+    )
+    n = min(row.size for row in rows)
+    channels = (Channel("torque"), Channel("acceleration"), Channel("pressure"))
+    samples = 10.0 ** rng.uniform(-3.0, -0.5) * np.stack([row[:n] for row in rows])
+    return Recording(samples, rate, channels, calibrated=False)
+
+
+def _cut(recording: Recording, start: float, seconds: float) -> Recording:
+    first = round(start * recording.rate)
+    samples = recording.samples[:, first : first + round(seconds * recording.rate)]
+    return replace(recording, samples=samples)

@@ -1,0 +1,1 @@
+"""What a rig does over many runs: regimes, critical speeds, stability, sweeps."""

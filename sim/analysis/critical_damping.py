@@ -1,0 +1,145 @@
+"""The damping that just ends stick-slip, found by root search (6.3.2 does it by hand).
+
+Whether the contact sticks is yes or no, so the root is bracketed and halved. It need not be the
+only change: a little less damping can end stick-slip again where the clamp's phase is unlucky.
+What is sought is the largest damping with stick, so the search comes from above.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from sim.analysis.critical_speeds import regime_at
+from sim.analysis.regime import Regime
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from models.rig import Rig
+
+__all__ = ["critical_damping", "largest_sticking", "with_damping"]
+
+_STEP = 0.01
+"""Of the search for a bracket [Nm s/rad]."""
+
+
+def with_damping(rig: Rig, damping: float) -> Rig:
+    """Return the rig with another damping c_E [Nm s/rad] for all fits and supports.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = with_damping(load_material_rig("fluorocarbon-thesis"), 0.05)
+    >>> sorted({c for fit in rig.fits for c in fit.damping.values()})
+    [0.05]
+    """
+    return replace(rig, fits=tuple(replace(fit, damping={math.inf: damping}) for fit in rig.fits))
+
+
+def critical_damping(
+    rig: Rig,
+    speed: float,
+    *,
+    interference: float,
+    support_stiffness: float,
+    highest: float = 0.3,
+    tolerance: float = 1e-5,
+    seconds: float = 1.0,
+) -> float:
+    """Find the largest damping c_E at which a rig still sticks and slips.
+
+    Parameters
+    ----------
+    rig : Rig
+        Its own damping does not matter, its share in the elastomer does.
+    speed : float
+        Of the shaft [rad/s].
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    highest : float
+        Where the search starts [Nm s/rad].
+    tolerance : float
+        [Nm s/rad]
+    seconds : float
+        Length of each run, of which the last half is judged [s].
+
+    Returns
+    -------
+    float
+        [Nm s/rad]; 0 if it never sticks, ``inf`` if it sticks even at `highest`.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    The thesis prints 0.7599, with a misplaced point, for what its own program gives as 0.0760:
+
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> round(critical_damping(rig, 7.5, interference=0.279e-3, support_stiffness=3745.0,
+    ...                        highest=0.1), 4)
+    0.0781
+    """
+
+    def sticks(damping: float) -> bool:
+        regime = regime_at(
+            with_damping(rig, damping), speed, interference, support_stiffness, seconds=seconds
+        )
+        return regime is Regime.STICK_SLIP
+
+    return largest_sticking(sticks, highest, tolerance)
+
+
+def largest_sticking(sticks: Callable[[float], bool], highest: float, tolerance: float) -> float:
+    """Find the largest damping at which `sticks` is true, by steps from above and then by halves.
+
+    Parameters
+    ----------
+    sticks : callable
+        Of a damping [Nm s/rad].
+    highest, tolerance : float
+        [Nm s/rad]
+
+    Returns
+    -------
+    float
+        0 if `sticks` is nowhere true, ``inf`` if it is at `highest`.
+
+    Raises
+    ------
+    ParameterError
+        If limits are not positive.
+
+    Examples
+    --------
+    >>> round(largest_sticking(lambda c: c < 0.0777 or 0.1 < c < 0.123, 0.3, 1e-5), 4)
+    0.123
+    """
+    if not (highest > 0.0 and tolerance > 0.0):
+        raise ParameterError(
+            f"critical damping: highest = {highest:g} and tolerance = {tolerance:g} must be "
+            "positive"
+        )
+    if sticks(highest):
+        return math.inf
+    above = highest
+    below = max(highest - _STEP, 0.0)
+    while not sticks(below):
+        if below == 0.0:
+            return 0.0
+        above, below = below, max(below - _STEP, 0.0)
+    while above - below > tolerance:
+        middle = 0.5 * (above + below)
+        if sticks(middle):
+            below = middle
+        else:
+            above = middle
+    return below

@@ -1,0 +1,206 @@
+"""Critical speeds: where stick ends (V_crit1), and where vibration ends (V_crit2).
+
+Tables 5.1 and 5.2 give speeds found by ear and eye. To be compared they need a definition: the rig
+runs from rest for a second or more, at speeds 0.25 rad/s apart, and is judged on the last half.
+V_crit1 is the last speed at which it sticks, V_crit2 the last at which the torque oscillates, by
+the limits of `sim.analysis.regime`. The first torsional mode dies slowly: in 0.2 s an oscillation
+that is about to die out still looks alive. Speeds are tried from the fastest down, so that what
+lies below both critical speeds costs nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from sim.analysis.regime import Regime, friction_regime
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from models.rig import Rig
+
+__all__ = [
+    "SPEEDS",
+    "CriticalSpeeds",
+    "critical_speeds",
+    "regime_at",
+    "stick_slip_ranges",
+]
+
+SPEEDS = tuple(0.25 * i for i in range(1, 53))
+"""From 0.25 to 13 rad/s, the range of the measurements."""
+
+_SECONDS = 1.0
+_RATE = 15e3
+"""Of the output [Hz]; it resolves stick, and the solution does not depend on it."""
+
+
+@dataclass(frozen=True)
+class CriticalSpeeds:
+    """Where the regimes end.
+
+    Parameters
+    ----------
+    v_crit1 : float
+        Last speed with stick [rad/s]; 0 if there is none, ``inf`` if it is the fastest tried.
+    v_crit2 : float
+        Last speed at which the torque oscillates [rad/s]; likewise.
+    """
+
+    v_crit1: float
+    v_crit2: float
+
+
+def critical_speeds(
+    rig: Rig,
+    interference: float,
+    support_stiffness: float,
+    speeds: Sequence[float] = SPEEDS,
+    *,
+    seconds: float = _SECONDS,
+) -> CriticalSpeeds:
+    """Find the critical speeds of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    speeds : sequence of float
+        To try [rad/s], positive and rising.
+    seconds : float
+        Length of each run [s].
+
+    Returns
+    -------
+    CriticalSpeeds
+
+    Raises
+    ------
+    ParameterError
+        If the speeds do not rise from above zero, or a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> critical_speeds(rig, 0.279e-3, 3745.0, (5.0, 6.0, 6.75, 7.5))
+    CriticalSpeeds(v_crit1=6.75, v_crit2=6.75)
+    """
+    _check(speeds)
+    v_crit2 = 0.0
+    for speed in reversed(speeds):
+        regime = regime_at(rig, speed, interference, support_stiffness, seconds=seconds)
+        if regime is Regime.STEADY_SLIDING:
+            continue
+        found = math.inf if speed == speeds[-1] else speed
+        v_crit2 = max(v_crit2, found)
+        if regime is Regime.STICK_SLIP:
+            return CriticalSpeeds(found, v_crit2)
+    return CriticalSpeeds(0.0, v_crit2)
+
+
+def regime_at(
+    rig: Rig,
+    speed: float,
+    interference: float,
+    support_stiffness: float,
+    *,
+    seconds: float = _SECONDS,
+) -> Regime:
+    """Return the regime in which a rig that starts from rest ends up.
+
+    Parameters
+    ----------
+    rig : Rig
+    speed : float
+        Of the shaft [rad/s].
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]
+    seconds : float
+        Length of the run, of which the last half is judged [s].
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> regime_at(load_material_rig("fluorocarbon-thesis"), 1.0, 0.279e-3, 2214.0).value
+    'stick-slip'
+    """
+    return friction_regime(
+        simulate_motion(
+            rig,
+            ConstantSpeed(speed),
+            interference=interference,
+            support_stiffness=support_stiffness,
+            seconds=seconds,
+            rate=_RATE,
+            effects=activated(rig.effects, EFFECTS),
+        )
+    )
+
+
+def stick_slip_ranges(
+    rig: Rig,
+    interference: float,
+    support_stiffness: float,
+    speeds: Sequence[float] = SPEEDS,
+    *,
+    seconds: float = _SECONDS,
+) -> tuple[tuple[float, float], ...]:
+    """Return the first and last speed of every unbroken range of stick-slip [rad/s].
+
+    There may be islands: whether the first slip catches again depends on the phase of the clamp.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]
+    speeds : sequence of float
+        To try [rad/s], positive and rising.
+    seconds : float
+        Length of each run [s].
+
+    Raises
+    ------
+    ParameterError
+        If the speeds do not rise from above zero, or a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> stick_slip_ranges(rig, 0.279e-3, 2214.0, (3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0))
+    ((3.0, 3.5), (5.0, 5.5))
+    """
+    _check(speeds)
+    ranges: list[tuple[float, float]] = []
+    stuck_before = False
+    for speed in speeds:
+        regime = regime_at(rig, speed, interference, support_stiffness, seconds=seconds)
+        sticks = regime is Regime.STICK_SLIP
+        if sticks:
+            start = ranges.pop()[0] if stuck_before else speed
+            ranges.append((start, speed))
+        stuck_before = sticks
+    return tuple(ranges)
+
+
+def _check(speeds: Sequence[float]) -> None:
+    rising = all(a < b for a, b in pairwise(speeds))
+    if not (speeds and speeds[0] > 0.0 and rising):
+        raise ParameterError("critical speeds: the speeds to try must rise from above 0 rad/s")

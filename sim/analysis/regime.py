@@ -1,0 +1,52 @@
+"""Friction regimes of a motion: stick-slip, quasi-harmonic, steady sliding (Section 5.1)."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from sim.motion import Motion
+
+__all__ = ["LEAST_OSCILLATION", "LEAST_STICK", "Regime", "friction_regime"]
+
+LEAST_STICK = 0.02
+"""Stick-slip: the contact sticks for more than this share of the time."""
+
+LEAST_OSCILLATION = 0.01
+"""The torque oscillates if its standard deviation exceeds this share of its mean."""
+
+
+class Regime(StrEnum):
+    """The three regimes that the thesis observed."""
+
+    STICK_SLIP = "stick-slip"
+    QUASI_HARMONIC = "quasi-harmonic"
+    STEADY_SLIDING = "steady sliding"
+
+
+def friction_regime(motion: Motion) -> Regime:
+    """Return the regime that a motion at constant speed has settled to, judged on its last half.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    Regime
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> friction_regime(simulate(load_material_rig("PDMS"), 5.0, seconds=0.1).motion).value
+    'steady sliding'
+    """
+    last = motion.since(motion.torque.size // 2)
+    mean = abs(float(np.mean(last.torque)))
+    if float(np.std(last.torque)) <= LEAST_OSCILLATION * mean:
+        return Regime.STEADY_SLIDING
+    return Regime.STICK_SLIP if float(np.mean(last.stuck)) > LEAST_STICK else Regime.QUASI_HARMONIC

@@ -1,0 +1,163 @@
+r"""Linear stability of steady sliding: whether a vibration that is small grows.
+
+About steady sliding at the shaft's speed the lumped model is linear in the motion of surface and
+clamp and in the inner state s of the friction law,
+
+.. math::
+    J_E \ddot\theta_1 = \frac{\partial T}{\partial v} \delta v
+        + \frac{\partial T}{\partial s} \delta s - \delta T_E, \qquad
+    \delta \dot s = \frac{\partial f}{\partial v} \delta v + \frac{\partial f}{\partial s} \delta s,
+
+with delta v = -theta1'. Where an eigenvalue has a positive real part, nothing keeps the shaft
+sliding steadily: it vibrates at any start. Where all are negative a small disturbance dies, which
+does not exclude that a large one, such as the first breaking loose, goes on as stick-slip; nor
+does it tell how large a vibration grows, hence whether it sticks. A constant kinetic torque has no
+slope: with it steady sliding is stable at any speed, and stick-slip is wholly of the large kind.
+
+Slopes are central differences of the compiled law itself, so that a new law needs nothing here.
+Effects on the contact count as they are at each speed where they have no state, and else by their
+mean along steady sliding; a shaft that yields and an elastomer with a memory do not count.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sim.analysis.stability_kernel import STEP, averaged_contacts, linearised
+from sim.analysis.sweep_systems import packed_systems
+from sim.contact import CRITICAL, KINETIC, N_CONTACT, SHAFT_INERTIA, STIFFNESS
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.friction import friction_law
+from sim.motion import contact_hooks
+from sim.parameters import resolve
+from sim.solvers.contact_solver import no_law
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from models.rig import Rig
+    from sim.effects.effect import Effect
+    from sim.solvers.contact_solver import Hook
+
+__all__ = ["Stability", "steady_sliding"]
+
+_MOMENTS = 48
+"""Of steady sliding, over which effects with a state are averaged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """What becomes of a small vibration about steady sliding; arrays of one shape.
+
+    Parameters
+    ----------
+    growth : ndarray
+        Largest real part of an eigenvalue [1/s]; positive where the vibration grows.
+    frequency : ndarray
+        Of that vibration [Hz].
+    """
+
+    growth: NDArray[np.float64]
+    frequency: NDArray[np.float64]
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """Where small vibrations die; with no slope at all none grows."""
+        return np.asarray(self.growth <= 0.0)
+
+
+def steady_sliding(
+    rig: Rig,
+    speed: ArrayLike,
+    interference: ArrayLike = 0.279e-3,
+    support_stiffness: ArrayLike = 2214.0,
+    *,
+    library: Mapping[str, Effect] = EFFECTS,
+) -> Stability:
+    """Tell whether steady sliding is stable, at many conditions at once.
+
+    Parameters
+    ----------
+    rig : Rig
+    speed : array_like
+        Of the shaft, other than zero [rad/s]; either sign is alike.
+    interference, support_stiffness : array_like
+        [m] and [Nm/rad]; all three are broadcast against each other.
+    library : mapping of str to Effect
+        Effects that the rig's can be found among.
+
+    Returns
+    -------
+    Stability
+
+    Raises
+    ------
+    ParameterError
+        If a parameter of the friction law or of an effect cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> found = steady_sliding(load_material_rig("fluorocarbon"), [5.0, 13.0])
+    >>> found.stable.tolist()
+    [False, True]
+    >>> bool(steady_sliding(load_material_rig("fluorocarbon-thesis"), 1.0).stable)
+    True
+    """
+    shape = np.broadcast_shapes(
+        np.shape(speed), np.shape(interference), np.shape(support_stiffness)
+    )
+    v, fit, support = (
+        np.ascontiguousarray(np.broadcast_to(np.asarray(x, dtype=np.float64), shape).ravel())
+        for x in (speed, interference, support_stiffness)
+    )
+    v = np.abs(v)
+    law = friction_law(rig.friction.name)
+    values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
+    coefficients = law.coefficients(values)
+    systems = packed_systems(rig, fit, support)
+    acting = activated(rig.effects, library)
+    contacts = _contacts(contact_hooks(acting, np.random.default_rng(0)), systems, v)
+    state = law.state(coefficients)
+    matrices = np.zeros((v.size, 4 + state.size, 4 + state.size))
+    compiled: Any = linearised
+    compiled(
+        law.torque or no_law, law.torque is not None, coefficients, state, systems, v, contacts,
+        matrices,
+    )  # fmt: skip
+    eigenvalues = np.linalg.eigvals(matrices) if v.size else np.zeros((0, 1), dtype=complex)
+    rows, leading = np.arange(v.size), eigenvalues.real.argmax(axis=1)
+    found = eigenvalues[rows, leading]
+    return Stability(
+        growth=found.real.reshape(shape),
+        frequency=(np.abs(found.imag) / (2.0 * math.pi)).reshape(shape),
+    )
+
+
+def _contacts(
+    hooks: tuple[Hook, ...], systems: NDArray[np.float64], speed: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Contact at each speed, somewhat above it, and somewhat below; shape (3, n, N_CONTACT)."""
+    contacts = np.zeros((3, speed.size, N_CONTACT))
+    contacts[:, :, CRITICAL], contacts[:, :, KINETIC] = systems[:, 6], systems[:, 7]
+    contacts[:, :, STIFFNESS] = systems[:, 2]
+    contacts[:, :, SHAFT_INERTIA] = math.inf
+    averaged: Any = averaged_contacts
+    for hook in hooks:
+        given = hook.function, np.ascontiguousarray(hook.values, dtype=np.float64)
+        if hook.n_states:
+            before = contacts[0, :, :SHAFT_INERTIA].copy()
+            averaged(*given, np.zeros((4, hook.n_states)), _MOMENTS, speed, contacts[0])
+            contacts[1:, :, :SHAFT_INERTIA] += contacts[0, :, :SHAFT_INERTIA] - before
+            continue
+        for i, factor in enumerate((1.0, 1.0 + STEP, 1.0 - STEP)):
+            averaged(*given, np.zeros((4, 0)), 1, factor * speed, contacts[i])
+    contacts[:, :, CRITICAL] = np.maximum(contacts[:, :, CRITICAL], contacts[:, :, KINETIC])
+    return contacts

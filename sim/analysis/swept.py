@@ -1,0 +1,191 @@
+"""What a sweep found: features by name, with the conditions that they belong to.
+
+It is the dictionary of arrays that programs take, and knows beside it what a table or a picture of
+them needs.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from models.condition import Condition
+from models.drawing import CURVES, axes_or_new
+from models.errors import ParameterError
+from models.html_table import html_table
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+__all__ = ["FEATURE_WORDS", "SweptFeatures", "conditions_html"]
+
+FEATURE_WORDS = {
+    "slip_count": "Number of slips",
+    "slip_frequency": "Slips a second [Hz]",
+    "stick_fraction": "Share of the time in stick",
+    "torque_mean": "Mean torque [Nm]",
+    "torque_rms": "Torque about its mean, rms [Nm]",
+    "torque_min": "Lowest torque [Nm]",
+    "torque_max": "Highest torque [Nm]",
+    "clamp_speed_rms": "Speed of the clamp, rms [rad/s]",
+}
+"""What features are called on an axis."""
+
+_MOST_NAMED = 12
+"""Curves that a legend tells apart."""
+
+
+class SweptFeatures(dict[str, "NDArray[np.float64]"]):
+    """Features of all runs of a sweep, by name; arrays have the shape of the sweep.
+
+    Parameters
+    ----------
+    features : mapping of str to ndarray
+        By `sim.analysis.sweep.FEATURES`.
+    conditions : mapping of str to ndarray
+        Of the same shape: ``rig``, ``speed`` [rad/s] or how the shaft turned, ``interference`` [m]
+        and ``support_stiffness`` [Nm/rad].
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.analysis.sweep import Sweep
+    >>> found = Sweep(load_material_rig("fluorocarbon-thesis"), [1.0, 5.0], seconds=0.3).features()
+    >>> found["slip_frequency"].round(), list(found)[:2]
+    (array([153., 640.]), ['slip_count', 'slip_frequency'])
+    """
+
+    def __init__(
+        self,
+        features: Mapping[str, NDArray[np.float64]],
+        conditions: Mapping[str, NDArray[np.object_]],
+    ) -> None:
+        super().__init__(features)
+        self.conditions = conditions
+
+    def plot(self, feature: str = "slip_frequency", ax: Axes | None = None) -> Axes:
+        """Draw a feature over the speed, one curve for each bushing, fit and support.
+
+        Parameters
+        ----------
+        feature : str
+            One of `sim.analysis.sweep.FEATURES`.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There is no such feature, or the speeds are no numbers.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> from models.rig_files.rig_file import load_material_rig
+        >>> from sim.analysis.sweep import Sweep
+        >>> found = Sweep(load_material_rig("PDMS"), [1.0, 5.0], seconds=0.01).features()
+        >>> found.plot("torque_mean", Figure().subplots()).get_ylabel()
+        'Mean torque [Nm]'
+        """
+        if feature not in self:
+            raise ParameterError(f"feature {feature!r} is not known; use one of {', '.join(self)}")
+        speed = self.conditions["speed"].ravel()
+        if not all(isinstance(one, float) for one in speed):
+            raise ParameterError("speeds that change in a run are no axis; draw constant ones")
+        names = [tuple(_condition(run).words[:-1]) for run in _runs(self.conditions)]
+        shared = set.intersection(*(set(name) for name in names)) if names else set()
+        values = self[feature].ravel()
+        with axes_or_new(ax) as axes:
+            curves = list(dict.fromkeys(names))
+            for number, name in enumerate(curves):
+                of_it = np.array([index for index, other in enumerate(names) if other == name])
+                of_it = of_it[np.argsort(speed[of_it].astype(np.float64), kind="stable")]
+                axes.plot(
+                    speed[of_it].astype(np.float64), values[of_it], ".-",
+                    color=CURVES[number % len(CURVES)],
+                    label=", ".join(word for word in name if word not in shared),
+                )  # fmt: skip
+            axes.set_xlabel("Speed of the shaft [rad/s]")
+            axes.set_ylabel(FEATURE_WORDS.get(feature, feature))
+            title = ", ".join(word for word in curves[0] if word in shared) if curves else ""
+            axes.set_title(title, loc="left")
+            if 1 < len(curves) <= _MOST_NAMED:
+                axes.legend(loc="best")
+        return axes
+
+    def _repr_html_(self) -> str:
+        columns = [self[name].ravel() for name in self]
+        rows = [
+            [", ".join(_words(run)), *(f"{column[index]:.4g}" for column in columns)]
+            for index, run in enumerate(_runs(self.conditions))
+        ]
+        header = ["condition", *(FEATURE_WORDS.get(name, name) for name in self)]
+        return html_table(f"Sweep of {len(rows)} runs", rows, header=header)
+
+
+def conditions_html(conditions: Mapping[str, NDArray[np.object_]], seconds: float) -> str:
+    """Return what a sweep will simulate, as a table.
+
+    Parameters
+    ----------
+    conditions : mapping of str to ndarray
+        As `SweptFeatures` has them.
+    seconds : float
+        How long each run is looked at [s].
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.analysis.sweep import Sweep
+    >>> "1 to 5 rad/s" in Sweep(load_material_rig("PDMS"), [1.0, 5.0])._repr_html_()
+    True
+    """
+    rigs = dict.fromkeys(rig.material for rig in conditions["rig"].ravel())
+    speeds = conditions["speed"].ravel()
+    constant = [speed for speed in speeds if isinstance(speed, float)]
+    rows = [
+        ["material", ", ".join(rigs)],
+        ["speed", _span(constant, 1.0, "rad/s") if constant else "changes in a run"],
+        ["interference", _span(conditions["interference"].ravel().tolist(), 1e3, "mm")],
+        ["support stiffness", _span(conditions["support_stiffness"].ravel().tolist(), 1, "Nm/rad")],
+        ["each run", f"{seconds:g} s"],
+    ]
+    shape = " x ".join(map(str, conditions["rig"].shape))
+    return html_table(f"Sweep of {speeds.size} conditions ({shape or 'one'})", rows)
+
+
+def _runs(conditions: Mapping[str, NDArray[np.object_]]) -> list[dict[str, Any]]:
+    flat = {name: values.ravel() for name, values in conditions.items()}
+    size = next(iter(flat.values())).size
+    return [{name: values[index] for name, values in flat.items()} for index in range(size)]
+
+
+def _condition(run: Mapping[str, Any]) -> Condition:
+    return Condition(
+        speed=run["speed"] if isinstance(run["speed"], float) else None,
+        interference=run["interference"],
+        support_stiffness=run["support_stiffness"],
+        material=run["rig"].material,
+    )
+
+
+def _words(run: Mapping[str, Any]) -> list[str]:
+    words = _condition(run).words
+    return words if isinstance(run["speed"], float) else [*words, str(run["speed"])]
+
+
+def _span(values: list[float], factor: float, unit: str) -> str:
+    low, high = factor * min(values), factor * max(values)
+    return f"{low:.4g} {unit}" if low == high else f"{low:.4g} to {high:.4g} {unit}"

@@ -1,0 +1,139 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
+# mypy: allow-untyped-decorators, no-warn-return-any
+# ruff: noqa: ANN001
+"""What moves the lumped model at one instant, with any friction law and any effects.
+
+Compiled into `sim.solvers.contact_kernel` where it is used: what is called through pointers makes
+every variable go through memory at each call, and a further call would do so twice. What each hook
+reads of the inner states is a view made once, since making one costs more than the call.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from sim.contact import (
+    CREEP,
+    CRITICAL,
+    ELASTOMER_TORQUE,
+    KINETIC,
+    SHAFT_ANGLE,
+    SHAFT_INERTIA,
+    SHAFT_LAG,
+    SHAFT_LAG_RATE,
+    SHAFT_SPEED,
+    SHAFT_TORQUE,
+    SLIDING_SPEED,
+    STICK_TIME,
+    STIFFNESS,
+    TIME,
+    TORQUE,
+    TWIST,
+    TWIST_RATE,
+)
+from sim.solvers.dormand_prince import UNCOUNTED
+
+__all__ = ["contact_rates"]
+
+_CREEP_ACCURACY = 1e-4
+"""Of a creep's share before its last secant, which squares it."""
+
+_MOST_CREEP_PASSES = 30
+
+
+@njit(forceinline=True, **UNCOUNTED)
+def contact_rates(
+    since, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
+    h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, values, inner, rates, drive, context, contact,
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
+    """Fill the rates `p` of the state `u`, `since` sample `i` of the drive [s].
+
+    Returns friction torque, elastomer torque, what holds the surfaces together, what they can
+    bear [Nm], the speed of the surface in stick, and that of the shaft [rad/s].
+    """
+    j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
+    t_crit, t_kin = s[8], s[9]
+    shaft_speed, slope, angle = drive
+    acceleration = slope[i]
+    shaft = shaft_speed[i] + acceleration * since - u[5]
+    sticks = mode == 0 and not has_law
+    surface = shaft if sticks else u[1]
+    twist = u[0] - u[2]
+    e = k_e * twist + c_e * (surface - u[3])
+    critical, kinetic, creep = t_crit, t_kin, 0.0
+    mobility, shaft_torque = 0.0, 0.0
+    if n_hooks > 0:
+        context[TIME], context[STICK_TIME] = time, stick_time
+        context[SHAFT_ANGLE] = angle[i] + since * (shaft_speed[i] + 0.5 * acceleration * since)
+        context[SHAFT_SPEED], context[TWIST] = shaft, twist
+        context[SHAFT_LAG], context[SHAFT_LAG_RATE] = u[4], u[5]
+        # A creeping contact relieves the elastomer's damper, on whose torque its creep depends:
+        # a share is sought that makes itself, by secants from rest.
+        share, share_before, gap_before = 0.0, 0.0, 0.0
+        for turn in range(_MOST_CREEP_PASSES):
+            context[SLIDING_SPEED], context[TWIST_RATE] = shaft - surface, surface - u[3]
+            context[TORQUE] = e
+            contact[CRITICAL], contact[KINETIC] = t_crit, t_kin
+            contact[STIFFNESS], contact[ELASTOMER_TORQUE] = k_e, 0.0
+            contact[CREEP], contact[SHAFT_TORQUE] = 0.0, 0.0
+            contact[SHAFT_INERTIA] = math.inf
+            h0(context, values[0], inner[0], rates[0], contact)
+            if n_hooks > 1:
+                h1(context, values[1], inner[1], rates[1], contact)
+            if n_hooks > 2:
+                h2(context, values[2], inner[2], rates[2], contact)
+            if n_hooks > 3:
+                h3(context, values[3], inner[3], rates[3], contact)
+            if n_hooks > 4:
+                h4(context, values[4], inner[4], rates[4], contact)
+            if n_hooks > 5:
+                h5(context, values[5], inner[5], rates[5], contact)
+            if n_hooks > 6:
+                h6(context, values[6], inner[6], rates[6], contact)
+            if n_hooks > 7:
+                h7(context, values[7], inner[7], rates[7], contact)
+            creep = contact[CREEP]
+            gap = creep - share
+            if not sticks or gap == 0.0:
+                break
+            settled = turn > 0 and abs(gap) < _CREEP_ACCURACY
+            change = gap
+            if turn > 0 and gap != gap_before:
+                change = -gap * (share - share_before) / (gap - gap_before)
+            share_before, gap_before = share, gap
+            share = min(max(share + change, 0.0), 1.0)
+            surface = shaft * (1.0 - share)
+            e = k_e * twist + c_e * (surface - u[3])
+            if settled:
+                break
+        e += (contact[STIFFNESS] - k_e) * twist + contact[ELASTOMER_TORQUE]
+        kinetic = contact[KINETIC]
+        # What slides at a torque can be held by it, whatever an effect says.
+        critical = max(contact[CRITICAL], kinetic)
+        if contact[SHAFT_INERTIA] != math.inf:
+            mobility = 1.0 / contact[SHAFT_INERTIA]
+            shaft_torque = contact[SHAFT_TORQUE]
+    # What holds the surfaces together, on a shaft whose end yields to the same torque.
+    if mobility == 0.0:
+        holding = e + j_e * acceleration
+    else:
+        holding = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
+    if has_law:
+        # Laws have the first of the inner states, effects those after.
+        friction = law(shaft - surface, coefficients, contact, inner[8], rates[8])
+    elif mode == 0:
+        friction = holding
+    else:
+        friction = mode * kinetic
+    p[0] = surface
+    p[1] = 0.0 if sticks else (friction - e) * j_e_inverse
+    p[2] = u[3]
+    p[3] = (e - k_b * u[2] - c_b * u[3]) * j_c_inverse
+    # The lag is that of the shaft's end behind its drive.
+    p[4] = u[5]
+    p[5] = 0.0 if mobility == 0.0 else acceleration - (shaft_torque - friction) * mobility
+    # A slip ends where it is as slow as the creep in which it would stick.
+    caught = surface if sticks else shaft * (1.0 - creep)
+    return friction, e, holding, critical, caught, shaft

@@ -1,0 +1,242 @@
+"""The lumped model with any friction law and any effects: Runge-Kutta with event location.
+
+Dormand and Prince's pair of fifth order, with steps as long as the error of each allows, which
+follows stick with few and the fastest parts of a slip with as many as they need. Outputs lie
+anywhere in a step. Where the contact breaks and catches again, the right-hand side changes, and
+where a law's sliding turns it has the kink of |v|: a step ends there, found by repeating it with
+other lengths, so that neither costs an order. Where the drive's slope changes visibly a step ends
+as well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numba import njit
+
+from models.errors import ParameterError
+from sim.contact import HOOK_SIGNATURE, LAW_SIGNATURE, N_CONTACT, N_CONTEXT
+from sim.solvers.contact_kernel import SHORTEST_STEP, run_contact
+from sim.solvers.contact_state import DONE, FRESH, N_CARRIED, N_ROWS, STEP_OF_SLIP, STEP_OF_STICK
+from sim.solvers.dormand_prince import N_MOTION, N_STAGES
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["LONGEST_STEP", "MOST_HOOKS", "ContactRun", "Hook", "no_law", "solve_contact"]
+
+MOST_HOOKS = 8
+"""Effects that can act on the contact at once."""
+
+LONGEST_STEP = 1e-4
+"""Whatever the error says: an effect may act at any time [s]."""
+
+_TOLERANCE = 1e-7
+"""Error of a step, over the twist at the critical torque and the speed that this may become, and
+over the inner states themselves."""
+
+_FIRST_STEP = 1e-6
+"""[s]"""
+
+
+@dataclass(frozen=True, eq=False)
+class Hook:
+    """An effect's compiled function with its numbers."""
+
+    function: Any
+    values: NDArray[np.float64]
+    n_states: int
+
+
+@njit(HOOK_SIGNATURE, cache=True)
+def _no_hook(context, values, state, state_rates, contact):
+    pass
+
+
+@njit(LAW_SIGNATURE, cache=True)
+def no_law(sliding_speed, coefficients, contact, state, state_rates):  # noqa: ARG001
+    """Stand in for a law where the contact truly sticks."""
+    return 0.0
+
+
+class ContactRun:
+    """A run of the lumped model that goes on from block to block, from rest.
+
+    Parameters
+    ----------
+    system : ndarray, shape (6,)
+        `LumpedBushing.packed`.
+    critical_torque, kinetic_torque : float
+        [Nm]
+    start_speed : float
+        Of the shaft [rad/s].
+    step : float
+        Time between outputs [s].
+    law : compiled function, optional
+        Friction law by `sim.contact.LAW_SIGNATURE`; without one the contact truly sticks.
+    coefficients, law_state : ndarray, optional
+        Of the law; its state at the start.
+    hooks : tuple of Hook
+        Effects that act on the contact, in this order; at most `MOST_HOOKS`.
+    name : str
+        What errors call the friction.
+    tolerance : float
+        Error of a step; `sim.friction.law.FrictionLaw.tolerance` with a law.
+    refined : float
+        Steps are so many times shorter than by default, to tell their error.
+
+    Examples
+    --------
+    >>> rig = np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0425, 0.0425])
+    >>> run = ContactRun(rig, 10.7, 8.0, 1.0, 1e-4)
+    >>> blocks = [run.advance(np.full(301, 1.0), 300)[0] for _ in range(4)]
+    >>> round(float(np.concatenate(blocks)[:, 0].max()), 1)
+    10.7
+    """
+
+    def __init__(
+        self,
+        system: NDArray[np.float64],
+        critical_torque: float,
+        kinetic_torque: float,
+        start_speed: float,
+        step: float,
+        *,
+        law: Any = None,
+        coefficients: NDArray[np.float64] | None = None,
+        law_state: NDArray[np.float64] | None = None,
+        hooks: tuple[Hook, ...] = (),
+        name: str = "friction",
+        tolerance: float = _TOLERANCE,
+        refined: float = 1.0,
+    ) -> None:
+        if len(hooks) > MOST_HOOKS:
+            raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
+        law_state = np.zeros(0) if law_state is None else law_state
+        offsets = np.zeros(MOST_HOOKS + 1, dtype=np.int64)
+        offsets[0] = law_state.size
+        for i in range(MOST_HOOKS):
+            offsets[i + 1] = offsets[i] + (hooks[i].n_states if i < len(hooks) else 0)
+        values = np.zeros((MOST_HOOKS, max((hook.values.size for hook in hooks), default=1)))
+        for row, hook in zip(values, hooks, strict=False):
+            row[: hook.values.size] = hook.values
+        j_e, j_c, _, k_b, _, _ = system
+        mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
+        functions = [hook.function for hook in hooks] + [_no_hook] * (MOST_HOOKS - len(hooks))
+        self._constants = (
+            np.array([*system, *mobilities, critical_torque, kinetic_torque]),
+            law or no_law,
+            law is not None,
+            np.zeros(1) if coefficients is None else coefficients,
+            *functions,
+            len(hooks),
+            values,
+            offsets,
+        )
+        # The error of a step goes with the fifth power of its length.
+        self._steps = step, LONGEST_STEP / refined, tolerance / refined**5
+        self._name = name
+        self._carried = np.zeros(N_CARRIED)
+        self._carried[[STEP_OF_STICK, STEP_OF_SLIP]] = _FIRST_STEP
+        self._carried[FRESH] = 1.0
+        self._rows = np.zeros((N_ROWS, N_MOTION + int(offsets[-1])))
+        end = self._rows[N_STAGES + 1]
+        if law is None:
+            end[1] = start_speed
+        end[N_MOTION : N_MOTION + law_state.size] = law_state
+        self._context = np.zeros(N_CONTEXT)
+
+    def advance(
+        self, shaft_speed: NDArray[np.float64], n: int
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Solve the next `n` samples.
+
+        Parameters
+        ----------
+        shaft_speed : ndarray, shape (n,) or more
+            Of the drive at the samples [rad/s], linear between them. If the run goes on there is
+            at least the one after them; steps are those of one run if there are as many as
+            `LONGEST_STEP` has.
+        n : int
+
+        Returns
+        -------
+        states, direction
+            As from `solve_contact`.
+
+        Raises
+        ------
+        ParameterError
+            If the friction changes faster than any reasonable number of steps could follow.
+        """
+        states, direction = np.empty((7, n)), np.empty(n, dtype=np.int64)
+        compiled: Any = run_contact
+        compiled(
+            *self._constants, np.ascontiguousarray(shaft_speed), *self._steps, self._carried,
+            self._rows, self._context, np.zeros(N_CONTACT),
+            np.zeros((2, max(n + 1, shaft_speed.size))), states, direction,
+        )  # fmt: skip
+        if self._carried[DONE] < 0.0:
+            raise ParameterError(
+                f"{self._name}: the torque changes so fast with speed, shear or time that steps "
+                f"of {SHORTEST_STEP:g} s cannot follow; make it less steep"
+            )
+        return states.T, direction
+
+
+def solve_contact(
+    system: NDArray[np.float64],
+    critical_torque: float,
+    kinetic_torque: float,
+    shaft_speed: NDArray[np.float64],
+    step: float,
+    *,
+    law: Any = None,
+    coefficients: NDArray[np.float64] | None = None,
+    law_state: NDArray[np.float64] | None = None,
+    hooks: tuple[Hook, ...] = (),
+    name: str = "friction",
+    tolerance: float = _TOLERANCE,
+    refined: float = 1.0,
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Solve the lumped model from rest.
+
+    Parameters
+    ----------
+    system : ndarray, shape (6,)
+        `LumpedBushing.packed`.
+    critical_torque, kinetic_torque : float
+        [Nm]
+    shaft_speed : ndarray, shape (n,)
+        Of the drive at the output times [rad/s], linear between them.
+    step : float
+        Time between outputs [s].
+    law : compiled function, optional
+        Friction law by `sim.contact.LAW_SIGNATURE`; without one the contact truly sticks.
+    coefficients, law_state : ndarray, optional
+        Of the law; its state at the start.
+    hooks : tuple of Hook
+        Effects that act on the contact, in this order; at most `MOST_HOOKS`.
+    name : str
+        What errors call the friction.
+    tolerance : float
+        Error of a step; `sim.friction.law.FrictionLaw.tolerance` with a law.
+    refined : float
+        Steps are so many times shorter than by default, to tell their error.
+
+    Returns
+    -------
+    states : ndarray, shape (n, 7)
+        Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2, theta2',
+        speed of the shaft at the bushing [rad/s].
+    direction : ndarray, shape (n,)
+        Of the sliding: +1 or -1, 0 in stick; 0 throughout with a law.
+    """
+    run = ContactRun(
+        system, critical_torque, kinetic_torque, float(shaft_speed[0]), step, law=law,
+        coefficients=coefficients, law_state=law_state, hooks=hooks, name=name,
+        tolerance=tolerance, refined=refined,
+    )  # fmt: skip
+    return run.advance(shaft_speed, shaft_speed.size)

@@ -1,0 +1,192 @@
+"""Cases say nothing of their answers but by what was recorded, and come out the same each time."""
+
+import ast
+import json
+from collections import Counter
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from models.rig_files.rig_file import load_rig
+from noise.recordings.files import read_recording
+from tests.blind.cases import answer_of, run_case, without_effects, write_case
+from tests.blind.design import CLASSES, Condition, draw_design
+from tests.blind.effects import CAUSES, DEVELOPMENT, FORMS, SEALED
+from tests.blind.rig import Parameters, plain
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("models", "sim", "features", "noise")
+SLOW, FAST = Condition(1.5, 0.279, 2214.0), Condition(3.0, 0.381, 2214.0)
+
+
+def _design(seconds=0.15, conditions=(SLOW, FAST), **changes):
+    for index in range(40):
+        design = draw_design(5, index, DEVELOPMENT)
+        if design.kind == "none":
+            return replace(design, conditions=conditions, seconds=seconds, rate=30_000, **changes)
+    raise AssertionError("no null case among 40")
+
+
+@pytest.fixture(scope="module")
+def nothing():
+    return run_case(_design()).recordings
+
+
+CHANNEL_OF = {"drive": 0, "friction": 0, "structure": 1, "radiation": 2}
+
+
+@pytest.mark.parametrize("key", sorted(FORMS), ids=":".join)
+def test_a_form_is_nothing_at_strength_zero_and_shows_at_full_strength(key, nothing):
+    form = FORMS[key]
+    _assert_untouched_at_zero(form)
+    strong = run_case(_design(forms=((form, 1.0),))).recordings
+    own = [CHANNEL_OF[form.stage]] if form.stage in CHANNEL_OF else range(3)
+    changed = [_difference(a, b, i) for a, b in zip(strong, nothing, strict=True) for i in own]
+    assert max(changed) > 0.05
+    assert all(np.abs(x).max() < 1e5 for x in strong)
+    before = {"structure": 1, "radiation": 2}.get(form.stage, 0)
+    if not form.effect.startswith("stranger_"):
+        for a, b in zip(strong, nothing, strict=True):
+            assert a[:before].tobytes() == b[:before].tobytes()
+
+
+def _assert_untouched_at_zero(form):
+    one, other = (plain(Parameters(), 1.5, rate=9e4, seconds=0.01, settling=0.0) for _ in range(2))
+    form.apply(one, 0.0, np.random.default_rng(1), np.random.default_rng(2))
+    for field in fields(one):
+        a, b = getattr(one, field.name), getattr(other, field.name)
+        assert np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
+
+
+def _difference(a, b, channel):
+    return np.std(a[channel] - b[channel]) / np.std(b[channel])
+
+
+def test_strength_goes_to_nothing_smoothly(nothing):
+    for key in sorted(set(FORMS) - {("clipping", "wrapped_converter")}):
+        if FORMS[key].effect.startswith("stranger_") or FORMS[key].stage in ("drive", "friction"):
+            continue  # chaotic in phase: a slip later is another signal
+        weak = run_case(_design(forms=((FORMS[key], 1e-5),), conditions=(SLOW,))).recordings
+        for channel in range(3):
+            assert _difference(weak[0], nothing[0], channel) < 0.01, key
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path):
+    index = next(i for i in range(20) if draw_design(1, i, SEALED).kind == "pair")
+    for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+        design = replace(draw_design(seed, index, SEALED), seconds=0.2)
+        write_case(run_case(design), tmp_path / name, tmp_path / f"{name}.json")
+    assert _bytes(tmp_path / "a") == _bytes(tmp_path / "b")
+    assert _bytes(tmp_path / "a") != _bytes(tmp_path / "c")
+    assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+
+
+def _bytes(folder):
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def test_a_user_can_read_what_is_handed_out(tmp_path):
+    case = run_case(_design())
+    write_case(case, tmp_path / "case", None)
+    rig = load_rig(tmp_path / "case" / "rig.toml")
+    assert rig.friction.name == "coulomb"
+    assert not rig.effects
+    assert len(rig.measured) == 1
+    recording = read_recording(tmp_path / "case" / "run02.wav")
+    assert recording.samples.astype(np.float32).tobytes() == case.recordings[1].tobytes()
+    assert recording.condition.speed == FAST.speed
+    assert rig.fit(recording.condition.interference).kinetic_torque == pytest.approx(
+        case.design.nominal(FAST).kinetic_torque, rel=1e-5
+    )
+
+
+def test_without_its_effects_a_case_is_the_null_with_the_same_scatter():
+    index = next(i for i in range(40) if draw_design(3, i, DEVELOPMENT).kind == "one")
+    design = draw_design(3, index, DEVELOPMENT)
+    case = without_effects(answer_of(design))
+    plain = run_case(replace(design, forms=(), kind="none"))
+    for a, b in zip(case.recordings, plain.recordings, strict=True):
+        assert a.tobytes() == b.tobytes()
+
+
+@pytest.mark.parametrize("kept_for", [DEVELOPMENT, SEALED])
+def test_classes_have_their_shares_and_causes_come_evenly(kept_for):
+    designs = [draw_design(7, i, kept_for) for i in range(840)]
+    kinds = Counter(d.kind for d in designs)
+    assert kinds == {kind: 42 * CLASSES.count(kind) for kind in set(CLASSES)}
+    singles = Counter(d.forms[0][0].effect for d in designs if d.kind == "one")
+    assert set(singles) == set(CAUSES)
+    assert set(singles.values()) == {16}
+    for design in designs:
+        effects = [form.effect for form, _ in design.forms]
+        assert len(set(effects)) == len(effects)
+        assert all(form.kept_for == kept_for for form, _ in design.forms)
+        assert bool(design.offsets) == (design.kind == "parameters")
+        assert all(0.08 <= abs(x - 1.0) <= 0.2 for x in design.offsets.values())
+        assert 4 <= len(design.conditions) <= 9
+        repeats = [n for n in Counter(design.conditions).values() if n > 1]
+        assert repeats == [2, 2]
+
+
+def test_a_rig_never_breaks_loose_below_what_it_slides_at():
+    for i in range(400):
+        design = draw_design(11, i, SEALED)
+        for k, condition in enumerate(design.conditions):
+            true = design.true(condition, k)
+            assert true.critical_torque > true.kinetic_torque
+
+
+def test_two_development_seeds_and_the_sealed_set_share_no_rig():
+    rigs = [
+        draw_design(s, 0, k).inertias for s, k in ((1, DEVELOPMENT), (2, DEVELOPMENT), (1, SEALED))
+    ]
+    assert len(set(rigs)) == 3
+
+
+def test_nothing_but_the_samples_knows_the_class():
+    from sklearn.ensemble import RandomForestClassifier
+    from sklearn.model_selection import cross_val_score
+
+    designs = [draw_design(13, i, SEALED) for i in range(600)]
+    seen = np.array([
+        [d.index, d.rate, d.seconds, len(d.conditions), len({c.support for c in d.conditions}),
+         *np.mean([[c.speed, c.interference_mm, c.support] for c in d.conditions], axis=0),
+         d.conditions[0].speed, *d.inertias, d.fits[0.279][0], d.damping[2214.0]]
+        for d in designs
+    ])  # fmt: skip
+    kinds = np.array([d.kind for d in designs])
+    guess = cross_val_score(RandomForestClassifier(100, random_state=0), seen, kinds, cv=5).mean()
+    assert guess < 0.4 + 3.0 * np.sqrt(0.4 * 0.6 / 600)
+
+
+def test_file_names_and_sizes_follow_from_the_conditions_alone(tmp_path):
+    design = _design()
+    strong = replace(design, forms=((FORMS["clipping", "wrapped_converter"], 1.0),), kind="one")
+    for name, which in (("a", design), ("b", strong)):
+        write_case(run_case(which), tmp_path / name, tmp_path / f"{name}.json")
+    a, b = _bytes(tmp_path / "a"), _bytes(tmp_path / "b")
+    assert {k: len(v) for k, v in a.items()} == {k: len(v) for k, v in b.items()}
+    assert all(a[name] == b[name] for name in a if not name.endswith(".wav"))
+    assert json.loads((tmp_path / "b.json").read_text())["verdict"] == ["clipping"]
+
+
+def _imports(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield node.module
+
+
+def test_generator_and_packages_import_nothing_of_each_other():
+    makers = list((ROOT / "tests" / "blind").rglob("*.py"))
+    assert len(makers) > 10
+    for path in makers:
+        if path == ROOT / "tests" / "blind" / "score" / "floors.py":
+            continue  # reckons in the diagnosis' own floors, where asked to
+        assert not [m for m in _imports(path) if m.split(".")[0] in PACKAGES], path
+    for package in PACKAGES:
+        for path in (ROOT / package).rglob("*.py"):
+            assert not [m for m in _imports(path) if m.startswith("tests")], path

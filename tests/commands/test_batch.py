@@ -1,0 +1,270 @@
+from __future__ import annotations
+
+import csv
+from argparse import Namespace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+from features import recording_feature_names
+from models.condition import Condition
+from models.recording import Channel, Recording
+from noise.classifier import LABELS
+from noise.cli import main
+from noise.labels.segments import Segment
+from noise.labels.table import COLUMNS
+from noise.recordings import write_recording
+
+
+@pytest.fixture
+def runs(tmp_path, monkeypatch):
+    """A folder of three recordings, of which the second is none."""
+    hiss = np.random.default_rng(0).normal(size=(1, 4800))
+    for name in ("a", "c"):
+        recording = Recording(hiss, 48e3, (Channel("pressure"),), Condition(speed=5.0))
+        write_recording(tmp_path / "runs" / name, recording)
+    (tmp_path / "runs" / "b.wav").write_bytes(b"no sound")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path / "runs"
+
+
+@pytest.fixture
+def labelled(monkeypatch):
+    """A classifier that calls everything a squeal, and what it was asked."""
+    asked = Namespace(classifiers=[], recordings=[])
+
+    def load_classifier(path=None):
+        asked.classifiers.append(path)
+        return "classifier"
+
+    def label_recording(recording, classifier, *, per_track=False):
+        assert classifier == "classifier"
+        asked.recordings.append((recording, per_track))
+        certain = {label: float(label == "squeal") for label in LABELS}
+        end = recording.duration
+        return [Segment("all", 0.0, end, "squeal", certain, 1046.0, None, -20.0)]
+
+    monkeypatch.setattr("noise.labels.labelling.load_classifier", load_classifier)
+    monkeypatch.setattr("noise.labels.labelling.label_recording", label_recording)
+    return asked
+
+
+def read_table(path):
+    with Path(path).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
+    assert main(["features", "runs", "--out", "new/features.csv"]) == 1
+    out, err = capsys.readouterr()
+    assert out == f"{Path('new/features.csv')}\n"
+    assert f"refused: {Path('runs/b.wav')}: is damaged or no sound file" in err
+    assert "3 recordings, 1 refused" in err
+    rows = read_table("new/features.csv")
+    assert [row["file"] for row in rows] == ["a.wav", "b.wav", "c.wav"]
+    assert list(rows[0]) == ["file", *recording_feature_names(), "error"]
+    assert [bool(row["error"]) for row in rows] == [False, True, False]
+    assert [bool(row["pressure_level"]) for row in rows] == [True, False, True]
+
+
+def test_features_are_the_same_with_two_processes(runs):
+    assert main(["features", "runs", "--out", "one.csv"]) == 1
+    assert main(["features", "runs", "--out", "two.csv", "--workers", "2"]) == 1
+    assert Path("two.csv").read_bytes() == Path("one.csv").read_bytes()
+
+
+def test_a_recording_named_twice_is_a_row_once(runs, labelled):
+    assert main(["label", "runs/a.wav", "./runs/a.wav", "--out", "t.csv"]) == 0
+    assert [row["file"] for row in read_table("t.csv")] == ["a.wav"]
+
+
+def test_the_same_call_again_repeats_nothing_but_what_was_refused(runs, labelled, capsys):
+    for _ in range(2):
+        assert main(["label", "runs", "--out", "labels.csv"]) == 1
+        assert "refused: runs" in capsys.readouterr().err.replace("\\", "/")
+        assert [row["file"] for row in read_table("labels.csv")] == ["a.wav", "b.wav", "c.wav"]
+    assert len(labelled.recordings) == 2
+    assert main(["label", "runs", "--out", "labels.csv", "--fresh"]) == 1
+    assert len(labelled.recordings) == 4
+
+
+def test_labels_come_with_a_map_and_label_tracks(runs, labelled, capsys):
+    given = ["--map", "map.svg", "--audacity", "tracks"]
+    assert main(["label", "runs", *given]) == 1
+    out, err = capsys.readouterr()
+    assert out.startswith("file,channel,")  # standard output is the table alone
+    assert "map.svg" in err
+    assert Path("tracks/a.txt").read_text() == "0.000000\t0.100000\tsqueal\n"
+    (place,) = read_table("map.csv")
+    assert (place["speed_rad_s_from"], place["label"], place["recordings"]) == (
+        "4.9",
+        "squeal",
+        "2",
+    )
+
+
+def test_two_recordings_of_one_name_cannot_share_a_label_track(runs, labelled, capsys):
+    Path("more").mkdir()
+    Path("more/a.wav").write_bytes(Path("runs/a.wav").read_bytes())
+    assert main(["label", "runs", "more", "--audacity", "tracks"]) == 2
+    assert "two recordings are called a.wav" in capsys.readouterr().err
+    assert labelled.recordings == []
+
+
+def test_features_go_to_standard_output_as_csv(runs, capsys):
+    assert main(["features", "runs/a.wav"]) == 0
+    out, _ = capsys.readouterr()
+    header, row = out.splitlines()
+    assert header.startswith("file,")
+    assert row.startswith("a.wav,")
+
+
+def test_a_bad_file_on_its_own_is_a_row_as_well(runs, capsys):
+    assert main(["features", "runs/b.wav"]) == 1
+    assert capsys.readouterr().out.splitlines()[1].startswith("b.wav,")
+
+
+@pytest.mark.parametrize("command", ["features", "label"])
+def test_what_was_done_before_an_interrupt_is_in_the_table(
+    runs, labelled, monkeypatch, capsys, command
+):
+    from noise import recordings
+
+    def read_recording(path, **about):
+        if path.name == "c.wav":
+            raise KeyboardInterrupt
+        return recordings_read(path, **about)
+
+    recordings_read = recordings.read_recording
+    for place in ("noise.recordings", "noise.labels.labelling"):
+        monkeypatch.setattr(f"{place}.read_recording", read_recording)
+    assert main([command, "runs", "--out", "t.csv"]) == 130
+    assert [row["file"] for row in read_table("t.csv")] == ["a.wav", "b.wav"]
+    assert "interrupted: 2 of 3 recordings" in capsys.readouterr().err
+
+
+def test_an_interrupt_while_the_table_is_written_does_not_lose_it(runs, monkeypatch):
+    from noise.base.tables import write_table
+
+    calls = []
+
+    def interrupted_once(*given):
+        calls.append(given)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        write_table(*given)
+
+    monkeypatch.setattr("noise.commands.batch.write_table", interrupted_once)
+    assert main(["features", "runs", "--out", "t.csv"]) == 130
+    assert len(read_table("t.csv")) == 3
+
+
+def test_a_defect_in_one_file_does_not_end_the_batch(runs, monkeypatch, capsys):
+    def recording_features(recording):
+        return {} if recording.name == "c.wav" else 1 / 0
+
+    monkeypatch.setattr("features.recording_features", recording_features)
+    assert main(["features", "runs", "--out", "t.csv"]) == 1
+    errors = [row["error"] for row in read_table("t.csv")]
+    assert errors[0] == "unexpected, please report: ZeroDivisionError: division by zero"
+    assert errors[2] == ""
+
+
+@pytest.mark.parametrize("command", ["features", "label"])
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["nowhere"], "nowhere: there is no such file"),
+        (["empty"], "empty: there are no recordings"),
+        (["runs", "--out", "t.txt"], "t.txt: tables end in .csv, .jsonl or .parquet"),
+        (["runs", "--out", "runs/a.wav/t.csv"], "is a file, not a folder"),
+        (["runs", "--full-scale", "0"], "--full-scale"),
+        (["runs", "--workers", "0"], "--workers is '0', expected a whole number"),
+        ([], "PATH"),
+    ],
+)
+def test_calls_that_cannot_be_used_are_refused(runs, labelled, capsys, command, given, said):
+    Path("empty").mkdir()
+    assert main([command, *given]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert said in err
+    assert err.count("\n") == 1
+
+
+def test_labels_are_linked_to_conditions_and_bad_files_to_reasons(runs, labelled, capsys):
+    assert main(["label", "runs", "--out", "labels.csv"]) == 1
+    rows = read_table("labels.csv")
+    assert list(rows[0]) == list(COLUMNS)
+    assert [row["label"] for row in rows] == ["squeal", "", "squeal"]
+    assert rows[0]["speed_rad_s"] == "5.0"
+    reason = "is damaged or no sound file (Format not recognised)"
+    assert rows[1]["error"] == f"{Path('runs/b.wav')}: {reason}"
+    assert labelled.classifiers == [None]
+
+
+def test_a_classifier_of_ones_own_is_used(runs, labelled):
+    Path("mine.npz").write_bytes(b"trained")
+    assert main(["label", "runs/a.wav", "--out", "t.csv", "--classifier", "mine.npz"]) == 0
+    assert labelled.classifiers == [Path("mine.npz")]
+
+
+def test_a_missing_classifier_is_refused(runs, capsys):
+    assert main(["label", "runs", "--classifier", "nowhere.npz"]) == 2
+    assert "nowhere.npz: no such file" in capsys.readouterr().err
+
+
+def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, labelled, capsys):
+    soundfile.write("runs/d.wav", np.random.default_rng(0).uniform(-0.1, 0.1, (4800, 2)), 48000)
+    given = ["runs/a.wav", "runs/d.wav", "--out", "t.csv"]
+    assert main(["label", *given]) == 0
+    assert [per_track for _, per_track in labelled.recordings] == [False, True]
+    assert "1 recording without calibration" in capsys.readouterr().err
+    assert main(["label", *given, "--full-scale", "2"]) == 0
+    assert [recording.calibrated for recording, _ in labelled.recordings] == [
+        True,
+        False,
+        True,
+        True,
+    ]
+    assert "without calibration" not in capsys.readouterr().err
+
+
+def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
+    asked = []
+
+    def train(*, seed, added, progress):
+        assert not added
+        asked.append((seed, list(progress(iter([1, 2]), 2))))
+        card = {"pressure": {"n": 600, "macro_f1": 0.9}}
+        return Namespace(save=lambda path: path.write_bytes(b"trained"), card=card)
+
+    monkeypatch.setattr("noise.training.classifier.fit.train", train)
+    out = tmp_path / "mine.npz"
+    assert main(["train", "--out", str(out), "--seed", "3"]) == 0
+    printed, err = capsys.readouterr()
+    assert printed == f"{out}\n"
+    assert out.read_bytes() == b"trained"
+    assert asked == [(3, [1, 2])]
+    assert "pressure: n 600, macro f1 0.9" in err
+
+
+@pytest.mark.parametrize("given", [[], ["--out", "mine.pkl"], ["--out", "file.txt/mine.npz"]])
+def test_train_refuses_a_target_before_the_work(tmp_path, monkeypatch, capsys, given):
+    monkeypatch.chdir(tmp_path)
+    Path("file.txt").touch()
+    assert main(["train", *given]) == 2
+    assert "--out" in capsys.readouterr().err
+
+
+def test_demo_names_its_report(tmp_path, monkeypatch, capsys):
+    asked = []
+    monkeypatch.setattr("noise.demo.run_demo", lambda out, *, seed: asked.append((out, seed)))
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo"]) == 0
+    assert main(["demo", "--out", "there", "--seed", "2"]) == 0
+    assert asked == [(Path("bushing-noise-demo"), 0), (Path("there"), 2)]
+    reports = [str(folder / "report.html") for folder, _ in asked]
+    assert capsys.readouterr().out.splitlines() == reports

@@ -1,0 +1,201 @@
+"""The command frf from hits to files."""
+
+import csv
+import io
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from models.condition import Condition
+from models.radiation.impulse_responses import convolve
+from models.recording import Channel, Recording
+from models.structure.modal import ModalModel
+from models.transfer_functions.files import read_frf
+from noise.cli import main
+from noise.recordings import write_recording
+
+RATE = 16000
+N = 16000
+FREQUENCY = np.array([180.0, 620.0, 1500.0, 2900.0])
+DAMPING = np.array([0.01, 0.008, 0.006, 0.005])
+STRUCTURE = ModalModel(
+    FREQUENCY,
+    DAMPING,
+    np.ones((4, 1)),
+    np.zeros((1, 4)),
+    np.array([[1.0, -0.7, 0.8, 0.6]]),
+    np.zeros((1, 1)),
+)
+IMPULSE = STRUCTURE.impulse_response(RATE, N)[0, 0]
+TIME = np.arange(N) / RATE
+
+
+def hit(rng, double=0.0):
+    force = np.zeros(N)
+    pulse = np.sin(np.pi * np.arange(0.4, 6) / 6)
+    force[10:16] = rng.uniform(50, 90) * pulse
+    force[400:406] += double * 80 * pulse
+    response = convolve(force, IMPULSE)
+    noise = 0.002 * np.abs(response).max()
+    return force + 0.01 * rng.standard_normal(N), response + noise * rng.standard_normal(N)
+
+
+@pytest.fixture
+def hits(tmp_path, monkeypatch):
+    """Four hits: rows of an NPY, columns of an NPY, CSV, a recording."""
+    monkeypatch.chdir(tmp_path)
+    rng = np.random.default_rng(0)
+    np.save("rows.npy", np.stack([TIME, *hit(rng)]))
+    np.save("columns.npy", np.stack([TIME, *hit(rng)], axis=1))
+    np.savetxt("hit.csv", np.stack([TIME, *hit(rng)], axis=1), delimiter=",", header="t,F,a")
+    channels = (Channel("acceleration"), Channel("force"))
+    write_recording("run", Recording(np.stack(hit(rng)[::-1]), RATE, channels, Condition()))
+    return ["rows.npy", "columns.npy", "hit.csv", "run.wav"]
+
+
+def table(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+@pytest.mark.parametrize("ending", ["uff", "unv", "npz", "csv"])
+def test_hits_of_every_kind_give_the_response_to_a_torque(hits, capsys, ending):
+    out = Path("new") / f"beam.{ending}"
+    assert main(["frf", *hits, "--arm", "0.05", "--out", str(out)]) == 0
+    assert capsys.readouterr().out == f"{out}\n"
+    frf = read_frf(out, input_unit="N m", output_unit="m/s^2")
+    assert (frf.input_unit, frf.output_unit) == ("N m", "m/s^2")
+    band = (frf.frequency > 100) & (frf.frequency < 1800)
+    true = STRUCTURE.frequency_response(frf.frequency[band])[0, 0] / 0.05
+    difference = 20 * np.log10(np.abs(frf.response[band] / true))
+    assert np.median(np.abs(difference)) < 0.3
+    assert np.median(frf.coherence[band]) > 0.99
+
+
+def test_modes_of_the_structure_are_found(hits):
+    assert main(["frf", *hits, "--modes", "modes.csv", "--band", "100..3500"]) == 0
+    rows = table(Path("modes.csv").read_text())
+    frequency = np.array([float(row["frequency_hz"]) for row in rows])
+    damping = np.array([float(row["damping_ratio"]) for row in rows])
+    strong = np.array([float(row["peak"]) for row in rows]) > 5
+    np.testing.assert_allclose(frequency[strong], FREQUENCY, rtol=2e-3)
+    np.testing.assert_allclose(damping[strong], DAMPING, rtol=0.1)
+
+
+def test_without_a_file_the_response_is_printed(hits, capsys):
+    assert main(["frf", *hits, "--estimator", "hv"]) == 0
+    rows = table(capsys.readouterr().out)
+    assert list(rows[0]) == ["frequency_hz", "real", "imag", "coherence"]
+    assert len(rows) == N // 2 + 1
+
+
+def test_bad_hits_are_named_and_the_others_averaged(hits, capsys):
+    rng = np.random.default_rng(1)
+    force, response = hit(rng, double=0.5)
+    np.save("double.npy", np.stack([TIME, force, response]))
+    force, response = hit(rng)
+    np.save("clipped.npy", np.stack([TIME, np.minimum(force, 30.0), response]))
+    np.save("slower.npy", np.stack([2 * TIME, force, response]))
+    Path("broken.npy").write_bytes(b"no numbers")
+    bad = ["double.npy", "clipped.npy", "slower.npy", "broken.npy"]
+    assert main(["frf", *hits, *bad, "--out", "beam.npz"]) == 1
+    told = capsys.readouterr().err
+    assert "refused: double.npy: double hit" in told
+    assert "refused: clipped.npy: force is clipped" in told
+    assert "refused: slower.npy: is sampled at 8000 Hz, rows.npy at 16000 Hz" in told
+    assert "refused: broken.npy: is damaged" in told
+    assert "4 hits averaged, 4 refused" in told
+    assert Path("beam.npz").is_file()
+
+
+def test_where_every_hit_is_refused_nothing_is_written(hits, capsys):
+    force, response = hit(np.random.default_rng(1), double=0.5)
+    np.save("double.npy", np.stack([TIME, force, response]))
+    assert main(["frf", "double.npy", "--out", "beam.npz", "--modes", "modes.csv"]) == 1
+    assert not Path("beam.npz").exists()
+    assert not Path("modes.csv").exists()
+
+
+def test_low_coherence_is_told_with_its_band(hits, capsys):
+    assert main(["frf", *hits, "--out", "beam.npz", "--coherence", "1"]) == 0
+    assert "coherence below 1, not to be trusted: " in capsys.readouterr().err
+
+
+def test_a_single_hit_has_no_coherence(hits, capsys):
+    assert main(["frf", hits[0], "--out", "beam.npz"]) == 0
+    assert "a single hit has no coherence" in capsys.readouterr().err
+    assert "coherence" not in np.load("beam.npz").files
+
+
+def test_hits_of_different_lengths_are_cut_to_the_shortest(hits, capsys):
+    np.save("short.npy", np.load(hits[0])[:, :12000])
+    assert main(["frf", *hits, "short.npy", "--out", "beam.npz"]) == 0
+    assert "cut to the shortest, 12000 samples" in capsys.readouterr().err
+    assert np.load("beam.npz")["frequency_hz"].size == 6001
+
+
+def test_the_response_may_be_another_channel(hits):
+    recording = Recording(
+        np.stack([*hit(np.random.default_rng(4))]), RATE, (Channel("force"), Channel("pressure_2"))
+    )
+    write_recording("sound", recording)
+    assert main(["frf", "sound.wav", "--response", "pressure_2", "--out", "sound.npz"]) == 0
+    assert np.load("sound.npz")["output_unit"] == "Pa"
+    assert main(["frf", "sound.wav", "--response", "speed", "--out", "speed.npz"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nowhere.npy"], "nowhere.npy: there is no such file"),
+        (["rows.npy", "--out", "beam.mat"], "responses end in"),
+        (["rows.npy", "--modes", "modes.xlsx"], "tables end in"),
+        (["rows.npy", "--arm", "0"], "--arm is '0', expected a number above 0"),
+        (["rows.npy", "--estimator", "H3"], "--estimator is 'H3', expected H1, H2, Hv"),
+        (["rows.npy", "--band", "5..2", "--modes", "m.csv"], "--band is '5..2'"),
+        (["rows.npy", "--band", "2..5"], "--band is given without --modes"),
+        (["rows.npy", "--response", "sound"], "--response is 'sound'"),
+        (["rows.npy", "--modes", "m.csv", "--band", "1..3"], "modes need 32 or more"),
+    ],
+)
+def test_a_call_that_cannot_be_used_ends_in_one_line(hits, capsys, arguments, message):
+    assert main(["frf", *arguments]) == 2
+    told = [line for line in capsys.readouterr().err.splitlines() if "error" in line]
+    assert len(told) == 1
+    assert message in told[0]
+
+
+DATA = os.environ.get("BUSHING_NOISE_REAL_DATA")
+REAL = pytest.mark.skipif(
+    not DATA, reason="BUSHING_NOISE_REAL_DATA names no folder of real recordings"
+)
+
+
+def real_hits():
+    return sorted(str(path) for path in (Path(DATA) / "hammer").glob("*.npy"))
+
+
+@REAL
+def test_real_hits_cohere_and_have_their_modes(tmp_path):
+    out, modes = tmp_path / "beam.uff", tmp_path / "modes.csv"
+    assert main(["frf", *real_hits(), "--out", str(out), "--modes", str(modes)]) == 0
+    frf = read_frf(out, input_unit="N", output_unit="m/s^2")
+    band = (frf.frequency >= 100) & (frf.frequency <= 5000)
+    assert np.median(frf.coherence[band]) > 0.998
+    found = np.array([float(row["frequency_hz"]) for row in table(modes.read_text())])
+    for mode in (810, 900, 2640, 3669, 4128, 4163):
+        assert np.abs(found / mode - 1).min() < 0.005
+
+
+@REAL
+def test_four_real_hits_predict_the_fifth(tmp_path):
+    *four, fifth = real_hits()
+    out = tmp_path / "beam.npz"
+    assert main(["frf", *four, "--out", str(out)]) == 0
+    h = np.load(out)["response"]
+    _, force, response = np.load(fifth)
+    f = np.fft.rfftfreq(force.size, 1 / 25600)
+    predicted = np.abs(h * np.fft.rfft(force)) / np.abs(np.fft.rfft(response))
+    band = (f >= 100) & (f <= 5000)
+    assert np.median(np.abs(20 * np.log10(predicted[band]))) < 1.0

@@ -1,0 +1,236 @@
+from __future__ import annotations
+
+import csv
+import json
+import sys
+
+import numpy as np
+import pytest
+import soundfile
+
+from features.kernels.levels import sound_levels
+from models.condition import Condition
+from models.recording import Channel, Recording
+from noise.audio.gain import loudness, true_peak
+from noise.cli import main
+from noise.recordings import read_recording, write_recording
+
+PASCAL_DB = 93.9794
+
+
+def recorded(path, sound, rate=48e3, condition=None):
+    channels = (Channel("pressure"),)
+    run = Recording(np.atleast_2d(sound), rate, channels, condition or Condition())
+    return write_recording(path, run)
+
+
+def tone(frequency=1000.0, rms=1.0, rate=48e3, seconds=2.0):
+    time = np.arange(round(seconds * rate)) / rate
+    return np.sqrt(2) * rms * np.sin(2 * np.pi * frequency * time)
+
+
+@pytest.fixture
+def runs(tmp_path):
+    """Three recordings in a folder: a tone, one 20 dB below it, and clicks."""
+    clicks = np.zeros(48000)
+    clicks[2000::6000] = 3.0
+    recorded(tmp_path / "runs" / "loud", tone(rms=1.0, seconds=1.0))
+    recorded(tmp_path / "runs" / "quiet", tone(300.0, 0.1, 30e3, 1.0), 30e3)
+    recorded(tmp_path / "runs" / "day2" / "clicks", clicks)
+    return tmp_path / "runs"
+
+
+def rendered(*arguments, code=0):
+    assert main(["render", *map(str, arguments)]) == code
+
+
+def refusal(capsys, *arguments):
+    assert main(["render", *map(str, arguments)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    return err.splitlines()[-1].removeprefix("bushing-noise: error: ")
+
+
+def table(folder):
+    with (folder / "levels.csv").open(encoding="utf-8", newline="") as file:
+        return {row["file"]: row for row in csv.DictReader(file)}
+
+
+@pytest.mark.parametrize("rate", ["44100", "48000"])
+@pytest.mark.parametrize("bits", ["16", "24", "32"])
+def test_one_pascal_stays_94_decibels_there_and_back(tmp_path, rate, bits):
+    recorded(tmp_path / "pascal", tone(rate=30e3), 30e3)
+    out = tmp_path / "sound.wav"
+    given = ["--rate", rate, "--bits", bits, "--pascal-per-full-scale", "4"]
+    rendered(tmp_path / "pascal.wav", "--out", out, *given)
+    (part,) = json.loads(out.with_suffix(".json").read_text())["parts"]
+    for told in ("level_db", "level_dba", "level_afmax_dba"):
+        assert part[told] == pytest.approx(PASCAL_DB, abs=0.05)
+    assert part["third_octaves_db"]["1000"] == pytest.approx(PASCAL_DB, abs=0.05)
+    back = read_recording(out)
+    assert sound_levels(back["pressure"], back.rate).level == pytest.approx(PASCAL_DB, abs=0.05)
+    samples, _ = soundfile.read(out)
+    in_file = 20 * np.log10(samples.std())
+    assert in_file == pytest.approx(PASCAL_DB - 20 * np.log10(4 / 2e-5), abs=0.05)
+    assert part["level_dbfs"] == pytest.approx(in_file, abs=0.05)
+
+
+def test_one_gain_keeps_how_loud_the_sounds_of_a_set_are_to_each_other(runs, tmp_path, capsys):
+    out = tmp_path / "set"
+    rendered(runs, "--out", out)
+    names = ["day2/clicks.wav", "loud.wav", "quiet.wav"]
+    rows = table(out)
+    assert list(rows) == names
+    written = capsys.readouterr().out.splitlines()
+    assert written[-1] == str(out / "levels.csv")
+    assert [str(out / name) for name in names] == written[:-1:2]
+    heard = {name: soundfile.read(out / name)[0] for name in names}
+    for name, samples in heard.items():
+        before = read_recording(runs / name)["pressure"]
+        assert np.abs(samples).max() < 1.0
+        in_file, in_air = 20 * np.log10(samples.std()), 20 * np.log10(before.std() / 2e-5)
+        full_scale = float(rows[name]["full_scale_Pa"])
+        assert in_file + 20 * np.log10(full_scale / 2e-5) == pytest.approx(in_air, abs=0.1)
+        assert float(rows[name]["level_db"]) == pytest.approx(in_air, abs=0.01)
+        assert rows[name]["gain"] == "common"
+    assert len({row["full_scale_Pa"] for row in rows.values()}) == 1
+    loudest = max(true_peak(samples, 48000) for samples in heard.values())
+    assert 20 * np.log10(loudest) == pytest.approx(-3.0, abs=0.01)
+
+
+def test_matched_sounds_are_equally_loud_and_their_peaks_hold_the_limit(runs, tmp_path):
+    out = tmp_path / "set"
+    rendered(runs, "--match-loudness", "--bits", "16", "--out", out)
+    told = table(out)
+    heard = {name: soundfile.read(out / name)[0] for name in told}
+    loudnesses = [loudness(samples, 48000) for samples in heard.values()]
+    assert np.ptp(loudnesses) < 0.2
+    assert max(loudnesses) < -22.9
+    for name, samples in heard.items():
+        assert true_peak(samples, 48000) <= 10 ** (-0.95 / 20)
+        assert float(told[name]["loudness_lufs"]) == pytest.approx(loudnesses[0], abs=0.1)
+    # Each file keeps a calibration of its own, so its level in the air can still be told.
+    read = read_recording(out / "quiet.wav")
+    assert sound_levels(read["pressure"], read.rate).level == pytest.approx(PASCAL_DB - 20, abs=0.1)
+
+
+def test_where_calibrated_sounds_would_clip_the_least_that_suits_all_is_told(
+    runs, tmp_path, capsys
+):
+    out = tmp_path / "set"
+    line = refusal(capsys, runs, "--out", out, "--pascal-per-full-scale", "0.5")
+    assert "would clip clicks.wav" in line
+    least = line.split()[-1]
+    assert not list(tmp_path.glob("set/*"))
+    rendered(runs, "--out", out, "--pascal-per-full-scale", least, "--bits", "16")
+    peak = max(np.abs(soundfile.read(path, dtype="int16")[0]).max() for path in out.rglob("*.wav"))
+    assert 32000 < peak < 32767
+
+
+def test_peaks_between_samples_count(tmp_path, capsys):
+    between = tone(12000.0, 1 / np.sqrt(2), seconds=0.5)
+    shifted = np.sin(2 * np.pi * 12000.0 * np.arange(24000) / 48e3 + np.pi / 4)
+    assert np.abs(shifted).max() < 0.71 < np.abs(between).max()
+    path = recorded(tmp_path / "between", shifted)
+    given = [path, "--out", tmp_path / "s.wav", "--pascal-per-full-scale", "0.9"]
+    assert float(refusal(capsys, *given).split()[-1]) == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_bad_file_is_a_row_and_the_others_are_rendered(runs, tmp_path, capsys):
+    (runs / "broken.wav").write_bytes(b"RIFF no sound")
+    write_recording(runs / "torque", Recording(np.ones((1, 480)), 3e4, (Channel("torque"),)))
+    out = tmp_path / "set"
+    rendered(runs, "--out", out, code=1)
+    rows = table(out)
+    assert len(rows) == 5
+    assert rows["broken.wav"]["error"]
+    assert "no pressure channel" in rows["torque.wav"]["error"]
+    assert rows["loud.wav"]["error"] == ""
+    assert len(list(out.rglob("*.wav"))) == 3
+    err = capsys.readouterr().err
+    assert err.count("refused: ") == 2
+
+
+def test_a_damaged_recording_alone_is_refused_with_code_1(tmp_path, capsys):
+    (tmp_path / "broken.wav").write_bytes(b"RIFF no sound")
+    rendered(tmp_path / "broken.wav", "--out", tmp_path / "s.wav", code=1)
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "refused: " in captured.err
+    assert "broken.wav" in captured.err
+    assert not (tmp_path / "s.wav").exists()
+
+
+def test_without_calibration_levels_are_told_re_full_scale(tmp_path, capsys):
+    plain, out = tmp_path / "phone.flac", tmp_path / "s.wav"
+    soundfile.write(plain, 0.5 * np.sin(np.arange(48000) / 8), 48000)
+    rendered(plain, "--out", out)
+    err = capsys.readouterr().err
+    assert "dBFS only" in err
+    assert "re 20 uPa" not in err
+    (part,) = json.loads(out.with_suffix(".json").read_text())["parts"]
+    assert part["level_dbfs"] == pytest.approx(-6.0, abs=0.05)  # peak at -3, a sine's rms
+    assert not {"level_db", "level_dba", "third_octaves_db"} & set(part)
+    assert part["third_octaves_dbfs"]["1000"] == pytest.approx(-6.0, abs=0.1)
+
+
+def test_a_set_without_calibration_says_so_once(tmp_path, capsys):
+    for name in ("one", "two", "three"):
+        soundfile.write(tmp_path / f"{name}.flac", np.sin(np.arange(4800) / 8) / 2, 48000)
+    rendered(tmp_path, "--out", tmp_path / "set")
+    err = capsys.readouterr().err
+    assert err.count("not calibrated") == 1
+    assert "and 2 others" in err
+    assert {row["level_db"] for row in table(tmp_path / "set").values()} == {""}
+
+
+def test_sound_quality_is_told_with_the_extra_alone(tmp_path, capsys, monkeypatch):
+    pytest.importorskip("mosqito")
+    path, out = recorded(tmp_path / "tone", tone(rms=2e-3, seconds=0.5)), tmp_path / "s.wav"
+    rendered(path, "--sound-quality", "--out", out)
+    (part,) = json.loads(out.with_suffix(".json").read_text())["parts"]
+    assert part["loudness_sone"] == pytest.approx(1.0, abs=0.05)
+    assert "sone" in capsys.readouterr().err
+    monkeypatch.setitem(sys.modules, "mosqito", None)
+    line = refusal(capsys, path, "--sound-quality", "--out", out)
+    assert 'pip install "bushing-noise[sound-quality]"' in line
+
+
+def test_a_sound_too_short_for_its_quality_is_rendered_all_the_same(tmp_path, capsys):
+    pytest.importorskip("mosqito")
+    path, out = recorded(tmp_path / "click", tone(seconds=0.2)), tmp_path / "s.wav"
+    rendered(path, "--sound-quality", "--out", out)
+    assert "0.2 s is too short" in capsys.readouterr().err
+    assert out.exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["{runs}", "--out", "{tmp}/s.wav"], "3 sounds are no single file"),
+        (["{runs}", "--out", "{tmp}/file.txt"], "is a file; name a folder"),
+        (["{runs}", "--out", "{runs}"], "would overwrite"),
+        (["{runs}/loud.wav", "--ab", "--out", "{tmp}/s.wav"], "give a second one"),
+        (["{runs}", "--ab", "--match-loudness", "--out", "{tmp}/s.wav"], "--match-loudness"),
+        (["{runs}/loud.wav", "--repeats", "2", "--out", "{tmp}/s.wav"], "not looped"),
+        (["{runs}/loud.wav", "--repeats", "0", "--out", "{tmp}/s.wav"], "--repeats"),
+        (["{runs}/loud.wav", "--gap", "-1", "--out", "{tmp}/s.wav"], "--gap"),
+        (["--speed 5 --pitch 3", "--out", "{tmp}/s.wav"], "--pitch"),
+        (["", "--out", "{tmp}/s.wav"], "INPUT is empty"),
+        (["--speed fast", "--out", "{tmp}/s.wav"], "--speed"),
+        (["--interference 0.3", "--out", "{tmp}/s.wav"], "--speed and --oscillate"),
+        (["{tmp}/none.toml", "--speed", "5", "--out", "{tmp}/s.wav"], "none.toml"),
+        (["{tmp}/none.toml", "--rig", "x.toml", "--speed", "5", "--out", "{tmp}/s"], "rig files"),
+        (["{runs}", "{tmp}/phone.wav", "--out", "{tmp}/set"], "is not, so one gain cannot"),
+        (
+            ["{runs}", "--match-loudness", "--pascal-per-full-scale", "2", "--out", "{tmp}/set"],
+            "not allowed with",
+        ),
+    ],
+)
+def test_calls_that_make_no_sense_are_refused(runs, tmp_path, capsys, given, said):
+    (tmp_path / "file.txt").write_text("notes")
+    soundfile.write(tmp_path / "phone.wav", np.sin(np.arange(4800.0)), 48000)
+    assert said in refusal(capsys, *(part.format(runs=runs, tmp=tmp_path) for part in given))
+    assert not (tmp_path / "s.wav").exists()
+    assert not (tmp_path / "set").exists()

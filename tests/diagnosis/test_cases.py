@@ -1,0 +1,247 @@
+"""What a folder holds is diagnosed, or it is said in a line why not."""
+
+from __future__ import annotations
+
+import json
+import wave
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from models.rig_files.rig_file import load_rig
+from noise.cli import main
+from noise.diagnosis.case import read_case, usable
+from tests.helpers.made_posteriors import made_posterior
+from tests.helpers.small_rigs import RATE, RIG, RIG_FILE, at, only, run, write_case
+
+
+@pytest.fixture(autouse=True)
+def posterior(monkeypatch):
+    """What is said does not matter here, so the shipped posterior is not needed."""
+    made = made_posterior()
+    monkeypatch.setattr("noise.diagnosis.diagnose.load_posterior", lambda: made)
+    return made
+
+
+@pytest.fixture(scope="module")
+def recordings():
+    return [run(at(v), seed=i) for i, v in enumerate((1.0, 2.0))]
+
+
+def _answer(capsys, *arguments):
+    code = main(["diagnose", *map(str, arguments)])
+    out, err = capsys.readouterr()
+    assert "Traceback" not in err
+    return code, out, err
+
+
+def _refused(capsys, *arguments):
+    code, out, err = _answer(capsys, *arguments)
+    assert out == ""
+    lines = [line for line in err.splitlines() if "error" in line]
+    assert len(lines) == 1, err
+    return code, lines[0]
+
+
+def _music(folder, seconds=1.0):
+    folder.mkdir(parents=True, exist_ok=True)
+    time = np.arange(int(44100 * seconds)) / 44100
+    tone = (20000 * np.sin(2 * np.pi * 440 * time)).astype("<i2")
+    with wave.open(str(folder / "song.wav"), "wb") as file:
+        file.setnchannels(2)
+        file.setsampwidth(2)
+        file.setframerate(44100)
+        file.writeframes(np.repeat(tone, 2).tobytes())
+
+
+def _without(recording, **conditions):
+    return replace(recording, condition=replace(recording.condition, **conditions))
+
+
+def test_a_missing_rig_file_is_named(recordings, tmp_path, capsys):
+    data, _ = write_case(tmp_path, recordings)
+    code, line = _refused(capsys, data, "--rig", tmp_path / "none.toml", "--quick")
+    assert code == 2
+    assert "none.toml" in line
+
+
+def test_a_folder_that_does_not_exist_is_named(recordings, tmp_path, capsys):
+    _, rig = write_case(tmp_path, recordings)
+    code, line = _refused(capsys, tmp_path / "nowhere", "--rig", rig)
+    assert code == 2
+    assert "nowhere" in line
+
+
+def test_an_empty_folder_has_nothing_to_diagnose(tmp_path, capsys):
+    data, rig = write_case(tmp_path, [])
+    code, line = _refused(capsys, data, "--rig", rig)
+    assert code == 2
+    assert "no recording" in line
+
+
+def test_a_folder_of_music_gets_a_line_and_no_name(tmp_path, capsys):
+    _, rig = write_case(tmp_path, [])
+    _music(tmp_path / "music")
+    code, line = _refused(capsys, tmp_path / "music", "--rig", rig)
+    assert code in (1, 2)
+    assert "song.wav" in line
+    assert "sidecar" in line
+
+
+def test_a_song_among_recordings_is_refused_and_the_rest_diagnosed(recordings, tmp_path, capsys):
+    data, rig = write_case(tmp_path, recordings)
+    _music(data)
+    out = tmp_path / "out"
+    code, _, err = _answer(capsys, data, "--rig", rig, "--quick", "--out", out)
+    assert code == 1
+    assert "song.wav" in err
+    notes = json.loads((out / "diagnosis.json").read_text())["notes"]
+    assert any("song.wav" in note for note in notes)
+
+
+def test_a_file_that_is_no_recording_is_refused_and_the_rest_diagnosed(
+    recordings, tmp_path, capsys
+):
+    data, rig = write_case(tmp_path, recordings)
+    (data / "broken.wav").write_bytes(b"RIFF....")
+    code, out, err = _answer(capsys, data, "--rig", rig, "--quick")
+    assert code == 1
+    assert "broken.wav" in err
+    assert json.loads(out)["seconds"] > 0
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda r: _without(only(r, "torque", "pressure"), speed=None), "speed_rad_s"),
+        (lambda r: _without(r, speed=0.0, support_stiffness=None), "speed"),
+        (lambda r: _without(r, support_stiffness=None), "support_stiffness_Nm_rad"),
+        (lambda r: only(r, "angle"), "no channel of torque"),
+        (lambda r: replace(r, samples=r.samples[:, :1500]), "lasts"),
+        (lambda r: replace(r, rate=4e3), "4000 Hz"),
+        (lambda r: replace(r, calibrated=False), "physical units"),
+    ],
+)
+def test_what_a_recording_lacks_is_said(recordings, change, said):
+    lacking = change(recordings[0])
+    if said == "speed":
+        lacking = only(lacking, "torque", "pressure")
+    with pytest.raises(ParameterError) as refused:
+        usable(lacking, RIG)
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_without_conditions_nothing_is_diagnosed(recordings, tmp_path, capsys):
+    plain = [
+        _without(only(r, "torque", "pressure"), speed=None, interference=None,
+                 support_stiffness=None)
+        for r in recordings
+    ]  # fmt: skip
+    data, rig = write_case(tmp_path, plain)
+    code, line = _refused(capsys, data, "--rig", rig)
+    assert code in (1, 2)
+    assert "run01.wav" in line
+    assert "speed_rad_s" in line
+
+
+def test_a_speed_that_was_not_stated_is_that_of_the_angle(recordings):
+    found = usable(_without(recordings[1], speed=None), RIG)
+    assert found.condition.speed == pytest.approx(2.0, rel=0.02)
+
+
+def test_an_interference_may_be_left_out_where_the_rig_has_one(recordings):
+    silent = _without(recordings[0], interference=None)
+    assert usable(silent, RIG).condition.interference == 0.279e-3
+    several = replace(RIG, fits=(*RIG.fits, replace(RIG.fits[0], interference=0.381e-3)))
+    with pytest.raises(ParameterError, match="interference_mm"):
+        usable(silent, several)
+
+
+def test_an_interference_that_the_rig_file_does_not_reach_is_refused(recordings):
+    with pytest.raises(ParameterError, match=r"interference_mm = 0\.381.*0\.279"):
+        usable(_without(recordings[0], interference=0.381e-3), RIG)
+
+
+def test_recordings_of_a_support_whose_response_was_not_measured_are_refused(
+    recordings, tmp_path, capsys
+):
+    entry = """
+[[measured_response]]
+support_stiffness_Nm_rad = 3745
+torque_to_acceleration = "a.npz"
+"""
+    data, rig = write_case(tmp_path, recordings, RIG_FILE + entry)
+    frequency = np.arange(2.0, 12e3, 2.0)
+    np.savez(
+        tmp_path / "a.npz", frequency_hz=frequency, response=np.ones(frequency.size) + 0j,
+        input_unit="N m", output_unit="m/s^2",
+    )  # fmt: skip
+    code, line = _refused(capsys, data, "--rig", rig)
+    assert code in (1, 2)
+    assert "2214" in line
+    assert "3745" in line
+
+
+@pytest.mark.parametrize("kind", ["torque", "acceleration", "pressure"])
+def test_one_channel_is_answered(recordings, tmp_path, capsys, kind):
+    data, rig = write_case(tmp_path, [only(r, kind) for r in recordings])
+    code, out, _ = _answer(capsys, data, "--rig", rig, "--quick")
+    assert code == 0
+    told = json.loads(out)
+    missing = {"torque", "acceleration", "pressure", "angle"} - {kind}
+    words = {"pressure": "no sound", "angle": "no shaft angle"}
+    for other in missing:
+        assert any(words.get(other, f"no {other}") in note for note in told["notes"]), other
+
+
+def test_recordings_of_several_rates_are_answered(recordings, tmp_path, capsys):
+    mixed = [recordings[0], run(at(1.0), seed=5, rate=48e3), run(at(2.0), rate=30e3, seconds=0.5)]
+    data, rig = write_case(tmp_path, mixed)
+    code, out, _ = _answer(capsys, data, "--rig", rig, "--quick")
+    assert code == 0
+    assert json.loads(out)["gap"] > 0
+
+
+def test_one_recording_is_answered_with_a_note(recordings, tmp_path, capsys):
+    data, rig = write_case(tmp_path, recordings[:1])
+    code, out, _ = _answer(capsys, data, "--rig", rig, "--quick")
+    assert code == 0
+    assert any("one recording" in note for note in json.loads(out)["notes"])
+
+
+def test_an_out_that_is_a_file_is_refused(recordings, tmp_path, capsys):
+    data, rig = write_case(tmp_path, recordings)
+    code, line = _refused(capsys, data, "--rig", rig, "--out", rig)
+    assert code == 2
+    assert "--out" in line
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("name = [", "rig.toml"), (RIG_FILE.replace("effects = []", 'effects = ["ghost"]'), "ghost")],
+)
+def test_a_rig_file_that_cannot_be_used_is_named(recordings, tmp_path, capsys, text, said):
+    data, rig = write_case(tmp_path, recordings, text)
+    code, line = _refused(capsys, data, "--rig", rig, "--quick")
+    assert code == 2
+    assert said in line
+
+
+def test_a_file_of_effects_that_cannot_be_used_is_named(recordings, tmp_path, capsys):
+    data, rig = write_case(tmp_path, recordings)
+    (tmp_path / "mine.py").write_text("EFFECT = 1 / 0\n")
+    code, line = _refused(capsys, data, "--rig", rig, "--effects", tmp_path / "mine.py")
+    assert code == 2
+    assert "mine.py" in line
+
+
+def test_a_case_names_what_it_holds_and_what_it_refused(recordings, tmp_path):
+    data, rig = write_case(tmp_path, recordings)
+    _music(data / "sub")
+    case = read_case([data], load_rig(rig))
+    assert case.names == ("run01.wav", "run02.wav")
+    assert [name for name, _ in case.refused] == ["sub/song.wav"]
+    assert case.recordings[0].rate == RATE

@@ -1,0 +1,240 @@
+"""A fault of a channel shows in that channel's numbers, where it is and nowhere else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from noise.diagnosis.evidence.channel_summary import (
+    angle_summary,
+    channel_summary,
+    hum_summary,
+    shaft_speed,
+)
+from noise.diagnosis.evidence.path_summary import (
+    BAND_EDGES,
+    band_names,
+    common_residual,
+    path_summary,
+)
+from noise.diagnosis.evidence.summary import summary
+from noise.diagnosis.simulated.paths import ways
+from tests.helpers.small_rigs import RATE, RIG, at, only, run
+
+CONDITION = at(1.0)
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return run(CONDITION, seed=3)
+
+
+@pytest.fixture(scope="module")
+def numbers_of():
+    found = ways(RIG, 0.279e-3, 2214.0)
+    return lambda recording: summary(recording, RIG, found)
+
+
+def _changed(recording, name, change):
+    from dataclasses import replace
+
+    samples = recording.samples.copy()
+    row = recording.channel_names.index(name)
+    samples[row] = change(samples[row])
+    return replace(recording, samples=samples)
+
+
+def _delayed(x, by):
+    f = np.fft.rfftfreq(2 * x.size, 1.0 / RATE)
+    spectrum = np.fft.rfft(np.concatenate([x, x[::-1]])) * np.exp(-2j * np.pi * f * by)
+    return np.fft.irfft(spectrum)[: x.size]
+
+
+OTHER = {"acceleration": "pressure", "pressure": "acceleration"}
+
+
+@pytest.mark.parametrize("name", ["acceleration", "pressure"])
+def test_a_gain_is_seen_in_its_channel_alone(recording, numbers_of, name):
+    plain = numbers_of(recording)
+    louder = numbers_of(_changed(recording, name, lambda x: 1.2 * x))
+    assert louder[f"{name}_gain"] - plain[f"{name}_gain"] == pytest.approx(np.log(1.2), abs=5e-3)
+    for i in range(3, 10):
+        difference = louder[f"{name}_gain_{i}"] - plain[f"{name}_gain_{i}"]
+        assert difference == pytest.approx(np.log(1.2), abs=0.01)
+    assert louder[f"{name}_delay"] == pytest.approx(plain[f"{name}_delay"], abs=3.0)
+    apart = {k for k in plain if not k.startswith((name, "common"))}
+    assert all(np.array_equal(louder[k], plain[k], equal_nan=True) for k in apart)
+
+
+@pytest.mark.parametrize("by", [3e-4, -3e-4])
+@pytest.mark.parametrize("name", ["acceleration", "pressure"])
+def test_a_delay_is_seen_in_its_channel_alone(recording, numbers_of, name, by):
+    plain = numbers_of(recording)
+    late = numbers_of(_changed(recording, name, lambda x: _delayed(x, by)))
+    assert late[f"{name}_delay"] - plain[f"{name}_delay"] == pytest.approx(1e6 * by, abs=10.0)
+    assert late[f"{name}_gain"] == pytest.approx(plain[f"{name}_gain"], abs=0.02)
+    other = OTHER[name]
+    assert late[f"{other}_delay"] == plain[f"{other}_delay"]
+
+
+def test_a_late_torque_makes_both_other_channels_early(recording, numbers_of):
+    plain = numbers_of(recording)
+    late = numbers_of(_changed(recording, "torque", lambda x: _delayed(x, 3e-4)))
+    for name in OTHER:
+        assert late[f"{name}_delay"] - plain[f"{name}_delay"] == pytest.approx(-300.0, abs=10.0)
+
+
+@pytest.mark.parametrize("name", ["torque", "acceleration", "pressure"])
+def test_clipping_is_seen_where_it_is(recording, numbers_of, name):
+    def clipped(x):
+        middle, most = np.median(x), np.abs(x - np.median(x)).max()
+        return np.clip(x, middle - 0.4 * most, middle + 0.4 * most)
+
+    plain, cut = numbers_of(recording), numbers_of(_changed(recording, name, clipped))
+
+    def seen(channel):
+        return max(cut[f"{channel}_{end}"] - plain[f"{channel}_{end}"] for end in ("top", "bottom"))
+
+    assert seen(name) > 1.0
+    assert cut[f"{name}_crest"] < plain[f"{name}_crest"]
+    for other in {"torque", "acceleration", "pressure"} - {name}:
+        assert seen(other) == 0.0
+
+
+@pytest.mark.parametrize("mains", [50, 60])
+@pytest.mark.parametrize("name", ["torque", "acceleration", "pressure"])
+def test_hum_is_seen_where_it_is(recording, numbers_of, name, mains):
+    row = recording.channel_names.index(name)
+    size = 0.5 * recording.samples[row].std()
+    time = np.arange(recording.samples.shape[1]) / RATE
+    hum = size * np.sin(2 * np.pi * mains * time)
+    plain = numbers_of(recording)
+    humming = numbers_of(_changed(recording, name, lambda x: x + hum))
+
+    def stands_out(channel):
+        key = f"{channel}_raw_hum_{mains}" if channel == "torque" else f"{channel}_hum_{mains}"
+        return humming[key] - plain[key]
+
+    if name == "torque" and mains == 60:
+        # a subharmonic of its cycle lies there already, with which the hum may be out of step
+        assert humming["torque_raw_hum_level"] != plain["torque_raw_hum_level"]
+        return
+    assert stands_out(name) > 1.0
+    if name != "torque":  # whose cycle has a line of its own there, and what hums in it is expected
+        assert humming[f"{name}_hum_level"] > plain[f"{name}_hum_level"] + 0.3
+        assert stands_out(OTHER[name]) == 0.0
+        assert stands_out("torque") == 0.0
+
+
+def test_hum_has_lines_at_the_odd_harmonics_of_a_square_wave():
+    time = np.arange(25600) / RATE
+    noise = 0.1 * np.random.default_rng(0).normal(size=time.size)
+    square = hum_summary(np.sign(np.sin(2 * np.pi * 50 * time)) + noise, RATE)
+    assert square["hum_odd_50"] > square["hum_even_50"] + 3
+    assert square["hum_50"] > square["hum_60"] + 5
+    assert max(hum_summary(noise, RATE)[k] for k in ("hum_50", "hum_60")) < 4
+
+
+def test_the_level_of_hum_is_that_of_its_amplitude():
+    time = np.arange(25600) / RATE
+    for amplitude in (0.01, 1.0, 30.0):
+        level = hum_summary(amplitude * np.sin(2 * np.pi * 50 * time), RATE)["hum_level"]
+        assert level == pytest.approx(np.log(amplitude), abs=0.05)
+
+
+def test_white_noise_raises_the_floor_by_its_level():
+    noise = np.random.default_rng(1).normal(size=20000)
+    floors = [channel_summary(a * noise, RATE)["floor_2"] for a in (1.0, 10.0)]
+    assert floors[1] - floors[0] == pytest.approx(np.log(10.0))
+
+
+def test_a_channel_that_is_its_prediction_leaves_nothing():
+    rng = np.random.default_rng(2)
+    x = rng.normal(size=12000)
+    numbers, residual = path_summary(x, x.copy(), RATE, np.array([0.1, 0.2]))
+    assert not residual.any()
+    assert numbers["gain"] == pytest.approx(0.0, abs=1e-6)
+    assert numbers["delay"] == 0.0
+    assert numbers["residual"] < -15.0
+
+
+def test_noise_that_the_torque_does_not_explain_is_incoherent_in_its_band_alone():
+    from scipy.signal import butter, sosfiltfilt
+
+    rng = np.random.default_rng(4)
+    x, more = rng.normal(size=(2, 40000))
+    low, high = BAND_EDGES[8], BAND_EDGES[9]
+    more = 2 * sosfiltfilt(
+        butter(6, [low * 1.05, high / 1.05], "band", fs=RATE, output="sos"), more
+    )
+    numbers, _ = path_summary(x, x + more, RATE, np.empty(0))
+    seen = {i: numbers[f"incoherent_{i}"] for i in band_names(RATE)}
+    assert max(seen, key=seen.get) == 9
+    assert all(seen[9] - seen[i] > 2.0 for i in seen if abs(i - 9) > 1)
+
+
+def test_blows_at_the_slips_are_told_from_what_lasts():
+    rng = np.random.default_rng(5)
+    n, slips = 20000, np.arange(0.12, 0.75, 0.03)
+    since = np.full(n, np.inf)
+    for start in (slips * RATE).astype(int):
+        since[start : start + 700] = np.arange(700)[: n - start]
+    tone = np.sin(2 * np.pi * 5000 * np.arange(n) / RATE)
+    blows = np.where(np.isfinite(since), np.exp(-np.minimum(since, 1e6) / 20.0), 0.0) * tone
+    expected = rng.normal(size=n)
+    struck, _ = path_summary(expected, expected + blows, RATE, slips)
+    hissing, _ = path_summary(expected, expected + 0.3 * rng.normal(size=n), RATE, slips)
+    assert struck["high_at_slips"] > hissing["high_at_slips"] + 2
+    assert abs(hissing["high_at_slips"]) < 0.3
+
+
+def test_what_two_channels_have_too_much_in_common_is_coherent():
+    rng = np.random.default_rng(6)
+    one, other = rng.normal(size=(2, 40000))
+    apart, alike = common_residual(one, other, RATE), common_residual(one, one + 0.3 * other, RATE)
+    assert all(alike[k] > apart[k] + 1.0 for k in apart)
+
+
+@pytest.mark.parametrize("speed", [0.5, 5.0, -3.0])
+def test_the_speed_of_the_shaft_is_the_slope_of_its_angle(speed):
+    time = np.arange(12800) / RATE
+    even = shaft_speed(speed * time + 2.0, RATE)
+    assert even == pytest.approx(np.full(time.size, speed), abs=1e-6)
+
+
+def test_slow_changes_of_speed_are_followed_and_fast_ones_not():
+    time = np.arange(25600) / RATE
+    for frequency, share in ((4.0, 1.0), (20.0, 1.0), (45.0, 1.0), (200.0, 0.0)):
+        away = 0.3 * np.sin(2 * np.pi * frequency * time)
+        found = shaft_speed(2.0 * time + (0.3 - 0.3 * np.cos(2 * np.pi * frequency * time))
+                            / (2 * np.pi * frequency), RATE)  # fmt: skip
+        left = (found - 2.0 - share * away)[2560:-2560]
+        assert np.abs(left).max() < 0.03, frequency
+
+
+@pytest.mark.parametrize("frequency", [3.0, 12.0, 30.0])
+def test_an_uneven_shaft_is_seen_in_its_angle_with_its_frequency(frequency):
+    time = np.arange(25600) / RATE
+    wave = 0.02 * np.sin(2 * np.pi * frequency * time) / (2 * np.pi * frequency)
+    noise = 1e-5 * np.random.default_rng(0).normal(size=time.size)
+    plain = angle_summary(2.0 * time + noise, 2.0, RATE)
+    uneven = angle_summary(2.0 * time + 20 * wave + noise, 2.0, RATE)
+    assert uneven["speed_spread"] > plain["speed_spread"] + 0.5
+    assert uneven["speed_line"] > plain["speed_line"]
+    assert np.exp(uneven["speed_line_at"]) == pytest.approx(frequency, abs=1.5)
+
+
+def test_a_shaft_that_turns_faster_than_was_set_is_seen():
+    time = np.arange(12800) / RATE
+    assert angle_summary(2.2 * time, 2.0, RATE)["speed"] == pytest.approx(np.log(1.1), abs=1e-6)
+    assert angle_summary(-2.2 * time, -2.0, RATE)["speed"] == pytest.approx(np.log(1.1), abs=1e-6)
+
+
+def test_a_channel_that_is_missing_has_no_numbers(recording, numbers_of):
+    whole = numbers_of(recording)
+    for kinds in (("torque",), ("pressure",), ("torque", "pressure"), ("acceleration", "angle")):
+        numbers = numbers_of(only(recording, *kinds))
+        heads = {name.split("_")[0] for name in numbers}
+        derived = {"contact"} if "torque" in kinds else set()
+        assert heads == set(kinds) | derived
+        assert set(numbers) <= set(whole)

@@ -1,0 +1,47 @@
+"""How much closes, and with what certainty."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share
+from noise.diagnosis.fit.pattern_search import pattern_search
+
+squares = st.lists(st.floats(0.2, 400.0), min_size=1, max_size=6).map(np.array)
+
+
+@given(squares, st.floats(0.0, 1.0))
+def test_an_interval_holds_its_share(before, kept):
+    after = before * kept
+    share = closed_share(before, after)
+    interval = closed_interval(Scores(before, before, after))
+    assert (share is None) == (interval is None)
+    if share is not None:
+        low, high = interval
+        assert low <= 1.0 <= high
+        assert share <= high
+
+
+def test_more_recordings_make_an_interval_narrower():
+    few, many = (
+        closed_interval(Scores(np.full(n, 25.0), np.full(n, 20.0), np.full(n, 1.0)))
+        for n in (1, 16)
+    )
+    assert many[1] - many[0] < few[1] - few[0]
+
+
+def test_nothing_closes_where_there_is_no_gap():
+    assert closed_share(np.ones(3), np.ones(3)) is None
+    assert closed_interval(Scores(np.ones(3), np.ones(3), np.ones(3))) is None
+
+
+def test_a_search_walks_over_steps_and_stays_within_what_is_finite():
+    def cost(x):
+        return float("inf") if x[0] > 2.0 else float(np.floor(10.0 * abs(x[0] - 1.6)) + abs(x[1]))
+
+    found, least = pattern_search(cost, np.array([0.0, 0.5]), np.array([0.5, 0.0]), (1.0, 0.5, 0.2))
+    assert found[0] == pytest.approx(1.6, abs=0.11)
+    assert found[1] == 0.5
+    assert least < 2.0

@@ -1,0 +1,310 @@
+"""What ``bushing-noise diagnose`` answers: files, keys, verdicts; own effects."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+
+from models.condition import FIXED
+from noise.cli import main
+from noise.commands.user_effects import effect_library
+from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.fit.own import with_own
+from noise.diagnosis.outcome import EffectFinding, as_json
+from noise.diagnosis.run import diagnose
+from sim.effects import EFFECTS
+from tests.helpers.made_diagnoses import one_effect
+from tests.helpers.small_rigs import RIG_FILE, at, only, run, write_case
+
+KEYS = {
+    "verdict", "equivalent", "location", "stages", "effects", "parameters", "next_measurement",
+    "held_out", "seconds",
+}  # fmt: skip
+LOCATION = {"stage", "channels", "band_hz", "phase", "conditions", "p_value"}
+EFFECT = {
+    "name", "stage", "probability", "parameters", "gap_before", "gap_recalibrated", "gap_after",
+    "gap_floor", "closed", "closed_low", "closed_high", "closed_by_effect",
+}  # fmt: skip
+STAGES = ["drive", "friction", "structure", "radiation", "measurement"]
+
+RECTIFIER = """
+import numpy as np
+
+from sim.effects.effect import Effect, Stage
+from sim.parameters import Parameter
+
+
+def sensors(signals, rate, form, values, rng):
+    def half(x):
+        away = x - x.mean()
+        return x.mean() + (1.0 - values["share"]) * away + values["share"] * np.abs(away)
+
+    names = ("torque", "acceleration", "pressure")
+    return signals | {name: half(signals[name]) for name in names}
+
+
+SHARE = {"share": Parameter(0.2, "", 0.0, 1.0, "of all signals that is rectified")}
+EFFECT = Effect("rectifier", Stage.MEASUREMENT, ("plain",), SHARE, "share", sensors=sensors)
+"""
+
+CONDITIONS = [at(v, FIXED) for v in (1.0, 1.6, 1.6, 2.5)]
+
+
+def _recordings(*effects, conditions=CONDITIONS, library=EFFECTS):
+    return [run(c, *effects, seed=60 + i, library=library) for i, c in enumerate(conditions)]
+
+
+def _told(capsys, *arguments, code=0):
+    assert main(["diagnose", *map(str, arguments)]) == code
+    out, err = capsys.readouterr()
+    assert "Traceback" not in err
+    return json.loads(out)
+
+
+def _as_the_contract_has_it(told):
+    assert set(told) >= KEYS
+    assert list(told["stages"]) == STAGES
+    for stage in told["stages"].values():
+        assert set(stage) >= {"gap", "share", "p_value"}
+        assert 0.0 <= stage["share"] <= 1.0
+        assert 0.0 < stage["p_value"] <= 1.0
+    assert told["location"] is None or set(told["location"]) >= LOCATION
+    assert told["effects"]
+    for effect in told["effects"]:
+        assert set(effect) >= EFFECT
+        assert effect["stage"] in STAGES
+        assert 0.0 <= effect["probability"] <= 1.0
+    chances = [effect["probability"] for effect in told["effects"]]
+    assert chances == sorted(chances, reverse=True)
+    assert isinstance(told["next_measurement"], str)
+    assert told["seconds"] > 0.0
+    for low, high in told["parameters"].values():
+        assert 0.0 < low <= high
+    text = json.dumps(told)
+    assert "NaN" not in text
+    assert "Infinity" not in text
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return _recordings()
+
+
+def test_the_quick_answer_has_the_contracts_keys(plain, tmp_path, capsys):
+    data, rig = write_case(tmp_path, plain)
+    told = _told(capsys, data, "--rig", rig, "--quick")
+    _as_the_contract_has_it(told)
+    assert told["held_out"] == []
+    assert all(effect["closed"] is None for effect in told["effects"])
+
+
+def test_the_whole_answer_has_the_contracts_keys_and_a_page(tmp_path, capsys):
+    clipped = _recordings(("clipping", {"amount": 0.7, "pressure": 1.0, "torque": 0.0,
+                                        "acceleration": 0.0}))  # fmt: skip
+    data, rig = write_case(tmp_path, clipped)
+    out = tmp_path / "not" / "there" / "yet"
+    assert main(["diagnose", str(data), "--rig", str(rig), "--out", str(out)]) == 0
+    printed = capsys.readouterr().out.split()
+    assert printed == [str(out / "report.html"), str(out / "diagnosis.json")]
+    told = json.loads((out / "diagnosis.json").read_text())
+    _as_the_contract_has_it(told)
+    assert told["held_out"]
+    assert set(told["held_out"]) < {f"run{i:02d}.wav" for i in range(1, 5)}
+    for effect in told["effects"]:
+        if effect["closed"] is not None:
+            assert effect["gap_floor"] == 1.0
+            before, after = effect["gap_before"], max(effect["gap_after"], 1.0)
+            assert effect["closed"] == pytest.approx((before - after) / (before - 1.0), abs=2e-3)
+            assert effect["closed_low"] <= effect["closed"] + 1e-3
+            assert effect["closed"] <= effect["closed_high"] + 1e-3
+    assert "<html" in (out / "report.html").read_text()[:200].lower()
+
+
+def test_clipping_of_the_sound_is_a_gap_of_its_sensor(tmp_path):
+    values = {"amount": 0.7, "pressure": 1.0, "torque": 0.0, "acceleration": 0.0}
+    data, rig = write_case(tmp_path, _recordings(("clipping", values)))
+    found = diagnose(data, rig, quick=True)
+    gaps = {stage: finding.gap for stage, finding in found.stages.items()}
+    assert max(gaps, key=gaps.get) == "measurement"
+    assert found.stages["measurement"].share > 0.5
+
+
+def test_a_plain_rig_has_less_of_a_gap_than_one_with_an_effect(plain, tmp_path):
+    ill = _recordings(("velocity_weakening", {"share": 0.4, "speed": 5.0}))
+    gaps = []
+    for name, recordings in (("plain", plain), ("ill", ill)):
+        data, rig = write_case(tmp_path / name, recordings)
+        gaps.append(diagnose(data, rig, quick=True))
+    assert gaps[0].gap < gaps[1].gap
+    assert gaps[0].p_value > gaps[1].p_value
+    assert gaps[0].probabilities["none"] > gaps[1].probabilities["none"]
+
+
+def test_the_same_call_gives_the_same_answer(plain, tmp_path, capsys):
+    data, rig = write_case(tmp_path, plain)
+    one, other = (_told(capsys, data, "--rig", rig, "--quick", "--seed", "3") for _ in range(2))
+    assert one | {"seconds": 0} == other | {"seconds": 0}
+
+
+def test_the_order_of_files_does_not_count(plain, tmp_path, capsys):
+    data, rig = write_case(tmp_path, plain)
+    files = sorted(data.glob("*.wav"))
+    one = _told(capsys, *files, "--rig", rig, "--quick")
+    other = _told(capsys, *files[::-1], "--rig", rig, "--quick")
+    assert one["verdict"] == other["verdict"]
+    assert one["probabilities"] == pytest.approx(other["probabilities"], abs=0.02)
+
+
+@pytest.mark.parametrize(
+    "kinds", [("pressure",), ("torque", "acceleration", "pressure"), ("torque",)]
+)
+def test_fewer_signals_are_answered_to_the_end(tmp_path, capsys, kinds):
+    ill = _recordings(
+        ("velocity_weakening", {"share": 0.4, "speed": 5.0}), conditions=CONDITIONS[1:]
+    )
+    data, rig = write_case(tmp_path, [only(r, *kinds) for r in ill])
+    told = _told(capsys, data, "--rig", rig)
+    _as_the_contract_has_it(told)
+    assert any(note.startswith("no ") for note in told["notes"])
+    assert told["next_measurement"].startswith("record ") or not told["verdict"]
+
+
+def test_one_recording_is_answered_to_the_end(tmp_path, capsys):
+    ill = _recordings(
+        ("velocity_weakening", {"share": 0.4, "speed": 5.0}), conditions=CONDITIONS[3:]
+    )
+    data, rig = write_case(tmp_path, ill)
+    told = _told(capsys, data, "--rig", rig)
+    _as_the_contract_has_it(told)
+    assert told["held_out"] == ["run01.wav"]
+
+
+def test_a_shaft_that_turns_backwards_is_answered_alike(plain, tmp_path, capsys):
+    backwards = [
+        replace(r, samples=-r.samples, condition=replace(r.condition, speed=-r.condition.speed))
+        for r in plain
+    ]
+    answers = []
+    for name, recordings in (("on", plain), ("back", backwards)):
+        data, rig = write_case(tmp_path / name, recordings)
+        answers.append(_told(capsys, data, "--rig", rig, "--quick"))
+    assert answers[0]["verdict"] == answers[1]["verdict"]
+    friction = [a["stages"]["friction"]["gap"] for a in answers]
+    assert friction[1] == pytest.approx(friction[0], rel=0.2)
+
+
+def test_what_the_rig_file_lists_is_no_finding(tmp_path, capsys):
+    recordings = _recordings(("velocity_weakening", {"form": "exponential", "share": 0.35,
+                                                     "speed": 5.0}))  # fmt: skip
+    spec = 'effects = ["velocity_weakening:form=exponential,share=0.35,speed=5"]'
+    gaps = {}
+    for name, text in (("lacks", RIG_FILE), ("lists", RIG_FILE.replace("effects = []", spec))):
+        data, rig = write_case(tmp_path / name, recordings, text)
+        gaps[name] = _told(capsys, data, "--rig", rig, "--quick")
+    assert gaps["lists"]["probabilities"]["velocity_weakening"] == 0.0
+    assert "velocity_weakening" not in gaps["lists"]["verdict"]
+    assert (
+        gaps["lists"]["stages"]["friction"]["gap"]
+        < 0.5 * gaps["lacks"]["stages"]["friction"]["gap"]
+    )
+
+
+@pytest.fixture
+def alarmed(monkeypatch):
+    """A posterior that finds something to explain everywhere, so that all is fitted."""
+    shipped = load_posterior()
+    monkeypatch.setattr(
+        "noise.diagnosis.diagnose.load_posterior", lambda: replace(shipped, alarm=2.0)
+    )
+
+
+def test_an_effect_of_the_users_own_takes_the_verdict_when_it_is_the_cause(
+    alarmed, tmp_path, capsys
+):
+    mine = tmp_path / "rectifier.py"
+    mine.write_text(RECTIFIER)
+    library = effect_library(mine)
+    recordings = _recordings(("rectifier", {"share": 0.8}), library=library)
+    data, rig = write_case(tmp_path, recordings)
+    told = _told(capsys, data, "--rig", rig, "--effects", mine)
+    _as_the_contract_has_it(told)
+    assert told["verdict"] == ["rectifier"]
+    first = told["effects"][0]
+    assert (first["name"], first["stage"]) == ("rectifier", "measurement")
+    assert first["parameters"]["share"] == pytest.approx(0.8, abs=0.2)
+    assert first["closed"] > 0.5
+    assert told["location"]["stage"] == "measurement"
+
+
+def test_an_effect_of_the_users_own_that_is_not_the_cause_is_listed_behind(
+    alarmed, tmp_path, capsys
+):
+    mine = tmp_path / "rectifier.py"
+    mine.write_text(RECTIFIER)
+    weak = _recordings(
+        ("velocity_weakening", {"share": 0.4, "speed": 5.0}), conditions=CONDITIONS[:3]
+    )
+    data, rig = write_case(tmp_path, weak)
+    told = _told(capsys, data, "--rig", rig, "--effects", mine)
+    assert "rectifier" not in told["verdict"]
+    assert "rectifier" in [effect["name"] for effect in told["effects"]]
+
+
+def test_an_own_effect_that_the_rig_file_lists_is_no_finding(tmp_path, capsys):
+    mine = tmp_path / "rectifier.py"
+    mine.write_text(RECTIFIER)
+    recordings = _recordings(("rectifier", {"share": 0.8}), library=effect_library(mine))
+    listed = RIG_FILE.replace("effects = []", 'effects = ["rectifier:share=0.8"]')
+    chances = []
+    for name, text in (("lacks", RIG_FILE), ("lists", listed)):
+        data, rig = write_case(tmp_path / name, recordings, text)
+        told = _told(capsys, data, "--rig", rig, "--effects", mine, "--quick")
+        assert "rectifier" not in told["verdict"]
+        chances.append(told["probabilities"]["none"])
+    assert chances[1] > chances[0]
+
+
+def _gaps(name, after, closed=0.9):
+    return EffectFinding(name, "measurement", 0.0, gap_before=8.0, gap_recalibrated=6.0,
+                         gap_after=after, gap_floor=1.0, closed=closed)  # fmt: skip
+
+
+def test_an_own_effect_takes_over_only_where_it_closes_clearly_more():
+    before = one_effect()
+    (name,) = before.verdict
+    for mine, taken in ((1.2, True), (2.9, False), (7.0, False)):
+        findings = {name: _gaps(name, 3.0), "mine": _gaps("mine", mine)}
+        after = with_own(before, findings, ["mine"])
+        assert (after.verdict == ("mine",)) == taken
+        if taken:
+            assert after.probabilities["mine"] == pytest.approx(0.9)
+            assert after.probabilities[name] <= 0.1 * before.probabilities[name] + 1e-9
+
+
+def test_an_own_effect_that_closes_a_small_gap_is_as_probable_as_what_it_closes():
+    small = replace(_gaps("mine", 1.0, closed=None), gap_before=1.4, gap_recalibrated=1.4)
+    after = with_own(one_effect(), {"mine": small}, ["mine"])
+    assert after.verdict == ("mine",)
+    assert after.probabilities["mine"] == pytest.approx(1.0)
+
+
+def test_where_there_is_no_gap_an_own_effect_has_none_to_close():
+    nothing = replace(one_effect(), verdict=())
+    assert with_own(nothing, {"mine": _gaps("mine", 1.0, closed=None)}, ["mine"]) is nothing
+    assert with_own(one_effect(), {}, ["mine"]).verdict == one_effect().verdict
+
+
+def test_an_own_effect_that_closes_a_gap_which_the_first_answer_missed_is_named():
+    nothing = replace(one_effect(), verdict=())
+    assert with_own(nothing, {"mine": _gaps("mine", 1.2)}, ["mine"]).verdict == ("mine",)
+    assert with_own(nothing, {"mine": _gaps("mine", 5.5)}, ["mine"]) is nothing
+
+
+def test_numbers_that_are_none_become_null():
+    strange = replace(one_effect(), gap=math.nan, p_value=math.inf)
+    told = json.loads(json.dumps(as_json(strange), allow_nan=False))
+    assert told["gap"] is None
+    assert told["p_value"] is None

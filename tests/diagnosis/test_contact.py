@@ -1,0 +1,169 @@
+"""What a contact did, and what it did otherwise, is in the numbers that are named after it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.condition import FIXED
+from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
+from noise.diagnosis.evidence.reconstruction import reconstruct
+from noise.diagnosis.evidence.summary import case_table, summary
+from noise.diagnosis.simulated.paths import ways
+from sim.bushing import lumped_bushing
+from tests.helpers.small_rigs import RATE, RIG, at, only, run
+
+FIT, SECONDS = RIG.fits[0], 0.6
+
+
+def _numbers(*effects, speed=1.5, seed=0, rig=RIG):
+    """Summarise a run with the clamp bolted down, which has one cycle after the other."""
+    recording = run(at(speed, FIXED), *effects, seed=seed, seconds=SECONDS, rig=rig)
+    torque = recording["torque"]
+    bushing = lumped_bushing(RIG, 0.279e-3, FIXED)
+    found = reconstruct(torque, np.full(torque.size, speed), RATE, bushing)
+    return contact_summary(found, FIT, speed)
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return _numbers()
+
+
+def test_a_plain_contact_has_the_rig_files_torques(plain):
+    assert plain["kinetic"] == pytest.approx(1.0, abs=0.03)
+    assert plain["peak"] == pytest.approx(1.0, abs=0.04)
+    assert plain["peak_spread"] < 0.02
+    assert plain["kinetic_drift"] == pytest.approx(0.0, abs=0.02)
+    for i in range(3, 6):
+        assert plain[f"law_down_{i}"] == pytest.approx(1.0, abs=0.05)
+    assert plain["stiffness_all"] == pytest.approx(1.0, abs=0.1)
+
+
+def test_slips_come_as_often_as_the_cycle_says(plain):
+    # the torque's fall is wound up again by the shaft
+    fall = 2.0 * (FIT.critical_torque - FIT.kinetic_torque)
+    winding = fall / (FIT.elastomer_stiffness * 1.5)
+    interval = math.exp(plain["interval"])
+    assert 0.8 * winding < interval < 1.4 * winding
+    assert math.exp(plain["slip_rate"]) == pytest.approx(1.0 / interval, rel=0.15)
+
+
+def test_a_contact_that_gives_before_it_breaks_creeps_when_the_torque_is_high(plain):
+    # the surface of a true stick stays where it is, at any torque
+    creeping = _numbers(("partial_slip", {"share": 0.8}))
+    assert abs(plain["creep_up_4"]) < 0.15
+    assert creeping["creep_up_4"] > plain["creep_up_4"] + 0.1
+    assert creeping["creep_up_5"] > creeping["creep_up_3"] + 0.2
+    assert creeping["stiffness_late"] < creeping["stiffness_early"] - 0.2
+    assert creeping["kinetic"] == pytest.approx(plain["kinetic"], abs=0.02)
+
+
+@pytest.mark.parametrize("form", ["exponential", "rational", "gaussian"])
+def test_a_weakening_contact_has_less_torque_at_high_speed(plain, form):
+    weak = _numbers(("velocity_weakening", {"form": form, "share": 0.3, "speed": 4.0}))
+    fast = [i for i in range(2, 7) if math.isfinite(weak[f"law_down_{i}"])]
+    assert len(fast) >= 3
+    for i in fast:
+        # from half to all of the share is lost beyond the speed that goes with it
+        assert -0.35 < weak[f"law_down_{i}"] - 1.0 < -0.1
+    assert weak["kinetic"] < plain["kinetic"] - 0.1
+    assert weak["trough"] < plain["trough"]
+
+
+def test_a_strengthening_contact_has_more_torque_at_high_speed(plain):
+    strong = _numbers(("velocity_strengthening", {"gain": 0.05, "speed": 10.0}))
+    for i in (3, 4):
+        assert strong[f"law_up_{i}"] > plain[f"law_up_{i}"] + 0.02
+
+
+def test_scatter_of_the_critical_torque_is_scatter_of_the_peaks(plain):
+    scattered = _numbers(("critical_torque_scatter", {"scatter": 0.1, "correlation": 0.0}))
+    assert scattered["peak_spread"] > 3 * plain["peak_spread"]
+    assert scattered["interval_spread"] > plain["interval_spread"] + 0.05
+    assert scattered["kinetic_spread"] < 0.05  # sliding is as it was
+
+
+def test_a_stiffer_elastomer_than_the_rig_file_has_is_seen_in_stick(plain):
+    stiff = replace(RIG, fits=(replace(FIT, elastomer_stiffness=1.15 * FIT.elastomer_stiffness),))
+    found = _numbers(rig=stiff)
+    assert found["stiffness_all"] / plain["stiffness_all"] == pytest.approx(1.15, abs=0.05)
+    assert found["kinetic"] == pytest.approx(plain["kinetic"], abs=0.02)
+
+
+@pytest.mark.parametrize("factor", [0.85, 1.15])
+def test_another_kinetic_torque_is_read_off_the_slips(plain, factor):
+    other = replace(RIG, fits=(replace(FIT, kinetic_torque=factor * FIT.kinetic_torque),))
+    found = _numbers(rig=other)
+    assert found["kinetic"] / plain["kinetic"] == pytest.approx(factor, abs=0.02)
+
+
+def test_a_sliding_contact_has_no_cycle(plain):
+    sliding = _numbers(speed=30.0)
+    assert "peak" not in sliding
+    assert sliding["sliding_torque"] == pytest.approx(1.0, abs=0.05)
+    assert "sliding_torque" not in plain
+
+
+def test_a_shaft_that_turns_the_other_way_makes_the_same_contact():
+    # all of the rig is odd: torque and motion change sign together
+    condition = at(2.0)
+    recording = run(condition, seconds=SECONDS)
+    samples = recording.samples * -1.0
+    mirrored = replace(recording, samples=samples, condition=at(-2.0))
+    found = ways(RIG, 0.279e-3, 2214.0)
+    one, other = summary(recording, RIG, found), summary(mirrored, RIG, found)
+    contact = [name for name in one if name.startswith(("contact", "angle"))]
+    assert len(contact) > 60
+    for name in contact:
+        assert other[name] == pytest.approx(one[name], abs=1e-6, nan_ok=True), name
+
+
+def test_slips_begin_before_they_end():
+    recording = run(at(3.0), seconds=SECONDS)
+    torque = recording["torque"]
+    found = reconstruct(
+        torque, np.full(torque.size, 3.0), RATE, lumped_bushing(RIG, 0.279e-3, 2214.0)
+    )
+    starts, ends = slip_starts(found, 3.0)
+    assert starts.size == ends.size > 10
+    assert (ends > starts).all()
+    assert (starts[1:] > ends[:-1]).all()
+
+
+def test_a_table_has_a_row_a_recording_and_no_infinite_number():
+    recordings = [run(at(v), seed=i) for i, v in enumerate((1.0, 2.0, 2.0))]
+    table = case_table(recordings, RIG)
+    assert table.measured.shape == table.nominal.shape == table.scatter.shape
+    assert table.measured.shape == (3, len(table.names))
+    assert list(table.names) == sorted(set(table.names))
+    for rows in (table.measured, table.nominal, table.scatter):
+        assert not np.isinf(rows).any()
+        assert np.isfinite(rows).mean() > 0.8
+    assert np.array_equal(table.nominal[1], table.nominal[2], equal_nan=True)
+    # repeats of the rig file itself are what they are compared with
+    z = (table.measured - table.nominal) / (table.scatter + 0.02 * np.abs(table.nominal) + 1e-3)
+    assert np.nanmedian(np.abs(z)) < 1.5
+
+
+def test_recordings_of_other_rates_and_lengths_are_compared_with_their_own_repeats():
+    mixed = [run(at(2.0), seed=0), run(at(2.0), seed=1, rate=48e3, seconds=0.6)]
+    both = case_table(mixed, RIG)
+    alone = case_table(mixed[1:], RIG)
+    place = [both.names.index(name) for name in alone.names]
+    assert np.allclose(both.nominal[1, place], alone.nominal[0], equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    "kinds", [("pressure",), ("torque", "pressure"), ("acceleration", "angle")]
+)
+def test_repeats_are_listened_to_through_the_same_channels(kinds):
+    table = case_table([only(run(at(2.0)), *kinds)], RIG)
+    apart = np.array([not name.startswith("contact") for name in table.names])
+    assert np.isfinite(table.measured[:, apart]).all()
+    assert np.isfinite(table.nominal[:, apart]).all()
+    heads = {name.split("_")[0] for name in table.names}
+    assert heads == set(kinds) | ({"contact"} if "torque" in kinds else set())

@@ -1,0 +1,102 @@
+"""What is linear, added or a curve is estimated from recordings, and found in others."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from models.condition import FIXED
+from models.rig import LawSpec
+from noise.diagnosis.fit.bench import Bench, Model
+from noise.diagnosis.fit.forms.drawn import drawn_forms
+from noise.diagnosis.fit.forms.estimated import estimated_forms
+from noise.diagnosis.fit.forms.transfer import Noise, estimated_transfer, filtered_by
+from noise.diagnosis.simulated.impulse import impulse_of
+from noise.diagnosis.simulated.paths import Way
+from sim.effects import EFFECTS
+from tests.helpers.small_rigs import RIG, at, run
+
+SPEEDS = (1.0, 1.6, 2.5)
+
+CASES = {
+    "background_noise": ({"form": "pink", "amount": 20.0}, 2214.0),
+    "beam_modes": ({"amount": 8.0, "frequency": 1000.0, "damping_ratio": 0.03}, 2214.0),
+    "clipping": ({"amount": 0.6, "torque": 0.0}, 2214.0),
+    "gain_error": ({"form": "constant", "error": 0.8, "torque": 0.0, "pressure": 0.0}, 2214.0),
+    "mains_hum": ({"form": "harmonics", "amount": 8.0, "frequency": 50.05}, 2214.0),
+    "mount_resonance": ({"frequency": 2500.0}, 2214.0),
+    "plate_modes": ({"form": "even", "amount": 4.0, "frequency": 300.0}, 2214.0),
+    "room_reflections": ({"form": "shoebox", "amount": 10.0}, 2214.0),
+    "slip_pulse": ({"amplitude": 250.0, "threshold": 0.0}, 2214.0),
+    "speed_fluctuation": ({"form": "random", "depth": 0.25}, FIXED),
+}
+
+
+@cache
+def _bench(name):
+    values, support = CASES[name]
+    runs = tuple(run(at(v, support), (name, values), seed=40 + i) for i, v in enumerate(SPEEDS))
+    return Bench(RIG, runs, EFFECTS, None, (), np.empty(0))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_form_that_was_estimated_closes_much_of_what_the_true_one_does_where_it_is_not_from(name):
+    bench = _bench(name)
+    left = []
+    for form in estimated_forms(bench, [0, 2], name):
+        bench.forms[name, form.name] = form
+        left += [float(bench.misfits(Model(effects=(spec,)), [1])[0]) for spec in form.specs()]
+    truth = Model(effects=(LawSpec(name, CASES[name][0]),))
+    before, after = (float(bench.misfits(model, [1])[0]) for model in (Model(), truth))
+    assert before > after
+    assert before - min(left) > 0.5 * (before - after)
+
+
+def test_what_the_contact_does_is_not_estimated():
+    assert estimated_forms(_bench("gain_error"), [0, 2], "velocity_weakening") == []
+
+
+def test_a_drawn_form_is_the_same_each_time_and_nothing_at_strength_0():
+    bench = _bench("gain_error")
+    for form in drawn_forms("plate_modes", 2, 0):
+        bench.forms["plate_modes", form.name] = form
+        off = Model(effects=(form.spec(strength=0.0),))
+        assert bench.misfits(off, [1]) == pytest.approx(bench.misfits(Model(), [1]))
+    form = drawn_forms("clipping", 1, 3)[0]
+    assert form.active({}).values == form.active({"form": form.name}).values
+
+
+def test_a_form_says_what_it_is_not_made_of():
+    (form,) = drawn_forms("clipping", 1, 0)
+    with pytest.raises(Exception, match="has no 'speed'; it has strength"):
+        form.active({"speed": 1.0})
+
+
+def test_a_transfer_is_found_beneath_noise_and_not_where_there_was_nothing():
+    rng, rate = np.random.default_rng(0), 8e3
+    x = filtered_by(rng.standard_normal(16000), rate, _low_pass())
+    r = 0.5 * np.roll(x, 8)
+    pairs = [(x, r + 0.02 * rng.standard_normal(x.size))]
+    found = estimated_transfer(pairs, rate, 0.02, noise=[Noise(0.02)])
+    assert abs(found.at(np.array([300.0]))[0]) == pytest.approx(0.5, rel=0.1)
+    assert abs(found.at(np.array([3000.0]))[0]) < 0.2
+
+
+def _low_pass():
+    from noise.diagnosis.fit.forms.transfer import Transfer
+
+    frequency = np.linspace(0.0, 4e3, 401)
+    return Transfer(frequency, (frequency < 1000.0).astype(complex))
+
+
+def test_an_impulse_response_has_the_levels_of_its_way_within_the_table():
+    f = np.arange(0.0, 10e3 + 1.0, 2.5)
+    x = f / 700.0
+    way = Way(f, 20.0 * -(x**2) / (1.0 - x**2 + 0.04j * x))
+    rate, n = 96e3, 24000
+    taps = impulse_of(way, rate, n)
+    at_lines = np.array([80.0, 200.0, 690.0, 2000.0, 6000.0])
+    got = np.exp(-2j * np.pi * np.outer(at_lines, np.arange(n)) / rate) @ taps
+    assert np.abs(got) == pytest.approx(np.abs(way.at(at_lines)), rel=0.05)

@@ -1,0 +1,157 @@
+"""Stage, channel, band and phase of a difference are those of the numbers that differ."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from noise.diagnosis.causes.location import (
+    STAGES,
+    differences,
+    locate,
+    null_maxima,
+    stage_findings,
+    stage_of,
+)
+from noise.diagnosis.evidence.path_summary import BAND_EDGES
+from sim.effects import EFFECTS
+from tests.helpers.made_posteriors import MOVES, NAMES, made_posterior, made_table
+from tests.helpers.small_rigs import table_of
+
+
+@pytest.fixture(scope="module")
+def posterior():
+    return made_posterior()
+
+
+def _table(changes, speeds=(1.0, 2.0, 3.0, 4.0)):
+    measured = np.random.default_rng(9).normal(size=(len(speeds), len(NAMES)))
+    for name, size in changes.items():
+        measured[:, NAMES.index(name)] += size
+    return table_of(NAMES, measured, speeds=list(speeds))
+
+
+@pytest.mark.parametrize(("cause", "names"), MOVES.items())
+def test_the_stage_is_that_of_the_cause(posterior, cause, names):
+    findings = stage_findings(_table(dict.fromkeys(names, 15.0)), posterior)
+    assert tuple(findings) == STAGES
+    worst = max(findings, key=lambda stage: findings[stage].gap)
+    assert worst == EFFECTS[cause].stage.value
+    assert findings[worst].share > 0.9
+    assert findings[worst].p_value == min(f.p_value for f in findings.values())
+    assert sum(f.share for f in findings.values()) == pytest.approx(1.0)
+
+
+def test_without_a_difference_no_stage_stands_out(posterior):
+    rng = np.random.default_rng(77)
+    p = [f.p_value for _ in range(40) for f in stage_findings(made_table(rng), posterior).values()]
+    # five looks a case, all of them corrected: at most that share of cases below 0.2 or so
+    assert np.mean(np.array(p).reshape(40, -1).min(axis=1) < 0.2) < 0.4
+    assert max(p) <= 1.0
+    assert min(p) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "channels", "band", "phase"),
+    [
+        ("acceleration_gain_5", ("acceleration",), (BAND_EDGES[4], BAND_EDGES[5]), "all"),
+        ("pressure_gain_9", ("pressure",), (BAND_EDGES[8], BAND_EDGES[9]), "all"),
+        ("contact_creep_up_4", ("torque",), (0.0, 1800.0), "stick"),
+        ("contact_law_down_3", ("torque",), (0.0, 1800.0), "slip"),
+        ("contact_peak_spread", ("torque",), (0.0, 1800.0), "cycle"),
+        ("angle_speed_spread", ("angle",), None, "all"),
+    ],
+)
+def test_channel_band_and_phase_are_those_of_the_number(posterior, name, channels, band, phase):
+    found = locate(_table({name: 20.0}), posterior)
+    assert found.stage == stage_of(name)
+    assert found.channels == channels
+    assert band is None or found.band == pytest.approx(band)
+    assert found.phase == phase
+    assert found.conditions == "all"
+
+
+def test_a_stage_that_is_named_is_looked_at_alone(posterior):
+    table = _table({"pressure_gain_9": 30.0, "contact_creep_up_4": 10.0})
+    assert locate(table, posterior).stage == "radiation"
+    inside = locate(table, posterior, "friction")
+    assert (inside.stage, inside.channels, inside.phase) == ("friction", ("torque",), "stick")
+
+
+def test_what_shows_at_speed_alone_is_said_to(posterior):
+    measured = np.random.default_rng(3).normal(size=(4, len(NAMES)))
+    column = NAMES.index("contact_law_down_3")
+    measured[:, column] = [0.1, -0.1, 30.0, 34.0]
+    fast = table_of(NAMES, measured, speeds=[1.0, 2.0, 4.0, 5.0])
+    assert locate(fast, posterior).conditions == "speed_rad_s >= 3"
+    slow = table_of(NAMES, measured, speeds=[5.0, 4.0, 2.0, 1.0])
+    assert locate(slow, posterior).conditions == "speed_rad_s < 3"
+
+
+def test_the_null_is_the_largest_of_each_case_in_order():
+    rng = np.random.default_rng(4)
+    tables = [made_table(rng) for _ in range(30)]
+    null = null_maxima(tables, NAMES, np.ones(len(NAMES)))
+    assert null.shape == (30, len(STAGES))
+    assert (np.diff(null, axis=0) >= 0).all()
+    assert (null >= 0).all()
+
+
+def test_a_stage_without_numbers_has_no_gap(posterior):
+    measured = np.random.default_rng(3).normal(size=(4, 2))
+    findings = stage_findings(table_of(("pressure_gain_9", "pressure_top"), measured), posterior)
+    assert findings["friction"].gap == 0.0
+    assert findings["friction"].p_value == 1.0
+    assert np.isfinite([f.gap for f in findings.values()]).all()
+
+
+def test_the_loudness_of_a_channel_is_no_error_of_its_way_where_the_torque_is_known():
+    names = ("contact_peak", "pressure_band_4", "pressure_gain_4")
+    null = replace(made_posterior(), names=names, scale=np.ones(3))
+    measured = np.random.default_rng(3).normal(size=(4, 3))
+    measured[:, :2] += 15.0
+    assert stage_findings(table_of(names, measured), null)["radiation"].gap < 3.0
+    deaf = table_of(names[1:], measured[:, 1:])  # without a torque it is all there is
+    assert stage_findings(deaf, null)["radiation"].gap > 10.0
+
+
+def test_a_gap_is_one_between_repeats_and_bounded_where_a_number_hardly_scatters(posterior):
+    rng = np.random.default_rng(5)
+    gaps = [f.gap for _ in range(40) for f in stage_findings(made_table(rng), posterior).values()]
+    assert np.median([gap for gap in gaps if gap > 0.0]) == pytest.approx(1.0, abs=0.25)
+    findings = stage_findings(_table({"pressure_gain_9": 1e6}), posterior)
+    assert findings["radiation"].gap == 100.0
+
+
+@pytest.mark.parametrize(
+    ("name", "stage"),
+    [
+        ("angle_speed_line", "drive"), ("contact_creep_up_1", "friction"),
+        ("torque_band_3", "friction"), ("torque_raw_hum_60", "measurement"),
+        ("acceleration_left_7", "structure"), ("acceleration_top", "measurement"),
+        ("pressure_ring_late", "radiation"), ("pressure_delay", "measurement"),
+        ("acceleration_dwell_top", "measurement"),
+    ],
+)  # fmt: skip
+def test_every_number_has_a_stage(name, stage):
+    assert stage_of(name) == stage
+
+
+def test_the_map_has_the_guilty_place_first_and_every_place_once(posterior):
+    places = differences(_table({"pressure_gain_9": 30.0}), posterior)
+    keys = [(p.stage, p.channels, p.band, p.phase) for p in places]
+    assert len(set(keys)) == len(keys)
+    first = places[0]
+    assert (first.stage, first.channels) == ("radiation", ("pressure",))
+    assert first.band == pytest.approx((BAND_EDGES[8], BAND_EDGES[9]))
+    p_values = [place.p_value for place in places]
+    assert p_values == sorted(p_values)
+    assert 0.0 < p_values[0] <= 1.0
+
+
+def test_without_a_cause_no_place_is_sure(posterior):
+    rng = np.random.default_rng(78)
+    least = [differences(made_table(rng), posterior)[0].p_value for _ in range(40)]
+    assert np.mean(np.array(least) < 0.2) < 0.4  # five stages' worth of looks, corrected

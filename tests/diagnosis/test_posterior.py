@@ -1,0 +1,276 @@
+"""The cause posterior: what it learns, how it is kept, and what it says."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from noise.classifier.trees import as_arrays
+from noise.diagnosis.cases.truth import Truth
+from noise.diagnosis.causes.equivalence import equivalent_pairs, next_measurement
+from noise.diagnosis.causes.posterior import CAUSES, calibrated, load_posterior, odds_features
+from noise.diagnosis.causes.verdict import verdict_of
+from noise.training.causes.fit import Known, causes_of, train_posterior, with_channels, with_fewer
+from sim.effects import EFFECTS
+from tests.helpers.made_posteriors import MOVES, NAMES, made_cases, made_posterior, made_table
+
+
+@pytest.fixture(scope="module")
+def posterior():
+    return made_posterior()
+
+
+def test_causes_are_the_effects_and_three_more():
+    assert set(CAUSES) == set(EFFECTS) | {"parameters", "unknown", "none"}
+    assert CAUSES[-1] == "none"
+
+
+@pytest.mark.parametrize("cause", [*MOVES, "parameters", "unknown", "none"])
+def test_a_cause_that_was_learned_is_the_most_probable(posterior, cause):
+    rng = np.random.default_rng(123)
+    for _ in range(5):
+        p = posterior.probabilities(made_table(rng, cause))
+        assert set(p) == set(CAUSES)
+        assert all(0.0 <= x <= 1.0 for x in p.values())
+        assert max(p, key=p.get) == cause
+
+
+def test_causes_that_are_not_at_work_are_improbable(posterior):
+    p = posterior.probabilities(made_table(np.random.default_rng(5), "clipping"))
+    assert max(p[name] for name in EFFECTS if name != "clipping") < 0.15
+
+
+def test_training_is_deterministic():
+    one, other = (train_posterior(made_cases(4, each=5), seed=4, n_rounds=10) for _ in range(2))
+    for name in ("scale", "weights", "null"):
+        assert np.array_equal(getattr(one, name), getattr(other, name))
+    for name in ("roots", "feature", "threshold", "children", "value"):
+        assert np.array_equal(getattr(one.trees, name), getattr(other.trees, name))
+    assert one.alarm == other.alarm
+
+
+def test_at_most_few_cases_without_a_cause_raise_the_alarm(posterior):
+    rng = np.random.default_rng(11)
+    tables = [made_table(rng) for _ in range(60)]
+    alarms = [bool(verdict_of(posterior.probabilities(t), posterior.alarm)) for t in tables]
+    assert np.mean(alarms) <= 0.05
+    assert 0.0 < posterior.alarm <= 0.5
+
+
+def test_a_posterior_comes_back_from_its_file(posterior, tmp_path):
+    path = tmp_path / "causes.npz"
+    posterior.save(path)
+    back = load_posterior(path)
+    assert back.names == posterior.names
+    assert back.alarm == posterior.alarm
+    assert dict(back.card) == dict(posterior.card)
+    table = made_table(np.random.default_rng(2), "beam_modes")
+    one, other = posterior.probabilities(table), back.probabilities(table)
+    assert other == one
+    again = tmp_path / "again.npz"
+    back.save(again)
+    assert load_posterior(again).probabilities(table) == other
+
+
+def _other(path, posterior, kind):
+    if kind == "text":
+        path.write_text("no archive")
+    elif kind == "empty":
+        path.write_bytes(b"")
+    elif kind == "arrays":
+        np.savez(path, x=np.zeros(3))
+    elif kind == "cut":
+        posterior.save(path)
+        path.write_bytes(path.read_bytes()[:2000])
+    elif kind == "folder":
+        path.mkdir()
+    else:
+        posterior.save(path)
+        with np.load(path) as file:
+            arrays = dict(file)
+        header = json.loads(str(arrays["header"]))
+        if kind == "causes":
+            header["causes"] = header["causes"][::-1]
+        elif kind == "format":
+            header["format"] = 99
+        elif kind == "header":
+            header = [1, 2]
+        elif kind == "loop":
+            arrays["children"] = np.zeros_like(arrays["children"])
+        elif kind == "pickled":
+            arrays["scale"] = np.array([{"a": 1}], dtype=object)
+        arrays["header"] = np.array(json.dumps(header))
+        np.savez(path, **arrays)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    ["text", "empty", "arrays", "cut", "folder", "causes", "format", "header", "loop", "pickled"],
+)
+def test_a_file_of_another_kind_is_refused_in_one_line(posterior, tmp_path, kind):
+    path = tmp_path / "other.npz"
+    _other(path, posterior, kind)
+    with pytest.raises(ParameterError) as refused:
+        load_posterior(path)
+    assert str(path) in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(ParameterError, match=r"nowhere\.npz: no such file"):
+        load_posterior(tmp_path / "nowhere.npz")
+
+
+def test_trees_of_several_causes_say_what_scikit_learn_says():
+    from sklearn.ensemble import HistGradientBoostingClassifier
+
+    rng = np.random.default_rng(0)
+    x = rng.normal(size=(300, 8))
+    models = [
+        HistGradientBoostingClassifier(max_iter=12, early_stopping=False).fit(x, wanted)
+        for wanted in (x[:, 0] > 0.0, x[:, 1] + x[:, 2] > 0.5)
+    ]
+    expected = np.stack([model.decision_function(x) for model in models], axis=1)
+    assert as_arrays(models).scores(x) == pytest.approx(expected, abs=1e-9)
+
+
+def test_more_votes_make_a_cause_more_probable():
+    weights = np.tile([0.0, 1.0, -0.3, -0.2], (len(CAUSES), 1))
+    low, high = np.full((1, len(CAUSES)), 0.2), np.full((1, len(CAUSES)), 0.2)
+    high[0, 3] = 0.6
+    before, after = calibrated(low, weights)[0], calibrated(high, weights)[0]
+    assert after[3] > before[3]
+    assert after[4] < before[4]  # as another one is stronger
+    sure = np.zeros((1, len(CAUSES)))
+    sure[0, 0] = 1e3
+    assert np.isfinite(odds_features(sure)).all()
+    assert np.isfinite(calibrated(sure, weights)).all()
+
+
+def test_causes_at_work_are_those_of_the_case():
+    pair = causes_of(Truth("pair", ("clipping", "beam_modes")))
+    assert {CAUSES[i] for i in np.flatnonzero(pair)} == {"clipping", "beam_modes"}
+    for kind in ("none", "parameters", "unknown"):
+        (one,) = np.flatnonzero(causes_of(Truth(kind, ("cogging",) * (kind == "unknown"))))
+        assert CAUSES[one] == kind
+
+
+@pytest.mark.parametrize(
+    ("channels", "left"),
+    [
+        (("pressure",), {"pressure_top"}),
+        (("torque",), {n for n in NAMES if n.startswith(("contact", "torque"))}),
+        (("pressure", "angle"), {"pressure_top", "angle_speed_spread"}),
+        (("torque", "acceleration", "pressure"), set(NAMES) - {"angle_speed_spread"}),
+    ],
+)  # fmt: skip
+def test_fewer_channels_leave_what_they_tell(channels, left):
+    table = made_table(np.random.default_rng(0))
+    fewer = with_channels(Known(table, Truth("none")), channels).table
+    known = {name for name, x in zip(NAMES, fewer.measured[0], strict=True) if np.isfinite(x)}
+    assert known == left
+
+
+def test_fewer_recordings_are_some_of_those_that_there_are():
+    rng = np.random.default_rng(0)
+    case = Known(made_table(rng), Truth("none"), 7)
+    sizes = set()
+    for _ in range(20):
+        fewer = with_fewer(case, rng)
+        assert fewer.rig == 7
+        rows = [case.table.measured.tolist().index(row) for row in fewer.table.measured.tolist()]
+        assert rows == sorted(set(rows))
+        assert fewer.table.conditions == tuple(case.table.conditions[i] for i in rows)
+        sizes.add(len(rows))
+    assert sizes == {3}  # of four, one is left out
+    three = replace(case, table=made_table(rng, n=3))
+    assert with_fewer(three, rng) is three
+
+
+def test_fewer_channels_leave_the_numbers_that_a_recording_without_them_has():
+    from noise.diagnosis.evidence.summary import case_table
+    from tests.helpers.small_rigs import RIG, at, only, run
+
+    recording = run(at(2.0))
+    whole = Known(case_table([recording], RIG), Truth("none"))
+    for kinds in (("pressure",), ("torque",), ("torque", "angle"), ("acceleration", "pressure")):
+        table = with_channels(whole, kinds).table
+        learned = {n for n, x in zip(table.names, table.measured[0], strict=True) if np.isfinite(x)}
+        met = {
+            n for n, x in zip(*_numbers(only(recording, *kinds)), strict=True) if np.isfinite(x)
+        }  # fmt: skip
+        assert learned ^ met <= {n for n in learned | met if n.startswith("contact")}
+
+
+def _numbers(recording):
+    from noise.diagnosis.evidence.summary import summary
+    from noise.diagnosis.simulated.paths import ways
+    from tests.helpers.small_rigs import RIG
+
+    found = summary(recording, RIG, ways(RIG, 0.279e-3, 2214.0))
+    return found.keys(), found.values()
+
+
+def _p(**given):
+    return dict.fromkeys(CAUSES, 0.0) | given
+
+
+@pytest.mark.parametrize(
+    ("p", "verdict"),
+    [
+        (_p(none=0.9, clipping=0.8), ()),
+        (_p(none=0.05, clipping=0.8), ()),
+        (_p(none=0.01, clipping=0.8), ("clipping",)),
+        (_p(none=0.01, clipping=0.2, beam_modes=0.1), ("clipping",)),
+        (_p(none=0.01, clipping=0.7, beam_modes=0.9), ("beam_modes", "clipping")),
+        (_p(none=0.01, clipping=0.7, parameters=0.9), ("parameters",)),
+        (_p(none=0.01, clipping=0.7, unknown=0.71), ("unknown",)),
+        (_p(none=0.01, clipping=0.9, unknown=0.71), ("clipping",)),
+        (
+            _p(none=0.0, clipping=0.9, beam_modes=0.8, plate_modes=0.7, mains_hum=0.6),
+            ("clipping", "beam_modes", "plate_modes"),
+        ),
+    ],
+)
+def test_the_verdict_follows_the_probabilities(p, verdict):
+    assert verdict_of(p, 0.05) == verdict
+
+
+def test_two_causes_as_probable_as_each_other_are_declared_alike():
+    p = _p(static_ageing=0.45, critical_torque_scatter=0.4, clipping=0.01)
+    ranked = sorted(p, key=lambda n: -p[n])
+    ranked = [n for n in ranked if n in EFFECTS]
+    assert equivalent_pairs(ranked, p, {"torque"}) == (
+        ("critical_torque_scatter", "static_ageing"),
+    )
+    sure = _p(static_ageing=0.95, critical_torque_scatter=0.9)  # a pair, both at work
+    ranked = sorted((n for n in sure if n in EFFECTS), key=lambda n: -sure[n])
+    assert equivalent_pairs(ranked, sure, {"torque"}) == ()
+    one = _p(static_ageing=0.95, critical_torque_scatter=0.1)
+    ranked = sorted((n for n in one if n in EFFECTS), key=lambda n: -one[n])
+    assert equivalent_pairs(ranked, one, {"torque"}) == ()
+
+
+def test_without_torque_effects_of_the_contact_are_alike():
+    p = _p(velocity_weakening=0.95)
+    ranked = sorted((n for n in p if n in EFFECTS), key=lambda n: -p[n])
+    assert ("frictional_heating", "velocity_weakening") in equivalent_pairs(ranked, p, {"pressure"})
+    assert equivalent_pairs(ranked, p, {"torque", "pressure"}) == ()
+
+
+ALL = {"torque", "acceleration", "pressure", "angle"}
+
+
+def test_the_next_measurement_is_the_channel_that_is_missing_or_what_tells_two_causes_apart():
+    p = _p(none=0.01, velocity_weakening=0.5, frictional_heating=0.4)
+    assert next_measurement((), _p(none=1.0), ALL).startswith("none")
+    assert "torque" in next_measurement(("velocity_weakening",), p, {"pressure"})
+    assert "angle" in next_measurement(("velocity_weakening",), p, ALL - {"angle"})
+    assert "from cold" in next_measurement(("velocity_weakening",), p, ALL)
+    assert "three speeds" in next_measurement(("unknown",), _p(unknown=0.99), ALL)
+    said = {next_measurement(("clipping",), _p(clipping=x), ALL) for x in (0.5, 0.99)}
+    assert len(said) == 2

@@ -1,0 +1,172 @@
+"""Parameters and effects are found again in runs that have them, on conditions no fit has seen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.condition import FIXED, Condition
+from models.rig import LawSpec
+from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
+from noise.diagnosis.evidence.evidence import scale_of
+from noise.diagnosis.evidence.summary import case_table
+from noise.diagnosis.fit.bench import Bench, Model
+from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
+from noise.diagnosis.fit.fit_effect import fit_effect
+from noise.diagnosis.fit.fit_parameters import fit_parameters, split
+from sim.effects import EFFECTS
+from tests.helpers.small_rigs import RIG, at, only, run
+
+SPEEDS = (1.0, 1.6, 2.5)
+
+
+@cache
+def _scale():
+    """Names of all numbers, and how they scatter between runs of the rig itself."""
+    seeds = range(500, 504)
+    tables = [case_table([run(at(v, FIXED), seed=s) for v in SPEEDS], RIG, seed=s) for s in seeds]
+    names = tuple(sorted({name for table in tables for name in table.names}))
+    return names, scale_of(tables, names)
+
+
+def _bench(recordings, rig=RIG, library=EFFECTS):
+    table = case_table(recordings, rig, library=library)
+    return Bench(rig, tuple(recordings), library, table, *_scale())
+
+
+def _gap(bench, model, chosen):
+    return float(np.sqrt(np.mean(bench.squared(model, chosen))))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return _bench([run(at(v, FIXED), seed=40 + i) for i, v in enumerate(SPEEDS)])
+
+
+WEAK = {"form": "exponential", "share": 0.4, "speed": 5.0}
+
+
+@pytest.fixture(scope="module")
+def weakening():
+    conditions = [at(v, FIXED) for v in SPEEDS]
+    return _bench([run(c, ("velocity_weakening", WEAK), seed=40 + i)
+                   for i, c in enumerate(conditions)])  # fmt: skip
+
+
+def test_a_plain_rig_has_no_gap(plain):
+    assert _gap(plain, Model(), range(3)) < 1.8
+
+
+def test_a_model_is_simulated_alike_each_time_and_as_it_was_recorded(plain):
+    like = plain.recordings[1]
+    one, again = (plain.simulated(Model(), like, 3) for _ in range(2))
+    assert one.samples.tobytes() == again.samples.tobytes()
+    assert one.samples.shape == like.samples.shape
+    assert (one.rate, one.condition) == (like.rate, like.condition)
+
+
+def test_recordings_of_several_rates_are_each_simulated_at_their_own():
+    bench = _bench([run(at(1.0)), run(at(1.0), rate=48e3, seed=1), run(at(1.0), seconds=0.6)])
+    for like in bench.recordings:
+        made = bench.simulated(Model(), like, 0)
+        assert made.samples.shape == like.samples.shape
+        assert made.rate == like.rate
+    assert np.isfinite(bench.squared(Model(), range(3))).all()
+    assert bench.squared(Model(), range(3)).max() < 4.0
+
+
+@pytest.mark.parametrize("kinds", [("pressure",), ("torque",), ("acceleration", "angle")])
+def test_fewer_channels_can_be_fitted_to(kinds):
+    bench = _bench([only(run(at(1.0)), *kinds)])
+    assert bench.squared(Model(), [0])[0] < 4.0
+    rows = bench.residuals(Model(), [0])
+    assert np.isfinite(rows).all()
+    assert np.mean(np.abs(rows) > 0.7) < 0.1  # few numbers are hopelessly off
+
+
+def test_residuals_saturate_and_are_smallest_at_the_truth(weakening):
+    truth = Model(effects=(LawSpec("velocity_weakening", WEAK),))
+    at_truth, without = (weakening.residuals(model, [0, 1]) for model in (truth, Model()))
+    assert (np.abs(at_truth) <= 1.0).all()
+    assert (np.abs(without) <= 1.0).all()
+    assert np.sum(at_truth**2) < 0.5 * np.sum(without**2)
+
+
+def test_the_truth_closes_the_gap(weakening):
+    truth = Model(effects=(LawSpec("velocity_weakening", WEAK),))
+    before, after = (_gap(weakening, model, range(3)) for model in (Model(), truth))
+    assert before > 3.0
+    assert after < 0.6 * before
+
+
+def test_a_stiffness_that_is_off_is_recalibrated():
+    stiff = with_offsets(RIG, {"elastomer_stiffness": 1.15})
+    bench = _bench([run(at(v, FIXED), seed=70 + i, rig=stiff) for i, v in enumerate(SPEEDS)])
+    fitted = fit_parameters(bench, [0, 2])
+    found = dict(zip(OFFSETS, fitted.model.offsets, strict=True))
+    assert found["elastomer_stiffness"] == pytest.approx(math.log(1.15), abs=0.06)
+    for name in ("critical_torque", "kinetic_torque"):
+        assert found[name] == pytest.approx(0.0, abs=0.06)
+    before, after = (_gap(bench, m, [1]) for m in (Model(), fitted.model))
+    assert (before - max(after, 1.0)) / (before - 1.0) > 0.5
+    assert all(s > 0 for s in fitted.spread)
+
+
+def test_a_weakening_is_fitted_in_some_form_and_closes_the_gap_held_out(weakening):
+    start = fit_parameters(weakening, [0, 2]).model
+    fitted = fit_effect(weakening, [0, 2], ["velocity_weakening"], start)
+    (spec,) = fitted.model.effects
+    assert spec.name == "velocity_weakening"
+    before, after = (_gap(weakening, m, [1]) for m in (Model(), fitted.model))
+    assert (before - max(after, 1.0)) / (before - 1.0) > 0.5
+    assert after < _gap(weakening, start, [1])
+
+
+conditions = st.lists(
+    st.builds(
+        Condition,
+        speed=st.sampled_from([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, None]),
+        interference=st.sampled_from([0.2e-3, 0.3e-3, None]),
+        support_stiffness=st.sampled_from([2214.0, math.inf]),
+    ),
+    min_size=1,
+    max_size=12,
+)
+
+
+@settings(max_examples=100, deadline=None)
+@given(conditions)
+def test_whole_conditions_are_held_out(at):
+    fitted, held = split(at)
+    assert fitted
+    assert held
+    if len(set(at)) > 1:
+        assert sorted(fitted + held) == list(range(len(at)))
+        assert not {at[i] for i in fitted} & {at[i] for i in held}
+        assert len({at[i] for i in held}) <= 0.5 * len(set(at))
+
+
+def test_repeats_are_halved_and_one_recording_is_both():
+    assert split([at(1.0)] * 4) == ([0, 1], [2, 3])
+    assert split([at(1.0)]) == ([0], [0])
+
+
+def test_an_effect_of_the_users_own_is_tried_over_two_decades_about_its_default():
+    mine = replace(EFFECTS["velocity_weakening"], name="mine")
+    shares = sorted({spec.parameters["share"] for spec in plain_candidates(mine)})
+    default = mine.parameters["share"].default
+    assert shares[0] == pytest.approx(0.1 * default)
+    assert shares[-1] == pytest.approx(min(10.0 * default, mine.parameters["share"].high))
+    assert {spec.parameters["form"] for spec in plain_candidates(mine)} == set(mine.forms)
+    assert not list(drawn_candidates(mine, 4, np.random.default_rng(0)))
+
+
+def test_effects_of_the_rig_file_are_in_every_model():
+    listed = replace(RIG, effects=(LawSpec("velocity_weakening", WEAK),))
+    bench = _bench([run(at(1.6, FIXED), ("velocity_weakening", WEAK))], rig=listed)
+    assert _gap(bench, Model(), [0]) < 1.8

@@ -1,0 +1,113 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy import fft
+
+from features.kernels.bands import (
+    NOMINAL_THIRD_OCTAVES,
+    THESIS_BANDS,
+    a_weighting,
+    band_power,
+    overall_level,
+    third_octave_edges,
+    third_octave_levels,
+)
+from features.kernels.spectra import autospectrum
+from models.errors import ParameterError
+
+PASCAL_DB = 93.979
+
+
+def sine(frequency, rate=48e3, seconds=2.0):
+    return math.sqrt(2) * np.sin(2 * np.pi * frequency * np.arange(round(rate * seconds)) / rate)
+
+
+def pink(n, rate, seed=0):
+    frequency = np.maximum(fft.rfftfreq(n, 1 / rate), 1.0)
+    phase = np.random.default_rng(seed).uniform(0, 2 * np.pi, frequency.size)
+    return fft.irfft(np.exp(1j * phase) / np.sqrt(frequency), n)
+
+
+def test_a_pascal_at_1_khz_is_93_98_decibels_in_its_band_overall_and_weighted():
+    spectrum = autospectrum(sine(1000), 48e3)
+    levels = third_octave_levels(spectrum, reference=2e-5)
+    assert levels["1000"] == pytest.approx(PASCAL_DB, abs=0.01)
+    assert overall_level(spectrum, reference=2e-5) == pytest.approx(PASCAL_DB, abs=0.01)
+    weighted = overall_level(spectrum, reference=2e-5, weighting="A")
+    assert weighted == pytest.approx(PASCAL_DB, abs=0.01)
+    assert max(levels["800"], levels["1250"]) < PASCAL_DB - 60
+
+
+def test_pink_noise_is_flat_in_one_third_octaves():
+    spectrum = autospectrum(pink(20 * 48_000, 48e3), 48e3, resolution=1.0)
+    levels = third_octave_levels(spectrum, reference=1.0)
+    inside = np.array([levels[name] for name in NOMINAL_THIRD_OCTAVES if 50 <= float(name) <= 16e3])
+    assert np.abs(inside - inside.mean()).max() < 0.5
+
+
+def test_edges_meet_and_middles_are_their_geometric_means():
+    low, middle, high = third_octave_edges()
+    assert low[1:] == pytest.approx(high[:-1])
+    assert middle == pytest.approx(np.sqrt(low * high))
+    assert middle[0] == pytest.approx(25.119, abs=1e-3)
+    assert middle[-1] == pytest.approx(19952.6, abs=0.1)
+    assert middle == pytest.approx([float(name) for name in NOMINAL_THIRD_OCTAVES], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("rate", "highest"), [(16e3, "6300"), (30e3, "10000"), (44.1e3, "16000"), (48e3, "16000")]
+)
+def test_bands_beyond_the_rate_are_not_a_number(rate, highest):
+    x = np.random.default_rng(0).normal(size=round(rate))
+    levels = third_octave_levels(autospectrum(x, rate), reference=1.0)
+    reached = [name for name, level in levels.items() if math.isfinite(level)]
+    assert reached[-1] == highest
+    assert len(reached) == NOMINAL_THIRD_OCTAVES.index(highest) + 1
+
+
+def test_20_khz_is_reached_at_96_khz():
+    x = np.random.default_rng(0).normal(size=96_000)
+    assert math.isfinite(third_octave_levels(autospectrum(x, 96e3), reference=1.0)["20000"])
+
+
+def test_bands_share_out_the_whole_power_whatever_their_edges():
+    spectrum = autospectrum(np.random.default_rng(1).normal(size=30_000), 30e3, resolution=7.0)
+    edges = np.array([0.0, 3.3, 101.7, 998.2, 5000.1, 15_000.0])
+    parts = band_power(spectrum, edges[:-1], edges[1:])
+    assert parts.sum() == pytest.approx(spectrum.density.sum() * spectrum.spacing)
+    assert (parts > 0).all()
+
+
+def test_a_fraction_of_a_bin_counts_by_that_fraction():
+    spectrum = autospectrum(np.random.default_rng(2).normal(size=8000), 8e3, resolution=10.0)
+    half = band_power(spectrum, [1000.0], [1005.0])[0]
+    assert half == pytest.approx(0.5 * spectrum.density[100] * 10.0)
+
+
+def test_thesis_bands_end_at_the_nyquist_frequency_of_its_recorder():
+    x = np.random.default_rng(3).normal(size=30_000)
+    low, high = np.transpose(THESIS_BANDS)
+    at_30 = band_power(autospectrum(x, 30e3), low, high)
+    assert at_30 / at_30.sum() == pytest.approx([2 / 15, 3 / 15, 10 / 15], rel=0.05)
+    assert np.isnan(band_power(autospectrum(x, 16e3), low, high)).tolist() == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("frequency", "gain"),
+    [(25, -44.7), (100, -19.1), (500, -3.2), (2000, 1.2), (4000, 1.0), (10_000, -2.5)],
+)
+def test_a_weighting_is_that_of_the_standards_table(frequency, gain):
+    assert a_weighting(1000.0 * 10 ** (round(10 * math.log10(frequency / 1000)) / 10)) == (
+        pytest.approx(gain, abs=0.05)
+    )
+
+
+def test_band_edges_in_the_wrong_order_and_unknown_weightings_are_refused():
+    spectrum = autospectrum(sine(1000), 48e3)
+    with pytest.raises(ParameterError, match="upper edge lies below"):
+        band_power(spectrum, [200.0], [100.0])
+    with pytest.raises(ParameterError, match="use 'Z' \\(none\\) or 'A'"):
+        overall_level(spectrum, reference=1.0, weighting="C")

@@ -1,0 +1,136 @@
+"""Hammer hits: what is refused, and the response function of what is not."""
+
+import numpy as np
+import pytest
+from scipy.signal import coherence, csd, welch
+
+from features.modal.hammer import Hit, check_hit, transfer_estimate
+from models.errors import ParameterError, RecordingError
+
+RATE = 20e3
+PULSE = np.sin(np.pi * np.arange(0.3, 9) / 9)
+
+
+def pulse(n=2000, at=20, peak=80.0):
+    force = np.zeros(n)
+    force[at : at + PULSE.size] = peak * PULSE
+    return force
+
+
+def ringing(n=2000, frequency=700.0):
+    t = np.arange(n) / RATE
+    return 30 * np.exp(-60 * t) * np.sin(2 * np.pi * frequency * t)
+
+
+def hits(rng, n_hits=6, noise=0.02):
+    answer = ringing()
+    made = []
+    for i in range(n_hits):
+        force = pulse(at=15 + i, peak=rng.uniform(50, 90))
+        response = np.convolve(force, answer)[: force.size]
+        made.append(
+            Hit(
+                force + noise * rng.standard_normal(force.size),
+                response + noise * rng.standard_normal(force.size) * np.abs(response).max(),
+                RATE,
+                f"hit_{i}",
+            )
+        )
+    return made
+
+
+def test_a_clean_hit_of_either_sign_is_taken():
+    check_hit(Hit(pulse(), ringing(), RATE))
+    check_hit(Hit(-pulse(), ringing(), RATE))
+
+
+@pytest.mark.parametrize(("after", "share"), [(12, 0.3), (60, 0.08), (900, 0.6), (400, 1.4)])
+def test_a_second_contact_is_a_double_hit(after, share):
+    with pytest.raises(RecordingError, match="double hit; the force rises again"):
+        check_hit(Hit(pulse() + pulse(at=20 + after, peak=80 * share), ringing(), RATE))
+
+
+def test_ringing_of_the_force_sensors_filter_is_no_second_contact():
+    t = np.arange(2000)
+    filtered = pulse() + np.where(t > 30, 3.0 * np.exp(-0.1 * (t - 30)) * np.cos(2.5 * t), 0.0)
+    check_hit(Hit(filtered, ringing(), RATE))
+
+
+@pytest.mark.parametrize("limit", [0.3, 0.5, 0.8])
+def test_a_force_that_is_cut_off_is_clipped(limit):
+    with pytest.raises(RecordingError, match="force is clipped"):
+        check_hit(Hit(np.minimum(pulse(), 80 * limit), ringing(), RATE))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_response_that_is_cut_off_is_clipped(sign):
+    response = sign * ringing()
+    with pytest.raises(RecordingError, match="response is clipped"):
+        check_hit(Hit(pulse(), np.minimum(response, 0.6 * response.max()), RATE))
+
+
+@pytest.mark.parametrize("bits", [10, 12, 16])
+@pytest.mark.parametrize("stretch", [1, 4, 16])
+def test_rounding_by_a_converter_is_no_clipping(bits, stretch):
+    t = np.arange(PULSE.size * stretch)
+    force = np.zeros(4000)
+    force[50 : 50 + t.size] = 80 * np.sin(np.pi * (t + 0.3) / t.size)
+    response = np.repeat(ringing(), 2)
+
+    def rounded(signal, full_scale):
+        step = full_scale / 2 ** (bits - 1)
+        return step * np.round(signal / step)
+
+    check_hit(Hit(rounded(force, 100.0), rounded(response, 40.0), RATE))
+
+
+def test_noise_alone_is_no_hit():
+    noise = np.random.default_rng(0).standard_normal(2000)
+    with pytest.raises(RecordingError, match="no hit"):
+        check_hit(Hit(noise, ringing(), RATE))
+
+
+def test_a_response_of_nothing_is_refused():
+    with pytest.raises(RecordingError, match="zero throughout"):
+        check_hit(Hit(pulse(), np.zeros(2000), RATE))
+
+
+def test_h1_and_coherence_are_those_of_scipy():
+    some = hits(np.random.default_rng(1))
+    force = np.concatenate([hit.force for hit in some])
+    response = np.concatenate([hit.response for hit in some])
+    arguments = (RATE, "boxcar", 2000, 0)
+    f, cross = csd(force, response, *arguments)
+    estimate = transfer_estimate(some)
+    assert np.array_equal(estimate.frequency, f)
+    np.testing.assert_allclose(estimate.h1[1:], (cross / welch(force, *arguments)[1])[1:])
+    expected = coherence(force, response, *arguments)[1]
+    np.testing.assert_allclose(estimate.coherence[1:], expected[1:], rtol=1e-9)
+
+
+def test_noise_in_the_response_biases_h2_up_and_not_h1():
+    estimate = transfer_estimate(hits(np.random.default_rng(2), n_hits=40, noise=0.3))
+    true = np.fft.rfft(ringing())
+    band = (estimate.frequency > 2500) & (estimate.frequency < 4000)
+
+    def bias(h):
+        return np.median(np.abs(h[band]) / np.abs(true[band]))
+
+    assert bias(estimate.h1) < bias(estimate.hv) < bias(estimate.h2)
+    np.testing.assert_allclose(
+        np.abs(estimate.hv) ** 2, np.abs(estimate.h1) * np.abs(estimate.h2), rtol=1e-9
+    )
+
+
+def test_without_noise_the_three_estimates_agree_and_cohere():
+    estimate = transfer_estimate(hits(np.random.default_rng(3), noise=0.0))
+    band = (estimate.frequency > 20) & (estimate.frequency < 2000)
+    np.testing.assert_allclose(estimate.h2[band], estimate.h1[band], rtol=1e-3)
+    assert estimate.coherence[band].min() > 0.999
+
+
+def test_hits_of_different_length_cannot_be_averaged():
+    with pytest.raises(ParameterError, match="must be alike"):
+        transfer_estimate([Hit(pulse(), ringing(), RATE), Hit(pulse(900), ringing(900), RATE)])
+    with pytest.raises(ParameterError, match="no hits"):
+        transfer_estimate([])

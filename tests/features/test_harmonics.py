@@ -1,0 +1,238 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings, strategies as st
+from scipy.signal import lfilter
+
+from features.kernels.conditioning import band_signal, forward
+from features.kernels.harmonics import analyse_harmonics, inharmonicity_of
+from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
+from features.kernels.spectra import autospectrum
+from models.errors import ParameterError
+
+RATE = 16e3
+
+
+def times(seconds=1.0, rate=RATE):
+    return np.arange(round(seconds * rate)) / rate
+
+
+def sawtooth(frequency, seconds=1.0, rate=RATE):
+    """Only the harmonics below 0.43 times the rate: what a recorder would have let through."""
+    number = np.arange(1, int(0.43 * rate / frequency) + 1)
+    phase = 2 * np.pi * frequency * np.outer(number, times(seconds, rate))
+    return -(np.sin(phase) / number[:, np.newaxis]).sum(axis=0)
+
+
+def ringing(pulses, rate=RATE):
+    total = np.zeros(pulses.size)
+    for frequency, quality in ((940, 20), (2300, 30), (4800, 40)):
+        radius = math.exp(-math.pi * frequency / quality / rate)
+        turn = -2 * radius * math.cos(2 * math.pi * frequency / rate)
+        total += lfilter([1.0], [1.0, turn, radius**2], pulses)
+    return total
+
+
+def noise(n, seed=0):
+    return np.random.default_rng(seed).normal(size=n)
+
+
+def test_a_pure_tone_is_one_line_with_all_the_power():
+    found = analyse_harmonics(np.sin(2 * np.pi * 1046 * times()), RATE)
+    assert found.peaks.frequency == pytest.approx([1046], abs=0.5)
+    assert found.peaks.strongest_share == pytest.approx(1.0, abs=0.01)
+    assert found.fundamental == pytest.approx(1046, abs=0.5)
+    assert found.count == 1
+    assert found.harmonic_to_noise > 25
+
+
+@pytest.mark.parametrize("rate", [16e3, 30e3, 44.1e3])
+def test_a_sawtooth_has_many_harmonics_of_its_fundamental(rate):
+    found = analyse_harmonics(sawtooth(155, rate=rate), rate)
+    assert found.fundamental == pytest.approx(155, rel=0.005)
+    assert found.count >= 25
+    assert found.harmonicity > 0.95
+    assert found.amplitudes[:4] == pytest.approx([1, 1 / 2, 1 / 3, 1 / 4], rel=0.02)
+
+
+@pytest.mark.parametrize("seconds", [0.1, 0.25, 1.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_white_noise_has_no_line_and_no_harmonics(seconds, seed):
+    found = analyse_harmonics(noise(round(seconds * RATE), seed), RATE)
+    assert found.peaks.frequency.size == 0
+    assert found.peaks.strongest_share == 0.0
+    assert found.harmonicity < 0.1
+    assert found.strength < 0.3
+    assert math.isnan(found.fundamental)
+
+
+def test_two_inharmonic_tones_are_two_lines():
+    t = times()
+    found = analyse_harmonics(
+        np.sin(2 * np.pi * 700 * t) + 0.5 * np.sin(2 * np.pi * 1130 * t) + 0.01 * noise(t.size),
+        RATE,
+    )
+    assert found.peaks.frequency == pytest.approx([700, 1130], abs=1)
+    assert found.peaks.power == pytest.approx([0.5, 0.125], rel=0.03)
+    assert found.peaks.strongest_share == pytest.approx(0.8, abs=0.02)
+    assert found.peaks.share == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("level", [0.0, 0.5])
+def test_pulses_that_excite_resonances_have_the_pulses_rate_as_fundamental(level):
+    pulses = np.zeros(16_000)
+    pulses[::200] = 1.0
+    x = ringing(pulses)
+    found = analyse_harmonics(x + level * x.std() * noise(x.size), RATE)
+    assert found.fundamental == pytest.approx(80, rel=0.005)
+    assert found.peaks.frequency[0] > 800
+
+
+def test_a_missing_fundamental_is_found():
+    t = times()
+    x = sum(np.sin(2 * np.pi * 155 * k * t + k) for k in (3, 4, 5, 7))
+    assert analyse_harmonics(x, RATE).fundamental == pytest.approx(155, rel=0.005)
+
+
+def test_a_leading_fourth_harmonic_is_not_taken_for_the_fundamental():
+    t = times()
+    levels = {1: 0.3, 2: 0.2, 3: 0.2, 4: 1.0, 5: 0.1}
+    x = sum(a * np.sin(2 * np.pi * 155 * k * t + k) for k, a in levels.items())
+    found = analyse_harmonics(x + 0.05 * noise(t.size), RATE)
+    assert found.fundamental == pytest.approx(155, rel=0.005)
+    assert found.peaks.frequency[0] == pytest.approx(620, abs=1)
+
+
+@pytest.mark.parametrize("frequency", [5.3, 12.3, 50.3])
+def test_the_period_of_slow_slips_is_found(frequency):
+    found = analyse_harmonics(sawtooth(frequency) + 0.05 * noise(16_000), RATE)
+    assert found.fundamental == pytest.approx(frequency, rel=0.005)
+
+
+@pytest.mark.parametrize("frequency", [3003.3, 6570.0])
+def test_the_period_of_few_samples_is_found(frequency):
+    found = analyse_harmonics(sawtooth(frequency) + 0.2 * noise(16_000), RATE)
+    assert found.fundamental == pytest.approx(frequency, rel=0.001)
+
+
+def test_8_khz_is_within_reach_of_48_khz():
+    t = times(0.5, 48e3)
+    found = analyse_harmonics(np.sin(2 * np.pi * 7900 * t), 48e3)
+    assert found.fundamental == pytest.approx(7900, rel=0.001)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    frequency=st.floats(40.0, 2000.0),
+    seed=st.integers(0, 100),
+    gain=st.floats(1e-6, 1e6),
+    offset=st.floats(-10.0, 10.0),
+)
+def test_fundamental_of_a_sawtooth_does_not_depend_on_gain_offset_or_noise(
+    frequency, seed, gain, offset
+):
+    x = sawtooth(frequency, 0.5) + 0.1 * noise(8000, seed)
+    found = analyse_harmonics(gain * (x + offset), RATE)
+    assert found.fundamental == pytest.approx(frequency, rel=0.005)
+    assert found.harmonicity > 0.9
+
+
+@settings(max_examples=30, deadline=None)
+@given(first=st.floats(200.0, 6500.0), second=st.floats(200.0, 6500.0), ratio=st.floats(0.15, 1.0))
+def test_any_two_tones_apart_are_told_from_each_other(first, second, ratio):
+    assume(abs(first - second) > 100.0)
+    t = times(0.5)
+    x = np.sin(2 * np.pi * first * t) + ratio * np.sin(2 * np.pi * second * t)
+    lines = find_lines(autospectrum(x + 0.01 * noise(t.size), RATE), low=150.0, high=7000.0)
+    assert np.sort(lines.frequency) == pytest.approx(sorted([first, second]), abs=2)
+
+
+def test_a_drift_does_not_hide_the_period():
+    x = sawtooth(155) + 30.0 * times()
+    assert analyse_harmonics(x, RATE).fundamental == pytest.approx(155, rel=0.005)
+
+
+def test_a_resonance_full_of_noise_is_no_line():
+    radius = math.exp(-math.pi * 900 / 15 / RATE)
+    turn = -2 * radius * math.cos(2 * math.pi * 900 / RATE)
+    x = lfilter([1.0], [1.0, turn, radius**2], noise(16_000))
+    assert analyse_harmonics(x, RATE).peaks.share < 0.2
+
+
+def test_the_floor_under_a_tone_is_that_of_the_noise():
+    x = noise(160_000) + 10.0 * np.sin(2 * np.pi * 1000 * times(10.0))
+    spectrum = autospectrum(x, RATE, resolution=line_resolution(10.0))
+    floor = noise_floor(spectrum)
+    assert floor.mean() == pytest.approx(1.0 / 8000.0, rel=0.05)
+    assert floor[np.argmax(spectrum.density)] == pytest.approx(1.0 / 8000.0, rel=0.2)
+
+
+@pytest.mark.parametrize("x", [np.zeros(1600), np.full(1600, 0.1)])
+def test_silence_has_neither_fundamental_nor_lines(x):
+    found = analyse_harmonics(x, RATE)
+    assert math.isnan(found.fundamental)
+    assert found.harmonicity == 0.0
+    assert found.peaks.share == 0.0
+    assert math.isnan(found.harmonic_to_noise)
+    assert math.isnan(found.inharmonicity)
+
+
+def test_20_ms_are_enough_for_the_period_of_three_cycles():
+    found = analyse_harmonics(sawtooth(250, 0.02), RATE)
+    assert found.fundamental == pytest.approx(250, rel=0.02)
+
+
+def test_limits_that_leave_nothing_are_refused():
+    with pytest.raises(ParameterError, match="between 500 and 437"):
+        analyse_harmonics(np.ones(100), 1e3, lowest=500.0)
+
+
+@pytest.mark.parametrize("seconds", [0.25, 0.5, 1.0])
+@pytest.mark.parametrize("ratio", [5.0, 10.0, 20.0])
+@pytest.mark.parametrize("frequency", [155, 500])
+def test_the_harmonic_to_noise_ratio_is_that_of_the_mixture(frequency, ratio, seconds):
+    tones = sawtooth(frequency, seconds)
+    hiss = band_signal(forward(noise(2 * tones.size, 3), RATE), 5.0, 7000.0)[0][: tones.size]
+    x = tones + hiss * (tones.std() / hiss.std() * 10 ** (-ratio / 20))
+    allowed = 1.0 if seconds < 0.5 else 0.5
+    assert analyse_harmonics(x, RATE).harmonic_to_noise == pytest.approx(ratio, abs=allowed)
+
+
+def test_more_than_30_db_between_harmonics_and_noise_are_not_told():
+    assert analyse_harmonics(np.sin(2 * np.pi * 500 * times()), RATE).harmonic_to_noise == 30.0
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1e-5, 1e-4, 5e-4])
+def test_a_stiff_string_is_as_inharmonic_as_its_b_says(stiffness):
+    number = np.arange(1, 11)
+    frequency = 200.0 * number * np.sqrt(1.0 + stiffness * number**2)
+    amplitude = 1.0 / number
+    x = amplitude @ np.sin(2 * np.pi * np.outer(frequency, times()) + number[:, np.newaxis] ** 2)
+    found = analyse_harmonics(x, RATE)
+    order = frequency / found.fundamental
+    power = amplitude**2 / (amplitude**2).sum()
+    assert found.fundamental == pytest.approx(200.0, rel=0.01)
+    assert found.inharmonicity == pytest.approx(2 * power @ abs(order - number), abs=0.003)
+
+
+def test_lines_that_stand_anywhere_are_half_inharmonic():
+    rng = np.random.default_rng(4)
+    found = of_equal_lines(np.sort(rng.uniform(300, 6500, 300)))
+    assert found == pytest.approx(0.5, abs=0.06)
+
+
+def of_equal_lines(frequency):
+    """Inharmonicity of lines of equal power, re a fundamental of 100 Hz."""
+    equal = np.ones(frequency.size)
+    return inharmonicity_of(100.0, Lines(frequency, equal, equal, float(equal.sum())))
+
+
+@pytest.mark.parametrize("frequency", [5.3, 20.0, 50.3])
+def test_the_fundamental_survives_low_frequency_and_a_missing_line(frequency):
+    x, t = sawtooth(frequency, 2.0, 4e3), times(2.0, 4e3)
+    line = np.sin(2 * np.pi * frequency * t)
+    without = x - 2 * np.mean(x * line) * line
+    assert analyse_harmonics(without, 4e3).fundamental == pytest.approx(frequency, rel=0.005)

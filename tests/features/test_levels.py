@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from features.kernels.bands import NOMINAL_THIRD_OCTAVES
+from features.kernels.levels import a_weighted, fast_levels, sound_levels
+from models.errors import ParameterError
+
+PASCAL_DB = 93.9794
+
+# IEC 61672-1:2013, Table 3: nominal frequency, A-weighting in dB.
+A_TABLE = {
+    31.5: -39.4, 63: -26.2, 125: -16.1, 250: -8.6, 500: -3.2, 1000: 0.0, 2000: 1.2, 4000: 1.0,
+    8000: -1.1, 10000: -2.5, 12500: -4.3, 16000: -6.6,
+}  # fmt: skip
+
+# IEC 61672-1:2013, Table 4: duration of a 4 kHz burst in ms, largest fast level re steady.
+BURSTS = {1000: 0.0, 500: -0.1, 200: -1.0, 100: -2.6, 50: -4.8, 20: -8.3, 10: -11.1, 5: -14.1,
+          2: -18.0, 1: -21.0}  # fmt: skip
+
+
+def tone(frequency, rate=48e3, seconds=1.0):
+    """A sine of 1 Pa rms."""
+    return np.sqrt(2) * np.sin(2 * np.pi * frequency * np.arange(round(seconds * rate)) / rate)
+
+
+@pytest.mark.parametrize("rate", [30e3, 44.1e3, 48e3, 51.2e3, 96e3])
+def test_one_pascal_is_94_decibels_at_every_rate(rate):
+    levels = sound_levels(tone(1000, rate), rate)
+    assert levels.level == pytest.approx(PASCAL_DB, abs=0.01)
+    assert levels.level_a == pytest.approx(PASCAL_DB, abs=0.01)
+    assert levels.level_af_max == pytest.approx(PASCAL_DB, abs=0.02)
+    assert levels.third_octaves["1000"] == pytest.approx(PASCAL_DB, abs=0.01)
+    assert levels.third_octaves["2000"] < 20
+
+
+@pytest.mark.parametrize(("nominal", "expected"), A_TABLE.items())
+def test_a_weighting_of_a_sound_is_that_of_the_standards_table(nominal, expected):
+    exact = 1000 * 10 ** (round(10 * math.log10(nominal / 1000)) / 10)
+    levels = sound_levels(tone(exact, 44.1e3), 44.1e3)
+    assert levels.level_a - levels.level == pytest.approx(expected, abs=0.1)
+
+
+@pytest.mark.parametrize(("milliseconds", "expected"), BURSTS.items())
+def test_a_burst_reads_on_the_fast_scale_as_the_standard_says(milliseconds, expected):
+    burst = np.zeros(72000)
+    n = 48 * milliseconds
+    burst[4800 : 4800 + n] = tone(4000)[:n]
+    assert fast_levels(burst, 48e3, reference=1.0).max() == pytest.approx(expected, abs=0.1)
+
+
+def test_weighting_a_long_sound_block_by_block_leaves_no_seam(monkeypatch):
+    sound = tone(31.623, 8e3, 4.0) + np.random.default_rng(0).standard_normal(32000) * 1e-3
+    whole = a_weighted(sound, 8e3)
+    monkeypatch.setattr("features.kernels.levels._BLOCK", 0.7)
+    assert np.abs(a_weighted(sound, 8e3) - whole).max() < 1e-4 * whole.std()
+
+
+def test_the_fast_maximum_of_a_click_does_not_depend_on_where_it_lies():
+    levels = []
+    for at in (2000, 24000, 47000):
+        click = np.zeros(48000)
+        click[at] = 1.0
+        levels.append(sound_levels(click, 48e3).level_af_max)
+    assert np.ptp(levels) < 0.05
+
+
+def test_an_offset_has_no_level():
+    assert sound_levels(tone(500) + 30.0, 48e3).level == pytest.approx(PASCAL_DB, abs=0.01)
+
+
+def test_bands_add_up_to_the_level_of_noise():
+    noise = np.random.default_rng(1).standard_normal(96000)
+    levels = sound_levels(noise, 48e3, reference=1.0)
+    power = sum(10 ** (0.1 * level) for level in levels.third_octaves.values() if level == level)
+    assert power == pytest.approx((17783 - 22) / 24000, rel=0.02)  # of white noise, to 17.8 kHz
+
+
+def test_bands_that_rate_or_length_do_not_reach_are_not_measured():
+    bands = sound_levels(tone(1000, 30e3, 0.2), 30e3).third_octaves
+    measured = [band for band in NOMINAL_THIRD_OCTAVES if not math.isnan(bands[band])]
+    assert (measured[0], measured[-1]) == ("100", "10000")
+
+
+def test_silence_has_no_level_and_no_error():
+    levels = sound_levels(np.zeros(4800), 48e3)
+    assert levels.level == levels.level_a == levels.level_af_max == -math.inf
+
+
+def test_a_gain_raises_every_level_alike():
+    quiet, loud = sound_levels(tone(800), 48e3), sound_levels(2 * tone(800), 48e3)
+    raised = quiet.raised(20 * math.log10(2))
+    assert raised.level_a == pytest.approx(loud.level_a)
+    assert raised.third_octaves["800"] == pytest.approx(loud.third_octaves["800"])
+
+
+@pytest.mark.parametrize("measure", [a_weighted, fast_levels, sound_levels])
+def test_what_is_no_sound_is_refused(measure):
+    with pytest.raises(ParameterError, match="sample 3 is nan"):
+        measure(np.array([0.0, 1.0, 2.0, np.nan] * 8), 48e3)

@@ -1,0 +1,81 @@
+"""Modes fitted to response functions."""
+
+import numpy as np
+import pytest
+
+from features.modal.modal_fit import fit_modes
+from models.errors import ParameterError
+from models.structure.modal import ModalModel
+
+FREQUENCY = np.array([147.0, 250.0, 310.0, 900.0, 1375.0, 1800.0, 1850.0, 3000.0, 4500.0])
+DAMPING = np.array([0.02, 0.01, 0.01, 0.02, 0.005, 0.008, 0.008, 0.03, 0.01])
+SHAPES = np.array([0.9, -0.6, 0.5, 1.0, -0.4, 0.8, 0.7, -0.9, 1.0])
+LINES = np.arange(2.0, 6000.0, 2.0)
+
+
+def structure(outputs=1):
+    inputs = SHAPES[:, None]
+    accelerations = np.cos(np.outer(np.arange(outputs), np.arange(9))) * SHAPES
+    return ModalModel(
+        FREQUENCY,
+        DAMPING,
+        inputs,
+        np.zeros_like(accelerations),
+        accelerations,
+        np.zeros((outputs, 1)),
+    )
+
+
+def measured(noise, outputs=1, seed=0):
+    true = structure(outputs).frequency_response(LINES)[:, 0]
+    rng = np.random.default_rng(seed)
+    scatter = rng.standard_normal((2, *true.shape))
+    return true * (1 + noise * (scatter[0] + 1j * scatter[1]))
+
+
+def test_modes_of_a_clean_response_are_exact():
+    modes = fit_modes(LINES, measured(0.0), low=50, high=5500)
+    np.testing.assert_allclose(modes.frequency, FREQUENCY, rtol=1e-5)
+    np.testing.assert_allclose(modes.damping_ratio, DAMPING, rtol=1e-2)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_modes_survive_noise_and_none_are_made_up(seed):
+    modes = fit_modes(LINES, measured(0.02, seed=seed), low=50, high=5500)
+    np.testing.assert_allclose(modes.frequency, FREQUENCY, rtol=2e-3)
+    np.testing.assert_allclose(modes.damping_ratio, DAMPING, rtol=0.15)
+
+
+def test_modes_make_up_the_response():
+    h = measured(0.01)
+    modes = fit_modes(LINES, h, low=50, high=5500)
+    band = (LINES > 60) & (LINES < 5400)
+    true = structure().frequency_response(LINES)[0, 0]
+    difference = 20 * np.log10(np.abs(modes.response(LINES)[0] / true))
+    assert np.median(np.abs(difference[band])) < 0.1
+
+
+def test_several_responses_share_their_poles_and_have_residues_each():
+    modes = fit_modes(LINES, measured(0.02, outputs=3), low=50, high=5500)
+    assert modes.residues.shape == (3, 9)
+    np.testing.assert_allclose(modes.frequency, FREQUENCY, rtol=2e-3)
+    peak = np.abs(modes.residues) / (2 * np.pi * modes.frequency * modes.damping_ratio)
+    shapes = np.cos(np.outer(np.arange(3), np.arange(9)))
+    expected = np.abs(shapes) * SHAPES**2 / (2 * DAMPING)
+    np.testing.assert_allclose(peak, expected, rtol=0.2, atol=0.05 * expected.max())
+
+
+def test_part_of_the_band_has_the_modes_in_it():
+    modes = fit_modes(LINES, measured(0.01), low=700, high=2200)
+    np.testing.assert_allclose(modes.frequency, FREQUENCY[3:7], rtol=2e-3)
+
+
+def test_noise_alone_has_no_modes_that_last():
+    rng = np.random.default_rng(5)
+    noise = rng.standard_normal(1000) + 1j * rng.standard_normal(1000)
+    assert fit_modes(np.arange(1.0, 1001.0), noise, low=50, high=900).frequency.size <= 3
+
+
+def test_a_band_of_few_lines_is_refused():
+    with pytest.raises(ParameterError, match=r"lines lie between 100 and 110 Hz"):
+        fit_modes(LINES, measured(0.0), low=100, high=110)

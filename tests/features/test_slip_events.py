@@ -1,0 +1,220 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from scipy.signal import lfilter
+
+from features.kernels.slip_drops import torque_slips
+from features.kernels.slip_pulses import acoustic_slips
+from models.errors import ParameterError
+
+
+def noise(n, seed=0):
+    return np.random.default_rng(seed).normal(size=n)
+
+
+def creak(slips, rate=48e3, seconds=1.0):
+    """Impulses at the given times, ringing in four resonances."""
+    pulses = np.zeros(round(rate * seconds))
+    pulses[np.rint(np.asarray(slips) * rate).astype(int)] = 1.0
+    total = np.zeros(pulses.size)
+    for frequency, quality in ((940, 20), (2300, 20), (4800, 30), (6500, 30)):
+        radius = math.exp(-math.pi * frequency / quality / rate)
+        turn = -2 * radius * math.cos(2 * math.pi * frequency / rate)
+        total += lfilter([1.0], [1.0, turn, radius**2], pulses)
+    return total
+
+
+def stick_slip(frequency, rate=30e3, seconds=1.0, drop=2.7, kinetic=8.0, slip=0.1):
+    """Torque that rises for 1 - slip of a period and falls for the rest."""
+    phase = (frequency * np.arange(round(rate * seconds)) / rate) % 1.0
+    up = np.minimum(phase / (1 - slip), 1.0) - np.maximum(phase - (1 - slip), 0.0) / slip
+    return kinetic + drop * up
+
+
+@pytest.mark.parametrize("rate", [16e3, 30e3, 44.1e3, 96e3])
+@pytest.mark.parametrize("slips_a_second", [10, 80, 155])
+def test_each_slip_of_a_creak_is_one_pulse(rate, slips_a_second):
+    slips = np.arange(0.03, 0.97, 1 / slips_a_second)
+    found = acoustic_slips(creak(slips, rate), rate)
+    assert found.times.size == slips.size
+    assert np.abs(found.times - slips).max() < 2e-3
+    assert found.irregularity < 0.05
+    assert abs(found.glide) < 0.05
+    assert found.rate == pytest.approx(slips.size / 0.96, rel=1e-3)
+
+
+def test_pulses_are_found_in_noise_10_db_below_them():
+    slips = np.arange(0.03, 0.97, 1 / 80)
+    x = creak(slips)
+    found = acoustic_slips(x + 0.3 * x.std() * noise(x.size), 48e3)
+    assert found.times.size == pytest.approx(slips.size, abs=1)
+    assert found.irregularity < 0.05
+
+
+def test_a_gliding_creak_is_regular_and_its_glide_is_told():
+    slips, t = [], 0.03
+    while t < 0.97:
+        slips.append(t)
+        t += 1 / (120 * math.exp(-1.5 * t))
+    found = acoustic_slips(creak(slips), 48e3)
+    assert found.glide == pytest.approx(-1.5, abs=0.05)
+    assert found.irregularity < 0.05
+
+
+def test_random_pulses_are_irregular():
+    slips = np.sort(np.random.default_rng(1).uniform(0.1, 3.9, 80))
+    found = acoustic_slips(creak(slips, seconds=4.0), 48e3)
+    assert found.irregularity > 0.5
+
+
+def test_noise_and_tones_are_not_impulsive():
+    hiss = acoustic_slips(noise(48_000), 48e3)
+    assert hiss.kurtosis == pytest.approx(3.0, abs=0.2)
+    assert hiss.high_kurtosis == pytest.approx(3.0, abs=0.2)
+    assert hiss.rate < 30
+    assert hiss.concentration < 0.2
+    tone = acoustic_slips(np.sin(2 * np.pi * 3000 * np.arange(48_000) / 48e3), 48e3)
+    assert tone.kurtosis == pytest.approx(1.5, abs=0.01)
+    assert tone.crest_factor == pytest.approx(math.sqrt(2), rel=0.01)
+    assert tone.rate == 0.0
+
+
+def test_rare_slips_are_impulsive_and_concentrated():
+    found = acoustic_slips(creak(np.arange(0.05, 0.95, 0.1)), 48e3)
+    assert found.kurtosis > 20
+    assert found.high_kurtosis > 20
+    assert found.concentration > 0.9
+    assert found.crest_factor > 8
+
+
+def test_a_low_tone_without_high_part_has_no_high_kurtosis():
+    found = acoustic_slips(np.sin(2 * np.pi * 400 * np.arange(48_000) / 48e3), 48e3)
+    assert math.isnan(found.high_kurtosis)
+    assert found.times.size == 0
+    assert found.kurtosis == pytest.approx(1.5, abs=0.01)
+
+
+@pytest.mark.parametrize("x", [np.zeros(4800), np.full(4800, 0.1)])
+def test_silence_has_no_pulses(x):
+    found = acoustic_slips(x, 48e3)
+    assert found.rate == 0.0
+    assert math.isnan(found.kurtosis)
+
+
+def test_pulses_need_a_rate_of_400_hz():
+    with pytest.raises(ParameterError, match="pulses need at least 400 Hz"):
+        acoustic_slips(noise(100), 300.0)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    frequency=st.floats(20.0, 200.0),
+    drop=st.floats(0.5, 20.0),
+    kinetic=st.floats(1.0, 40.0),
+    sign=st.sampled_from([-1.0, 1.0]),
+    rate=st.sampled_from([16e3, 30e3, 48e3]),
+)
+def test_stick_slip_is_described_by_its_rate_drop_and_slope(frequency, drop, kinetic, sign, rate):
+    torque = sign * stick_slip(frequency, rate, drop=drop, kinetic=kinetic)
+    found = torque_slips(torque, rate)
+    assert found.rate == pytest.approx(frequency, abs=1.5)
+    assert found.mean_interval == pytest.approx(1 / frequency, rel=0.01)
+    assert found.interval_variation < 0.02
+    assert found.mean_drop == pytest.approx(drop, rel=0.1)
+    assert found.drop_variation < 0.05
+    assert found.stick_slope == pytest.approx(drop * frequency / 0.9, rel=0.02)
+    # The torque is smoothed to 2 kHz, which rounds up to a quarter of a millisecond at each slip.
+    assert found.stick_fraction == pytest.approx(0.9, abs=0.02 + 0.25e-3 * frequency)
+    assert found.stick_curvature == pytest.approx(1.0, abs=0.03)
+    assert found.asymmetry < -1.0
+
+
+def test_slips_are_found_under_noise_and_superimposed_oscillation():
+    t = np.arange(30_000) / 30e3
+    torque = stick_slip(150) + 0.3 * np.sin(2 * np.pi * 930 * t) + 0.2 * noise(t.size)
+    found = torque_slips(torque, 30e3)
+    assert found.rate == pytest.approx(150, abs=3)
+    assert found.stick_slope == pytest.approx(450, rel=0.1)
+
+
+def test_a_torque_that_rises_ever_more_slowly_has_a_curvature_below_one():
+    phase = (100 * np.arange(30_000) / 30e3) % 1.0
+    torque = 8 + 2.7 * (1 - np.exp(-2 * phase)) / (1 - math.exp(-2))
+    # Later over earlier half of the rise's middle, from 0.2 to 0.8 of it: exp(-2 x 0.3).
+    assert torque_slips(torque, 30e3).stick_curvature == pytest.approx(math.exp(-0.6), abs=0.05)
+
+
+def test_an_oscillating_shaft_slips_in_both_directions():
+    direction = np.sign(np.sin(2 * np.pi * 2 * np.arange(30_000) / 30e3 + 0.1))
+    found = torque_slips(direction * stick_slip(150), 30e3)
+    assert found.rate == pytest.approx(150, abs=5)
+    assert found.stick_slope == pytest.approx(450, rel=0.05)
+
+
+def test_a_torque_without_its_mean_is_understood():
+    torque = stick_slip(150)
+    for sign in (1.0, -1.0):
+        found = torque_slips(sign * (torque - torque.mean()), 30e3)
+        assert found.rate == pytest.approx(150, abs=1.5)
+        assert found.asymmetry < -1.0
+
+
+@pytest.mark.parametrize("shape", ["harmonic", "triangular", "noise", "constant"])
+def test_what_does_not_drop_suddenly_does_not_slip(shape):
+    t = np.arange(30_000) / 30e3
+    torque = {
+        "harmonic": 8 + np.sin(2 * np.pi * 900 * t),
+        "triangular": 8 + np.abs((300 * t) % 1.0 - 0.5),
+        "noise": 8 + noise(t.size),
+        "constant": np.full(t.size, 8.0),
+    }[shape]
+    found = torque_slips(torque, 30e3)
+    assert found.rate == 0.0
+    assert found.times.size == 0
+    assert math.isnan(found.stick_slope)
+    assert not abs(found.asymmetry) > 0.1
+
+
+def test_drops_begin_at_the_peaks():
+    found = torque_slips(stick_slip(100), 30e3)
+    assert found.times[:5] == pytest.approx([0.009, 0.019, 0.029, 0.039, 0.049], abs=3e-4)
+
+
+def gliding_stick_slip(glide, rate=30e3, seconds=1.0, frequency=80.0):
+    """A sawtooth whose rate changes by so many octaves a second."""
+    t = np.arange(round(rate * seconds)) / rate
+    octaves = glide * t
+    cycles = frequency * (t if glide == 0 else (2**octaves - 1) / (glide * math.log(2)))
+    phase = cycles % 1.0
+    return 8.0 + 2.7 * np.where(phase < 0.9, phase / 0.9, (1.0 - phase) / 0.1)
+
+
+@pytest.mark.parametrize("rate", [16e3, 22.05e3, 30e3, 48e3, 96e3])
+@pytest.mark.parametrize("glide", [-1.5, -0.1, 0.0, 0.5])
+def test_the_glide_of_the_slip_rate_is_told_at_any_sampling_rate(glide, rate):
+    found = torque_slips(gliding_stick_slip(glide, rate), rate)
+    assert found.glide == pytest.approx(glide, abs=0.02)
+
+
+def test_a_slip_missed_or_made_up_does_not_move_the_glide():
+    torque = gliding_stick_slip(0.5)
+    slips = torque_slips(torque, 30e3).times
+    for number in (20, 50, 51, 80):  # a rise goes on where a slip was
+        first, last = (round(30e3 * slips[number + step]) for step in (-1, 1))
+        torque[first + 60 : last] = np.linspace(torque[first + 60], torque[last], last - first - 60)
+    first = round(30e3 * (slips[30] + slips[31]) / 2)
+    torque[first : first + 40] -= np.linspace(2.0, 0.0, 40)
+    found = torque_slips(torque, 30e3)
+    assert found.times.size == slips.size - 4 + 1
+    assert found.interval_variation > 0.2
+    assert found.glide == pytest.approx(0.5, abs=0.05)
+
+
+def test_four_slips_have_no_glide():
+    found = torque_slips(stick_slip(20.0, seconds=0.22), 30e3)
+    assert 2 <= found.times.size <= 4
+    assert math.isnan(found.glide)

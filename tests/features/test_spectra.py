@@ -1,0 +1,132 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from scipy.signal import welch
+
+from features.kernels.conditioning import band_analytic, band_signal, forward
+from features.kernels.spectra import autospectrum, spectral_shape
+from models.errors import ParameterError
+
+
+def tone(frequency, rate, seconds=1.0, amplitude=1.0):
+    t = np.arange(round(rate * seconds)) / rate
+    return amplitude * np.sin(2 * np.pi * frequency * t + 0.3)
+
+
+def noise(n, seed=0):
+    return np.random.default_rng(seed).normal(size=n)
+
+
+def test_density_is_that_of_scipy_where_its_segments_fit():
+    x = noise(48_000)
+    ours = autospectrum(x, 48e3, resolution=10.0)
+    frequency, density = welch(x, 48e3, "hann", nperseg=4800, noverlap=2400, detrend="constant")
+    assert ours.n_segments == 19
+    assert ours.frequency == pytest.approx(frequency)
+    assert ours.density == pytest.approx(density)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    rate=st.sampled_from([8e3, 16e3, 44.1e3, 51.2e3]),
+    resolution=st.floats(2.0, 100.0),
+    seed=st.integers(0, 1000),
+    offset=st.floats(-10.0, 10.0),
+)
+def test_integral_over_frequency_is_the_mean_square_about_the_mean(rate, resolution, seed, offset):
+    x = noise(40_000, seed)
+    spectrum = autospectrum(x + offset, rate, resolution=resolution)
+    integral = spectrum.density.sum() * spectrum.spacing
+    assert integral == pytest.approx(np.var(x), rel=0.05)
+
+
+@pytest.mark.parametrize("n", [800, 801])
+def test_integral_is_exact_for_the_windowed_samples_of_one_segment(n):
+    x = noise(n)
+    window = np.sin(np.pi * np.arange(n) / n) ** 2
+    spectrum = autospectrum(x, 8e3, resolution=1.0)
+    expected = np.sum((window * (x - x.mean())) ** 2) / np.sum(window**2)
+    assert spectrum.n_segments == 1
+    assert spectrum.density.sum() * spectrum.spacing == pytest.approx(expected)
+
+
+def test_amplitude_of_a_sinusoid_is_read_at_its_bin():
+    spectrum = autospectrum(tone(1000, 48e3, amplitude=3.0), 48e3, resolution=4.0)
+    assert spectrum.frequency[spectrum.amplitude.argmax()] == 1000
+    assert spectrum.amplitude.max() == pytest.approx(3.0, rel=1e-6)
+
+
+def test_amplitude_between_bins_is_at_most_1_4_decibels_low():
+    spectrum = autospectrum(tone(1002, 48e3, amplitude=3.0), 48e3, resolution=4.0)
+    assert 20 * math.log10(spectrum.amplitude.max() / 3.0) == pytest.approx(-1.42, abs=0.02)
+
+
+def test_every_sample_counts():
+    x = np.zeros(10_100)
+    x[10_040] = 1.0
+    assert autospectrum(x, 10e3, resolution=10.0).density.max() > 0.0
+
+
+def test_resolution_gives_way_to_a_short_signal():
+    spectrum = autospectrum(noise(960), 48e3, resolution=4.0)
+    assert spectrum.spacing == pytest.approx(50.0)
+    assert spectrum.n_segments == 1
+
+
+@pytest.mark.parametrize(
+    ("signal", "rate", "resolution", "words"),
+    [
+        (np.zeros((2, 100)), 1e3, 4.0, "one channel"),
+        (np.zeros(3), 1e3, 4.0, "at least 16"),
+        ([1.0] * 20 + [math.nan], 1e3, 4.0, "sample 20 is nan"),
+        (np.zeros(100), 0.0, 4.0, "rate is 0.0"),
+        (np.zeros(100), 1e3, -1.0, "resolution is -1.0"),
+    ],
+)
+def test_what_cannot_be_analysed_is_refused_in_one_line(signal, rate, resolution, words):
+    with pytest.raises(ParameterError, match=words) as error:
+        autospectrum(signal, rate, resolution=resolution)
+    assert "\n" not in str(error.value)
+
+
+def test_white_noise_is_flat_and_its_centroid_is_the_middle_of_the_band():
+    shape = spectral_shape(autospectrum(noise(160_000), 16e3), low=150.0, high=7000.0)
+    assert shape.centroid == pytest.approx(3575, rel=0.01)
+    assert shape.spread == pytest.approx(6850 / math.sqrt(12), rel=0.01)
+    assert shape.roll_off == pytest.approx(150 + 0.85 * 6850, rel=0.01)
+    assert shape.flatness > 0.95
+
+
+def test_shape_of_a_tone_is_its_frequency_without_spread():
+    shape = spectral_shape(autospectrum(tone(2000, 16e3), 16e3), low=150.0, high=7000.0)
+    assert shape.centroid == pytest.approx(2000, abs=1)
+    assert shape.roll_off == pytest.approx(2000, abs=5)
+    assert shape.spread < 10
+    assert shape.flatness < 1e-3
+
+
+def test_shape_of_nothing_is_undefined_and_of_no_band_refused():
+    spectrum = autospectrum(np.zeros(1600), 16e3)
+    assert math.isnan(spectral_shape(spectrum, low=150.0, high=7000.0).centroid)
+    with pytest.raises(ParameterError, match="no bin lies between 9000 and 9500 Hz"):
+        spectral_shape(spectrum, low=9000.0, high=9500.0)
+
+
+@pytest.mark.parametrize("rate", [16e3, 30e3, 44.1e3, 48e3, 65536.0, 96e3])
+def test_a_band_keeps_what_lies_inside_and_drops_what_lies_outside(rate):
+    inside, outside = tone(3000, rate, 0.5), tone(300, rate, 0.5) + tone(7960, rate, 0.5)
+    kept, kept_rate = band_signal(forward(inside + outside, rate), 1000.0, 7000.0)
+    assert kept_rate == pytest.approx(16e3, rel=1e-3)
+    assert np.mean(kept**2) == pytest.approx(0.5, rel=0.01)
+    envelope, _ = band_analytic(forward(inside, rate), 2000.0, 7000.0)
+    assert abs(envelope) == pytest.approx(np.ones(envelope.size), abs=0.01)
+
+
+def test_cutting_a_block_out_of_a_tone_makes_no_click():
+    block = tone(500, 48e3, 0.25)
+    high, _ = band_analytic(forward(block, 48e3), 2000.0, 7000.0)
+    assert abs(high).max() < 10 ** (-80 / 20)

@@ -1,0 +1,119 @@
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from features.kernels.stick_rate import stick_rate_of
+from features.registry import recording_features
+from features.transformer import RecordingFeatures
+from models.condition import FIXED, Condition
+from models.recording import Channel, Recording
+from models.rig import Fit, effective_stiffness
+from models.rig_files.rig_file import load_material_rig
+from sim.run import simulate
+
+RATE = 30e3
+KNOWN = Condition(5.0, 0.279e-3, 2214.0, "fluorocarbon-thesis")
+SERIES = 665.0 * 2214.0 / (665.0 + 2214.0)
+
+
+def recording(condition=KNOWN, seconds=0.5, calibrated=True, **channels):
+    t = np.arange(round(RATE * seconds)) / RATE
+    rows = {"torque": 8.0 + 0.0 * t} | {name: of(t) for name, of in channels.items()}
+    names = tuple(Channel(name) for name in rows)
+    return Recording(np.stack(list(rows.values())), RATE, names, condition, calibrated)
+
+
+@given(elastomer=st.floats(1.0, 1e4), support=st.floats(1.0, 1e5))
+def test_springs_in_series_are_softer_than_either_and_the_bolted_clamp_leaves_one(
+    elastomer, support
+):
+    fit = Fit(0.279e-3, elastomer, 10.7, 8.0, {FIXED: 0.1})
+    stiffness = effective_stiffness(fit, support)
+    assert stiffness == pytest.approx(elastomer * support / (elastomer + support))
+    assert stiffness < min(elastomer, support)
+    assert effective_stiffness(fit, FIXED) == pytest.approx(elastomer)
+
+
+@pytest.mark.parametrize(("speed", "of"), [(5.0, 5.0), (-5.0, 5.0), (1.0, 1.0)])
+def test_torque_rises_at_effective_stiffness_times_speed(speed, of):
+    assert stick_rate_of(recording(replace(KNOWN, speed=speed))) == pytest.approx(SERIES * of)
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        replace(KNOWN, speed=None),
+        replace(KNOWN, speed=0.0),
+        replace(KNOWN, interference=None),
+        replace(KNOWN, support_stiffness=None),
+        replace(KNOWN, material=None),
+        replace(KNOWN, material="unobtainium"),
+        Condition(),
+    ],
+)
+def test_what_is_not_known_is_missing(condition):
+    assert math.isnan(stick_rate_of(recording(condition)))
+
+
+def test_speed_from_its_own_channels_goes_before_that_of_the_sidecar():
+    turning = recording(angle=lambda t: 0.3 - 2.0 * t)
+    assert stick_rate_of(turning) == pytest.approx(SERIES * 2.0, rel=1e-6)
+    measured = recording(speed=lambda t: 3.0 + 0.0 * t, angle=lambda t: 2.0 * t)
+    assert stick_rate_of(measured) == pytest.approx(SERIES * 3.0)
+
+
+def test_a_noisy_angle_of_12_bit_tells_the_speed():
+    rng = np.random.default_rng(2)
+    step = 6e-3
+    turning = recording(
+        angle=lambda t: step * np.rint((5.0 * t + 2e-3 * rng.normal(size=t.size)) / step)
+    )
+    assert stick_rate_of(turning) == pytest.approx(SERIES * 5.0, rel=0.02)
+
+
+def test_channels_that_are_not_calibrated_or_too_short_are_not_used():
+    uncalibrated = recording(calibrated=False, angle=lambda t: 2.0 * t)
+    short = recording(seconds=0.05, angle=lambda t: 2.0 * t)
+    assert stick_rate_of(uncalibrated) == stick_rate_of(short) == pytest.approx(SERIES * 5.0)
+
+
+def test_a_rig_of_ones_own_goes_before_the_shipped_one():
+    rig = load_material_rig("fluorocarbon-thesis")
+    stiff = replace(rig, fits=tuple(replace(fit, elastomer_stiffness=1e9) for fit in rig.fits))
+    unnamed = recording(replace(KNOWN, material=None))
+    assert stick_rate_of(unnamed, stiff) == pytest.approx(2214.0 * 5.0, rel=1e-5)
+
+
+def test_the_slope_ratio_tells_stick_from_what_merely_oscillates():
+    t = np.arange(15_000) / RATE
+    rises, drop = SERIES * 5.0, 12.0
+    period = drop / rises / 0.95
+    phase = t / period % 1.0
+    sawtooth = 8.0 + drop * np.interp(phase, [0.0, 0.95, 1.0], [0.0, 1.0, 0.0])
+    slow = 8.0 + 0.1 * (sawtooth - 8.0)
+    channels = (Channel("torque"),)
+    for torque, ratio in ((sawtooth, 1.0), (-sawtooth, 1.0), (slow, 0.1)):
+        run = Recording(torque[np.newaxis], RATE, channels, KNOWN)
+        found = recording_features(run)["torque_slope_ratio"]
+        assert found == pytest.approx(ratio, rel=0.02)
+        transformer = RecordingFeatures(("torque",))
+        column = transformer.get_feature_names_out().tolist().index("torque_slope_ratio")
+        assert transformer.fit_transform([run])[0, column] == found
+    assert math.isnan(
+        recording_features(Recording(sawtooth[np.newaxis], RATE, channels))["torque_slope_ratio"]
+    )
+
+
+def test_a_simulated_contact_on_a_bolted_clamp_sticks_truly_and_one_that_ages_creeps():
+    ratio = {}
+    for material in ("fluorocarbon-thesis", "fluorocarbon"):
+        rig = load_material_rig(material)
+        run = simulate(rig, 1.0, interference=0.279e-3, support_stiffness=FIXED)
+        ratio[material] = recording_features(run.recording)["torque_slope_ratio"]
+    assert ratio["fluorocarbon-thesis"] == pytest.approx(1.0, abs=0.02)
+    assert ratio["fluorocarbon"] < 0.85

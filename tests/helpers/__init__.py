@@ -1,0 +1,1 @@
+"""Signals, rigs and files that several tests share."""

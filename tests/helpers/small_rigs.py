@@ -1,0 +1,100 @@
+"""A bench with a made structure and runs of it, short enough for tests of the diagnosis."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from models.condition import Condition
+from models.rig import Fit, LawSpec
+from models.rig_files.rig_file import load_material_rig
+from noise.diagnosis.simulated.chain_run import chain_of, fine_rate, recorded, run_signals
+from noise.diagnosis.simulated.paths import Way, ways
+from noise.recordings import write_recording
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+
+__all__ = [
+    "RATE", "RIG", "RIG_FILE", "SECONDS", "at", "only", "run", "table_of", "write_case",
+]  # fmt: skip
+
+RATE, SECONDS = 25.6e3, 0.4
+
+RIG = replace(
+    load_material_rig("fluorocarbon-thesis"),
+    fits=(Fit(0.279e-3, 665.0, 10.7, 8.0, {2214.0: 0.105, 3745.0: 0.085, math.inf: 0.085}),),
+)
+
+RIG_FILE = """\
+name = "small"
+material = "fluorocarbon"
+elastomer_inertia_kgm2 = 1.538e-5
+clamp_inertia_kgm2 = 8.333e-4
+effects = []
+[[fit]]
+interference_mm = 0.279
+elastomer_stiffness_Nm_rad = 665.0
+critical_torque_Nm = 10.7
+kinetic_torque_Nm = 8.0
+damping_Nms_rad = { "2214" = 0.105, "3745" = 0.085, fixed = 0.085 }
+"""
+
+_WAYS: dict[float, dict[str, Way]] = {}
+
+
+def at(speed, support=2214.0):
+    return Condition(
+        speed=speed, interference=0.279e-3, support_stiffness=support, material="fluorocarbon"
+    )
+
+
+def run(condition, *effects, seed=0, seconds=SECONDS, rate=RATE, rig=RIG, library=EFFECTS):
+    """Record one run; an effect is (name, parameters)."""
+    support = condition.support_stiffness
+    if support not in _WAYS:
+        _WAYS[support] = ways(RIG, condition.interference, support)
+    active = activated([LawSpec(name, values) for name, values in effects], library)
+    blows = any(e.effect.force is not None or e.effect.chain is not None for e in active)
+    fine = fine_rate(rate)
+    chain = chain_of(rig, condition.interference, support, _WAYS[support], fine, blows=blows)
+    rng = np.random.default_rng(seed)
+    signals = run_signals(rig, condition, active, chain, seconds, rng)
+    return recorded(signals, fine, rate, condition, rng)
+
+
+def only(recording, *kinds):
+    """Return a recording of which fewer channels were recorded."""
+    rows = [recording.channel_names.index(kind) for kind in kinds]
+    return replace(
+        recording,
+        samples=recording.samples[rows],
+        channels=tuple(recording.channels[row] for row in rows),
+    )
+
+
+def table_of(names, measured, *, scatter=1.0, speeds=None, rate=RATE):
+    """Make a table of a case whose nominal numbers are all 0."""
+    from noise.diagnosis.evidence.summary import CaseTable
+
+    measured = np.asarray(measured, dtype=np.float64)
+    speeds = speeds or [1.0 + i for i in range(len(measured))]
+    return CaseTable(
+        tuple(names),
+        measured,
+        np.zeros_like(measured),
+        np.full_like(measured, scatter),
+        tuple(at(v) for v in speeds),
+        rate,
+    )
+
+
+def write_case(folder, recordings, rig_text=RIG_FILE):
+    """Lay a case out as a user does; return its folder of recordings and its rig file."""
+    data, rig = folder / "data", folder / "rig.toml"
+    data.mkdir(parents=True)
+    rig.write_text(rig_text, encoding="utf-8")
+    for i, recording in enumerate(recordings):
+        write_recording(data / f"run{i + 1:02d}.wav", recording)
+    return data, rig

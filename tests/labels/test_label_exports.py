@@ -1,0 +1,211 @@
+"""What follows from a label table: joined again, as label tracks, as a map of conditions."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given, strategies as st
+
+from models.errors import ParameterError, RecordingError
+from noise.base.tables import write_table
+from noise.classifier import LABELS
+from noise.cli import main
+from noise.labels.audacity import label_track, track_paths, write_label_tracks
+from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
+from noise.labels.reading import read_label_table
+from noise.labels.table import COLUMNS, error_row
+from noise.pictures.conditions import plot_conditions
+
+
+def row(file="a.wav", label="creak", speed=5.0, fit=0.279, support=2214.0, **more):
+    known = {
+        "file": file, "channel": "all", "start_s": 0.0, "end_s": 1.5, "label": label,
+        "speed_rad_s": speed, "interference_mm": fit, "support_stiffness_Nm_rad": support,
+        "support_stiffness_Nm_rad_source": "missing" if support is None else "logged",
+        "calibrated": True, "material": "PDMS",
+    }  # fmt: skip
+    return dict.fromkeys(COLUMNS) | known | more
+
+
+TABLE = [
+    row(),
+    row("day1/b.wav", "squeal", support=math.inf),
+    row("day1/b.wav", "none", start_s=1.5, end_s=2.0, support=math.inf),
+    row("c.wav", "unknown", None, None, None, material=None),
+    error_row("d.wav", "is damaged"),
+]
+
+
+@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
+    path = tmp_path / f"labels{ending}"
+    write_table(path, COLUMNS, TABLE)
+    back = read_label_table(path)
+    assert [{k: v for k, v in r.items() if k != "calibrated"} for r in back] == [
+        {k: v for k, v in r.items() if k != "calibrated"} for r in TABLE
+    ]
+    assert [r["calibrated"] for r in back] == [True] * 4 + [None]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("t.csv", b"a,b\n1,2\n", "no column 'file'"),
+        ("t.csv", b"file,label\na.wav,dog\n", "row 1 has label 'dog'"),
+        ("t.csv", b"file,label,start_s\na.wav,none,soon\n", "start_s 'soon', expected a number"),
+        ("t.csv", b"\xff\xfe\x00", "is damaged"),
+        ("t.jsonl", b"[1]\n", "row 1 lacks file"),
+        ("t.jsonl", b"{", "is damaged"),
+        ("t.parquet", b"PAR1", "is damaged"),
+        ("nowhere.csv", None, "No such file"),
+    ],
+)
+def test_what_is_no_label_table_is_refused_with_the_reason(tmp_path, name, content, said):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(RecordingError, match=said):
+        read_label_table(tmp_path / name)
+
+
+def test_each_recording_has_a_label_track(tmp_path):
+    written = write_label_tracks(tmp_path, TABLE)
+    names = [path.relative_to(tmp_path).as_posix() for path in written]
+    assert names == ["a.txt", "day1/b.txt", "c.txt"]
+    track = (tmp_path / "day1" / "b.txt").read_text()
+    assert track == "0.000000\t1.500000\tsqueal\n1.500000\t2.000000\tnone\n"
+
+
+def test_tracks_of_a_stereo_file_are_told_apart():
+    assert label_track([row(channel="2")]).endswith("\ttrack 2: creak\n")
+
+
+def test_one_recording_may_have_its_track_in_a_file(tmp_path):
+    assert track_paths(tmp_path / "a.txt", ["a.wav"]) == {"a.wav": tmp_path / "a.txt"}
+    with pytest.raises(ParameterError, match="2 recordings; name a folder"):
+        track_paths(tmp_path / "a.txt", ["a.wav", "b.wav"])
+
+
+def test_recordings_that_differ_in_the_ending_do_not_share_a_track(tmp_path):
+    paths = track_paths(tmp_path, ["a.wav", "a.flac", "b.wav"])
+    assert [path.name for path in paths.values()] == ["a.wav.txt", "a.flac.txt", "b.txt"]
+
+
+@pytest.mark.parametrize("file", ["/etc/a.wav", "../a.wav", "x/../../a.wav"])
+def test_a_track_stays_in_its_folder(tmp_path, file):
+    with pytest.raises(ParameterError, match="outside"):
+        track_paths(tmp_path, [file])
+
+
+def test_two_recordings_of_one_name_are_refused_before_the_work(tmp_path):
+    with pytest.raises(ParameterError, match=r"two recordings are called a\.wav"):
+        track_paths(tmp_path, ["a.wav", "a.wav"])
+
+
+def test_the_map_counts_by_condition():
+    places = conditions_map(TABLE)
+    found = [(p.support_stiffness and p.support_stiffness.low, p.label) for p in places]
+    assert found == [(2214.0, "creak"), (math.inf, "squeal"), (None, "unknown")]
+    assert places[1].segments["none"] == places[1].segments["squeal"] == 1
+    assert places[1].recordings == {"day1/b.wav"}
+    assert all(tuple(r) == MAP_COLUMNS for r in map_rows(places))
+
+
+def test_a_place_is_named_by_its_longest_noise_and_silence_only_where_there_is_none():
+    rows = [row(label="none", end_s=9.0), row(label="squawk", end_s=0.5), row(end_s=0.25)]
+    (place,) = conditions_map(rows)
+    assert place.label == "squawk"
+    assert conditions_map(rows[:1])[0].label == "none"
+
+
+def test_jitter_of_the_logged_speed_does_not_split_a_place_but_a_step_does():
+    rows = [row(speed=v) for v in (4.97, 5.0, 5.02, -5.01, 6.0, 12.0)]
+    assert [sum(p.segments.values()) for p in conditions_map(rows)] == [4, 1, 1]
+
+
+def test_materials_are_kept_apart():
+    assert len(conditions_map([row(), row(material="fluorocarbon")])) == 2
+
+
+number = st.one_of(st.none(), st.floats(0.0, 1e6), st.just(math.inf))
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(LABELS), st.one_of(st.none(), st.floats(-1e4, 1e4)),
+            st.one_of(st.none(), st.floats(0.0, 10.0)), number,
+        ),
+        max_size=40,
+    )
+)  # fmt: skip
+def test_the_map_counts_every_segment_once_where_it_belongs(segments):
+    rows = [row(label=label, speed=v, fit=i, support=k) for label, v, i, k in segments]
+    places = conditions_map(rows)
+    assert sum(sum(place.segments.values()) for place in places) == len(rows)
+    assert len({(p.speed, p.interference, p.support_stiffness) for p in places}) == len(places)
+    for place in places:
+        for found in (place.speed, place.interference, place.support_stiffness):
+            assert found is None or found.low <= found.middle <= found.high
+    speeds = {place.speed for place in places} - {None}
+    assert len(speeds) <= 17
+
+
+def test_the_picture_shows_each_count_and_a_panel_for_each_support():
+    figure = plot_conditions(conditions_map(TABLE), title="all")
+    titles = [axes.get_title("left") for axes in figure.axes]
+    assert titles == [
+        "PDMS, 2214 Nm/rad",
+        "PDMS, clamp fixed",
+        "material not known, support not known",
+    ]
+    assert [text.get_text() for text in figure.axes[1].texts] == ["1", "1"]
+
+
+def test_a_map_and_tracks_come_from_a_table_without_labelling(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_table("one.jsonl", COLUMNS, TABLE[:1])
+    write_table("two.csv", COLUMNS, TABLE[1:])
+    given = ["one.jsonl", "two.csv", "--map", "m/map.png", "--audacity", "tracks"]
+    assert main(["label", *given, "--out", "both.csv"]) == 0
+    out, _ = capsys.readouterr()
+    assert out.split() == [str(Path(p)) for p in ("both.csv", "tracks", "m/map.png", "m/map.csv")]
+    assert read_label_table(Path("both.csv")) == read_label_table(Path("one.jsonl")) + (
+        read_label_table(Path("two.csv"))
+    )
+    with Path("m/map.csv").open() as file:
+        assert [r["label"] for r in csv.DictReader(file)] == ["creak", "squeal", "unknown"]
+    assert Path("m/map.png").read_bytes()[:4] == b"\x89PNG"
+    assert Path("tracks/day1/b.txt").is_file()
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["t.csv"], "say what to make of it"),
+        (["nowhere.csv", "--map", "m.png"], "nowhere.csv: cannot be read"),
+        (["t.csv", "--map", "m.txt"], "a picture ends in"),
+        (["t.csv", "--map", "m.png", "--out", "m.csv"], "give one of them another name"),
+        (["t.csv", "--map", "t.csv/m.png"], "is a file, not a folder"),
+        (["t.csv", "--audacity", "t.csv"], "is a file, not a folder"),
+        (["t.csv", "--audacity", "one.txt"], "name a folder"),
+    ],
+)
+def test_exports_that_cannot_be_made_are_refused(tmp_path, capsys, monkeypatch, given, said):
+    monkeypatch.chdir(tmp_path)
+    write_table("t.csv", COLUMNS, TABLE)
+    assert main(["label", *given]) == 2
+    out, err = capsys.readouterr()
+    assert said in err
+    assert out == ""
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["t.csv"]
+
+
+def test_a_table_without_labels_has_no_map(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_table("t.csv", COLUMNS, TABLE[-1:])
+    assert main(["label", "t.csv", "--map", "m.png"]) == 0
+    assert "no segment is labelled" in capsys.readouterr().err
+    assert not Path("m.png").exists()

@@ -1,0 +1,142 @@
+"""Labels in time, and the table that links them to conditions."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from models.condition import FIXED, Condition
+from models.recording import Channel, Recording
+from models.rig_files.rig_file import load_material_rig
+from noise.classifier import LABELS, load_classifier
+from noise.labels import COLUMNS, Segment, error_row, file_label, label_recording, label_rows
+from sim.run import simulate
+
+CLASSIFIER = load_classifier()
+
+
+def sound(*parts, rate=30_000.0, calibrated=True):
+    samples = np.concatenate(parts)[None, :]
+    return Recording(samples, rate, (Channel("pressure"),), calibrated=calibrated)
+
+
+@pytest.fixture(scope="module")
+def squeal():
+    rig = load_material_rig("fluorocarbon")
+    return simulate(rig, 10.0, support_stiffness=3745.0, seconds=2.0).recording["pressure"]
+
+
+def test_segments_cover_a_recording_without_gap_or_overlap(squeal):
+    quiet = 1e-9 * np.ones(45_000)
+    segments = label_recording(sound(quiet, squeal, quiet), CLASSIFIER)
+    assert segments[0].start == 0.0
+    assert segments[-1].end == pytest.approx(5.0)
+    for one, following in itertools.pairwise(segments):
+        assert one.end == following.start
+        assert one.label != following.label
+
+
+def test_a_squeal_between_silences_is_found_where_it_is(squeal):
+    quiet = np.zeros(45_000)
+    found = file_label(label_recording(sound(quiet, squeal, quiet), CLASSIFIER))
+    assert found.label == "squeal"
+    assert found.start == pytest.approx(1.5, abs=0.3)
+    assert found.end == pytest.approx(3.5, abs=0.3)
+
+
+@pytest.mark.parametrize("calibrated", [True, False])
+def test_digital_silence_is_none_and_has_no_level(calibrated):
+    (segment,) = label_recording(sound(np.zeros(30_000), calibrated=calibrated), CLASSIFIER)
+    assert segment.label == "none"
+    assert segment.level is None
+    assert segment.level_dbfs is None
+
+
+def test_a_pascal_of_sine_is_94_db():
+    tone = math.sqrt(2.0) * np.sin(2 * np.pi * 1000.0 * np.arange(30_000) / 30e3)
+    (segment,) = label_recording(sound(tone), CLASSIFIER)
+    assert segment.level == pytest.approx(93.98, abs=0.01)
+
+
+def test_an_uncalibrated_level_is_relative_to_full_scale():
+    tone = 0.1 * math.sqrt(2.0) * np.sin(2 * np.pi * 1000.0 * np.arange(30_000) / 30e3)
+    (segment,) = label_recording(sound(tone, calibrated=False), CLASSIFIER)
+    assert segment.level is None
+    assert segment.level_dbfs == pytest.approx(-20.0, abs=0.01)
+
+
+@pytest.mark.parametrize("n", [16, 100, 1000, 15_000, 15_001, 16_900, 31_234])
+def test_recordings_of_any_length_are_labelled_to_their_end(n):
+    noise = np.random.default_rng(0).normal(size=n)
+    segments = label_recording(sound(noise), CLASSIFIER)
+    assert segments[-1].end == pytest.approx(n / 30e3)
+
+
+def test_tracks_of_a_plain_file_are_labelled_one_by_one(squeal):
+    two = np.stack([squeal, np.zeros_like(squeal)])
+    channels = (Channel("pressure"), Channel("pressure_2"))
+    recording = Recording(two, 30e3, channels, calibrated=False)
+    segments = label_recording(recording, CLASSIFIER, per_track=True)
+    assert {s.channel: s.label for s in segments} == {"1": "squeal", "2": "none"}
+
+
+def test_rows_have_all_columns_and_say_where_a_condition_comes_from():
+    condition = Condition(interference=0.279e-3, support_stiffness=FIXED)
+    recording = Recording(np.zeros((1, 100)), 100.0, (Channel("pressure"),), condition)
+    segment = Segment("all", 0.0, 1.0, "none", dict.fromkeys(LABELS, 0.2), None, 50.0, -44.0)
+    (row,) = label_rows("a/b.wav", recording, [segment])
+    assert tuple(row) == COLUMNS
+    assert row["interference_mm"] == 0.279
+    assert row["interference_mm_source"] == "logged"
+    assert math.isinf(row["support_stiffness_Nm_rad"])
+    assert row["speed_rad_s"] is None
+    assert row["speed_rad_s_source"] == row["material_source"] == "missing"
+
+
+def test_speed_is_that_of_the_segment_where_the_angle_was_recorded():
+    angle = np.concatenate([np.linspace(0.0, 1.0, 100), np.linspace(1.0, 4.0, 100)])
+    recording = Recording(angle[None], 100.0, (Channel("angle"),), Condition(speed=99.0))
+    parts = [
+        Segment("all", t, t + 1.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
+        for t in (0.0, 1.0)
+    ]
+    speeds = [row["speed_rad_s"] for row in label_rows("run.wav", recording, parts)]
+    assert speeds == pytest.approx([1.0, 3.0], rel=0.02)
+
+
+def test_a_refused_file_has_a_row_with_the_reason():
+    row = error_row("bad.wav", "empty")
+    assert tuple(row) == COLUMNS
+    assert (row["file"], row["error"], row["label"]) == ("bad.wav", "empty", None)
+
+
+@pytest.mark.parametrize("rate", [1.0, 2.0, 200.0, 350.0])
+def test_what_is_sampled_too_slowly_to_tell_is_unknown(rate):
+    noise = np.random.default_rng(0).normal(size=400)
+    (segment,) = label_recording(sound(noise, rate=rate), CLASSIFIER)
+    assert segment.label == "unknown"
+
+
+def test_channels_that_carry_no_noise_are_unknown():
+    angle = Recording(np.linspace(0.0, 5.0, 30_000)[None], 30e3, (Channel("angle"),))
+    (segment,) = label_recording(angle, CLASSIFIER)
+    assert segment.label == "unknown"
+    assert segment.frequency is None
+
+
+def test_rumble_is_not_taken_for_the_tone():
+    time = np.arange(60_000) / 30e3
+    rumbling = np.sin(2 * np.pi * 2900.0 * time) + 2.0 * np.sin(2 * np.pi * 20.0 * time)
+    found = file_label(label_recording(sound(rumbling), CLASSIFIER))
+    assert found.frequency == pytest.approx(2900.0, abs=5.0)
+
+
+def test_speed_of_a_swinging_shaft_is_its_mean_magnitude():
+    time = np.arange(60_000) / 30e3
+    angle = 0.26 * np.sin(2 * np.pi * 2.0 * time)
+    angle += 1e-4 * np.random.default_rng(0).normal(size=angle.size)
+    recording = Recording(angle[None], 30e3, (Channel("angle"),))
+    segment = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
+    (row,) = label_rows("swing.wav", recording, [segment])
+    assert row["speed_rad_s"] == pytest.approx(4 * 0.26 * 2.0, rel=0.03)

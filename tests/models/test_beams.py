@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.errors import ParameterError
+from models.rig import Beams
+from models.structure.beams import (
+    ACCELERATION,
+    ANCHOR_FORCE,
+    ANCHOR_MOMENT,
+    PULSE,
+    TORQUE,
+    beam_structure,
+    rigid_clamp_inertia,
+)
+from models.structure.beams_stiffness import beam_length, torsional_stiffness
+
+STEEL = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.005, 0.4)
+J_C = 1 / 1200
+EI = 2e11 * 25.4e-3 * 3.175e-3**3 / 12
+MASS_PER_LENGTH = 8000.0 * 25.4e-3 * 3.175e-3
+
+stiffnesses = st.floats(1500.0, 20e3)
+
+
+def _exact(length, frequency):
+    """Dynamic stiffness of a Bernoulli beam fixed at its far end: at its root, and to that end."""
+    k = (MASS_PER_LENGTH * (2 * np.pi * frequency) ** 2 / EI) ** 0.25
+    s, c, sh, ch = np.sin(k * length), np.cos(k * length), np.sinh(k * length), np.cosh(k * length)
+    scale = EI * k / (1 - c * ch)
+    root = np.array([[k**2 * (ch * s + sh * c), k * sh * s], [k * sh * s, s * ch - c * sh]])
+    across = np.array([[k**2 * (sh + s), k * (ch - c)], [-k * (ch - c), -(sh - s)]])
+    return scale * root, scale * across
+
+
+def _clamp_stiffness(length, inertia, frequency):
+    follow = np.array([STEEL.lever, 1.0])
+    root, _ = _exact(length, frequency)
+    return 2 * follow @ root @ follow - inertia * (2 * np.pi * frequency) ** 2
+
+
+@pytest.mark.parametrize(("length", "stiffness"), [(0.123, 2198.6), (0.092, 3745.1)])
+def test_stiffness_of_the_beams_is_that_of_the_thesis(length, stiffness):
+    assert torsional_stiffness(STEEL, length) == pytest.approx(stiffness, abs=0.05)
+
+
+@given(st.floats(1.0, 1e7))
+def test_every_stiffness_has_its_beam_length(stiffness):
+    length = beam_length(STEEL, stiffness)
+    assert torsional_stiffness(STEEL, length) == pytest.approx(stiffness, rel=1e-9)
+
+
+@pytest.mark.parametrize("stiffness", [0.0, -2214.0, math.inf, math.nan])
+def test_a_stiffness_that_no_beam_has_is_refused(stiffness):
+    with pytest.raises(ParameterError, match="positive, finite"):
+        beam_length(STEEL, stiffness)
+
+
+@given(stiffnesses, st.floats(1 / 1300, 1 / 800))
+@settings(max_examples=30, deadline=None)
+def test_first_torsional_mode_is_the_lumped_models(stiffness, inertia):
+    model = beam_structure(STEEL, stiffness, inertia, 0.02, 40e3)
+    lumped = math.sqrt(stiffness / inertia) / (2 * math.pi)
+    assert model.frequencies[0] == pytest.approx(lumped, rel=1e-7)
+    assert model.damping_ratios[0] == 0.02
+    assert np.all(model.damping_ratios[1:] == STEEL.damping_ratio)
+
+
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+def test_below_the_bending_modes_the_clamp_moves_as_the_lumped_one(stiffness):
+    at_the_clamp = dataclasses.replace(STEEL, accelerometer=0.0)
+    model = beam_structure(at_the_clamp, stiffness, J_C, 0.02, 40e3)
+    frequency = np.array([20.0, 100.0, 200.0, 240.0, 300.0, 400.0])
+    omega = 2 * np.pi * frequency
+    damping = 2 * 0.02 * np.sqrt(stiffness * J_C)
+    lumped = -(omega**2) * STEEL.lever / (stiffness - J_C * omega**2 + 1j * damping * omega)
+    found = model.frequency_response(frequency)[ACCELERATION, TORQUE]
+    assert np.abs(found / lumped) == pytest.approx(1, abs=0.03)
+
+
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+def test_higher_modes_satisfy_the_exact_frequency_equation(stiffness):
+    length = beam_length(STEEL, stiffness)
+    inertia = rigid_clamp_inertia(STEEL, length, J_C)
+    model = beam_structure(STEEL, stiffness, J_C, 0.02, 25e3)
+    assert model.frequencies.size >= 5
+    for frequency in model.frequencies:
+        below = _clamp_stiffness(length, inertia, frequency * 0.9985)
+        above = _clamp_stiffness(length, inertia, frequency * 1.0005)
+        assert below > 0 > above
+
+
+@pytest.mark.parametrize("frequency", [150.0, 700.0, 2000.0, 4500.0, 8000.0, 12000.0])
+def test_anchors_receive_what_the_exact_beam_passes_on(frequency):
+    length = beam_length(STEEL, 2214.0)
+    theta = 1 / _clamp_stiffness(length, rigid_clamp_inertia(STEEL, length, J_C), frequency)
+    _, across = _exact(length, frequency)
+    exact = across @ np.array([STEEL.lever, 1.0]) * theta
+    undamped = dataclasses.replace(STEEL, damping_ratio=0.0)
+    model = beam_structure(undamped, 2214.0, J_C, 0.0, 40e3)
+    found = model.frequency_response([frequency])[ANCHOR_FORCE:, TORQUE, 0].real
+    assert found == pytest.approx(exact, rel=0.02)
+
+
+@given(stiffnesses)
+@settings(max_examples=30, deadline=None)
+def test_at_rest_the_anchors_balance_the_torque(stiffness):
+    model = beam_structure(STEEL, stiffness, J_C, 0.02, 40e3)
+    static = model.frequency_response([0.0])[:, TORQUE, 0].real
+    arm = STEEL.lever + beam_length(STEEL, stiffness)
+    assert 2 * (static[ANCHOR_FORCE] * arm + static[ANCHOR_MOMENT]) == pytest.approx(1, rel=1e-7)
+    assert static[ACCELERATION] == 0
+
+
+def test_a_pulse_on_the_beam_is_held_by_the_anchor_beside_it():
+    static = beam_structure(STEEL, 2214.0, J_C, 0.02, 40e3).frequency_response([0.0])
+    assert -1.01 < static[ANCHOR_FORCE, PULSE, 0].real < -0.98
+
+
+def test_modes_left_out_still_act_on_the_anchors_at_low_frequency():
+    few = beam_structure(STEEL, 2214.0, J_C, 0.02, 5e3).frequency_response([50.0, 500.0])
+    many = beam_structure(STEEL, 2214.0, J_C, 0.02, 40e3).frequency_response([50.0, 500.0])
+    assert few[ANCHOR_FORCE:] == pytest.approx(many[ANCHOR_FORCE:], rel=0.02, abs=1e-4)
+
+
+def test_beams_heavier_than_the_clamp_are_refused():
+    with pytest.raises(ParameterError, match="larger support stiffness"):
+        beam_structure(STEEL, 500.0, J_C, 0.02, 40e3)

@@ -1,0 +1,280 @@
+"""The exact model of clamp and beams, against closed forms, transfer matrices, finite elements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from scipy.linalg import eigh
+
+from models.errors import ParameterError
+from models.rig import Beams
+from models.structure.beams import (
+    ACCELERATION,
+    ANCHOR_FORCE,
+    ANCHOR_MOMENT,
+    TORQUE,
+    beam_structure,
+    rigid_clamp_inertia,
+)
+from models.structure.beams_exact import forced_response, mode_shape, natural_frequencies
+from models.structure.beams_fit import fit_anchors
+from models.structure.beams_stiffness import (
+    beam_length,
+    bending_stiffness,
+    mass_per_length,
+    torsional_stiffness,
+)
+from models.structure.beams_waves import ClampOnBeams, RootMotion
+
+STEEL = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.005, 0.4)
+LATERAL = 3500.0 * 4.4482216 / 0.0254
+BENCH = ClampOnBeams(STEEL, 0.123, 0.96, 1 / 1050, LATERAL, 750.0)
+SOFT = replace(STEEL, anchor_rotation=300.0, anchor_translation=5e6)
+MOTIONS = (RootMotion.TURNING, RootMotion.SIDEWAYS)
+
+
+def elements(structure, motion, n=40):
+    """Stiffness and mass of the same structure by Hermite elements, and what maps them to nodes."""
+    beams, size, h = structure.beams, 2 * (n + 1), structure.length / n
+    k = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], float)
+    m = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
+    unit = np.array([1.0, h, 1.0, h])
+    k = bending_stiffness(beams) / h**3 * k * np.outer(unit, unit)
+    m = mass_per_length(beams) * h / 420 * m * np.outer(unit, unit)
+    stiffness, mass = np.zeros((size, size)), np.zeros((size, size))
+    for i in range(0, size - 2, 2):
+        stiffness[i : i + 4, i : i + 4] += k
+        mass[i : i + 4, i : i + 4] += m
+    springs = (beams.anchor_translation, beams.anchor_rotation)
+    kept = list(range(2, size - 2))
+    for i, spring in enumerate(springs):
+        if np.isfinite(spring):
+            stiffness[size - 2 + i, size - 2 + i] += spring
+            kept.append(size - 2 + i)
+    if motion is RootMotion.LOOSE:
+        nodes = np.eye(size)[:, [0, 1, *kept]]
+        return nodes.T @ stiffness @ nodes, nodes.T @ mass @ nodes, nodes
+    root = (beams.lever, 1.0) if motion is RootMotion.TURNING else (1.0, 0.0)
+    nodes = np.eye(size)[:, [0, *kept]]
+    nodes[:2, 0] = root
+    stiffness, mass = 2 * nodes.T @ stiffness @ nodes, 2 * nodes.T @ mass @ nodes
+    turning = motion is RootMotion.TURNING
+    stiffness[0, 0] += structure.torsional_stiffness if turning else structure.lateral_stiffness
+    mass[0, 0] += structure.clamp_inertia if turning else structure.clamp_mass
+    return stiffness, mass, nodes
+
+
+def field(structure, frequency):
+    """Classical transfer matrix of (deflection, slope, moment, shear) from clamp to anchor."""
+    stiffness = bending_stiffness(structure.beams)
+    k = (mass_per_length(structure.beams) * (2 * np.pi * frequency) ** 2 / stiffness) ** 0.25
+    s, c = np.sin(k * structure.length), np.cos(k * structure.length)
+    sh, ch = np.sinh(k * structure.length), np.cosh(k * structure.length)
+    c0, c1, c2, c3 = (ch + c) / 2, (sh + s) / 2 / k, (ch - c) / 2 / k**2, (sh - s) / 2 / k**3
+    a, b = k**4 * stiffness, stiffness
+    return np.array(
+        [
+            [c0, c1, c2 / b, c3 / b],
+            [k**4 * c3, c0, c1 / b, c2 / b],
+            [a * c2, a * c3, c0, c1],
+            [a * c1, a * c2, k**4 * c3, c0],
+        ]
+    )
+
+
+def test_a_beam_without_clamp_is_the_cantilever_of_the_textbook():
+    waves = np.array([1.87510407, 4.69409113, 7.85475744, 10.99554073, 14.13716839])
+    speed = np.sqrt(bending_stiffness(STEEL) / mass_per_length(STEEL))
+    closed = (waves / 0.123) ** 2 * speed / (2 * np.pi)
+    found = natural_frequencies(BENCH, 1.01 * closed[-1], RootMotion.LOOSE)
+    assert found == pytest.approx(closed, rel=1e-8)
+
+
+@pytest.mark.parametrize("beams", [STEEL, SOFT], ids=["rigid", "soft"])
+@pytest.mark.parametrize("motion", [*MOTIONS, RootMotion.LOOSE])
+@pytest.mark.parametrize("length", [0.123, 0.092])
+def test_frequencies_are_those_of_many_finite_elements(beams, motion, length):
+    structure = replace(BENCH, beams=beams, length=length)
+    stiffness, mass, _ = elements(structure, motion)
+    expected = np.sqrt(eigh(stiffness, mass, eigvals_only=True)[:6]) / (2 * np.pi)
+    found = natural_frequencies(structure, 1.0001 * expected[-1], motion)
+    assert found == pytest.approx(expected, rel=3e-5)
+
+
+@given(
+    st.floats(0.06, 0.2), st.floats(2e-4, 3e-3), st.floats(1.0, 1e7), st.floats(1e4, 1e10),
+    st.sampled_from(MOTIONS),
+)  # fmt: skip
+@settings(max_examples=15, deadline=None)
+def test_no_mode_is_missed(length, inertia, rotation, translation, motion):
+    beams = replace(STEEL, anchor_rotation=rotation, anchor_translation=translation)
+    structure = replace(BENCH, beams=beams, length=length, clamp_inertia=inertia)
+    stiffness, mass, _ = elements(structure, motion, n=40)
+    expected = np.sqrt(eigh(stiffness, mass, eigvals_only=True)[:8]) / (2 * np.pi)
+    found = natural_frequencies(structure, 1.0005 * expected[-1], motion)
+    assert found == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("mode", range(4))
+@pytest.mark.parametrize("motion", MOTIONS)
+def test_mode_shapes_are_those_of_many_finite_elements(motion, mode):
+    structure = replace(BENCH, beams=SOFT)
+    stiffness, mass, nodes = elements(structure, motion)
+    deflection = (nodes @ eigh(stiffness, mass)[1][:, mode])[::2]
+    deflection /= np.abs(deflection).max() * np.sign(deflection[0])
+    frequency = natural_frequencies(structure, 8e3, motion)[mode]
+    found = mode_shape(structure, frequency, np.linspace(0, 1, 41), motion)
+    found /= np.abs(found).max()
+    assert found == pytest.approx(deflection, abs=2e-3)
+
+
+@pytest.mark.parametrize("frequency", [30.0, 200.0, 700.0, 2000.0, 4000.0])
+def test_forced_response_follows_the_classical_transfer_matrix(frequency):
+    found = forced_response(BENCH, [frequency], [0.0])
+    angle = found.acceleration[0, 0].real / STEEL.lever / -((2 * np.pi * frequency) ** 2)
+    matrix = field(BENCH, frequency)
+    rigid = matrix[:2, :2] @ (STEEL.lever, 1.0) * angle
+    moment, shear = np.linalg.solve(matrix[:2, 2:], -rigid)
+    omega2 = (2 * np.pi * frequency) ** 2
+    dynamic = 750.0 - BENCH.clamp_inertia * omega2
+    assert dynamic * angle + 2 * (STEEL.lever * shear - moment) == pytest.approx(1.0, rel=1e-5)
+    end = matrix @ (STEEL.lever * angle, angle, moment, shear)
+    assert found.anchor_force[0].real == pytest.approx(end[3], rel=1e-5)
+    assert found.anchor_moment[0].real == pytest.approx(-end[2], rel=1e-5)
+
+
+@pytest.mark.parametrize("frequency", [100.0, 1500.0, 4000.0, 9000.0, 14000.0])
+@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize("beams", [STEEL, SOFT], ids=["rigid", "soft"])
+def test_forced_response_is_that_of_many_finite_elements(beams, motion, frequency):
+    structure = replace(BENCH, beams=beams)
+    stiffness, mass, nodes = elements(structure, motion)
+    dynamic = stiffness * (1 + 0j) - (2 * np.pi * frequency) ** 2 * mass
+    coordinates = np.linalg.solve(dynamic, np.eye(len(mass))[0])
+    expected = -((2 * np.pi * frequency) ** 2) * (nodes @ coordinates)[::20]
+    found = forced_response(structure, [frequency], np.linspace(0, 1, 5), motion=motion)
+    assert found.acceleration[:, 0] == pytest.approx(expected, rel=2e-3, abs=1e-3)
+
+
+@pytest.mark.parametrize("beams", [STEEL, SOFT], ids=["rigid", "soft"])
+@pytest.mark.parametrize("stiffness", [2214.0, 1500.0])
+def test_the_modal_path_to_sensor_and_anchors_is_the_exact_one(beams, stiffness):
+    """With the rigid clamp that the lumped model's inertia leaves, off and near resonance."""
+    damped = replace(beams, damping_ratio=0.005)
+    inertia = 1 / 1200
+    modal = beam_structure(damped, stiffness, inertia, 0.005, 40e3)
+    length = beam_length(beams, stiffness)
+    clamp = rigid_clamp_inertia(beams, length, inertia)
+    frequency = np.geomspace(30.0, 15e3, 400)
+    exact = forced_response(
+        ClampOnBeams(beams, length, 1.0, clamp), frequency, [beams.accelerometer], loss_factor=0.01
+    )
+    found = modal.frequency_response(frequency)[:, TORQUE]
+    for output, expected in (
+        (ACCELERATION, exact.acceleration[0]),
+        (ANCHOR_FORCE, exact.anchor_force),
+        (ANCHOR_MOMENT, exact.anchor_moment),
+    ):
+        typical = np.sqrt(np.abs(expected) * np.sqrt(np.mean(np.abs(expected) ** 2)))
+        assert np.median(np.abs(found[output] - expected) / typical) < 0.01
+        level = 20 * np.log10(np.abs(found[output]) / np.abs(expected))
+        assert np.median(np.abs(level)) < 0.1
+        assert np.percentile(np.abs(level), 95) < 0.6
+
+
+def test_stations_are_points_of_clamp_and_beam():
+    stations = [0.02, 0.0449, 0.0449 + 0.25 * beam_length(STEEL, 2214.0)]
+    modal = beam_structure(STEEL, 2214.0, 1 / 1200, 0.005, 40e3, stations)
+    at = modal.frequency_response([600.0])[3:, TORQUE, 0]
+    assert at[0] / at[1] == pytest.approx(0.02 / 0.0449)
+    moved = replace(STEEL, accelerometer=0.25)
+    sensor = beam_structure(moved, 2214.0, 1 / 1200, 0.005, 40e3).frequency_response([600.0])
+    assert at[2] == pytest.approx(sensor[ACCELERATION, TORQUE, 0], rel=1e-9)
+
+
+# Anchors
+
+
+@given(st.floats(500.0, 4000.0), st.floats(20.0, 1e6), st.floats(2e6, 1e12))
+@settings(max_examples=50, deadline=None)
+def test_length_and_stiffness_belong_together_with_soft_anchors(stiffness, rotation, translation):
+    beams = replace(STEEL, anchor_rotation=rotation, anchor_translation=translation)
+    length = beam_length(beams, stiffness)
+    assert torsional_stiffness(beams, length) == pytest.approx(stiffness, rel=1e-8)
+    assert torsional_stiffness(beams, 1.01 * length) < stiffness
+
+
+def test_very_stiff_anchors_are_rigid_ones():
+    stiff = replace(STEEL, anchor_rotation=1e12, anchor_translation=1e16)
+    assert torsional_stiffness(stiff, 0.123) == pytest.approx(torsional_stiffness(STEEL, 0.123))
+    rigid = beam_structure(STEEL, 2214.0, 1 / 1200, 0.02, 20e3)
+    almost = beam_structure(stiff, 2214.0, 1 / 1200, 0.02, 20e3)
+    assert almost.frequencies == pytest.approx(rigid.frequencies, rel=1e-5)
+    at = np.array([100.0, 1000.0, 5000.0])
+    assert np.abs(almost.frequency_response(at) / rigid.frequency_response(at)) == pytest.approx(
+        1.0, rel=2e-3
+    )
+
+
+def test_soft_anchors_still_balance_the_torque_at_rest_and_keep_the_lumped_mode():
+    model = beam_structure(SOFT, 1500.0, 1 / 1200, 0.02, 20e3)
+    _, force, moment = model.frequency_response([0.0])[:, TORQUE, 0].real
+    arm = STEEL.lever + beam_length(SOFT, 1500.0)
+    assert 2 * (force * arm + moment) == pytest.approx(1.0, rel=1e-6)
+    assert model.frequencies[0] == pytest.approx(np.sqrt(1500.0 * 1200) / (2 * np.pi), rel=1e-6)
+
+
+def test_a_stiffness_beyond_what_the_anchors_allow_is_refused():
+    weak = replace(STEEL, anchor_translation=1e4, anchor_rotation=10.0)
+    with pytest.raises(ParameterError, match="more than the anchors allow"):
+        beam_length(weak, 3745.0)
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    measured = {0.123: [250.0, 900.0, 4500.0, 6000.0], 0.092: [310.0, 1375.0]}
+    return fit_anchors(BENCH, measured)
+
+
+def test_anchors_that_yield_bring_all_measured_modes_within_a_tenth(fitted):
+    assert max(map(abs, fitted.errors)) < 0.10
+    assert fitted.found == pytest.approx(
+        [x * (1 + e) for x, e in zip(fitted.measured, fitted.errors, strict=True)]
+    )
+
+
+def test_no_neighbour_of_the_fit_is_better(fitted):
+    def cost(structure):
+        every = {
+            length: np.concatenate(
+                [natural_frequencies(replace(structure, length=length), 8e3, m) for m in MOTIONS]
+            )
+            for length in (0.123, 0.092)
+        }
+        nearest = [
+            np.abs(np.log(every[length] / mode)).min()
+            for length, mode in zip(fitted.length[1:4], fitted.measured[1:4], strict=True)
+        ]
+        nearest.append(np.abs(np.log(every[0.092] / 1375.0)).min())
+        first = [
+            np.log(natural_frequencies(replace(structure, length=length), 500.0)[0] / mode)
+            for length, mode in ((0.123, 250.0), (0.092, 310.0))
+        ]
+        return np.sum(np.abs([*nearest, *first]) ** 4)
+
+    best, beams = cost(fitted.structure), fitted.structure.beams
+    for factor in (0.95, 1.05):
+        stiffer = replace(beams, anchor_translation=factor * beams.anchor_translation)
+        assert cost(replace(fitted.structure, beams=stiffer)) > best
+        inertia = factor * fitted.structure.clamp_inertia
+        assert cost(replace(fitted.structure, clamp_inertia=inertia)) > best
+
+
+def test_what_cannot_be_fitted_is_refused():
+    with pytest.raises(ParameterError, match="'density' cannot be fitted"):
+        fit_anchors(BENCH, {0.123: [250.0]}, free=["density"])
+    with pytest.raises(ParameterError, match="1 measured modes cannot give 3 numbers"):
+        fit_anchors(BENCH, {0.123: [250.0]})

@@ -1,0 +1,117 @@
+"""Impulse responses of spectra that are known in a band only."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from scipy.signal import butter, sosfilt
+
+from models.radiation.impulse_responses import convolve
+from models.structure.modal import ModalModel
+from models.transfer_functions.causal import causal_impulse_response
+
+RATE = 96e3
+FREQUENCY = np.array([250.0, 900.0, 1800.0, 4500.0, 6000.0, 9000.0])
+ONE = np.ones((6, 1))
+STRUCTURE = ModalModel(
+    FREQUENCY,
+    np.full(6, 0.02),
+    ONE,
+    0 * ONE.T,
+    np.array([[1, -1, 1, 1, -1, 1.0]]),
+    np.zeros((1, 1)),
+)
+
+
+def lines(low=10.0, high=12800.0, spacing=2.0):
+    return np.arange(low, high + 0.5 * spacing, spacing)
+
+
+def spectrum(f):
+    return STRUCTURE.frequency_response(f)[0, 0]
+
+
+def difference(impulse_response):
+    """Relative, of the outputs for a torque that fills the band to 4 kHz."""
+    torque = sosfilt(
+        butter(4, 4000.0, fs=RATE, output="sos"), np.random.default_rng(0).standard_normal(40000)
+    )
+    true = convolve(torque, STRUCTURE.impulse_response(RATE, 20000)[0, 0])
+    return np.std(convolve(torque, impulse_response) - true) / np.std(true)
+
+
+def test_a_modal_model_is_reproduced_from_its_lines():
+    f = lines()
+    h, misfit = causal_impulse_response(f, spectrum(f), np.ones(f.size), RATE, 20000)
+    assert difference(h) < 0.005
+    assert misfit < 0.005
+
+
+def test_lines_with_noise_reproduce_it_within_the_noise():
+    f = lines()
+    scatter = np.random.default_rng(1).standard_normal((2, f.size))
+    noisy = spectrum(f) * (1 + 0.03 * (scatter[0] + 1j * scatter[1]))
+    h, misfit = causal_impulse_response(f, noisy, np.ones(f.size), RATE, 20000)
+    assert difference(h) < 0.04
+    assert misfit < 0.04
+
+
+@pytest.mark.parametrize("spacing", [1.7, 2.0, 3.3])
+def test_any_spacing_of_the_lines_will_do(spacing):
+    f = lines(spacing=spacing)
+    h, _ = causal_impulse_response(f, spectrum(f), np.ones(f.size), RATE, 20000)
+    assert difference(h) < 0.02
+
+
+def test_uneven_lines_will_do():
+    f = lines() + np.random.default_rng(2).uniform(-0.5, 0.5, lines().size)
+    h, _ = causal_impulse_response(f, spectrum(f), np.ones(f.size), RATE, 20000)
+    assert difference(h) < 0.02
+
+
+def test_a_line_without_weight_does_not_matter():
+    f = lines()
+    spoilt = np.arange(f.size) % 7 == 3
+    h, _ = causal_impulse_response(
+        f, np.where(spoilt, 1e3, spectrum(f)), np.where(spoilt, 0.0, 1.0), RATE, 20000
+    )
+    assert difference(h) < 0.02
+
+
+def test_below_its_band_an_acceleration_falls_with_the_square_of_frequency():
+    f = lines(low=60.0)
+    h, _ = causal_impulse_response(f, spectrum(f), np.ones(f.size), RATE, 40000)
+    found = np.abs(np.fft.rfft(h, 96000))[[0, 20, 40]]
+    assert found[0] < 1e-3 * found[2]
+    np.testing.assert_allclose(found[1:], np.abs(spectrum(np.array([20.0, 40.0]))), rtol=0.1)
+
+
+def test_what_was_not_measured_above_stays_no_larger_than_what_was():
+    f = lines(high=5000.0)
+    h, _ = causal_impulse_response(f, spectrum(f), np.ones(f.size), RATE, 20000)
+    gain = np.abs(np.fft.rfft(h, 96000))
+    assert gain[5500:].max() < gain[:5000].max()
+
+
+@settings(max_examples=15, deadline=None)
+@given(delay=st.integers(40, 300), gain=st.floats(0.1, 10))
+def test_a_delay_stays_a_delay(delay, gain):
+    f = lines(low=20.0, high=8000.0, spacing=20.0)
+    pulse = gain * f**2 * np.exp(-((f / 2000) ** 2)) * np.exp(-2j * np.pi * f * delay / 32e3)
+    h, misfit = causal_impulse_response(f, pulse, np.ones(f.size), 32e3, 1000)
+    assert abs(int(np.argmax(np.abs(h))) - delay) <= 1
+    # Nothing comes before its cause: the pulse itself is a few samples wide.
+    assert np.abs(h[: max(delay - 30, 0)]).max(initial=0.0) < 0.02 * np.abs(h).max()
+    assert misfit < 0.15
+
+
+def test_a_response_that_runs_backwards_in_time_has_no_causal_likeness():
+    f = lines()
+    _, misfit = causal_impulse_response(f, spectrum(f).conj(), np.ones(f.size), RATE, 20000)
+    assert misfit > 0.9
+
+
+def test_a_longer_response_than_the_lines_can_tell_ends_in_zeros():
+    f = lines(spacing=10.0)
+    h, _ = causal_impulse_response(f, spectrum(f), np.ones(f.size), RATE, 20000)
+    assert h.shape == (20000,)
+    assert not h[9600:].any()

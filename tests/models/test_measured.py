@@ -1,0 +1,146 @@
+"""Measured responses in place of modelled ones."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from models.radiation.rig_response import frequency_response, radiate, response
+from models.rig_files.rig_file import load_material_rig, load_rig
+from models.transfer_functions.files import write_frf
+from models.transfer_functions.measured import measured_responses
+from models.transfer_functions.transfer_function import Frf
+
+FIT = 0.279e-3
+RATE = 48e3
+F = np.arange(20.0, 16001.0)
+
+ENTRY = """material = "fluorocarbon"
+[[measured_response]]
+support_stiffness_Nm_rad = 2214
+torque_to_acceleration = "a.npz"
+"""
+
+
+@pytest.fixture(scope="module")
+def modelled():
+    return response(load_material_rig("fluorocarbon"), FIT, 2214.0, RATE)
+
+
+def written(folder, text=ENTRY, **kinds):
+    """A rig file beside the responses that it names."""
+    for name, (values, unit, f) in kinds.items():
+        write_frf(folder / f"{name}.npz", Frf(f, values, None, "N m", unit))
+    path = folder / "rig.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def rig_with(folder, modelled, gain=1.0, text=ENTRY, f=F):
+    h = frequency_response(modelled, f)
+    return load_rig(
+        written(
+            folder,
+            text,
+            a=(gain * h.torque_to_acceleration, "m/s^2", f),
+            p=(gain * h.torque_to_pressure, "Pa", f),
+        )
+    )
+
+
+def torque():
+    t = np.arange(round(RATE)) / RATE
+    return 8.0 + np.tanh(3 * np.sin(2 * np.pi * 163 * t)) * np.minimum(t / 0.01, 1.0)
+
+
+def test_the_models_own_response_given_as_measured_gives_the_models_sound(tmp_path, modelled):
+    text = ENTRY + 'torque_to_pressure = "p.npz"\n'
+    rig = rig_with(tmp_path, modelled, text=text)
+    measured = response(rig, FIT, 2214.0, RATE, seconds=0.7)
+    for found, true in zip(radiate(measured, torque()), radiate(modelled, torque()), strict=True):
+        assert np.std(found - true) < 0.015 * np.std(true)
+
+
+def test_what_was_not_measured_stays_modelled(tmp_path, modelled):
+    measured = response(rig_with(tmp_path, modelled, 2.0), FIT, 2214.0, RATE, seconds=0.7)
+    assert measured.torque_to_pressure is modelled.torque_to_pressure
+    assert measured.pulse_to_acceleration is modelled.pulse_to_acceleration
+    found, true = radiate(measured, torque())[0], radiate(modelled, torque())[0]
+    assert np.std(found - 2.0 * true) < 0.015 * np.std(2.0 * true)
+
+
+def test_another_support_stays_modelled(tmp_path, modelled):
+    rig = rig_with(tmp_path, modelled, 2.0)
+    other = response(load_material_rig("fluorocarbon"), FIT, 3745.0, RATE, seconds=0.1)
+    with pytest.warns(UserWarning, match="measured with the support 3745 Nm/rad, only with 2214"):
+        assert response(rig, FIT, 3745.0, RATE, seconds=0.1) is other
+
+
+def test_a_bolted_clamp_may_be_measured_too(tmp_path, modelled):
+    rig = rig_with(tmp_path, modelled, text=ENTRY.replace("2214", '"fixed"'))
+    found = radiate(response(rig, FIT, math.inf, RATE, seconds=0.7), torque())[0]
+    true = radiate(modelled, torque())[0]
+    assert np.std(found - true) < 0.015 * np.std(true)
+
+
+def test_a_response_that_ends_below_what_is_modelled_says_what_is_missing(tmp_path, modelled):
+    rig = rig_with(tmp_path, modelled, f=F[F <= 8000])
+    with pytest.warns(UserWarning, match="from 20 to 8000 Hz; what lies above, up to 16000 Hz"):
+        response(rig, FIT, 2214.0, RATE, seconds=0.3)
+
+
+def test_a_response_that_reaches_far_enough_warns_of_nothing(tmp_path, modelled):
+    rig = rig_with(tmp_path, modelled)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        response(rig, FIT, 2214.0, RATE, seconds=0.2)
+
+
+def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
+    h = frequency_response(modelled, F).torque_to_acceleration.conj()
+    rig = load_rig(written(tmp_path, a=(h, "m/s^2", F)))
+    with pytest.raises(ParameterError, match=r"a\.npz: \d+ % of the response comes before its cau"):
+        response(rig, FIT, 2214.0, RATE, seconds=0.7)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("= 2214", "= 0"), "support_stiffness_Nm_rad"),
+        (("= 2214", '= "stiff"'), "entry 'stiff'"),
+        (("= 2214", "= true"), "support_stiffness_Nm_rad = True"),
+        (("support_stiffness_Nm_rad = 2214", ""), "support_stiffness_Nm_rad = None"),
+        (("torque_to_acceleration", "torque_to_force"), "unknown key 'torque_to_force'"),
+        (('torque_to_acceleration = "a.npz"', ""), "names no response"),
+        (('"a.npz"', "3"), "torque_to_acceleration = 3 must be a text"),
+        (('"a.npz"', '"b.npz"'), "b.npz: cannot be read"),
+        (("torque_to_acceleration", "torque_to_pressure"), "output_unit is 'm/s^2'; it must be"),
+        (('"a.npz"', '"short.npz"'), "short.npz: stops at 3000 Hz; it must reach from 100 to 5000"),
+        (('"a.npz"', '"late.npz"'), "late.npz: starts at 500 Hz; it must reach from 100 to 5000"),
+        (("[[measured", "[[measured_response]]\nsupport_stiffness_Nm_rad = 2214.1\n"
+          'torque_to_acceleration = "a.npz"\n[[measured'), "has an entry already"),
+    ],
+)  # fmt: skip
+def test_an_entry_that_cannot_be_used_is_refused_by_field(tmp_path, change, message):
+    ones = F + 0j
+    path = written(
+        tmp_path,
+        ENTRY.replace(*change, 1),
+        a=(ones, "m/s^2", F),
+        short=(ones[F <= 3000], "m/s^2", F[F <= 3000]),
+        late=(ones[F >= 500], "m/s^2", F[F >= 500]),
+    )
+    with pytest.raises(ParameterError) as refused:
+        load_rig(path)
+    assert message in str(refused.value)
+    assert f"rig file {path}, measured_response" in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_entries_that_are_no_tables_are_refused(tmp_path):
+    with pytest.raises(ParameterError, match=r"given as \[\[measured_response\]\] tables"):
+        measured_responses(3, tmp_path, "rig file r.toml")
+    with pytest.raises(ParameterError, match="measured_response must be a table"):
+        measured_responses([3], tmp_path, "rig file r.toml")

@@ -1,0 +1,183 @@
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.errors import ParameterError
+from models.rig import Microphone, Plate
+from models.structure.plate import acceleration_model, plate_modes
+from models.structure.plate_ritz import ritz_modes
+
+CANTILEVER = ("clamped", "free", "free", "free")
+BENCH = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.12), edges="free")
+
+
+def _square(edges, count, spare_degrees=14):
+    """Frequency parameters omega a^2 sqrt(rho h / D) of a square plate, rigid motions left out."""
+    edges = (edges,) * 4 if isinstance(edges, str) else edges
+    parameters = (
+        2 * np.pi * ritz_modes((1.0, 1.0), edges, 0.3, 1.0, 12.0, spare_degrees).frequencies
+    )
+    return parameters[parameters > 0][:count]
+
+
+@pytest.mark.parametrize(
+    ("edges", "converged"),
+    [
+        ("clamped", [35.9852, 73.3938, 73.3938]),
+        ("free", [13.468, 19.596, 24.270, 34.801]),
+        (CANTILEVER, [3.4710, 8.5065, 21.2846]),
+    ],
+)
+def test_square_plates_have_the_converged_frequency_parameters(edges, converged):
+    assert _square(edges, len(converged)) == pytest.approx(converged, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("edges", "leissa"),
+    [
+        ("clamped", [35.992, 73.413, 73.413]),
+        ("free", [13.489, 19.789, 24.432, 35.024, 35.024, 61.526, 61.526]),
+        (CANTILEVER, [3.4917, 8.5246, 21.429, 27.331, 31.111, 54.443]),
+    ],
+)
+def test_square_plates_lie_a_little_below_leissas_tables(edges, leissa):
+    ratio = np.array(leissa) / _square(edges, len(leissa))
+    assert np.all(ratio > 1 - 1e-4)
+    assert np.all(ratio < 1.01)
+
+
+def test_trial_functions_find_the_closed_form_of_simply_supported_edges():
+    exact = plate_modes(dataclasses.replace(BENCH, edges="simply_supported"), 6e3).frequencies
+    stiffness = BENCH.stiffness_per_mass
+    found = ritz_modes((0.9, 0.6), ("simply_supported",) * 4, 0.3, stiffness, 6e3).frequencies
+    assert found == pytest.approx(exact, rel=1e-8)
+
+
+def test_free_modes_are_converged_to_the_highest():
+    def solved(spare_degrees):
+        return ritz_modes(
+            (0.9, 0.6), ("free",) * 4, 0.3, BENCH.stiffness_per_mass, 16e3, spare_degrees
+        ).frequencies
+
+    assert solved(14) == pytest.approx(solved(18), rel=1e-8)
+
+
+def test_a_strip_clamped_at_one_end_bends_as_a_beam():
+    # without Poisson's effect the strip is an Euler-Bernoulli beam, in bending along its length
+    modes = ritz_modes((1.0, 0.02), CANTILEVER, 1e-9, 1.0, 12.0)
+    assert 2 * np.pi * modes.frequencies[:3] == pytest.approx([3.51602, 22.0345, 61.6972], rel=1e-4)
+
+
+@given(
+    st.lists(st.sampled_from(["free", "simply_supported", "clamped"]), min_size=4, max_size=4),
+    st.integers(0, 3),
+    st.floats(0.4, 2.5),
+)
+@settings(max_examples=25, deadline=None)
+def test_holding_an_edge_more_lowers_no_frequency(edges, held, ratio):
+    def lowest(edges):
+        return ritz_modes((ratio, 1.0), tuple(edges), 0.3, 1.0, 8.0).frequencies
+
+    more = [*edges[:held], "clamped", *edges[held + 1 :]]
+    looser, tighter = lowest(edges), lowest(more)
+    assert tighter.size <= looser.size
+    assert np.all(tighter >= looser[: tighter.size] * (1 - 1e-6) - 1e-6)
+
+
+def test_opposite_cantilevers_are_mirror_images():
+    left = plate_modes(dataclasses.replace(BENCH, edges=CANTILEVER), 1e3)
+    right = plate_modes(dataclasses.replace(BENCH, edges=("free", "clamped", "free", "free")), 1e3)
+    assert left.frequencies == pytest.approx(right.frequencies, rel=1e-9)
+    assert np.abs(left.shape(0.21, 0.1)) == pytest.approx(np.abs(right.shape(-0.21, 0.1)), abs=1e-6)
+
+
+@pytest.mark.parametrize("edges", ["simply_supported", "clamped", "free", CANTILEVER])
+def test_modes_are_orthogonal_with_their_modal_mass(edges):
+    modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 2e3)
+    nodes, weight = np.polynomial.legendre.leggauss(60)
+    shapes = modes.on_grid(0.45 * nodes, 0.3 * nodes, slice(None)).reshape(3600, -1)
+    area = (np.outer(weight, weight) * 0.45 * 0.3).reshape(-1, 1)
+    masses = shapes.T @ (area * shapes) * BENCH.mass_per_area
+    assert masses == pytest.approx(modes.mass * np.eye(len(masses)), abs=1e-7 * modes.mass)
+
+
+@pytest.mark.parametrize("direction", ["x", "y"])
+@pytest.mark.parametrize("edges", ["simply_supported", "free"])
+def test_slopes_are_the_derivatives_of_shapes(edges, direction):
+    modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 3e3)
+    step = 1e-6
+    dx, dy = (step, 0.0) if direction == "x" else (0.0, step)
+    pair = (modes.shape(0.1 + dx, 0.05 + dy) - modes.shape(0.1 - dx, 0.05 - dy)) / (2 * step)
+    assert modes.slope(0.1, 0.05, direction) == pytest.approx(pair, abs=1e-5)
+
+
+def test_clamped_edges_neither_move_nor_turn():
+    modes = plate_modes(dataclasses.replace(BENCH, edges="clamped"), 16e3)
+    assert np.max(np.abs(modes.shape([0.45, 0.1], [0.1, -0.3]))) < 1e-9
+    assert np.max(np.abs(modes.slope(0.45, 0.1))) < 1e-7
+    assert np.max(np.abs(modes.slope(0.1, -0.3, "y"))) < 1e-7
+
+
+def test_a_free_plate_moves_as_a_whole_as_heavy_as_it_is():
+    modes = plate_modes(BENCH, 16e3)
+    rigid = modes.frequencies == 5.0
+    assert np.count_nonzero(rigid) == 3
+    assert modes.frequencies[3] > 40
+    acceleration = np.sum(modes.shape(0.0, 0.0)[rigid] ** 2) / modes.mass  # of the middle, for 1 N
+    assert acceleration == pytest.approx(1 / (7850 * 8e-3 * 0.9 * 0.6), rel=1e-9)
+
+
+@pytest.mark.parametrize("edges", ["free", "clamped"])
+def test_mean_mobility_does_not_depend_on_the_edges(edges):
+    modes = plate_modes(dataclasses.replace(BENCH, edges=edges), 16e3)
+    modes = dataclasses.replace(modes, damping_ratios=np.full(modes.frequencies.size, 0.075))
+    x, y = np.random.default_rng(4).uniform(-0.36, 0.36, (2, 20)) * [[0.9], [0.6]]
+    frequency = np.linspace(1e3, 7e3, 120)
+    model = acceleration_model(modes, modes.shape(x, y).T, x, y)
+    mobility = model.frequency_response(frequency) / (2j * np.pi * frequency)
+    bands = (np.einsum("iif->f", mobility.real) / x.size).reshape(3, 40).mean(axis=1)
+    infinite = 1 / (8 * BENCH.mass_per_area * np.sqrt(BENCH.stiffness_per_mass))
+    assert np.max(np.abs(20 * np.log10(bands / infinite))) < 1
+
+
+def test_velocity_and_force_are_reciprocal_on_a_free_plate():
+    modes = plate_modes(BENCH, 16e3)
+    x, y = np.array([0.41, -0.32]), np.array([0.29, -0.21])
+    gain = acceleration_model(modes, modes.shape(x, y).T, x, y).frequency_response([50.0, 900.0])
+    assert gain[0, 1] == pytest.approx(gain[1, 0], rel=1e-9)
+
+
+def test_loss_factors_by_frequency_are_powers_between_entries():
+    table = ((300.0, 0.1), (1e3, 0.03))
+    modes = plate_modes(dataclasses.replace(BENCH, edges="clamped", loss_factor=table), 2e3)
+    inside = (modes.frequencies > 300.0) & (modes.frequencies < 1e3)
+    assert np.count_nonzero(inside) > 5
+    assert modes.damping_ratios[inside] == pytest.approx(15 / modes.frequencies[inside], rel=1e-9)
+    assert modes.damping_ratios[[0, -1]] == pytest.approx([0.05, 0.015], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"thickness": -8e-3}, "thickness = -0.008 must be above 0"),
+        ({"edges": "glued"}, "edges = 'glued' must be one of free, simply_supported, clamped"),
+        ({"edges": ("free", "free")}, "a list of four"),
+        ({"poisson_ratio": 0.6}, "poisson_ratio = 0.6"),
+        ({"loss_factor": 0.0}, "loss_factor = 0.0"),
+        ({"loss_factor": ((1e3, 0.1), (1e2, 0.1))}, "rising frequencies"),
+    ],
+)
+def test_a_plate_that_cannot_be_is_refused_by_field(change, message):
+    with pytest.raises(ParameterError) as refused:
+        dataclasses.replace(BENCH, **change)
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_microphone_inside_the_plate_is_refused():
+    with pytest.raises(ParameterError, match=r"^microphone: position has z = -0.004 m, inside"):
+        Microphone((0.1, 0.1, -0.004))

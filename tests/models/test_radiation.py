@@ -1,0 +1,194 @@
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from models.condition import FIXED
+from models.errors import ParameterError
+from models.radiation.rig_response import frequency_response, radiate, response
+from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
+from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
+from models.structure.beams_stiffness import beam_length
+from models.structure.plate import plate_modes, pressure_response
+
+RATE = 96e3
+BENCH = Rig(
+    name="bench",
+    material="fluorocarbon",
+    elastomer_inertia=1 / 65000,
+    clamp_inertia=1 / 1200,
+    fits=(
+        Fit(2.79e-4, 665.0, 10.7, 8.0, {2214.0: 0.105, 3745.0: 0.085}),
+        Fit(3.81e-4, 1011.0, 36.94, 30.0, {2214.0: 0.236, 3745.0: 0.080}),
+    ),
+    friction=LawSpec("coulomb"),
+    elastomer_damping_share=0.5,
+    effects=(),
+    beams=Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.005, 0.4),
+    plate=Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (-0.07, 0.04)),
+    microphone=Microphone((0.15, -0.10, 0.80)),
+)
+SQUEAKY = 2.79e-4
+TIGHT = 3.81e-4
+
+
+def _third_octaves(spectrum, frequency):
+    centres = 1000 * 2.0 ** (np.arange(-6, 12) / 3)
+    power = [
+        np.mean(np.abs(spectrum[np.abs(np.log2(frequency / centre)) < 1 / 6]) ** 2)
+        for centre in centres
+    ]
+    return 10 * np.log10(power)
+
+
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+@pytest.mark.parametrize("path", ["torque_to_pressure", "pulse_to_pressure"])
+def test_the_rig_answers_over_the_whole_band_to_15_khz(stiffness, path):
+    frequency = np.geomspace(200, 16e3, 2000)
+    spectra = frequency_response(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
+    levels = _third_octaves(getattr(spectra, path), frequency)
+    assert levels.min() > levels.max() - 50
+
+
+def test_torque_reaches_the_microphone_through_both_anchors():
+    modes = plate_modes(BENCH.plate, 16e3)
+    arm = BENCH.beams.lever + beam_length(BENCH.beams, 2214.0)
+    x, y = BENCH.plate.clamp_position
+    damping = 0.5 * 0.105 / (2 * math.sqrt(2214.0 / 1200))
+    structure = beam_structure(BENCH.beams, 2214.0, 1 / 1200, damping, 40e3)
+    frequency = np.array([100.0, 250.0, 1000.0, 3300.0, 7000.0, 12000.0])
+    anchors = structure.frequency_response(frequency)[ANCHOR_FORCE:, TORQUE]
+    drives = [
+        modes.shape([x + arm], [y]),
+        modes.shape([x - arm], [y]),
+        modes.slope([x + arm], [y]),
+        modes.slope([x - arm], [y]),
+    ]
+    heard = pressure_response(modes, np.concatenate(drives).T, BENCH.microphone, RATE, 2**17)
+    kernel = np.exp(-2j * np.pi / RATE * np.outer(np.arange(2**17), frequency))
+    force = anchors[ANCHOR_FORCE - 1]
+    moment = anchors[ANCHOR_MOMENT - 1]
+    right, left, right_turn, left_turn = heard @ kernel
+    expected = force * (right - left) + moment * (right_turn + left_turn)
+    found = frequency_response(response(BENCH, SQUEAKY, 2214.0, RATE), frequency)
+    assert np.abs(found.torque_to_pressure / expected) == pytest.approx(1, abs=0.05)
+
+
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+def test_acceleration_peaks_at_the_first_torsional_mode(stiffness):
+    frequency = np.arange(100.0, 600.0, 0.5)
+    spectra = frequency_response(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
+    peak = frequency[np.argmax(np.abs(spectra.torque_to_acceleration))]
+    assert peak == pytest.approx(math.sqrt(stiffness * 1200) / (2 * math.pi), abs=1.5)
+
+
+def test_damping_of_the_fit_sets_the_height_of_the_first_mode():
+    frequency = np.arange(230.0, 290.0, 0.25)
+    peaks = [
+        np.abs(
+            frequency_response(response(BENCH, fit, 2214.0, RATE), frequency).torque_to_acceleration
+        ).max()
+        for fit in (SQUEAKY, TIGHT)
+    ]
+    assert peaks[0] / peaks[1] == pytest.approx(0.236 / 0.105, rel=0.03)
+
+
+def test_bolting_the_clamp_down_silences_the_pulses():
+    bolted = response(BENCH, TIGHT, FIXED, RATE)
+    pulse = np.zeros(4800)
+    pulse[100:105] = 10.0
+    acceleration, pressure = radiate(bolted, np.zeros(4800), pulse)
+    assert not np.any(acceleration)
+    assert not np.any(pressure)
+
+
+def test_the_bolted_clamp_has_no_torsional_mode():
+    frequency = np.arange(150.0, 500.0, 1.0)
+    on_beams = frequency_response(response(BENCH, TIGHT, 2214.0, RATE), frequency)
+    bolted = frequency_response(response(BENCH, TIGHT, FIXED, RATE), frequency)
+    loudest = np.abs(on_beams.torque_to_acceleration).max()
+    assert np.abs(bolted.torque_to_acceleration).max() < 0.05 * loudest
+    assert np.any(bolted.torque_to_pressure)
+
+
+def test_an_antisymmetric_drive_is_silent_on_the_plane_of_symmetry():
+    centred = dataclasses.replace(
+        BENCH,
+        plate=dataclasses.replace(BENCH.plate, clamp_position=(0.0, 0.04)),
+        microphone=Microphone((0.0, -0.1, 0.8)),
+    )
+    aside = dataclasses.replace(centred, microphone=Microphone((0.2, -0.1, 0.8)))
+    on_plane = response(centred, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
+    off_plane = response(aside, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
+    assert np.abs(on_plane).max() < 1e-9 * np.abs(off_plane).max()
+
+
+def test_sound_arrives_after_its_travel():
+    chain = response(BENCH, SQUEAKY, 2214.0, RATE)
+    nearest = 0.8 / 343.2 * RATE
+    for path in (chain.torque_to_pressure, chain.pulse_to_pressure):
+        before = np.abs(path[: int(nearest) - 2]).max()
+        assert before < 1e-9 * np.abs(path).max()
+
+
+def test_a_slip_of_six_newton_metres_shakes_the_beams_as_its_inertia_allows():
+    time = np.arange(int(0.2 * RATE)) / RATE
+    slip = 6 * np.exp(-(((time - 0.05) / 1e-3) ** 2))
+    acceleration, pressure = radiate(response(BENCH, TIGHT, 2214.0, RATE), slip)
+    rigid = 6 * 1200 * 0.0449
+    assert 0.3 * rigid < np.abs(acceleration).max() < 3 * rigid
+    assert 60 < 20 * np.log10(np.abs(pressure).max() / 2e-5) < 110
+
+
+def test_pulses_at_the_rate_of_a_creak_are_heard_from_5_to_15_khz():
+    rate_of_slips = 82.0
+    n = int(0.7 * RATE)
+    pulse = np.zeros(n)
+    time = np.arange(int(50e-6 * RATE) + 1) / RATE
+    pulse[: time.size] = 10 * np.sin(np.pi * time / 50e-6)
+    _, pressure = radiate(response(BENCH, TIGHT, 2214.0, RATE), np.zeros(n), pulse)
+    frequency = np.fft.rfftfreq(n, 1 / RATE)
+    band = (frequency > 5e3) & (frequency < 15e3)
+    energy = 2 * np.sum(np.abs(np.fft.rfft(pressure)[band]) ** 2) / n / RATE
+    assert 40 < 10 * np.log10(energy * rate_of_slips / 4e-10) < 60
+
+
+def test_other_rates_give_the_same_response_in_the_common_band():
+    frequency = np.geomspace(150, 5e3, 60)
+    spectra = [
+        frequency_response(response(BENCH, SQUEAKY, 3745.0, rate), frequency)
+        for rate in (48e3, 96e3)
+    ]
+    for path in ("torque_to_acceleration", "torque_to_pressure", "pulse_to_pressure"):
+        low, high = (getattr(each, path) for each in spectra)
+        assert np.max(np.abs(low - high)) < 0.05 * np.abs(high).max()
+
+
+def test_shared_responses_cannot_be_overwritten():
+    chain = response(BENCH, SQUEAKY, 2214.0, RATE)
+    with pytest.raises(ValueError, match="read-only"):
+        chain.torque_to_pressure[0] = 1.0
+
+
+def test_anchors_off_the_plate_are_refused():
+    narrow = dataclasses.replace(BENCH, plate=dataclasses.replace(BENCH.plate, length=0.4))
+    with pytest.raises(ParameterError, match="off the plate"):
+        response(narrow, SQUEAKY, 2214.0, RATE)
+
+
+def test_at_the_same_support_stiffness_yielding_anchors_mean_shorter_beams_that_ring_higher():
+    soft = dataclasses.replace(BENCH, beams=dataclasses.replace(BENCH.beams, anchor_rotation=155.0))
+    frequency = np.arange(100.0, 5000.0, 4.0)
+    found = []
+    for rig in (BENCH, soft):
+        paths = response(rig, SQUEAKY, 2214.0, RATE, seconds=0.3)
+        spectrum = np.abs(frequency_response(paths, frequency).torque_to_acceleration)
+        inner = spectrum[1:-1]
+        peaks = np.flatnonzero((inner > spectrum[:-2]) & (inner > spectrum[2:]))
+        found.append(frequency[1 + peaks])
+    rigid, yielding = found
+    assert yielding[0] == rigid[0] == pytest.approx(259.4, abs=4.0)
+    assert np.all(yielding[1:3] > 1.15 * rigid[1:3])

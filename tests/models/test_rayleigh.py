@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED, rayleigh_integral
+
+RATE = 96e3
+
+
+def _spectrum(integral, distribution, frequency):
+    taps = integral.taps(distribution)
+    n = integral.delay + np.arange(taps.size)
+    return np.exp(-2j * np.pi * np.outer(frequency, n) / RATE) @ taps
+
+
+def _disc(radius, n_rings=60):
+    edges = radius * np.linspace(0, 1, n_rings + 1)
+    x, area = [], []
+    for inner, outer in itertools.pairwise(edges):
+        # on the axis only the ring's radius counts: its root mean square, and its exact area
+        x.append(np.sqrt((inner**2 + outer**2) / 2))
+        area.append(np.pi * (outer**2 - inner**2))
+    return np.array(x), np.zeros(n_rings), np.array(area)
+
+
+@pytest.mark.parametrize("height", [0.1, 0.5, 2.0])
+def test_circular_piston_sounds_on_its_axis_as_its_closed_form(height):
+    radius = 0.05
+    frequency = np.geomspace(100, 15e3, 60)
+    integral = rayleigh_integral(*_disc(radius), (0.0, 0.0, height), RATE)
+    k = 2 * np.pi * frequency / SOUND_SPEED
+    path = np.hypot(radius, height)
+    # per unit velocity: rho c (e^-ikz - e^-ikr); an acceleration of 1 is a velocity of 1/(i omega)
+    exact = (
+        AIR_DENSITY
+        * SOUND_SPEED
+        * (np.exp(-1j * k * height) - np.exp(-1j * k * path))
+        / (2j * np.pi * frequency)
+    )
+    ratio = _spectrum(integral, np.ones(60), frequency) / exact
+    audible = np.abs(exact) > 0.05 * np.abs(exact).max()
+    assert np.count_nonzero(audible) > 30
+    assert np.max(np.abs(20 * np.log10(np.abs(ratio[audible])))) < 0.2
+    assert np.max(np.abs(np.angle(ratio[audible]))) < 0.05
+
+
+def test_square_piston_off_axis_agrees_with_a_direct_sum_of_finer_elements():
+    side, microphone = 0.3, (0.2, -0.1, 0.4)
+    frequency = np.geomspace(100, 12e3, 40)
+
+    def grid(n):
+        middles = (np.arange(n) + 0.5) * side / n - side / 2
+        x, y = np.meshgrid(middles, middles)
+        return x.ravel(), y.ravel()
+
+    x, y = grid(600)
+    r = np.sqrt((x - microphone[0]) ** 2 + (y - microphone[1]) ** 2 + microphone[2] ** 2)
+    order = np.argsort(r)
+    strength = (AIR_DENSITY / (2 * np.pi) * (side / 600) ** 2 / r)[order]
+    direct = np.array(
+        [np.sum(strength * np.exp(-2j * np.pi * f / SOUND_SPEED * r[order])) for f in frequency]
+    )
+    integral = rayleigh_integral(*grid(100), (side / 100) ** 2, microphone, RATE)
+    ratio = _spectrum(integral, np.ones(10000), frequency) / direct
+    assert np.max(np.abs(20 * np.log10(np.abs(ratio)))) < 0.2
+
+
+def test_nothing_is_heard_before_the_nearest_element_can_be():
+    x = np.linspace(-0.4, 0.4, 200)
+    integral = rayleigh_integral(x, np.zeros(200), 1e-3, (0.1, 0.0, 0.8), RATE)
+    first = 0.8 / SOUND_SPEED * RATE
+    assert first - 2 <= integral.delay <= first

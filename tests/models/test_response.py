@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+import models.radiation.impulse_responses
+from models.radiation.impulse_responses import Response, convolve, frequency_response, radiate
+
+random = np.random.default_rng(11)
+CHAIN = Response(48e3, *random.normal(size=(4, 300)))
+
+
+@given(st.integers(1, 400), st.integers(1, 120), st.integers(1, 64))
+@settings(max_examples=60, deadline=None)
+def test_blocks_leave_no_trace_in_a_convolution(n, m, block):
+    signal, impulse_response = np.split(np.random.default_rng(n).normal(size=n + m), [n])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(models.radiation.impulse_responses, "BLOCK", block)
+        found = convolve(signal, impulse_response)
+    assert found == pytest.approx(np.convolve(signal, impulse_response)[:n], abs=1e-10)
+
+
+@pytest.mark.parametrize("torque", [0.0, 8.0, -30.0])
+def test_a_steady_torque_is_silent(torque):
+    acceleration, pressure = radiate(CHAIN, np.full(1000, torque))
+    assert not np.any(acceleration)
+    assert not np.any(pressure)
+
+
+@given(st.floats(-40, 40))
+@settings(max_examples=20, deadline=None)
+def test_the_mean_torque_is_not_heard(mean):
+    torque = np.random.default_rng(5).normal(size=500)
+    for lifted, plain in zip(radiate(CHAIN, torque + mean), radiate(CHAIN, torque), strict=True):
+        assert lifted == pytest.approx(plain, abs=1e-9)
+
+
+def test_torque_and_pulses_add_up():
+    torque, pulse = np.random.default_rng(6).normal(size=(2, 700))
+    both = radiate(CHAIN, torque, pulse)
+    torque_alone = radiate(CHAIN, torque, np.zeros(700))
+    pulse_alone = radiate(CHAIN, np.zeros(700), pulse)
+    for together, first, second in zip(both, torque_alone, pulse_alone, strict=True):
+        assert np.any(first)
+        assert np.any(second)
+        assert together == pytest.approx(first + second, abs=1e-9)
+
+
+def test_spectra_are_the_fourier_transform_of_the_impulse_responses():
+    spectra = frequency_response(CHAIN, np.fft.rfftfreq(300, 1 / CHAIN.rate))
+    for name in (
+        "torque_to_acceleration",
+        "torque_to_pressure",
+        "pulse_to_acceleration",
+        "pulse_to_pressure",
+    ):
+        expected = np.fft.rfft(getattr(CHAIN, name))
+        assert getattr(spectra, name) == pytest.approx(expected, abs=1e-9)
+
+
+def test_what_is_kept_between_signals_of_any_length_changes_nothing():
+    for n in (700, 1, 40, 3000, 700):
+        torque = np.random.default_rng(n).normal(size=n)
+        _, pressure = radiate(CHAIN, torque)
+        expected = np.convolve(torque - torque[0], CHAIN.torque_to_pressure)[:n]
+        assert pressure == pytest.approx(expected, abs=1e-9)

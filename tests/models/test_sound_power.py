@@ -1,0 +1,213 @@
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED, rayleigh_integral
+from models.radiation.sound_power import (
+    power_flow,
+    radiated_power,
+    radiation_efficiency,
+    radiation_loss,
+    with_radiation_damping,
+)
+from models.radiation.sound_power_bands import third_octave_power
+from models.rig import Microphone, Plate
+from models.structure.plate import plate_modes, pressure_response
+
+STEEL = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.12))
+RATE = 96e3
+
+
+def _one(modes, m, n):
+    return int(
+        np.flatnonzero((modes.products.along == m - 1) & (modes.products.across == n - 1))[0]
+    )
+
+
+def _wavenumber(frequency):
+    return 2 * np.pi * frequency / SOUND_SPEED
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.03, 0.1])
+def test_first_mode_radiates_as_wallaces_limit_at_low_wavenumbers(ratio):
+    # Wallace 1972, for odd m and n, with his term of second order
+    a, b = STEEL.length, STEEL.width
+    k = ratio * np.pi * np.hypot(1 / a, 1 / b)
+    modes = plate_modes(STEEL, 500.0)
+    found = radiation_efficiency(modes, [k * SOUND_SPEED / (2 * np.pi)])[_one(modes, 1, 1), 0]
+    second = k**2 * a * b / 12 * ((1 - 8 / np.pi**2) * (a / b + b / a))
+    assert found == pytest.approx(32 * k**2 * a * b / np.pi**5 * (1 - second), rel=1e-4)
+
+
+@pytest.mark.parametrize(("m", "n", "power"), [(1, 1, 2), (2, 1, 4), (1, 2, 4), (2, 2, 6)])
+def test_modes_are_mono_di_and_quadrupoles(m, n, power):
+    modes = plate_modes(STEEL, 500.0)
+    low, high = radiation_efficiency(modes, [5.0, 10.0])[_one(modes, m, n)]
+    assert np.log2(high / low) == pytest.approx(power, abs=0.02)
+
+
+@pytest.mark.parametrize("edges", ["simply_supported", "free", "clamped"])
+def test_far_above_its_critical_frequency_every_mode_radiates_as_a_piston(edges):
+    modes = plate_modes(dataclasses.replace(STEEL, edges=edges), 600.0)
+    assert radiation_efficiency(modes, [12e3])[:, 0] == pytest.approx(1, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    "edges", ["simply_supported", "clamped", ("clamped", "free", "free", "free")]
+)
+@pytest.mark.parametrize("frequency", [150.0, 1100.0, 2500.0])
+def test_power_is_the_intensity_of_rayleighs_integral_over_a_far_hemisphere(edges, frequency):
+    modes = plate_modes(dataclasses.replace(STEEL, edges=edges), 1e3)
+    rng = np.random.default_rng(3)
+    velocity = rng.normal(size=modes.frequencies.size) + 1j * rng.normal(
+        size=modes.frequencies.size
+    )
+    x, y = (side * ((np.arange(n) + 0.5) / n - 0.5) for side, n in ((0.9, 90), (0.6, 60)))
+    field = modes.on_grid(x, y, slice(None)) @ velocity * 0.01**2
+    cosine, weight = np.polynomial.legendre.leggauss(40)
+    cosine, weight = (cosine + 1) / 2, weight / 2
+    angle = np.arange(96) * 2 * np.pi / 96
+    k = _wavenumber(frequency)
+    total = 0.0
+    for c, w in zip(cosine, weight, strict=True):
+        k_x, k_y = (k * np.sqrt(1 - c**2) * turn(angle) for turn in (np.cos, np.sin))
+        far = np.einsum(
+            "xa,xy,ya->a", np.exp(1j * np.outer(x, k_x)), field, np.exp(1j * np.outer(y, k_y))
+        )
+        pressure = AIR_DENSITY * 2 * np.pi * frequency / (2 * np.pi) * far  # times distance
+        total += w * 2 * np.pi * np.mean(np.abs(pressure) ** 2) / (AIR_DENSITY * SOUND_SPEED)
+    assert radiated_power(modes, velocity, frequency) == pytest.approx(total, rel=0.01)
+
+
+def test_power_of_a_mode_is_what_microphones_about_it_receive():
+    modes = plate_modes(STEEL, 300.0)
+    first = np.eye(modes.frequencies.size)[:, :1]
+    frequency, distance = 200.0, 12.0
+    total = 0.0
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    for node, weight in zip((nodes + 1) / 2, weights / 2, strict=True):
+        radius = distance * np.sqrt(1 - node**2)
+        for angle in np.arange(0.5, 4) * np.pi / 8:
+            place = (radius * np.cos(angle), radius * np.sin(angle), distance * node)
+            heard = pressure_response(modes, first, Microphone(place), 12e3, 12000)[0]
+            gain = np.exp(-2j * np.pi * frequency / 12e3 * np.arange(heard.size)) @ heard
+            total += weight * 2 * np.pi * distance**2 * abs(gain) ** 2 / 4
+    flow = power_flow(modes, first, [1.0], [frequency])
+    assert flow.radiated[0] == pytest.approx(total / (AIR_DENSITY * SOUND_SPEED), rel=0.02)
+
+
+@pytest.mark.parametrize("edges", ["simply_supported", "free"])
+def test_supplied_power_is_dissipated_if_radiation_does_not_damp(edges):
+    modes = plate_modes(dataclasses.replace(STEEL, edges=edges), 2e3)
+    drives = np.stack([modes.shape(0.1, 0.05), modes.slope(-0.2, 0.1, "y")], axis=1)
+    flow = power_flow(modes, drives, [1.0, 0.1j], np.geomspace(50, 2e3, 40))
+    assert flow.dissipated == pytest.approx(flow.supplied, rel=1e-9)
+    assert np.all(flow.radiated < 0.1 * flow.supplied)
+
+
+@pytest.mark.parametrize(
+    ("edges", "loss_factor", "tolerance"),
+    [
+        ("simply_supported", 0.03, 0.02),
+        ("free", 0.03, 0.02),
+        ("simply_supported", 0.001, 0.04),
+    ],
+)
+def test_supplied_power_is_dissipated_and_radiated_if_radiation_damps(
+    edges, loss_factor, tolerance
+):
+    plate = Plate(0.9, 0.6, 0.01, 2e11, 7850.0, 0.3, loss_factor, (0.0, 0.12), edges)
+    modes = plate_modes(plate, 4e3)
+    bands = third_octave_power(
+        modes, modes.shape([0.21], [0.13]).T, low=160.0, high=2e3, radiation_damping=True
+    )
+    balance = (bands.dissipated + bands.radiated) / bands.supplied
+    assert balance == pytest.approx(1, abs=tolerance)
+    total = (bands.dissipated + bands.radiated).sum() / bands.supplied.sum()
+    assert total == pytest.approx(1, abs=0.002)
+    if loss_factor == 0.001:  # or the balance would say little about the sound
+        assert bands.radiated.sum() > 0.3 * bands.supplied.sum()
+
+
+def test_sound_damps_a_steel_plate_by_less_than_a_tenth_of_its_loss_factor():
+    modes = plate_modes(STEEL, 3e3)
+    loss = radiation_loss(modes)
+    assert 0 < loss.min() < loss.max() < 0.1 * 0.03
+    assert with_radiation_damping(modes).damping_ratios == pytest.approx(0.015 + loss / 2)
+
+
+def test_mean_efficiency_peaks_at_the_critical_frequency():
+    critical = SOUND_SPEED**2 / (2 * np.pi * np.sqrt(STEEL.stiffness_per_mass))
+    modes = plate_modes(STEEL, 12e3)
+    bands = third_octave_power(modes, modes.shape([0.21], [0.13]).T, low=100.0, high=8e3)
+    peak = bands.centre[np.argmax(bands.radiation_efficiency)]
+    assert 0.8 < peak / critical < 1.6
+    assert bands.radiation_efficiency[-1] == pytest.approx(1.1, abs=0.1)
+
+
+def test_free_edges_silence_a_plate_below_its_critical_frequency_only():
+    efficiency = []
+    for edges in ("simply_supported", "free"):
+        plate = dataclasses.replace(STEEL, thickness=0.01, edges=edges)
+        modes = plate_modes(plate, 5e3)
+        points = modes.shape([0.21, -0.3], [0.13, 0.05]).T
+        bands = [third_octave_power(modes, points[:, [i]], low=200.0, high=3.15e3) for i in (0, 1)]
+        efficiency.append(np.mean([band.radiation_efficiency for band in bands], axis=0))
+    change = 10 * np.log10(efficiency[0] / efficiency[1])
+    assert (change[:5].min(), change[:5].max()) == pytest.approx((6, 13), abs=1)  # 200 to 500 Hz
+    assert np.abs(change[10:]).max() < 1  # 2 to 3.15 kHz
+
+
+def test_band_power_is_that_of_white_force_on_an_infinite_plate():
+    # supplied by 1 N2/Hz: the bandwidth times the infinite plate's mobility
+    plate = dataclasses.replace(STEEL, loss_factor=0.15)
+    modes = plate_modes(plate, 16e3)
+    x, y = np.random.default_rng(8).uniform(-0.4, 0.4, (2, 12)) * [[0.9], [0.6]]
+    supplied = np.mean(
+        [
+            third_octave_power(modes, modes.shape([a], [b]).T, low=2e3, high=4e3).supplied
+            for a, b in zip(x, y, strict=True)
+        ],
+        axis=0,
+    )
+    width = 1e3 * 10 ** (np.arange(3, 7) / 10) * (10**0.05 - 10**-0.05)
+    mobility = 1 / (8 * plate.mass_per_area * np.sqrt(plate.stiffness_per_mass))
+    assert np.abs(10 * np.log10(supplied / (width * mobility))).max() < 1
+
+
+def test_spectra_of_drives_scale_and_combine():
+    modes = plate_modes(STEEL, 2e3)
+    drives = modes.shape([0.2, -0.2], [0.1, 0.1]).T
+    apart = third_octave_power(
+        modes, drives, lambda f: np.array([[3.0], [-3.0]]) * np.ones(f.size), low=200, high=500
+    )
+    couple = third_octave_power(modes, drives[:, :1] - drives[:, 1:], low=200, high=500)
+    assert apart.level == pytest.approx(couple.level + 20 * np.log10(3), abs=1e-9)
+
+
+def test_bands_beyond_the_modes_are_refused():
+    modes = plate_modes(STEEL, 1e3)
+    with pytest.raises(ParameterError, match="reach beyond the plate's modes"):
+        third_octave_power(modes, modes.shape([0.1], [0.1]).T, high=4e3)
+    with pytest.raises(ParameterError, match="low must not be above high"):
+        third_octave_power(modes, modes.shape([0.1], [0.1]).T, low=900.0, high=400.0)
+
+
+def test_a_rigid_circular_piston_radiates_its_closed_form_on_the_axis():
+    radius, height = 0.05, 0.3
+    edges = radius * np.linspace(0, 1, 61)
+    x = np.sqrt((edges[1:] ** 2 + edges[:-1] ** 2) / 2)
+    area = np.pi * np.diff(edges**2)
+    frequency = np.geomspace(100, 5 * SOUND_SPEED / (2 * np.pi * radius), 40)  # to ka = 5
+    integral = rayleigh_integral(x, np.zeros(60), area, (0.0, 0.0, height), 192e3)
+    taps = integral.taps(np.ones(60))
+    n = integral.delay + np.arange(taps.size)
+    found = np.exp(-2j * np.pi * np.outer(frequency, n) / 192e3) @ taps
+    k = _wavenumber(frequency)
+    # per unit acceleration: 2 rho c / omega |sin(k/2 (sqrt(a^2 + z^2) - z))|
+    exact = 2 * AIR_DENSITY / k * np.abs(np.sin(k / 2 * (np.hypot(radius, height) - height)))
+    assert np.max(np.abs(20 * np.log10(np.abs(found) / exact))) < 0.1

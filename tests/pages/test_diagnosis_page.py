@@ -1,0 +1,240 @@
+"""The report of a diagnosis as files."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import soundfile
+
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+from noise.diagnosis.outcome import Diagnosis, Illustration, StageFinding, as_json
+from noise.diagnosis.text.sentences import verdict_sentence
+from noise.pages import write_diagnosis
+from noise.pages.diagnosis.figures import cycle_window, illustration_panels, sixth_octaves
+from noise.pages.diagnosis.sounds import LONGEST, played_sounds
+from noise.pages.diagnosis.view import cause_rows, parameter_rows, stage_boxes
+from noise.pages.diagnosis.waterfall import waterfall
+from tests.helpers.made_diagnoses import (
+    KINDS,
+    none,
+    one_effect,
+    only,
+    pair,
+    parameters,
+    pressure_alone,
+    run,
+    triple,
+    unknown,
+)
+
+RATE = 30_000
+
+
+def tone(amplitude, seconds=0.2, frequency=1000.0):
+    t = np.arange(round(seconds * RATE)) / RATE
+    signal = amplitude * np.sin(2.0 * np.pi * frequency * t)
+    return Recording(signal[np.newaxis], RATE, (Channel("pressure"),))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_page_says_the_verdict_and_the_data_are_beside_it(kind, tmp_path):
+    diagnosis = KINDS[kind]()
+    write_diagnosis(tmp_path / "new" / "out", diagnosis)
+    page = (tmp_path / "new" / "out" / "report.html").read_text(encoding="utf-8")
+    words = verdict_sentence(diagnosis).replace(" %", "\u00a0%").replace("p = ", "p\u00a0=\u00a0")
+    assert f'<p class="verdict">{words}</p>' in page
+    data = json.loads((tmp_path / "new" / "out" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert data == as_json(diagnosis)
+
+
+def test_a_page_is_the_same_whenever_it_is_written(tmp_path):
+    for name in ("one", "two"):
+        write_diagnosis(tmp_path / name, pair())
+    one, two = ((tmp_path / name / "report.html").read_bytes() for name in ("one", "two"))
+    assert one == two
+
+
+@pytest.mark.parametrize("hindered", ["report.html", "diagnosis.json"])
+def test_where_one_file_cannot_be_written_neither_is(hindered, tmp_path):
+    (tmp_path / hindered).mkdir()
+    with pytest.raises(ParameterError, match=hindered):
+        write_diagnosis(tmp_path, none())
+    assert [path.name for path in tmp_path.iterdir()] == [hindered]
+
+
+def test_names_cannot_bring_markup_or_scripts_into_the_page(tmp_path):
+    bad = "</h3><script>alert(1)</script>"
+    hostile = replace(
+        pair(), notes=(bad,), next_measurement=bad, held_out=(bad,), verdict=(bad,),
+        illustrations=(Illustration(bad, tone(1.0), tone(1.0), None),),
+    )  # fmt: skip
+    write_diagnosis(tmp_path, hostile)
+    assert "<script>alert" not in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_names_that_no_encoding_holds_can_be_written(tmp_path):
+    write_diagnosis(tmp_path, replace(none(), held_out=("run\udcff",)))
+    data = json.loads((tmp_path / "diagnosis.json").read_text(encoding="utf-8"))
+    assert data["held_out"] == ["run\udcff"]
+
+
+def test_a_diagnosis_of_which_nothing_is_known_is_said_to_be_undetermined(tmp_path):
+    empty = Diagnosis(
+        ("unknown",), (), None, {"drive": StageFinding(math.nan, math.nan, math.nan)}, (), {}, {},
+        "", (), math.nan, math.nan, math.nan, math.nan,
+    )  # fmt: skip
+    write_diagnosis(tmp_path, empty)
+    text = re.sub(
+        r"<style>.*?</style>", "", (tmp_path / "report.html").read_text("utf-8"), flags=re.S
+    )
+    assert "nan" not in re.sub(r"<[^>]*>", " ", text).lower().replace("determinan", "").split()
+    assert text.count("not determined") >= 8
+
+
+def test_there_is_no_waterfall_where_there_is_no_gap():
+    assert waterfall(none()) is None
+
+
+@pytest.mark.parametrize("made", [one_effect, pair, unknown, parameters])
+def test_each_bar_begins_where_the_one_above_ends(made):
+    whole, *steps, left = waterfall(made()).bars
+    gap = whole.high
+    for step in steps:
+        assert step.kind == "closed"
+        assert step.high == pytest.approx(gap)
+        gap = step.low
+    assert left.low == 0.0
+    assert left.high == pytest.approx(gap)
+
+
+def test_the_waterfall_says_how_much_is_closed_and_how_sure_that_is():
+    assert waterfall(one_effect()).words == (
+        "The fit closes 96 % of the closable gap (90 % interval 91 % to 99 %), and 90 % of what "
+        "refitted parameters leave."
+    )
+    assert waterfall(parameters()).words == "Refitted parameters close 97 % of the closable gap."
+
+
+def test_effects_that_were_fitted_together_are_one_step():
+    labels = [bar.label for bar in waterfall(pair()).bars]
+    assert labels == ["nominal model", "refitted parameters", "with both effects", "what is left"]
+
+
+def test_a_refit_that_makes_it_worse_is_not_said_to_close():
+    (effect,) = unknown().effects
+    worse = replace(unknown(), effects=(replace(effect, gap_recalibrated=8.0, gap_after=None),))
+    assert [bar.kind for bar in waterfall(worse).bars] == ["whole", "opened", "left"]
+
+
+def test_without_a_fit_the_waterfall_is_the_gap_alone():
+    found = waterfall(pressure_alone())
+    assert [bar.kind for bar in found.bars] == ["whole"]
+    assert found.words == "How much of the gap can be closed was not determined."
+
+
+def test_the_guilty_stage_is_the_only_one_marked():
+    assert [box.name for box in stage_boxes(one_effect()) if box.guilty] == ["friction"]
+    assert not any(box.guilty for box in stage_boxes(none()))
+
+
+def test_causes_stand_below_the_stage_they_act_in():
+    causes = {box.name: box.causes for box in stage_boxes(pair()) if box.causes}
+    assert causes == {"friction": ("partial slip",), "measurement": ("further trouble",)}
+
+
+def test_the_verdict_leads_the_causes_and_none_is_lost():
+    shown, others = cause_rows(one_effect())
+    assert shown[0].name == "partial slip"
+    assert shown[0].named
+    assert shown[0].strength == "share 0.52 to 0.66"
+    assert len(shown) + len(others) == len(one_effect().probabilities)
+    rest = [row.probability for row in (*shown[1:], *others)]
+    assert rest == sorted(rest, reverse=True)
+
+
+def test_a_parameter_is_off_only_where_its_interval_excludes_one():
+    rows = parameter_rows({"a": (0.9, 1.1), "b": (1.01, 1.1), "c": (0.8, 0.99)})
+    assert [row.off for row in rows] == [False, True, True]
+    for row in rows:
+        assert row.start >= 0.0
+        assert row.start + row.width <= 100.0
+
+
+def samples(uri):
+    return soundfile.read(io.BytesIO(base64.b64decode(uri.partition(",")[2])))[0]
+
+
+def test_a_louder_sound_stays_louder_by_as_much():
+    sounds = played_sounds([Illustration("a", tone(1.0), tone(0.1), tone(0.5))])
+    played = [samples(sounds.uris[0][role]) for role in ("measured", "before", "after")]
+    loudness = [float(np.sqrt(np.mean(each**2))) for each in played]
+    assert loudness[0] / loudness[1] == pytest.approx(10.0, rel=1e-3)
+    assert loudness[0] / loudness[2] == pytest.approx(2.0, rel=1e-3)
+    assert max(abs(played[0])) < 1.0
+
+
+def test_long_sounds_are_cut():
+    (uris,) = played_sounds([Illustration("a", tone(1.0, 5.0), tone(1.0), None)]).uris
+    assert samples(uris["measured"]).size == round(LONGEST * 48_000)
+
+
+def test_silence_can_be_played():
+    silent = tone(0.0)
+    (uris,) = played_sounds([Illustration("a", silent, silent, None)]).uris
+    assert not samples(uris["measured"]).any()
+
+
+def test_without_pressure_there_is_nothing_to_play():
+    torque = only(run(), "torque")
+    sounds = played_sounds([Illustration("a", torque, torque, None)])
+    assert sounds.uris == ({},)
+    assert sounds.words == ""
+
+
+def test_a_sixth_octave_holds_the_power_of_a_tone_in_it():
+    middle, level = sixth_octaves(tone(2.0, 1.0, 1059.0)["pressure"], RATE, 1.0)
+    assert level.max() == pytest.approx(20.0 * math.log10(2.0**0.5), abs=0.05)
+    assert middle[level.argmax()] == pytest.approx(1059.0, rel=1e-3)
+    assert middle[-1] < 0.45 * RATE
+
+
+def test_short_signals_have_no_low_bands():
+    middle, _ = sixth_octaves(tone(1.0, 0.05)["pressure"], RATE, 1.0)
+    assert middle[0] > 300.0
+
+
+def test_a_torque_is_aligned_on_a_slip():
+    torque = run()["torque"]
+    rate = run().rate
+    start, aligned = cycle_window(torque, rate, 0.04)
+    assert aligned
+    slip = round((start + 0.01) * rate)
+    before, after = torque[slip - 30 : slip].max(), torque[slip : slip + 60].min()
+    assert before - after > 0.5 * np.ptp(torque)
+
+
+def test_a_torque_without_slips_is_shown_from_its_middle():
+    start, aligned = cycle_window(np.full(RATE, 8.0), RATE, 0.04)
+    assert not aligned
+    assert start == pytest.approx(0.48)
+    steady = Recording(np.full((1, RATE), 8.0), RATE, (Channel("torque"),))
+    cycles, _ = illustration_panels(Illustration("a", steady, run(), None))
+    assert "no slip: measured" in cycles.alt
+
+
+def test_only_channels_that_were_measured_are_drawn():
+    panels = illustration_panels(Illustration("a", tone(1.0), run(), run()))
+    assert [panel.alt.partition(" in ")[0] for panel in panels] == ["Sound pressure"]
+
+
+def test_effects_that_were_fitted_apart_are_not_shown_as_one_step():
+    labels = [bar.label for bar in waterfall(triple()).bars]
+    assert labels == ["nominal model", "with critical torque scatter", "what is left"]

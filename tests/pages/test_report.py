@@ -1,0 +1,267 @@
+from __future__ import annotations
+
+import base64
+import io
+import re
+import warnings
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import soundfile
+
+from models.condition import FIXED, Condition
+from models.errors import ParameterError, RecordingError
+from models.recording import Channel, Recording
+from noise.labels.segments import Segment
+from noise.pages import ReportEntry, write_report
+
+RATE = 30_000
+TIME = np.arange(RATE) / RATE
+SHARES = {"creak": 0.02, "squawk": 0.05, "squeal": 0.9, "none": 0.026, "unknown": 0.004}
+
+
+def recording(condition=None, *, calibrated=True, **channels):
+    names = tuple(Channel(name) for name in channels)
+    samples = np.stack([np.broadcast_to(signal, RATE) for signal in channels.values()])
+    return Recording(samples, RATE, names, condition or Condition(), calibrated)
+
+
+def segment(label="squeal", *, channel="all", frequency=1046.0, level=91.0, dbfs=-3.0):
+    return Segment(channel, 0.0, 1.0, label, SHARES, frequency, level, dbfs)
+
+
+def sound(signal, *, rate=RATE, form="WAV", subtype="FLOAT"):
+    content = io.BytesIO()
+    soundfile.write(content, signal, rate, format=form, subtype=subtype)
+    return content.getvalue()
+
+
+TONE = np.sin(2.0 * np.pi * 1046.0 * TIME)
+RIG = recording(
+    Condition(10.0, 0.279e-3, 3745.0, "fluorocarbon", 23.0),
+    pressure=TONE,
+)
+
+
+class Page(HTMLParser):
+    """What a page consists of: tags with their attributes, and text by the tag around it."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.html = html
+        self.tags = []
+        self.texts = []
+        self._open = []
+        self.feed(html)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+        self._open.append(tag)
+
+    def handle_data(self, data):
+        if data.strip():
+            self.texts.append((self._open[-1] if self._open else "", data.strip()))
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.tags if name == tag]
+
+    def text(self, tag):
+        return [text for name, text in self.texts if name == tag]
+
+
+@pytest.fixture
+def write(tmp_path):
+    def written(*entries, **options):
+        path = tmp_path / "report.html"
+        write_report(path, entries, title="Review", **options)
+        return Page(path.read_text(encoding="utf-8"))
+
+    return written
+
+
+def test_the_page_refers_to_nothing_outside_itself(write):
+    page = write(ReportEntry("Squeal", RIG, segment(), sound(TONE)))
+    assert not re.search(r"https?:|@import|url\(", page.html)
+    references = [a[key] for _, a in page.tags for key in ("src", "href") if key in a]
+    assert len(references) == 4
+    assert all(reference.startswith(("data:", "#")) for reference in references)
+
+
+def test_the_page_tells_language_heading_and_meaning_of_everything(write):
+    page = write(ReportEntry("Squeal", RIG, segment(), sound(TONE)), summary="It squeals.")
+    assert page.all("html") == [{"lang": "en"}]
+    assert page.text("h1") == ["Review"]
+    assert "It squeals." in page.text("p")
+    assert {a["scope"] for a in page.all("th")} == {"col", "row"}
+    assert len({a["alt"] for a in page.all("img")}) == len(page.all("img")) == 2
+    assert page.all("audio")[0]["aria-label"] == "Sound of Squeal"
+
+
+def test_without_a_summary_the_labels_are_counted(write):
+    page = write(
+        ReportEntry("a", RIG, segment()),
+        ReportEntry("b", RIG, segment("none")),
+        ReportEntry("c", RIG, segment()),
+    )
+    assert "3 recordings: 2 squeal, 1 none." in page.text("p")
+
+
+def test_conditions_level_and_frequency_are_in_the_units_of_the_page(write):
+    page = write(ReportEntry("Squeal", RIG, segment()))
+    cells = page.text("td")
+    assert cells[:6] == ["10", "0.279", "3745", "fluorocarbon", "91.0", "1046"]
+    shown = page.text("dd")
+    assert shown[:5] == ["10 rad/s", "0.279 mm", "3745 Nm/rad", "fluorocarbon", "23 °C"]
+    assert shown[5:] == ["91.0 dB re 20 µPa", "1046 Hz"]
+
+
+def test_what_is_not_known_is_said_to_be(write):
+    page = write(
+        ReportEntry(
+            "Old file",
+            recording(pressure=TONE, calibrated=False),
+            segment(frequency=None, level=None, dbfs=-23.2),
+        )
+    )
+    assert page.text("span").count("not known") == 5
+    assert "\N{MINUS SIGN}23.2 dBFS" in page.text("dd")
+
+
+def test_a_speed_that_varied_is_given_by_its_range(write):
+    varied = recording(Condition(support_stiffness=FIXED), pressure=TONE, speed=10.0 * TIME)
+    page = write(ReportEntry("Ramp", varied, segment()))
+    assert page.text("dd")[:1] == ["0 to 10 rad/s"]
+    assert "fixed" in page.text("dd")
+
+
+def test_probabilities_are_bars_with_their_number(write):
+    page = write(ReportEntry("Squeal", RIG, segment()))
+    widths = [a["style"] for a in page.all("span") if a.get("class") == "bar"]
+    assert widths == [f"width: {width}%" for width in ("2.0", "5.0", "90.0", "2.6", "0.4")]
+    assert page.text("td")[-5:] == ["2 %", "5 %", "90 %", "3 %", "< 1 %"]
+
+
+@pytest.mark.parametrize(
+    "title", ['<script>alert(1)</script>"', "</h2><img src=x onerror=alert(1)>", "a & b {{ 1 }}"]
+)
+def test_a_title_stays_text(write, title):
+    page = write(ReportEntry(title, RIG, segment(), sound(TONE), note=title))
+    assert len(page.all("script")) == 1
+    assert len(page.all("img")) == 2
+    assert "".join(page.text("h2")) == title
+    assert page.all("audio")[0]["aria-label"] == f"Sound of {title}"
+
+
+def test_a_name_that_no_utf_8_can_hold_is_written_escaped(write):
+    page = write(ReportEntry("run\udcff.wav", RIG, segment()))
+    assert page.text("h2") == ["run\\udcff.wav"]
+
+
+@pytest.mark.parametrize(
+    ("form", "subtype"), [("WAV", "FLOAT"), ("FLAC", "PCM_16"), ("WAV", "PCM_24")]
+)
+def test_any_sound_is_played_as_16_bit_wav(write, tmp_path, form, subtype):
+    file = tmp_path / "sound"
+    file.write_bytes(sound(0.5 * TONE, form=form, subtype=subtype))
+    page = write(ReportEntry("Squeal", RIG, segment(), file))
+    head, _, content = page.all("audio")[0]["src"].partition(",")
+    assert head == "data:audio/wav;base64"
+    with soundfile.SoundFile(io.BytesIO(base64.b64decode(content))) as played:
+        assert (played.format, played.subtype, played.samplerate) == ("WAV", "PCM_16", RATE)
+        assert played.read() == pytest.approx(0.5 * TONE, abs=2.0**-15)
+
+
+def test_the_gain_is_stated_and_whether_it_is_common(write):
+    def gain(*full_scales):
+        page = write(
+            *(ReportEntry("s", RIG, segment(), sound(TONE), full_scale=f) for f in full_scales)
+        )
+        return next(text for text in page.text("p") if "sounds" in text.lower())
+
+    same = (
+        "Sounds: full scale = 2 Pa (100 dB peak re 20 µPa), the same for all sounds on this page."
+    )
+    assert gain(2.0, 2.0) == same
+    assert "different gains" in gain(2.0, 4.0)
+    assert "different gains" in gain(2.0, None)
+    assert "not stated" in gain(None, None)
+
+
+@pytest.mark.parametrize(
+    ("audio", "error", "message"),
+    [
+        (sound(1.01 * TONE), ParameterError, "clipped"),
+        (sound(np.full(64, np.nan)), ParameterError, "clipped"),
+        (b"no sound", RecordingError, "damaged"),
+        (b"", RecordingError, "damaged"),
+    ],
+)
+def test_a_sound_that_cannot_be_played_leaves_the_old_page(tmp_path, audio, error, message):
+    path = tmp_path / "report.html"
+    path.write_text("old")
+    with pytest.raises(error, match=message):
+        write_report(path, [ReportEntry("Squeal", RIG, segment(), audio)], title="Review")
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_sound_that_is_missing_is_named(tmp_path):
+    missing = ReportEntry("Squeal", RIG, segment(), tmp_path / "gone.wav")
+    with pytest.raises(RecordingError, match=r"gone\.wav"):
+        write_report(tmp_path / "report.html", [missing], title="Review")
+
+
+def test_a_report_of_nothing_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="no entry"):
+        write_report(tmp_path / "report.html", [], title="Review")
+
+
+def test_the_same_recordings_give_the_same_bytes(write):
+    entry = ReportEntry("Squeal", RIG, segment(), sound(TONE))
+    assert write(entry).html == write(entry).html
+
+
+def test_a_noisy_recording_of_two_seconds_adds_less_than_three_quarters_of_a_megabyte(write):
+    rng = np.random.default_rng(0)
+    noise = rng.normal(size=(3, 2 * RATE))
+    channels = (Channel("torque"), Channel("acceleration"), Channel("pressure"))
+    audio = sound(0.1 * rng.normal(size=2 * 48_000), rate=48_000)
+    hiss = ReportEntry("Hiss", Recording(noise, RATE, channels), segment(), audio)
+    assert len(write(hiss).html) < 0.75e6
+
+
+@pytest.mark.parametrize(
+    ("channels", "n_rows"),
+    [({"pressure": TONE}, 1), ({"torque": TONE, "acceleration": TONE}, 2), ({"angle": TIME}, 0)],
+)
+def test_a_page_shows_the_channels_there_are(write, channels, n_rows):
+    page = write(ReportEntry("Partial", recording(**channels), segment()))
+    assert len(page.all("img")) == 2 * n_rows
+    assert (n_rows == 0) == ("no channel" in page.text("figcaption")[0])
+
+
+def test_silent_recordings_are_reported_without_a_warning(write):
+    silent = segment("none", frequency=None, level=None, dbfs=None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        page = write(
+            ReportEntry("Silent", recording(pressure=0.0), silent, sound(0.0 * TONE)),
+            ReportEntry("Digital zero", recording(pressure=0.0, calibrated=False), silent),
+        )
+    assert page.text("span").count("none") == 2 * 2 + 2 * 2
+
+
+def test_text_stands_out_from_its_ground(write):
+    def luminance(colour):
+        values = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+        linear = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+        return float(linear @ [0.2126, 0.7152, 0.0722])
+
+    html = write(ReportEntry("Squeal", RIG, segment())).html
+    colours = dict(re.findall(r"--(\w+): (#\w{6});", html))
+    (link,) = re.findall(r"a \{ color: (#\w{6});", html)
+    for ink in (colours["ink"], colours["soft"], link):
+        for ground in ("#ffffff", colours["wash"]):
+            ratio = (luminance(ground) + 0.05) / (luminance(ink) + 0.05)
+            assert ratio >= 4.5

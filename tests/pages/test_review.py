@@ -1,0 +1,282 @@
+"""The review page as a file: what is on it, at which gain, how large, and what is refused."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import re
+
+import numpy as np
+import pytest
+import soundfile
+
+import noise
+from models.errors import ParameterError
+from noise.audio.gain import loudness
+from noise.cli import main
+from noise.labels.label_display import LABEL_LOOKS
+from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.review.build import review
+from noise.pages.review.equal import equal_factors
+from noise.recordings import write_recording
+from tests.helpers.made_diagnoses import one_effect
+from tests.helpers.made_reviews import (
+    RATE,
+    TONE,
+    recording,
+    row,
+    screen_rows,
+    sound,
+    write_campaign,
+    write_screen,
+)
+
+
+class Page:
+    """A page taken apart."""
+
+    def __init__(self, path):
+        self.html = path.read_text(encoding="utf-8")
+        self.about = json.loads(re.search(r'id="about">(.*?)</script>', self.html, re.S)[1])
+
+    def sound(self, title):
+        key = next(key for key, one in self.about.items() if one["title"].startswith(title))
+        text = re.search(rf'id="sound-{key}">(.*?)</script>', self.html, re.S)[1]
+        return soundfile.read(io.BytesIO(base64.b64decode(text)))
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    return write_campaign(tmp_path / "day1")
+
+
+def level(samples):
+    return 20.0 * np.log10(np.sqrt(np.mean(samples**2)))
+
+
+def test_sounds_keep_their_levels_to_one_another_and_to_the_stated_full_scale(campaign):
+    page = Page(review(campaign, campaign / "review.html").path)
+    (creak, rate), (squeal, _) = (page.sound(f"recordings/{k}") for k in ("creak", "squeal"))
+    full_scale = float(re.search(r"full scale = ([\d.]+) Pa", page.html)[1])
+    assert rate == RATE
+    inside = slice(RATE // 10, RATE)
+    for heard, kind in ((creak, "creak"), (squeal, "squeal")):
+        wanted = level(sound(kind)[inside])
+        assert level(heard[inside] * full_scale) == pytest.approx(wanted, abs=0.02)
+
+
+def test_a_full_scale_that_is_set_is_level_true_and_one_that_clips_is_refused(campaign):
+    out = campaign / "review.html"
+    page = Page(review(campaign, out, pascal_per_full_scale=20.0).path)
+    assert "Calibrated sounds are level-true: full scale = 20 Pa (120 dB peak)" in page.html
+    squeal, _ = page.sound("recordings/squeal")
+    assert np.abs(squeal).max() == pytest.approx(0.01, rel=0.02)
+    with pytest.raises(ParameterError, match=r"creak.*would clip at 0.1 Pa"):
+        review(campaign, out, pascal_per_full_scale=0.1)
+
+
+def test_what_is_not_calibrated_has_a_gain_of_its_own_and_says_so(tmp_path, campaign):
+    write_recording(campaign / "phone.wav", recording("hiss", calibrated=False))
+    soundfile.write(campaign / "phone.flac", 0.01 * sound("squeal"), RATE)
+    page = Page(review(campaign, tmp_path, classify=False).path)
+    assert "are not calibrated: how loud they were is not known" in page.html
+    assert np.abs(page.sound("phone.wav")[0]).max() > 0.9
+    assert np.abs(page.sound("recordings/creak")[0]).max() > 0.7
+
+
+def test_flac_gives_a_tone_back_within_half_a_step_and_its_dither(campaign):
+    page = Page(review(campaign, campaign / "review.html", pascal_per_full_scale=1.0).path)
+    heard, _ = page.sound("recordings/squeal")
+    error = (heard - sound("squeal", 3.0))[RATE // 10 : -RATE // 10]
+    assert np.abs(error).max() <= 1.5 / 2**15
+    at_the_tone = np.abs(np.exp(-2j * np.pi * TONE / RATE * np.arange(error.size)) @ error)
+    assert 2.0 * at_the_tone / error.size < 1e-6
+
+
+def test_equal_loudness_is_equal_without_clipping_and_leaves_what_is_too_soft():
+    sounds = {"a": sound("creak"), "b": 0.05 * sound("hiss"), "c": 1e-5 * sound("squeal")}
+    factors, target = equal_factors(sounds | {"d": np.zeros(RATE), "e": sound("creak", 0.2)})
+    assert set(factors) == {"a", "b"}
+    for name, factor in factors.items():
+        assert loudness(factor * sounds[name], RATE) == pytest.approx(target, abs=0.05)
+        assert np.abs(factor * sounds[name]).max() < 10 ** (-2.9 / 20)
+
+
+def test_the_same_call_writes_the_same_page(campaign):
+    one, other = (review(campaign, campaign / name).path for name in ("a.html", "b.html"))
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_the_budget_shortens_all_sounds_alike_and_is_kept(tmp_path):
+    for i in range(3):
+        run = recording("hiss", seconds=5.0)
+        write_recording(tmp_path / "runs" / f"run{i}.wav", run)
+    whole = review(tmp_path / "runs", tmp_path / "whole.html", classify=False)
+    short = review(tmp_path / "runs", tmp_path / "short.html", classify=False, megabytes=1.0)
+    assert whole.shortened is None
+    assert short.path.stat().st_size <= 1.0e6 < whole.path.stat().st_size
+    page = Page(short.path)
+    assert f"sounds are no longer than {short.shortened:.3g} s" in page.html
+    lengths = {round(one["duration"], 3) for one in page.about.values()}
+    assert lengths == {round(short.shortened, 3)}
+    assert page.sound("run0")[0].size == round(short.shortened * RATE)
+    with pytest.raises(ParameterError, match="do not fit"):
+        review(tmp_path / "runs", tmp_path / "none.html", classify=False, megabytes=0.4)
+
+
+def test_of_a_long_recording_the_stretch_that_names_it_is_played(tmp_path):
+    samples = recording("none", seconds=30.0)
+    samples.samples[0, 20 * RATE : 22 * RATE] = sound("squeal", 2.0)
+    write_recording(tmp_path / "long.wav", samples)
+    table = [row("long.wav", "none", 0.0, 20.0), row("long.wav", "squeal", 20.0, 22.0)]
+    (tmp_path / "labels.jsonl").write_text("\n".join(map(json.dumps, table)), encoding="utf-8")
+    page = Page(review(tmp_path, tmp_path / "out", seconds=4.0).path)
+    assert "4 s from 19 s of 30 s; labelled by the table" in page.html
+    heard, _ = page.sound("long.wav")
+    assert np.abs(heard[RATE + 100 : 3 * RATE - 100]).max() > 0.9
+    assert np.abs(heard[: RATE // 2]).max() < 0.01
+    assert 'class="band filled squeal lines"' in page.html
+    assert (
+        'title="squeal, 20 to 22 s" aria-label="squeal, 20 to 22 s" style="left: 25.0%' in page.html
+    )
+
+
+def test_what_no_table_labels_is_labelled_for_the_page_unless_told_not_to(tmp_path):
+    write_recording(tmp_path / "run.wav", recording("squeal"))
+    named = review(tmp_path / "run.wav", tmp_path / "a.html").path.read_text(encoding="utf-8")
+    bare = review(tmp_path / "run.wav", tmp_path / "b.html", classify=False)
+    assert "labelled for this page" in named
+    assert "not labelled" in bare.path.read_text(encoding="utf-8")
+
+
+def test_a_table_alone_finds_its_recordings_and_shows_the_others_without_a_sound(campaign):
+    (campaign / "recordings" / "none.wav").unlink()
+    (campaign / "recordings" / "none.json").unlink()
+    made = review(campaign / "labels.csv", campaign / "review.html")
+    page = Page(made.path)
+    assert made.sounds == 2
+    assert made.refused == ()
+    assert "the recording is not at hand" in page.html
+    assert 'aria-label="5 rad/s, 0.279 mm: none; none.wav, no sound"' in page.html
+
+
+def test_sidecars_that_are_named_with_their_recordings_are_no_inputs_of_their_own(campaign):
+    made = review(sorted((campaign / "recordings").iterdir()), campaign / "r.html", classify=False)
+    assert made.sounds == 3
+    assert made.refused == ()
+
+
+def test_recordings_of_the_same_name_are_told_apart_by_their_folders(tmp_path):
+    for folder in ("old", "new"):
+        write_recording(tmp_path / folder / "run.wav", recording("squeal"))
+    made = review([tmp_path / "old", tmp_path / "new"], tmp_path / "out", classify=False)
+    assert {one["title"] for one in Page(made.path).about.values()} == {
+        "old/run.wav",
+        "new/run.wav",
+    }
+
+
+def test_of_several_channels_of_sound_the_first_is_heard_and_the_page_says_so(tmp_path):
+    both = np.column_stack((0.5 * sound("creak"), sound("squeal")))
+    soundfile.write(tmp_path / "stereo.flac", both, RATE)
+    page = Page(review(tmp_path, tmp_path / "out", classify=False).path)
+    assert "1 of 2 channels is heard" in page.html
+    spectrum = np.abs(np.fft.rfft(page.sound("stereo")[0]))
+    assert np.fft.rfftfreq(page.sound("stereo")[0].size, 1 / RATE)[spectrum.argmax()] < 60.0
+
+
+def test_a_rendering_beside_its_recording_is_left_out(campaign):
+    (campaign / "audio").mkdir()
+    for name in ("creak.wav", "creak.json"):
+        (campaign / "audio" / name).write_bytes((campaign / "recordings" / name).read_bytes())
+    assert review(campaign, campaign / "review.html").sounds == 3
+
+
+def test_a_bad_file_is_named_on_the_page_and_the_exit_code_is_1(campaign, capsys):
+    (campaign / "recordings" / "broken.wav").write_bytes(b"no sound")
+    (campaign / "diagnosis.json").write_text("{}", encoding="utf-8")
+    assert main(["review", str(campaign), "--out", str(campaign / "out")]) == 1
+    told = capsys.readouterr()
+    page = Page(campaign / "out" / "report.html")
+    assert told.out.split() == [str(campaign / "out" / "report.html")]
+    for name in ("broken.wav", "diagnosis.json"):
+        assert name in told.err
+        assert re.search(rf"Not on this page.*{name}</b>: \w+", page.html, re.S)
+    assert len(page.about) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("table.csv", "file,rms\na.wav,1\n", "has no column"),
+        ("map.csv", "design,speed_rad_s,interference_mm,label\nold,fast,1,creak\n", "a number"),
+        ("map.csv", "design,speed_rad_s,interference_mm,label\nold,1,1,bang\n", "expected creak"),
+        ("diagnosis.json", "[]", "is no diagnosis"),
+        ("diagnosis.json", '{"verdict": 1, "probabilities": {}}', "is damaged"),
+    ],
+)
+def test_a_named_file_that_is_not_what_it_says_is_refused(campaign, name, content, reason):
+    (campaign / "other").mkdir()
+    path = campaign / "other" / name
+    path.write_text(content, encoding="utf-8")
+    made = review([campaign / "recordings", path], campaign / "review.html", classify=False)
+    (refusal,) = made.refused
+    assert refusal.name == str(path)
+    assert reason in refusal.reason
+    assert made.sounds == 3
+
+
+def test_where_nothing_can_be_used_the_call_is_refused(tmp_path, capsys):
+    (tmp_path / "broken.wav").write_bytes(b"no sound")
+    (tmp_path / "empty").mkdir()
+    out = str(tmp_path / "out")
+    assert main(["review", str(tmp_path / "broken.wav"), "--out", out]) == 2
+    assert main(["review", str(tmp_path / "empty"), "--out", out]) == 2
+    assert main(["review", str(tmp_path / "gone"), "--out", out]) == 2
+    told = capsys.readouterr().err
+    assert "there is nothing else" in told
+    assert "no recordings, labels, screens or diagnoses" in told
+    assert "no such file" in told
+    assert not (tmp_path / "out").exists()
+
+
+def test_names_of_files_cannot_become_markup(tmp_path):
+    write_recording(tmp_path / "<script>alert(1)</script>.wav", recording("none"))
+    page = review(tmp_path, tmp_path / "out", classify=False).path.read_text(encoding="utf-8")
+    assert "<script>alert" not in page
+
+
+def test_a_diagnosis_brings_its_words_and_its_sounds_at_their_level(tmp_path):
+    write_diagnosis(tmp_path / "diagnosis", one_effect())
+    made = review(tmp_path / "diagnosis", tmp_path / "out")
+    page = Page(made.path)
+    assert "Missing: partial slip" in page.html
+    assert one_effect().next_measurement in page.html
+    illustration = one_effect().illustrations[0]
+    heard, _ = page.sound(f"{illustration.name}, measured")
+    full_scale = float(re.search(r"full scale = ([\d.]+) Pa", page.html)[1])
+    pressure = illustration.measured["pressure"]
+    wanted = level(pressure[3000:-3000] - pressure.mean())
+    assert level(heard[4800:-4800] * full_scale) == pytest.approx(wanted, abs=0.2)
+
+
+def test_a_screen_brings_a_map_a_design_and_sounds_of_every_label(tmp_path):
+    write_screen(tmp_path / "screen", screen_rows() + screen_rows("mine"))
+    made = review(tmp_path / "screen", tmp_path / "out", simulated=5)
+    page = Page(made.path)
+    assert made.sounds == 5
+    assert {one["label"] for one in page.about.values()} == {"creak", "squawk", "squeal", "none"}
+    assert page.html.count("data-map data-speed") == 2
+    assert "the file of design mine is not at hand; name mine.toml" in page.html
+
+
+def test_patterns_and_marks_tell_labels_apart_without_colour():
+    assert len({look.pattern for look in LABEL_LOOKS.values()}) == len(LABEL_LOOKS)
+    assert len({look.mark for look in LABEL_LOOKS.values()}) == len(LABEL_LOOKS)
+
+
+def test_a_notebook_shows_the_page(campaign):
+    shown = noise.review(campaign, campaign / "review.html")._repr_html_()
+    assert shown.startswith("<iframe srcdoc=")
+    assert '"' not in shown.split('srcdoc="')[1].split('" style=')[0]

@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+import warnings
+from xml.etree import ElementTree as ET
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from models.drawing import thinned
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+from noise.labels.segments import Segment
+from noise.pages import figures
+from noise.pages.figures import entry_figures
+
+RATE = 30_000
+TIME = np.arange(RATE) / RATE
+TONE = np.sin(2.0 * np.pi * 1000.0 * TIME)
+SEGMENT = Segment("all", 0.0, 1.0, "squeal", {"squeal": 1.0}, 1000.0, 91.0, -3.0)
+
+
+def recording(*, calibrated=True, **channels):
+    names = tuple(Channel(name) for name in channels)
+    samples = np.stack([np.broadcast_to(signal, RATE) for signal in channels.values()])
+    return Recording(samples, RATE, names, calibrated=calibrated)
+
+
+SOUND = recording(pressure=TONE)
+
+
+def test_panels_are_svg_files_and_say_what_they_show():
+    (figure,) = entry_figures([(SOUND, SEGMENT)])
+    (row,) = figure.rows
+    for panel in (row.time, row.spectrum):
+        assert ET.fromstring(panel.svg).tag == "{http://www.w3.org/2000/svg}svg"
+    # 30 samples a cycle miss the peak
+    over = "Sound pressure over 50 ms from 0.475 s: between -0.995 and 0.995 Pa."
+    assert row.time.alt == over
+    # 1 Pa at a bin of 4 Hz: 91 dB spread over 1.5 bins
+    assert "highest at 1000 Hz with 83 dB re (20 µPa)²/Hz" in row.spectrum.alt
+
+
+def test_the_caption_tells_the_normalisation():
+    (figure,) = entry_figures([(SOUND, SEGMENT)])
+    for words in ("one-sided power spectral density", "Hann window", "bins of 4 Hz", "mean of 7"):
+        assert words in figure.caption
+
+
+def test_constant_and_silent_recordings_are_drawn_without_a_warning():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        silent, constant = entry_figures(
+            [
+                (recording(pressure=0.0), SEGMENT),
+                (recording(torque=8.1, acceleration=-3.0), SEGMENT),
+            ]
+        )
+    assert "all below" in silent.rows[0].spectrum.alt
+    assert all("all below" in row.spectrum.alt for row in constant.rows)
+
+
+def test_a_slow_recording_has_a_spectrum_to_half_its_rate():
+    slow = Recording(TONE[None, :500], 1000.0, (Channel("pressure"),))
+    (figure,) = entry_figures([(slow, SEGMENT)])
+    assert ET.fromstring(figure.rows[0].spectrum.svg) is not None
+
+
+@pytest.mark.parametrize("calibrated", [True, False])
+@pytest.mark.parametrize("amplitude", [1e-7, 0.03, 0.7, 30_000.0])
+def test_no_writing_on_a_panel_overlaps_or_is_cut_off(monkeypatch, amplitude, calibrated):
+    drawn = []
+    monkeypatch.setattr(figures, "_svg", lambda figure: drawn.append(figure) or b"")
+    loud = recording(
+        torque=amplitude * TONE - 36.9, acceleration=amplitude * TONE, calibrated=calibrated
+    )
+    quiet = recording(torque=8.0, acceleration=0.0, calibrated=calibrated)
+    entry_figures([(loud, SEGMENT), (quiet, SEGMENT)])
+    assert len(drawn) == 8
+    with mpl.style.context(["default", figures._STYLE]):
+        for figure in drawn:
+            figure.draw_without_rendering()
+            (axes,) = figure.axes
+            low, high = axes.get_ylim()
+            numbers = [
+                tick.label1.get_window_extent()
+                for tick in axes.yaxis.get_major_ticks()
+                if low <= tick.get_loc() <= high
+            ]
+            assert len(numbers) >= 2
+            assert min(number.x0 for number in numbers) > axes.yaxis.label.get_window_extent().x1
+            extent = axes.get_tightbbox()
+            assert extent.x0 >= 0.0
+            assert extent.y0 >= 0.0
+            assert extent.x1 <= figure.bbox.x1
+            assert extent.y1 <= figure.bbox.y1
+
+
+def test_thinning_keeps_every_peak():
+    position = np.linspace(0.0, 1.0, 20_000)
+    spikes = np.zeros(20_000)
+    spikes[137::613] = 1.0
+    _, kept = thinned(position, spikes, columns=figures._COLUMNS)
+    assert kept.size < 2000
+    assert np.count_nonzero(kept) == np.count_nonzero(spikes)
+
+
+@given(st.integers(1, 4000), st.integers(0, 2**32 - 1))
+def test_thinning_keeps_ends_order_and_extremes(size, seed):
+    x, y = np.arange(float(size)), np.random.default_rng(seed).normal(size=size)
+    kept_x, kept_y = thinned(x, y, columns=figures._COLUMNS)
+    assert np.all(np.diff(kept_x) > 0)
+    assert (kept_x[0], kept_x[-1]) == (x[0], x[-1])
+    assert (kept_y.min(), kept_y.max()) == (y.min(), y.max())
+
+
+def test_drawing_leaves_the_callers_settings_alone_and_does_not_depend_on_them():
+    with mpl.rc_context({"font.size": 31.0, "axes.grid": False, "svg.hashsalt": "theirs"}):
+        before = dict(mpl.rcParams)
+        theirs = entry_figures([(SOUND, SEGMENT)])
+        assert dict(mpl.rcParams) == before
+    assert entry_figures([(SOUND, SEGMENT)]) == theirs
+
+
+def test_no_plotting_interface_with_state_is_loaded():
+    code = "import sys, noise.pages.figures; sys.exit('matplotlib.pyplot' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("window", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_window_of_no_length_is_refused(window):
+    with pytest.raises(ParameterError, match="window"):
+        entry_figures([(SOUND, SEGMENT)], window=window)

@@ -1,0 +1,294 @@
+"""The picture of one run: what it draws is the run."""
+
+import subprocess
+import sys
+import warnings
+from dataclasses import replace
+from functools import cache
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from features.kernels.spectra import autospectrum
+from models.errors import ParameterError
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from noise.cli import main
+from noise.pictures.axes import thinned
+from noise.pictures.files import check_picture_path, write_picture
+from noise.pictures.run import plot_run
+from noise.pictures.window import run_window
+from sim.acquisition import Acquisition
+from sim.run import simulate
+from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
+
+LETTERS = {
+    ".png": b"\x89PNG",
+    ".svg": b"<?xml",
+    ".pdf": b"%PDF",
+}
+
+
+@cache
+def drawn(material="fluorocarbon-thesis", shaft=None, **about):
+    run = simulate(load_material_rig(material), shaft or ConstantSpeed(1.0), **about)
+    return run, plot_run(run)
+
+
+def panel(figure, *, ylabel, xlabel=None, nth=0):
+    found = [
+        axes
+        for axes in figure.axes
+        if axes.get_ylabel().startswith(ylabel) and (xlabel is None or axes.get_xlabel() == xlabel)
+    ]
+    return found[nth]
+
+
+def line(axes, colour_of):
+    (found,) = [one for one in axes.lines if one.get_label() == colour_of]
+    return found
+
+
+def test_the_whole_run_is_drawn_with_its_extremes():
+    run, figure = drawn()
+    torque = line(panel(figure, ylabel="Torque [Nm]"), "elastomer").get_ydata()
+    assert (torque.min(), torque.max()) == (run.motion.torque.min(), run.motion.torque.max())
+    surface = line(panel(figure, ylabel="Displacement"), "elastomer's surface").get_ydata()
+    assert surface.max() == 1e3 * run.motion.interface_angle.max()
+    clamp = line(panel(figure, ylabel="Displacement"), "clamp").get_ydata()
+    assert clamp.max() == 1e3 * run.motion.clamp_angle.max()
+    speed = line(panel(figure, ylabel="Speed [rad/s]"), "sliding (shaft - surface)").get_ydata()
+    assert speed.max() == run.motion.sliding_speed.max()
+
+
+@pytest.mark.parametrize("material", ["fluorocarbon", "fluorocarbon-thesis"])
+def test_the_surface_goes_as_far_as_its_speed_carries_it(material):
+    run, _ = drawn(material)
+    speed, angle = run.motion.interface_speed, run.motion.interface_angle
+    carried = np.cumsum(0.5 * (speed[1:] + speed[:-1])) / run.motion.rate
+    np.testing.assert_allclose(angle[1:9000] - angle[0], carried[:8999], atol=5e-5)
+
+
+def test_a_few_cycles_are_drawn_sample_by_sample():
+    run, figure = drawn()
+    window = run_window(run)
+    zoom = figure.axes[1]
+    assert zoom.get_title("left") == "Part of it, 152.3 cycles a second"
+    shown = line(zoom, "elastomer").get_ydata()
+    # More samples than columns: each column keeps its extremes.
+    part = run.motion.torque[window.first : window.last]
+    assert (shown.min(), shown.max()) == (part.min(), part.max())
+    slips = np.flatnonzero(run.motion.stuck[:-1] & ~run.motion.stuck[1:])
+    inside = (slips >= window.first) & (slips < window.last)
+    assert np.count_nonzero(inside) in (5, 6, 7)
+
+
+def test_phase_plane_and_torque_against_speed_hold_the_orbit():
+    run, figure = drawn()
+    window = run_window(run)
+    part = slice(window.first, window.last)
+    phase = panel(figure, ylabel="Speed of the surface", xlabel="Displacement [mrad]").lines[1]
+    np.testing.assert_array_equal(phase.get_xdata(), 1e3 * run.motion.interface_angle[part])
+    np.testing.assert_array_equal(phase.get_ydata(), run.motion.interface_speed[part])
+    axes = panel(figure, ylabel="Torque [Nm]", xlabel="Sliding speed [rad/s]")
+    for name, torque in (
+        ("elastomer", run.motion.torque),
+        ("contact", run.motion.friction_torque),
+    ):
+        np.testing.assert_array_equal(line(axes, name).get_xdata(), run.motion.sliding_speed[part])
+        np.testing.assert_array_equal(line(axes, name).get_ydata(), torque[part])
+
+
+@pytest.mark.parametrize(
+    ("channel", "label", "reference"),
+    [
+        ("torque", "Torque\n[dB re (1 Nm)²/Hz]", 1.0),
+        ("acceleration", "Beam acceleration\n[dB re (1 µm/s²)²/Hz]", 1e-6),
+        ("pressure", "Sound pressure\n[dB re (20 µPa)²/Hz]", 20e-6),
+    ],
+)
+def test_autospectra_are_those_of_the_recording_up_to_half_its_rate(channel, label, reference):
+    run, figure = drawn()
+    axes = panel(figure, ylabel=label)
+    curve = axes.lines[0]
+    spectrum = autospectrum(run.recording[channel], run.recording.rate)
+    at = np.searchsorted(spectrum.frequency, curve.get_xdata())
+    np.testing.assert_array_equal(spectrum.frequency[at], curve.get_xdata())
+    expected = 10.0 * np.log10(spectrum.density[at] / reference**2)
+    np.testing.assert_allclose(curve.get_ydata(), expected, atol=1e-9)
+    assert axes.get_xlim() == (20.0, 15e3)
+    assert curve.get_ydata().max() == pytest.approx(
+        10.0 * np.log10(spectrum.density[spectrum.frequency >= 20.0].max() / reference**2)
+    )
+
+
+def test_the_dashed_line_of_the_spectra_is_the_slip_frequency():
+    _, figure = drawn(support_stiffness=3745.0)
+    axes = panel(figure, ylabel="Sound pressure")
+    assert axes.lines[1].get_xdata()[0] == pytest.approx(149.75, abs=1.5)
+
+
+@pytest.mark.parametrize(
+    ("material", "shaft"),
+    [
+        ("fluorocarbon", ConstantSpeed(0.0)),
+        ("fluorocarbon-thesis", ConstantSpeed(-5.0)),
+        ("fluorocarbon-thesis", SpeedRamp(0.0, 10.0, 0.2)),
+        ("fluorocarbon", Oscillation(0.26, 5)),
+        ("PDMS", ConstantSpeed(5.0)),
+    ],
+)
+def test_every_material_and_motion_is_drawn_without_a_warning(material, shaft):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run = simulate(load_material_rig(material), shaft, seconds=0.2, support_stiffness=np.inf)
+        figure = plot_run(run)
+    labels = {one.get_label() for axes in figure.axes for one in axes.lines}
+    assert "clamp" not in labels  # it is bolted down
+
+
+@pytest.mark.parametrize("effect", ["mains_hum", "slip_pulse", "speed_fluctuation"])
+def test_effects_are_drawn(effect):
+    rig = replace(load_material_rig("fluorocarbon"), effects=(LawSpec(effect, {}),))
+    assert len(plot_run(simulate(rig, 5.0, seconds=0.1)).axes) == 11
+
+
+@pytest.mark.parametrize(("rate", "samples"), [(30e3, 16), (1e3, 200)])
+def test_short_and_slow_recordings_are_drawn(rate, samples):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        acquisition = Acquisition(rate=rate)
+        _, figure = drawn.__wrapped__(seconds=samples / rate, acquisition=acquisition)
+        figure.draw_without_rendering()
+    assert panel(figure, ylabel="Torque\n").get_xlim()[1] == rate / 2
+
+
+def test_a_long_run_costs_no_more_points_than_a_short_one():
+    _, figure = drawn(seconds=5.0)
+    points = sum(len(one.get_xdata()) for axes in figure.axes for one in axes.lines)
+    assert points < 100_000
+
+
+def test_a_swing_is_enlarged_where_the_beam_shakes_most():
+    shaft = Oscillation(np.radians(15.0), 2.0)
+    run, figure = drawn("fluorocarbon", shaft, interference=0.381e-3, seconds=1.0)
+    window = run_window(run)
+    loudest = np.abs(run.recording["acceleration"]).argmax() / run.recording.rate
+    assert window.first <= loudest * run.motion.rate <= window.last
+    assert "-3.29 to 3.29 rad/s" in figure.get_suptitle()
+
+
+def test_no_writing_overlaps_and_all_titles_are_inside():
+    _, figure = drawn("fluorocarbon", interference=0.381e-3)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        title = axes._left_title.get_window_extent(renderer)
+        legend = axes.get_legend()
+        if legend is not None and axes._left_title.get_text():
+            assert title.x1 < legend.get_window_extent(renderer).x0
+        for text in (axes.xaxis.label, axes.yaxis.label):
+            box = text.get_window_extent(renderer)
+            assert box.x0 >= 0.0
+            assert box.y0 >= 0.0
+            assert box.y1 <= figure.bbox.height
+
+
+def test_a_thinned_curve_keeps_every_peak_in_order():
+    x = np.arange(100_000.0)
+    y = np.zeros_like(x)
+    y[54_321] = 1.0
+    kept, values = thinned(x, y)
+    assert kept[values == 1.0].tolist() == [54_321.0]
+    assert (np.diff(kept) > 0.0).all()
+    assert kept.size <= 2402
+
+
+def test_drawing_leaves_the_callers_settings_alone():
+    before = dict(mpl.rcParams)
+    drawn.__wrapped__(seconds=0.05)
+    assert dict(mpl.rcParams) == before
+
+
+def test_the_command_draws_a_run(tmp_path, capsys):
+    path = tmp_path / "new" / "run.png"
+    assert main(["simulate", "--speed", "5", "--seconds", "0.1", "--plot", str(path)]) == 0
+    assert path.read_bytes().startswith(LETTERS[".png"])
+    assert capsys.readouterr().out == f"{path}\n"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_recording_and_its_picture_are_made_together(tmp_path, capsys):
+    out, plot = tmp_path / "run", tmp_path / "run.SVG"
+    arguments = ["--speed", "5", "--seconds", "0.1", "--out", str(out), "--plot", str(plot)]
+    assert main(["simulate", *arguments]) == 0
+    names = capsys.readouterr().out.split("\n")[:-1]
+    assert names == [f"{out}.wav", f"{out}.json", str(plot)]
+    assert plot.read_bytes().startswith(LETTERS[".svg"])
+
+
+@pytest.mark.parametrize("ending", sorted(LETTERS))
+def test_the_ending_says_the_format_and_the_same_figure_is_the_same_file(ending, tmp_path):
+    first, second = tmp_path / f"a{ending}", tmp_path / f"b{ending.upper()}"
+    for path in (first, second):
+        figure = Figure(figsize=(2, 2))
+        figure.subplots().plot([0.0, 1.0], [2.0, 3.0])
+        write_picture(path, figure)
+    assert first.read_bytes().startswith(LETTERS[ending])
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_picture_that_fails_leaves_the_older_one(tmp_path, monkeypatch):
+    path = tmp_path / "run.png"
+    path.write_text("older", encoding="utf-8")
+
+    def fail(self, target, **_):
+        target.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Figure, "savefig", fail)
+    with pytest.raises(ParameterError, match="No space left"):
+        write_picture(path, Figure())
+    assert path.read_text(encoding="utf-8") == "older"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("name", ["run.jpg", "run", "run.txt"])
+def test_other_endings_are_refused_before_the_work(name, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("sim.run.simulate", None)
+    assert main(["simulate", "--speed", "5", "--plot", str(tmp_path / name)]) == 2
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.endswith(f"--plot {tmp_path / name}: a picture ends in .png, .svg or .pdf")
+
+
+def test_what_cannot_be_drawn_is_refused_before_the_work(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("sim.run.simulate", None)
+    (tmp_path / "folder.png").mkdir()
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    for arguments, told in (
+        (["--plot", str(tmp_path / "folder.png")], "is a folder"),
+        (["--plot", str(tmp_path / "file" / "a.png")], "is a file, not a folder"),
+        (["--plot", str(tmp_path / "a.png"), "--seconds", "61"], "--seconds 61 is too long"),
+    ):
+        assert main(["simulate", "--speed", "5", *arguments]) == 2
+        (line_told,) = capsys.readouterr().err.splitlines()
+        assert "error: --plot" in line_told
+        assert told in line_told
+    with pytest.raises(ParameterError, match=r"ends in \.png, \.svg or \.pdf"):
+        check_picture_path(tmp_path / "a.gif")
+
+
+def test_matplotlib_is_imported_only_to_draw():
+    code = (
+        "import sys, pathlib\nfrom noise.cli import main\n"
+        "main(['simulate', '--help'])\nmain(['thesis', '--help'])\n"
+        "from noise.pictures.files import check_picture_path\n"
+        "check_picture_path(pathlib.Path('a.png'))\n"
+        "assert 'matplotlib' not in sys.modules\n"
+        "import noise.pictures.axes\n"
+        "assert 'matplotlib.figure' in sys.modules\nassert 'matplotlib.pyplot' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

@@ -1,0 +1,77 @@
+from __future__ import annotations
+
+import io
+import struct
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import given, strategies as st
+
+from noise.recordings.formats.bext import bext_description, chunks, missing_bytes
+
+
+def chunk(name: bytes, content: bytes, size: int | None = None) -> bytes:
+    length = len(content) if size is None else size
+    return name + struct.pack("<I", length) + content + b"\0" * (len(content) % 2)
+
+
+def riff(*parts: bytes, head: bytes = b"RIFF") -> bytes:
+    body = b"WAVE" + b"".join(parts)
+    return head + struct.pack("<I", len(body)) + body
+
+
+def test_the_description_is_found_wherever_the_chunk_stands(tmp_path):
+    text = b"Sound: 0dBFS = 109.7 dBSPL".ljust(256, b"\0") + b"originator"
+    for parts in [(b"bext", b"odd"), (b"odd", b"bext")]:
+        content = {b"bext": chunk(b"bext", text), b"odd": chunk(b"junk", b"123")}
+        path = tmp_path / "run.wav"
+        path.write_bytes(riff(*(content[part] for part in parts)))
+        assert bext_description(path) == "Sound: 0dBFS = 109.7 dBSPL"
+
+
+def test_files_without_a_description_have_an_empty_one(tmp_path):
+    for ending in ("wav", "flac", "aiff"):
+        path = tmp_path / f"run.{ending}"
+        soundfile.write(path, np.zeros(100), 48_000)
+        assert bext_description(path) == ""
+
+
+@pytest.mark.parametrize(
+    ("ending", "subtype"), [("wav", "FLOAT"), ("wav", "PCM_24"), ("aiff", "PCM_16")]
+)
+def test_what_was_cut_off_the_samples_is_counted(tmp_path, ending, subtype):
+    path = tmp_path / f"run.{ending}"
+    soundfile.write(path, np.zeros((1000, 2)), 48_000, subtype=subtype)
+    whole = path.read_bytes()
+    assert missing_bytes(path) == 0
+    path.write_bytes(whole[:-101])
+    assert missing_bytes(path) == 101
+
+
+def test_a_file_of_64_bit_sizes_is_counted_by_them(tmp_path):
+    path = tmp_path / "run.rf64"
+    soundfile.write(path, np.zeros((1000, 2)), 48_000, format="RF64", subtype="FLOAT")
+    whole = path.read_bytes()
+    assert missing_bytes(path) == 0
+    path.write_bytes(whole[:-64])
+    assert missing_bytes(path) == 64
+
+
+def test_a_length_left_open_announces_nothing(tmp_path):
+    path = tmp_path / "run.wav"
+    path.write_bytes(riff(chunk(b"data", b"1234", size=0xFFFFFFFF)))
+    assert missing_bytes(path) == 0
+
+
+@given(st.sampled_from([b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b""]), st.binary(max_size=300))
+def test_any_bytes_end_the_walk(head, rest):
+    found = list(chunks(io.BytesIO(head + rest)))
+    assert all(part.start <= 4 + len(rest) for part in found)
+
+
+@given(st.binary(min_size=1, max_size=40))
+def test_any_description_is_text(tmp_path_factory, content):
+    path = tmp_path_factory.mktemp("bext") / "run.wav"
+    path.write_bytes(riff(chunk(b"bext", content)))
+    assert bext_description(path).encode("latin-1") in content

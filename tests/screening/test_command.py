@@ -1,0 +1,216 @@
+"""``bushing-noise screen``: what it writes, and what it refuses."""
+
+import csv
+import os
+from functools import partial
+
+import pytest
+
+from models.errors import ParameterError
+from noise.cli import main
+from noise.pages.review.design_rig import rig_of
+from noise.pages.review.screens import read_screen
+from noise.screening.design.design import load_design
+from noise.screening.parts.lever import Lever
+from noise.screening.parts.robustness import robustness
+
+QUICK = ["--speed", "1,5,9", "--support-stiffness", "2214"]
+BAD = """\
+[design]
+colour = "red"
+"""
+
+
+def rows(path):
+    with path.open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
+    out = tmp_path / "new" / "screen"
+    given = ["screen", "PDMS", "fluorocarbon-thesis", "--interference", "0.279", *QUICK]
+    assert main([*given, "--out", str(out)]) == 0
+    names = sorted(path.name for path in out.iterdir())
+    assert names == [
+        "critical_speeds.csv", "designs.csv", "map-1.png", "map-2.png", "map.csv",
+    ]  # fmt: skip
+    points = rows(out / "map.csv")
+    assert len(points) == 6
+    assert set(points[0]) >= {
+        "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
+        "support_stiffness_Nm_rad", "regime", "label", "level_db", "loudness", "how",
+    }  # fmt: skip
+    quiet, loud = points[0], points[3]
+    assert (quiet["design"], quiet["label"], quiet["level_db"]) == ("PDMS", "none", "")
+    assert loud["regime"] == "stick-slip"
+    assert float(loud["level_db"]) > 30.0
+    assert {row["how"] for row in points} == {"simulated"}
+    ranked = rows(out / "designs.csv")
+    assert [(row["rank"], row["design"]) for row in ranked] == [
+        ("1", "PDMS"), ("2", "fluorocarbon-thesis"),
+    ]  # fmt: skip
+    shares = [float(ranked[1][f"share_{x}"]) for x in ("none", "creak", "squawk", "squeal")]
+    assert sum(shares) == pytest.approx(1.0, abs=1e-3)
+    critical = rows(out / "critical_speeds.csv")
+    assert [row["v_crit2_stability_rad_s"] for row in critical] == ["0.0", "0.0"]
+    printed = capsys.readouterr().out
+    assert printed.startswith(
+        "1. PDMS, dry: risk 1 (no risk); quiet at all 3 points of use; nothing vibrates"
+    )
+    assert "6 points in " in printed
+    assert "6 simulated" in printed
+
+
+def test_a_swing_has_frequencies_in_its_map(tmp_path):
+    given = ["--oscillate", "15,1..2/2", "--support-stiffness", "fixed"]
+    assert main(["screen", "PDMS", *given, "--out", str(tmp_path)]) == 0
+    points = rows(tmp_path / "map.csv")
+    assert {row["motion"] for row in points} == {"swinging"}
+    assert [row["frequency_hz"] for row in points[:2]] == ["1.0", "2.0"]
+    assert float(points[1]["speed_rad_s"]) == pytest.approx(3.28987, rel=1e-5)
+    assert {row["support_stiffness_Nm_rad"] for row in points} == {"fixed"}
+    assert (tmp_path / "map.png").is_file()
+
+
+def test_one_bad_design_among_several_is_named_and_the_others_are_screened(tmp_path, capsys):
+    bad = tmp_path / "bad.toml"
+    bad.write_text(BAD, encoding="utf-8")
+    assert main(["screen", str(bad), "PDMS", *QUICK, "--out", str(tmp_path / "out")]) == 1
+    told = capsys.readouterr()
+    assert "unknown key 'colour'" in told.err
+    assert told.out.startswith("1. PDMS")
+    last = rows(tmp_path / "out" / "designs.csv")[-1]
+    assert last["design"] == str(bad)
+    assert "unknown key 'colour'" in last["error"]
+
+
+STATED = """\
+material = "fluorocarbon-thesis"
+[design]
+name = "mine"
+interference_mm = 0.279
+support_stiffness_Nm_rad = 3745
+[tolerances]
+damping = 0.1
+kinetic_torque = 0.05
+"""
+
+
+@pytest.fixture
+def rough(monkeypatch):
+    """Wide intervals and one lever, which take a tenth of the time."""
+    quick = partial(robustness, half_width=0.2, samples=64, levers=(Lever("damping", 0.5, 2.0),))
+    monkeypatch.setattr("noise.screening.parts.statistics.robustness", quick)
+
+
+@pytest.mark.slow
+def test_a_design_with_tolerances_tells_what_its_parts_do_and_what_helps(tmp_path, capsys, rough):
+    given = tmp_path / "given.toml"
+    given.write_text(STATED, encoding="utf-8")
+    out = tmp_path / "out"
+    assert main(["screen", str(given), "PDMS", "--speed", "5,7,9", "--out", str(out)]) == 0
+    told = {row["design"]: row for row in rows(out / "designs.csv")}
+    assert told["PDMS"]["tolerances"] == told["PDMS"]["p_none_high"] == ""
+    assert (told["PDMS"]["risk"], told["PDMS"]["risk_band"]) == ("1", "no risk")
+    mine = told["mine"]
+    assert mine["tolerances"] == "stated"
+    noises = ("creak", "squawk", "squeal", "none")
+    assert sum(float(mine[f"p_{name}"]) for name in noises) == pytest.approx(1.0, abs=1e-3)
+    for name in noises:
+        assert float(mine[f"p_{name}_low"]) <= float(mine[f"p_{name}"])
+        assert float(mine[f"p_{name}"]) <= float(mine[f"p_{name}_high"])
+    scattering = {row["parameter"] for row in rows(out / "sensitivities.csv")}
+    assert scattering == {"damping", "kinetic_torque"}
+    advice = rows(out / "advice.csv")
+    assert {row["design"] for row in advice} == {"mine"}
+    changed = next(row for row in advice if row["parameter"] == "damping")
+    nominal, advised = float(changed["nominal"]), float(changed["advised"])
+    assert advised / nominal - 1.0 == pytest.approx(float(changed["change"]), abs=1e-4)
+    assert "   parts: " in capsys.readouterr().out
+    assert load_design(out / "designs" / "mine.toml").tolerances == load_design(given).tolerances
+    given.unlink()
+    seen = next(one for one in read_screen(out / "map.csv") if one.design == "mine")
+    assert rig_of(seen, out, []).material == "fluorocarbon-thesis"
+
+
+def test_tolerances_can_be_assumed_or_left_out(tmp_path, rough):
+    given = tmp_path / "given.toml"
+    given.write_text(STATED, encoding="utf-8")
+    assert main(["screen", str(given), *QUICK, "--no-tolerances", "--out", str(tmp_path)]) == 0
+    assert not (tmp_path / "advice.csv").exists()
+    assert rows(tmp_path / "designs.csv")[0]["p_none"] == ""
+    assert main(["screen", "PDMS", *QUICK, "--tolerances", "--out", str(tmp_path)]) == 0
+    assert rows(tmp_path / "designs.csv")[0]["tolerances"] == "assumed"
+
+
+def test_a_failing_statistic_is_told_and_loses_nothing_else(tmp_path, capsys, monkeypatch):
+    def fails(design, **_):
+        if design.name == "PDMS":
+            raise ParameterError("no fit")
+        return 6
+
+    monkeypatch.setattr("noise.screening.parts.statistics.use_risk", fails)
+    given = ["PDMS", "fluorocarbon-thesis", "--interference", "0.279", *QUICK]
+    assert main(["screen", *given, "--out", str(tmp_path)]) == 1
+    assert "risk: no fit" in capsys.readouterr().err
+    first, last = rows(tmp_path / "designs.csv")
+    assert (first["design"], first["rank"], first["risk"]) == ("fluorocarbon-thesis", "1", "6")
+    assert (last["design"], last["rank"], last["risk"]) == ("PDMS", "2", "")
+    assert last["error"] == "risk: no fit"
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (["teflon"], "neither a file nor a material"),
+        (["nowhere.toml"], "nowhere.toml"),
+        (["PDMS", "--speed", "fast"], "--speed is 'fast'"),
+        (["PDMS", "--speed", "0,1"], "values must be above 0"),
+        (["PDMS", "--speed", "9..1"], "a range rises"),
+        (["PDMS", "--interference", "0.1..20"], "--interference"),
+        (["PDMS", "--support-stiffness", "soft"], "--support-stiffness is 'soft'"),
+        (["PDMS", "--temperature", "-300"], "at least -273.15"),
+        (["PDMS", "--environment", "mud"], "'mud' is unknown"),
+        (["PDMS", "--oscillate", "15"], "expected degrees and Hz"),
+        (["PDMS", "--simulations", "0"], "--simulations is '0'"),
+        (["PDMS", "--workers", "none"], "--workers is 'none'"),
+        (["PDMS", "--workers", "2", "--scheduler", "x"], "not allowed with"),
+        (["PDMS", "--out", __file__], "is a file"),
+    ],
+)
+def test_what_cannot_be_used_is_one_line_and_two(given, message, capsys):
+    assert main(["screen", *given]) == 2
+    told = capsys.readouterr()
+    assert message in told.err
+    assert told.out == ""
+    assert sum("error" in line for line in told.err.splitlines()) == 1
+
+
+def test_loudness_without_its_extra_is_refused_before_the_work(monkeypatch, capsys):
+    monkeypatch.setitem(__import__("sys").modules, "mosqito", None)
+    assert main(["screen", "PDMS", *QUICK, "--loudness"]) == 2
+    assert "bushing-noise[sound-quality]" in capsys.readouterr().err
+
+
+def test_a_map_is_the_same_bytes_whatever_the_number_of_workers(tmp_path):
+    for workers in ("1", "3"):
+        out = tmp_path / workers
+        given = ["--speed", "0.5..12/47", "--support-stiffness", "2214", "--workers", workers]
+        assert main(["screen", "fluorocarbon-thesis", *given, "--out", str(out)]) == 0
+    for name in ("map.csv", "critical_speeds.csv", "designs.csv", "map.png"):
+        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "3" / name).read_bytes()
+
+
+@pytest.mark.slow
+def test_a_map_from_a_cluster_is_byte_for_byte_that_of_this_machine(tmp_path, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setitem(os.environ, "OMP_NUM_THREADS", "1")
+    given = ["screen", "fluorocarbon", "--speed", "0.5..12/24", "--support-stiffness", "2214"]
+    assert main([*given, "--out", str(tmp_path / "here")]) == 0
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, worker_dashboard_address=None
+    ) as cluster:
+        more = ["--scheduler", cluster.scheduler_address, "--out", str(tmp_path / "there")]
+        assert main([*given, *more]) == 0
+    for name in ("map.csv", "critical_speeds.csv", "designs.csv"):
+        assert (tmp_path / "here" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()

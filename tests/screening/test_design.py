@@ -1,0 +1,198 @@
+"""Design files: what they say, and what is refused by name."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, strategies as st
+
+from models.errors import ParameterError
+from noise.screening.design.design import load_design
+from noise.screening.design.environments import environment, environment_names, in_environment
+from noise.screening.design.tolerances import Tolerance, read_tolerances
+from noise.screening.map.axes import axis_values, spread, text_values
+from noise.screening.map.grid import grid_of
+from noise.screening.parts.variation import nominal_values, use_point, varied
+
+DESIGN = """\
+name = "rig"
+material = "our rubber"
+elastomer_inertia_kgm2 = 1.538e-5
+clamp_inertia_kgm2 = 8.333e-4
+[[fit]]
+interference_mm = 0.279
+elastomer_stiffness_Nm_rad = 665.0
+critical_torque_Nm = 10.7
+kinetic_torque_Nm = 8.0
+damping_Nms_rad = { "2214" = 0.105, fixed = 0.085 }
+[design]
+name = "softer"
+speed_rad_s = "1..5/5"
+interference_mm = [0.25, 0.3]
+support_stiffness_Nm_rad = [2214, "fixed"]
+temperature_C = [-10, 23]
+oscillation = { amplitude_deg = 15, frequency_hz = "1..2/3" }
+[tolerances]
+elastomer_stiffness = 0.05
+interference = { absolute = 0.01 }
+kinetic_torque = { low = 7.5, high = 8.5 }
+temperature = { low = -20, high = 60 }
+"""
+
+
+def written(folder, text):
+    path = folder / "softer.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_design_file_says_rig_use_and_tolerances(tmp_path):
+    design = load_design(written(tmp_path, DESIGN))
+    assert design.name == "softer"
+    assert design.rig.fit(0.279e-3).critical_torque == 10.7
+    assert design.use.speed == (1.0, 2.0, 3.0, 4.0, 5.0)
+    assert design.use.support_stiffness == (2214.0, math.inf)
+    assert design.use.interference == (0.25e-3, 0.3e-3)
+    assert design.use.swinging.frequency == (1.0, 1.5, 2.0)
+    assert design.use.swinging.peak_speed[0] == pytest.approx(2 * math.pi * math.radians(15))
+    assert [t.name for t in design.tolerances] == [
+        "elastomer_stiffness", "interference", "kinetic_torque", "temperature",
+    ]  # fmt: skip
+
+
+def test_a_material_alone_is_a_design(tmp_path):
+    assert load_design(written(tmp_path, 'material = "PDMS"')).rig.friction.name == "lugre"
+    assert load_design("Natural-Rubber").name == "natural-rubber"
+
+
+def test_what_nobody_says_is_the_rigs():
+    grid = grid_of(load_design("fluorocarbon"))
+    assert grid.interference == (0.178e-3, 0.279e-3, 0.381e-3)
+    assert grid.support_stiffness == (2214.0, 3745.0, math.inf)
+    assert (grid.speed[0], grid.speed[-1], grid.use) == (0.25, 13.0, (0.25, 13.0))
+
+
+def test_an_environment_has_its_own_temperature(tmp_path):
+    design = load_design(written(tmp_path, DESIGN))
+    assert grid_of(design).temperature == (-10.0, 23.0)
+    assert grid_of(design, where="hot").temperature == (80.0,)
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        (("[design]", "[design]\ncolour = 1"), "unknown key 'colour'"),
+        (('name = "rig"', 'colour = "red"'), "unknown key 'colour'"),
+        (('"1..5/5"', '"5..1"'), "a range rises"),
+        (('"1..5/5"', '"1..5/x"'), "whole number from 2"),
+        (('"1..5/5"', "[0.0]"), "values must be above 0"),
+        (('"1..5/5"', "true"), "give numbers"),
+        (('[2214, "fixed"]', '["soft"]'), "expected numbers"),
+        (("[0.25, 0.3]", "[0.25, 12]"), "must be below 10"),
+        (("[-10, 23]", "[-300]"), "at least -273.15"),
+        (("amplitude_deg = 15, ", ""), "amplitude_deg is missing"),
+        (("elastomer_stiffness = 0.05", "stiffness = 0.05"), "unknown key 'stiffness'"),
+        (("elastomer_stiffness = 0.05", 'elastomer_stiffness = "5 %"'), "must be a number"),
+        (("absolute = 0.01", "absolute = 0.01, relative = 0.1"), "give a number, or one of"),
+        (("low = 7.5, high = 8.5", "low = 8.5, high = 7.5"), "is not below high"),
+        (("critical_torque_Nm = 10.7", "critical_torque_Nm = 7.0"), "is below kinetic_torque"),
+    ],
+)
+def test_what_cannot_be_used_is_named_with_its_file(tmp_path, changed, message):
+    path = written(tmp_path, DESIGN.replace(*changed))
+    with pytest.raises(ParameterError, match=message) as refused:
+        load_design(path)
+    assert str(path) in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("given", ["teflon", "nowhere.toml"])
+def test_a_design_that_is_not_there_is_named(given):
+    with pytest.raises(ParameterError, match=given):
+        load_design(given)
+
+
+@given(
+    st.floats(0.01, 50.0).map(lambda x: round(x, 4)),
+    st.floats(0.01, 50.0).map(lambda x: round(x, 4)),
+    st.integers(2, 200),
+)
+def test_a_range_has_its_ends_and_as_many_points_as_asked(low, wide, points):
+    values = text_values(f"{low}..{low + wide}/{points}", "--speed")
+    assert len(values) == points
+    assert values[0] == pytest.approx(low)
+    assert values[-1] == pytest.approx(low + wide)
+    assert all(a < b for a, b in pairwise(values))
+
+
+def test_lists_are_sorted_and_each_value_counts_once():
+    assert axis_values([5, "1..2/2", 1.0], "x") == (1.0, 2.0, 5.0)
+    assert spread(3.0, 3.0, 1) == (3.0,)
+
+
+def test_tolerances_become_factors_on_the_nominal_value():
+    found = read_tolerances(
+        {"damping": 0.1, "interference": {"absolute": 0.01}, "temperature": {"low": 0, "high": 50}},
+        "design",
+    )
+    damping, fit, temperature = found
+    assert damping.factors(0.1) == ("normal", 1.0, 0.1)
+    assert fit.factors(0.25) == ("normal", 1.0, pytest.approx(0.04))
+    kind, low, high = temperature.factors(23.0)
+    assert (kind, low * 296.15, high * 296.15) == (
+        "uniform", pytest.approx(273.15), pytest.approx(323.15),
+    )  # fmt: skip
+
+
+def test_a_varied_design_changes_what_is_named_and_nothing_else():
+    design = load_design("fluorocarbon-thesis")
+    point = use_point(design)
+    before = nominal_values(design, point)
+    factors = {"elastomer_stiffness": 1.1, "interference": 0.9, "temperature": 1.1}
+    rig, moved = varied(design.rig, point, factors)
+    assert rig.fit(0.279e-3).elastomer_stiffness == pytest.approx(665.0 * 1.1)
+    assert moved.interference == pytest.approx(0.9 * point.interference)
+    assert moved.temperature == pytest.approx(1.1 * 296.15 - 273.15)
+    assert rig.fit(0.279e-3).damping == design.rig.fit(0.279e-3).damping
+    assert (moved.speed, moved.support_stiffness) == (point.speed, point.support_stiffness)
+    assert before["critical_torque"] == 10.7
+    assert varied(design.rig, point, {}) == (design.rig, point)
+
+
+def test_a_critical_torque_is_never_below_the_kinetic_one():
+    design = load_design("fluorocarbon-thesis")
+    rig, _ = varied(design.rig, use_point(design), {"critical_torque": 0.5})
+    assert all(fit.critical_torque == fit.kinetic_torque for fit in rig.fits)
+
+
+@pytest.mark.parametrize("factors", [{"colour": 1.0}, {"damping": 0.0}, {"damping": math.nan}])
+def test_a_factor_that_cannot_be_used_is_refused(factors):
+    design = load_design("PDMS")
+    with pytest.raises(ParameterError):
+        varied(design.rig, use_point(design), factors)
+
+
+@pytest.mark.parametrize("name", [n for n in environment_names() if n != "dry"])
+def test_every_environment_but_dry_is_marked_as_assumed_number_by_number(name):
+    where = environment(name)
+    rig = load_design("fluorocarbon").rig
+    changed = in_environment(rig, where)
+    assert len(changed.assumed) == len(rig.assumed) + len(where.why)
+    assert all(entry.startswith(f"{name}: ") for entry in changed.assumed[len(rig.assumed) :])
+    numbers = [where.elastomer_stiffness, where.damping, where.critical_torque]
+    numbers += [where.kinetic_torque, *(1.0 + len(e.parameters) for e in where.effects)]
+    assert any(number != 1.0 for number in numbers)
+
+
+def test_dry_changes_nothing():
+    rig = load_design("fluorocarbon").rig
+    assert in_environment(rig, environment("dry")) is rig
+
+
+def test_an_unknown_environment_is_named_with_those_there_are():
+    with pytest.raises(ParameterError, match="'mud' is unknown; there are dry, cold, hot"):
+        environment("mud")
+
+
+def test_a_tolerance_is_a_value():
+    assert Tolerance("damping", "relative", 0.1).name == "damping"

@@ -1,0 +1,138 @@
+"""Friction laws with an inner state, and the regimes of the calibrated rig."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from features.kernels.harmonics import analyse_harmonics
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.analysis.regime import Regime, friction_regime
+from sim.bushing import lumped_bushing
+from sim.friction import friction_law
+from sim.motion import simulate_motion
+from sim.parameters import resolve
+from sim.shaft import ConstantSpeed, Oscillation
+from sim.solvers.contact_solver import solve_contact
+
+FLUOROCARBON = load_material_rig("fluorocarbon")
+PDMS = load_material_rig("PDMS")
+
+
+def motion(rig, speed, interference=0.279e-3, stiffness=2214.0, seconds=1.0):
+    return simulate_motion(
+        rig,
+        ConstantSpeed(speed),
+        interference=interference,
+        support_stiffness=stiffness,
+        seconds=seconds,
+        rate=90e3,
+    )
+
+
+def strongest_line(run):
+    torque = run.torque[run.torque.size // 2 :]
+    spectrum = np.abs(np.fft.rfft((torque - torque.mean()) * np.hanning(torque.size)))
+    return np.fft.rfftfreq(torque.size, 1.0 / run.rate)[spectrum.argmax()]
+
+
+@pytest.mark.parametrize("name", ["contact_with_memory", "lugre"])
+def test_integration_agrees_with_a_sixteenth_of_its_step(name):
+    law = friction_law(name)
+    fit = FLUOROCARBON.fit(0.279e-3)
+    coefficients = law.coefficients(resolve(name, law.parameters, {}))
+    system = lumped_bushing(FLUOROCARBON, 0.279e-3, 2214.0).packed()
+    coarse, fine = (
+        solve_contact(
+            system,
+            fit.critical_torque,
+            fit.kinetic_torque,
+            np.full(1800, 2.5),
+            1 / 90e3,
+            law=law.torque,
+            coefficients=coefficients,
+            law_state=law.state(coefficients),
+            refined=refined,
+        )[0][:, 1]
+        for refined in (1, 16)
+    )
+    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
+
+
+@pytest.mark.parametrize("speed", [0.25, 1.0, 5.0, 17.0])
+def test_steady_sliding_of_pdms_gives_the_torque_of_its_law(speed):
+    run = motion(PDMS, speed, interference=0.381e-3, seconds=0.5)
+    assert run.torque[-1] == pytest.approx(3.0 * (1.0 + 0.12 * speed), rel=1e-6)
+
+
+def test_pdms_triples_its_torque_and_never_oscillates():
+    runs = [motion(PDMS, speed, 0.254e-3, seconds=0.5) for speed in (0.25, 5.0, 17.0)]
+    assert all(friction_regime(run) is Regime.STEADY_SLIDING for run in runs)
+    assert 2.5 < runs[-1].torque[-1] / runs[0].torque[-1] < 3.5
+
+
+def test_a_contact_that_never_ages_does_not_weaken():
+    never = LawSpec("contact_with_memory", {"ageing_time": 1e3, "weakening_share": 0.0})
+    rig = replace(FLUOROCARBON, friction=never)
+    slow, fast = (motion(rig, speed, seconds=0.5).torque[-1] for speed in (5.0, 12.0))
+    kinetic = rig.fit(0.279e-3).kinetic_torque
+    assert slow == pytest.approx(kinetic, rel=1e-3)
+    assert fast == pytest.approx(kinetic, rel=1e-3)
+
+
+def test_reversing_the_shaft_reverses_the_torque():
+    forward, backward = (motion(FLUOROCARBON, speed, seconds=0.1).torque for speed in (5.0, -5.0))
+    assert np.array_equal(forward, -backward)
+
+
+def test_friction_never_gives_energy_to_the_shaft_and_bushing_together():
+    run = motion(FLUOROCARBON, 5.0, seconds=0.5)
+    # What the contact dissipates, less what its bending stores, is never negative in the mean.
+    assert np.mean(run.friction_torque * run.sliding_speed) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("interference", "stiffness", "speed", "regime"),
+    [
+        (0.279e-3, 2214.0, 1.0, Regime.STICK_SLIP),
+        (0.279e-3, 2214.0, 10.0, Regime.STEADY_SLIDING),
+        (0.279e-3, 3745.0, 10.0, Regime.QUASI_HARMONIC),
+        (0.178e-3, 2214.0, 7.5, Regime.STEADY_SLIDING),
+        (0.381e-3, 3745.0, 10.0, Regime.STICK_SLIP),
+    ],
+)
+def test_regimes_of_the_calibrated_fluorocarbon_are_those_of_the_thesis(
+    interference, stiffness, speed, regime
+):
+    assert friction_regime(motion(FLUOROCARBON, speed, interference, stiffness)) is regime
+
+
+def test_squeal_is_the_elastomers_mode_and_not_the_first_torsional_one():
+    run = motion(FLUOROCARBON, 10.0, stiffness=3745.0)
+    elastomer = lumped_bushing(FLUOROCARBON, 0.279e-3, 3745.0).natural_frequencies()[1]
+    assert strongest_line(run) == pytest.approx(elastomer, rel=0.12)
+
+
+def test_slip_frequency_rises_with_speed_and_stays_below_the_first_torsional_mode():
+    found = [
+        analyse_harmonics(motion(FLUOROCARBON, speed).torque[45000:], 90e3).fundamental
+        for speed in (1.0, 2.5, 5.0)
+    ]
+    assert found == sorted(found)
+    assert found[-1] < lumped_bushing(FLUOROCARBON, 0.279e-3, 2214.0).natural_frequencies()[0]
+
+
+def test_mean_torque_is_nearly_the_same_at_all_speeds():
+    means = [motion(FLUOROCARBON, v, seconds=0.6).torque[27000:].mean() for v in (1.0, 5.0, 13.0)]
+    assert np.ptp(means) < 0.12 * np.mean(means)
+
+
+def test_an_oscillating_shaft_makes_the_torque_follow_its_direction():
+    shaft = Oscillation(np.deg2rad(15.0), 2.0)
+    run = simulate_motion(
+        FLUOROCARBON, shaft, interference=0.381e-3, support_stiffness=2214.0, seconds=0.5, rate=48e3
+    )
+    quarter = run.torque.size // 4
+    assert run.torque[: quarter // 2].mean() > 10.0
+    assert run.torque[2 * quarter : 2 * quarter + quarter // 2].mean() < -10.0

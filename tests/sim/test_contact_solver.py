@@ -1,0 +1,240 @@
+"""The solver of contacts against itself with far shorter steps, in its events and its limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.bushing import lumped_bushing
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.friction import LAWS, friction_law
+from sim.motion import simulate_motion
+from sim.parameters import resolve
+from sim.shaft import ConstantSpeed
+from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook, solve_contact
+
+THESIS, CALIBRATED = load_material_rig("fluorocarbon-thesis"), load_material_rig("fluorocarbon")
+RATE = 90e3
+CONDITIONS = {
+    "thesis": (THESIS, 0.279e-3),
+    "calibrated": (CALIBRATED, 0.279e-3),
+    "three times that": (CALIBRATED, 0.381e-3),
+}
+NAMES = tuple(name for name in LAWS if name != "coulomb")
+FORMS = [
+    (name, form)
+    for name, effect in EFFECTS.items()
+    if effect.contact is not None
+    for form in effect.forms
+]
+
+
+def hook(name, **given):
+    active = EFFECTS[name].active(given)
+    values = active.effect.pack(active.form, active.values, np.random.default_rng(0))
+    return Hook(active.effect.contact, values, active.effect.n_states)
+
+
+def arguments(condition, name, given=None, hooks=(), stiffness=3745.0):
+    """Of the solver, but for the drive and the step."""
+    rig, interference = CONDITIONS[condition]
+    law, fit = friction_law(name), rig.fit(interference)
+    own = rig.friction.parameters if rig.friction.name == name and given is None else given or {}
+    coefficients = law.coefficients(resolve(name, law.parameters, own))
+    packed = lumped_bushing(rig, interference, stiffness).packed()
+    options = {
+        "law": law.torque,
+        "coefficients": coefficients,
+        "law_state": law.state(coefficients),
+        "hooks": hooks,
+        "tolerance": law.tolerance,
+    }
+    return (packed, fit.critical_torque, fit.kinetic_torque), options
+
+
+def solve(condition, name, speed, seconds, *, refined=1, given=None, hooks=(), stiffness=3745.0):
+    torques, options = arguments(condition, name, given, hooks, stiffness)
+    drive = np.full(round(seconds * RATE), float(speed))
+    return solve_contact(*torques, drive, 1.0 / RATE, refined=refined, **options)[0]
+
+
+def error_before_chaos(condition, name, speed, hooks=(), stiffness=3745.0, seconds=0.12):
+    """Of the torque over its rms, over ten cycles or until a billionth has grown a thousandfold."""
+    coarse, other, fine = (
+        solve(condition, name, v, seconds, refined=n, hooks=hooks, stiffness=stiffness)[:, 1]
+        for v, n in ((speed, 1), (speed * (1.0 + 1e-9), 1), (speed, 16))
+    )
+    mean = fine.mean()
+    rises = np.flatnonzero((fine[1:] > mean) & (fine[:-1] <= mean))
+    end = rises[10] if rises.size > 10 else fine.size
+    rms = np.sqrt(np.mean(fine[:end] ** 2))
+    grown = np.flatnonzero(np.abs(other - coarse) > 1e-6 * rms)
+    end = min([end, *grown[:1]])
+    assert end > 0.003 * RATE  # the wildest part their neighbours within a cycle
+    return np.sqrt(np.mean((coarse - fine)[:end] ** 2)) / rms
+
+
+@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize("name", NAMES)
+def test_a_law_agrees_with_a_sixteenth_of_its_step(name, condition):
+    assert error_before_chaos(condition, name, 2.5) < 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize("speed", [1.0, 5.0, 10.0])
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+@pytest.mark.parametrize("name", NAMES)
+def test_a_law_agrees_with_a_sixteenth_of_its_step_anywhere(name, stiffness, speed, condition):
+    assert error_before_chaos(condition, name, speed, stiffness=stiffness) < 1e-4
+
+
+@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize(("name", "form"), FORMS)
+def test_an_effect_on_true_stick_agrees_with_a_sixteenth_of_its_step(name, form, condition):
+    hooks = (hook(name, form=form),)
+    assert error_before_chaos(condition, "coulomb", 2.5, hooks, seconds=0.06) < 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize("law", ["coulomb", "contact_with_memory"])
+@pytest.mark.parametrize("speed", [1.0, 5.0])
+@pytest.mark.parametrize(("name", "form"), FORMS)
+def test_an_effect_agrees_with_a_sixteenth_of_its_step_anywhere(name, form, speed, law, condition):
+    assert error_before_chaos(condition, law, speed, (hook(name, form=form),)) < 1e-4
+
+
+def statistics(states, speed, parts=8):
+    """Slips a second and share of stick: means of parts of the run, and their standard errors."""
+    stuck = np.abs(states[9000:, 6] - states[9000:, 3]) <= 0.05 * speed
+    found = np.array(
+        [
+            (np.count_nonzero(part[:-1] & ~part[1:]) / part.size * RATE, part.mean())
+            for part in np.array_split(stuck, parts)
+        ]
+    )
+    return found.mean(axis=0), found.std(axis=0, ddof=1) / np.sqrt(parts)
+
+
+def assert_same_statistics(condition, name, speed, seconds):
+    coarse, fine = (
+        statistics(solve(condition, name, speed, seconds, refined=n), speed) for n in (1, 16)
+    )
+    scatter = np.hypot(coarse[1], fine[1])
+    assert (np.abs(coarse[0] - fine[0]) <= np.maximum(5e-3 * fine[0], 3.0 * scatter)).all()
+
+
+@pytest.mark.parametrize("condition", CONDITIONS)
+def test_statistics_of_chaos_are_those_of_a_sixteenth_of_the_step(condition):
+    assert_same_statistics(condition, "contact_with_memory", 1.0, 2.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize("speed", [1.0, 5.0])
+@pytest.mark.parametrize("name", NAMES)
+def test_statistics_of_any_law_are_those_of_a_sixteenth_of_the_step(name, speed, condition):
+    assert_same_statistics(condition, name, speed, 8.1)
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 1700.0, 1e5])
+@pytest.mark.parametrize("viscous", [0.0, 10.0])
+@pytest.mark.parametrize("speed", [0.25, 20.0])
+def test_lugre_stays_bounded_in_all_its_range(stiffness, viscous, speed):
+    given = {
+        "contact_stiffness_per_torque": stiffness,
+        "contact_damping_per_torque": 1e-2,
+        "stribeck_speed": 1e-2,
+        "viscous_share_per_speed": viscous,
+    }
+    states = solve("three times that", "lugre", speed, 0.01, given=given)
+    assert np.abs(states[:, 1]).max() < 45.0 + 1.2 * viscous * speed * 21.744
+
+
+def steep(gain, speed):
+    effects = activated(
+        (LawSpec("velocity_strengthening", {"gain": gain, "speed": speed}),), EFFECTS
+    )
+    return simulate_motion(
+        THESIS, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=3745.0, seconds=0.1,
+        rate=30e3, effects=effects,
+    )  # fmt: skip
+
+
+def test_a_steep_rise_with_speed_is_stable():
+    torque = steep(5.0, 1.0).torque
+    assert torque[-1] < 8.0 * 6.0
+    assert (np.diff(torque) > -1e-6).all()
+
+
+def test_what_is_too_steep_is_refused_by_name():
+    with pytest.raises(ParameterError, match=r"velocity_strengthening: the torque changes so fast"):
+        steep(5.0, 0.01)
+
+
+@pytest.mark.parametrize("form", EFFECTS["partial_slip"].forms)
+def test_a_creeping_stick_breaks_and_catches_at_its_creeping_speed(form):
+    torques, options = arguments(
+        "thesis", "coulomb", hooks=(hook("partial_slip", form=form, share=0.6),)
+    )
+    drive = np.full(40000, 2.0)
+    states, direction = solve_contact(*torques, drive, 2.5e-7 * 10.0, **options)
+    surface = states[:, 3]
+    # No faster than the torque that the break sets free can turn the surface.
+    fastest = (10.7 - 8.0) * 65000 * 2.5e-6
+    jumps = np.abs(np.diff(surface))
+    assert np.count_nonzero(np.diff(direction)) >= 2
+    assert jumps.max() < 1.5 * fastest
+    last = np.flatnonzero(np.diff(np.abs(direction)) > 0)[0]
+    assert surface[last] < 0.6 * 2.0
+    assert surface[last] == pytest.approx(2.0 * (1.0 - 0.6), rel=0.2)
+
+
+def test_an_end_that_lasts_less_than_a_step_is_not_missed():
+    rig = replace(CALIBRATED, friction=LawSpec("coulomb", {}))
+    assert rig.fit(0.279e-3) == CALIBRATED.fit(0.279e-3)
+    hooks = (hook("partial_slip", form="exponential"),)
+    coarse, fine = (
+        solve("calibrated", "coulomb", 5.0, 0.05, refined=n, hooks=hooks)[:, 1] for n in (1, 16)
+    )
+    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-3 * fine.mean()
+
+
+@pytest.mark.parametrize("name", ["coulomb", "contact_with_memory"])
+def test_blocks_joined_are_one_run(name):
+    torques, options = arguments("thesis", name, hooks=(hook("static_ageing"),))
+    beyond = round(LONGEST_STEP * RATE) + 1
+    drive = 2.0 + np.sin(np.arange(6000 + beyond) / 700.0)
+    whole, _ = solve_contact(*torques, drive[:6000], 1.0 / RATE, **options)
+    run = ContactRun(*torques, drive[0], 1.0 / RATE, **options)
+    blocks = [run.advance(drive[i : i + 1000 + beyond], 1000)[0] for i in range(0, 6000, 1000)]
+    joined = np.concatenate(blocks)
+    assert np.abs(joined - whole)[:5900, 1].max() < 1e-6
+
+
+def test_the_same_run_is_the_same_bit_for_bit():
+    one, two = (solve("calibrated", "contact_with_memory", 5.0, 0.1) for _ in range(2))
+    assert np.array_equal(one, two)
+
+
+def test_each_of_five_effects_has_states_of_its_own():
+    names = (
+        "velocity_strengthening", "critical_torque_scatter", "amplitude_softening",
+        "viscoelastic_stiffness", "frictional_heating",
+    )  # fmt: skip
+
+    def torque(order):
+        return simulate_motion(
+            THESIS, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=3745.0,
+            seconds=0.05, rate=30e3, effects=[EFFECTS[name].active({}) for name in order],
+            rng=np.random.default_rng(0),
+        ).torque  # fmt: skip
+
+    given, turned = torque(names), torque((names[-1], *names[:-1]))
+    assert np.abs(given - turned).max() < 0.05 * given.std()
+    assert np.abs(given - torque(names[:-1])).max() > 0.01 * given.std()

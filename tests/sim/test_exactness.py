@@ -1,0 +1,294 @@
+"""The solver of true stick against a general one, and against what physics demands."""
+
+import numpy as np
+import pytest
+from hypothesis import Phase, assume, given, settings, strategies as st
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from sim.bushing import LumpedBushing
+from sim.solvers.stick_slip import advance_stick_slip, rest_state, solve_stick_slip
+
+STEP = 1 / 30e3
+
+PHASES = [Phase.explicit, Phase.reuse, Phase.generate]
+"""Without shrinking, which takes minutes here."""
+
+LEAST_MARGIN = 1e-3
+"""Left out are grazes: a limit passed more slowly than this share of the typical rate, or missed
+by less than this share of it (of T_crit, of the shaft's speed). They are tested apart."""
+
+
+class Reference:
+    """DOP853 at rtol 1e-12, phase by phase; ends of phases polished by Newton's method."""
+
+    def __init__(self, system, critical, kinetic, speed, rate):
+        self.system, self.critical, self.kinetic = system, critical, kinetic
+        self.speed, self.rate = speed, rate  # of the shaft: speed + rate * t
+
+    def shaft(self, t):
+        return self.speed + self.rate * t
+
+    def elastomer(self, t, x, way):
+        _, _, k_e, _, c_e, _ = self.system
+        surface = self.shaft(t) if way == 0 else x[1]
+        return k_e * (x[0] - x[2]) + c_e * (surface - x[3])
+
+    def rates(self, t, x, way):
+        j_e, j_c, _, k_b, _, c_b = self.system
+        torque = self.elastomer(t, x, way)
+        turning = self.rate if way == 0 else (way * self.kinetic - torque) / j_e
+        moving = 0.0 if k_b < 0 else (torque - k_b * x[2] - c_b * x[3]) / j_c
+        surface = self.shaft(t) if way == 0 else x[1]
+        return np.array([surface, turning, x[3], moving])
+
+    def distance(self, t, x, way):
+        """From the end of the phase, and how fast it shrinks."""
+        j_e, _, k_e, _, c_e, _ = self.system
+        rates = self.rates(t, x, way)
+        if way == 0:
+            holding = self.elastomer(t, x, 0) + j_e * self.rate
+            slope = k_e * (rates[0] - rates[2]) + c_e * (rates[1] - rates[3])
+            return self.critical - abs(holding), -np.sign(holding) * slope
+        return way * (self.shaft(t) - x[1]), way * (self.rate - rates[1])
+
+    def integrate(self, start, end, x, way, events=None):
+        return solve_ivp(
+            self.rates, (start, end), x, "DOP853", rtol=1e-12, atol=1e-14, args=(way,),
+            max_step=1e-4, events=events,
+        )  # fmt: skip
+
+    def solve(self, seconds):
+        """Times of the events, state at the end, and the least margin from a graze."""
+        j_e, _, k_e, _, _, _ = self.system
+        typical = {0: k_e * (abs(self.speed) + 1.0), 1: (self.critical - self.kinetic) / j_e}
+        events, gentlest = [], np.inf
+        start, x, way = 0.0, np.array([0.0, self.shaft(0.0), 0.0, 0.0]), 0
+        while True:
+
+            def ends(t, x, way, start=start):
+                return self.distance(t, x, way)[0] if t > start + 1e-7 else 1.0
+
+            def turns(t, x, way):
+                return self.distance(t, x, way)[1]
+
+            ends.terminal, turns.direction = True, 1.0
+            solution = self.integrate(start, seconds, x, way, [ends, turns])
+            for t, x in zip(solution.t_events[1], solution.y_events[1], strict=True):
+                typical_distance = self.critical if way == 0 else abs(self.shaft(t))
+                if start + 1e-7 < t < solution.t[-1]:
+                    gentlest = min(gentlest, self.distance(t, x, way)[0] / typical_distance)
+            if solution.status != 1:
+                return np.array(events), solution.y[:, -1], gentlest
+            base, x = solution.t[-2], solution.y[:, -2]
+            t = solution.t[-1]
+            for _ in range(3):
+                at = self.integrate(base, t, x, way).y[:, -1] if t > base else x
+                gap, slope = self.distance(t, at, way)
+                t -= gap / slope
+            x = self.integrate(base, t, x, way).y[:, -1] if t > base else x
+            gentlest = min(gentlest, abs(slope) / typical[abs(way)])
+            events.append(t)
+            start, x[1] = t, self.shaft(t)
+            holding = self.elastomer(t, x, 0) + j_e * self.rate
+            leaves = way == 0 or abs(holding) > self.critical
+            way = int(np.sign(holding)) if leaves else 0
+
+
+systems = st.builds(
+    lambda damping, share, support, elastomer: LumpedBushing(
+        1 / 65000, 1 / 1200, elastomer, support, share * damping, (1 - share) * damping
+    ).packed(),
+    damping=st.floats(0.02, 0.15),
+    share=st.floats(0.1, 0.9),
+    support=st.one_of(st.floats(1500.0, 6000.0), st.just(np.inf)),
+    elastomer=st.floats(400.0, 1100.0),
+)
+
+
+@given(
+    system=systems,
+    kinetic=st.floats(0.0, 20.0),
+    drop=st.floats(0.5, 8.0),
+    speed=st.floats(0.3, 8.0),
+    way=st.sampled_from([-1.0, 1.0]),
+    change=st.sampled_from([0.0, 0.0, -5.0, 30.0]),
+)
+@settings(max_examples=6, deadline=None, phases=PHASES)
+def test_events_and_states_agree_with_a_general_solver(system, kinetic, drop, speed, way, change):
+    n = 9001
+    shaft = way * (speed + change * STEP * np.arange(n))
+    reference = Reference(system, kinetic + drop, kinetic, way * speed, way * change)
+    expected, end, gentlest = reference.solve((n - 1) * STEP)
+    assume(gentlest > LEAST_MARGIN)
+    states, _, events = solve_stick_slip(system, kinetic + drop, kinetic, shaft, STEP)
+    known = predictable(system, kinetic + drop, kinetic, shaft, events)
+    assert events[:known] == pytest.approx(expected[:known], rel=0.0, abs=1e-10)
+    if known == len(events):
+        assert len(expected) == known
+        assert states[-1, 2:] == pytest.approx(end, rel=1e-7, abs=1e-7)
+
+
+def predictable(system, critical, kinetic, shaft, events):
+    """Count the events until chaos makes 1e-11 s of what the general solver's tolerance is."""
+    _, _, moved = solve_stick_slip(system, critical * (1 + 1e-12), kinetic, shaft, STEP)
+    n = min(len(events), len(moved))
+    return int(np.append(np.abs(events[:n] - moved[:n]) > 1e-11, [True]).argmax())
+
+
+def test_a_shaft_that_reverses_is_followed_through_zero():
+    # From +2 to -4 rad/s at once in one ramp: sticks at the reversal, slips the other way.
+    system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 3745.0, 0.04, 0.04).packed()
+    n = 6001
+    shaft = 2.0 - 30.0 * STEP * np.arange(n)
+    expected, end, _ = Reference(system, 10.7, 8.0, 2.0, -30.0).solve((n - 1) * STEP)
+    states, direction, events = solve_stick_slip(system, 10.7, 8.0, shaft, STEP)
+    assert np.abs(events - expected).max() < 1e-10
+    assert states[-1, 2:] == pytest.approx(end, rel=1e-7, abs=1e-7)
+    assert {1, -1} <= set(direction.tolist())
+
+
+def generator(system, way, kinetic, speed):
+    """Matrix of the linear motion of (theta1, theta1', theta2, theta2', 1)."""
+    j_e, j_c, k_e, k_b, c_e, c_b = system
+    a = np.zeros((5, 5))
+    elastomer = np.array([k_e, c_e, -k_e, -c_e, 0.0])
+    a[0, 4 if way == 0 else 1] = speed if way == 0 else 1.0
+    if way != 0:
+        a[1] = -elastomer / j_e
+        a[1, 4] += way * kinetic / j_e
+    if k_b > 0:
+        a[2, 3] = 1.0
+        a[3] = (elastomer - np.array([0.0, 0.0, k_b, c_b, 0.0])) / j_c
+    return a
+
+
+def energy_flows(system, way, kinetic, speed, x, length):
+    """Work of the shaft, dissipation of the dampers, heat of friction; `x` of shape (n, 5)."""
+    _, _, k_e, _, c_e, c_b = system
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    flows = np.zeros(3)
+    for node, weight in zip(nodes, weights, strict=True):
+        here = x @ expm(generator(system, way, kinetic, speed) * length * 0.5 * (1 + node)).T
+        a, va, b, vb, _ = here.T
+        friction = k_e * (a - b) + c_e * (va - vb) if way == 0 else way * kinetic
+        powers = (friction * speed, c_e * (va - vb) ** 2 + c_b * vb**2, friction * (speed - va))
+        flows += 0.5 * length * weight * np.array([np.sum(p * np.ones(len(x))) for p in powers])
+    return flows
+
+
+@pytest.mark.parametrize(("speed", "support"), [(1.0, 3745.0), (-5.0, 2214.0), (2.0, np.inf)])
+def test_energy_is_conserved(speed, support):
+    lumped = LumpedBushing(1 / 65000, 1 / 1200, 665.0, support, 0.04, 0.05)
+    system, n = lumped.packed(), 1501
+    states, direction, events = solve_stick_slip(system, 10.7, 8.0, np.full(n, speed), STEP)
+    x = np.column_stack([states[:, 2:], np.ones(n)])
+    cut = np.zeros(n - 1, dtype=bool)
+    cut[np.floor(events / STEP).astype(int)] = True
+    flows = np.zeros(3)
+    for way in (-1, 0, 1):
+        flows += energy_flows(system, way, 8.0, speed, x[:-1][~cut & (direction[:-1] == way)], STEP)
+    for i in np.flatnonzero(cut):
+        way, t, here = direction[i], i * STEP, x[i : i + 1]
+        inside = events[(events >= t) & (events < t + STEP)]
+        for end in (*inside, t + STEP):
+            flows += energy_flows(system, way, 8.0, speed, here, end - t)
+            here = here @ expm(generator(system, way, 8.0, speed) * (end - t)).T
+            t, way = end, (int(np.sign(speed)) if way == 0 else 0)
+    a, va, b, vb = states[[0, -1], 2:].T
+    spring = 0.0 if np.isinf(support) else support
+    stored = 0.5 * (va**2 / 65000 + vb**2 / 1200 + 665.0 * (a - b) ** 2 + spring * b**2)
+    work, damped, heat = flows
+    assert heat > 0.0
+    assert stored[1] - stored[0] + damped + heat == pytest.approx(work, rel=1e-9)
+
+
+def free(system, x, speed, n, step, kinetic=0.0, critical=1.0, way=1.0):
+    """Motion from any state at constant shaft speed."""
+    state = rest_state(speed)
+    state[:4], state[4] = x, way
+    return advance_stick_slip(system, critical, kinetic, np.full(n, speed), step, state, n)
+
+
+@given(x=st.tuples(*[st.floats(-0.01, 0.01), st.floats(-30.0, 30.0)] * 2))
+@settings(max_examples=10, deadline=None)
+def test_undamped_free_vibration_runs_back_the_way_it_came(x):
+    undamped = np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0, 0.0])
+    n = 3000
+    there, _, _ = free(undamped, x, 1e4, n, STEP, kinetic=5.0)
+    turned = there[-1, 2:] * [1, -1, 1, -1]
+    back, _, events = free(undamped, turned, 1e4, n, STEP, kinetic=5.0)
+    assert len(events) == 0
+    scale = np.array([0.01, 60.0, 0.01, 60.0])
+    assert back[-1, 2:] / scale == pytest.approx(np.array(x) * [1, -1, 1, -1] / scale, abs=1e-9)
+
+
+@pytest.mark.parametrize("step", [1e-4, STEP, 1e-5])
+@pytest.mark.parametrize("phase", [0.3, 0.7])
+@pytest.mark.parametrize("way", [-1, 1])
+def test_a_graze_of_the_shafts_speed_is_seen_within_a_step(step, phase, way):
+    # An undamped elastomer on a fixed clamp: sliding speed v - A cos(omega t), least at every turn.
+    system = np.array([1 / 65000, 1 / 1200, 665.0, -1.0, 0.0, 0.0])
+    omega, amplitude = np.sqrt(665.0 * 65000), 3.0
+    angle = 1.0 + phase * step * omega
+    start = [way * amplitude / omega * np.sin(angle), way * amplitude * np.cos(angle), 0.0, 0.0]
+    n = round(0.01 / step)
+    for excess, caught in ((1e-9, False), (-1e-9, True)):
+        speed = way * amplitude * (1.0 + excess)
+        _, _, events = free(system, start, speed, n, step, kinetic=0.0, critical=1e-3, way=way)
+        assert (len(events) > 0) == caught
+
+
+@pytest.mark.parametrize("step", [1e-4, STEP, 1e-5])
+@pytest.mark.parametrize("way", [-1, 1])
+def test_a_graze_of_the_critical_torque_is_seen_within_a_step(step, way):
+    # The shaft holds still and the clamp rings: holding torque k_E B cos(omega t).
+    system = np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0, 0.0])
+    peak = 0.005
+    omega = np.sqrt((665.0 + 3745.0) * 1200)
+    start = [0.0, 0.0, -way * peak * np.cos(1.1), way * peak * omega * np.sin(1.1)]
+    n = round(0.02 / step)
+    for excess, breaks in ((1e-9, False), (-1e-9, True)):
+        critical = 665.0 * peak * (1.0 + excess)
+        _, _, events = free(system, start, 0.0, n, step, 0.5 * critical, critical, way=0.0)
+        assert (len(events) > 0) == breaks
+
+
+def test_equal_torques_slide_without_chatter():
+    system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 3745.0, 0.04, 0.04).packed()
+    states, direction, events = solve_stick_slip(system, 8.0, 8.0, np.full(30001, 3.0), STEP)
+    assert len(events) < 50
+    assert (direction[-1000:] == 1).all()
+    assert states[-1000:, 1] == pytest.approx(8.0, abs=1e-6)
+
+
+def test_steady_sliding_stays_as_it_is():
+    system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 3745.0, 0.04, 0.04).packed()
+    at_rest = [8.0 / 665.0 + 8.0 / 3745.0, 0.0, 8.0 / 3745.0, 0.0]
+    states, _, events = free(system, at_rest, 5.0, 100_000, STEP, kinetic=8.0, critical=10.7)
+    assert len(events) == 0
+    assert np.abs(states[-1, 2:] - at_rest).max() < 1e-12
+
+
+@pytest.mark.parametrize("step", [1e-3, 3e-4, 7e-6])
+def test_any_output_rate_gives_the_same_motion(step):
+    system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 3745.0, 0.04, 0.04).packed()
+    _, _, fine = solve_stick_slip(system, 10.7, 8.0, np.full(round(0.2 / STEP), 1.0), STEP)
+    _, _, events = solve_stick_slip(system, 10.7, 8.0, np.full(round(0.2 / step), 1.0), step)
+    n = min(len(fine), len(events))
+    assert n > 40
+    assert events[:n] == pytest.approx(fine[:n], abs=1e-12)
+
+
+@pytest.mark.parametrize("cut", [1, 777, 5999])
+def test_blocks_joined_are_one_run(cut):
+    system = LumpedBushing(1 / 65000, 1 / 1200, 665.0, 2214.0, 0.04, 0.04).packed()
+    shaft = 6.0 * np.cos(np.arange(6000) * STEP * 30.0)
+    whole, direction, events = solve_stick_slip(system, 10.7, 8.0, shaft, STEP)
+    state = rest_state(shaft[0])
+    first = advance_stick_slip(system, 10.7, 8.0, shaft[: cut + 1], STEP, state, cut)
+    rest = advance_stick_slip(system, 10.7, 8.0, shaft[cut:], STEP, state, 6000 - cut)
+    joined = [np.concatenate(pair) for pair in zip(first, rest, strict=True)]
+    assert np.array_equal(joined[0], whole)
+    assert np.array_equal(joined[1], direction)
+    assert np.array_equal(joined[2], events)

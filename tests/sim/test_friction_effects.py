@@ -1,0 +1,417 @@
+"""Effects of the contact and the elastomer: limits, what they change, and that they compose."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.errors import ParameterError
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.analysis.regime import Regime, friction_regime
+from sim.bushing import lumped_bushing
+from sim.contact import (
+    CREEP,
+    CRITICAL,
+    ELASTOMER_TORQUE,
+    KINETIC,
+    N_CONTACT,
+    N_CONTEXT,
+    SHAFT_SPEED,
+    SLIDING_SPEED,
+    STICK_TIME,
+    STICKS,
+    STIFFNESS,
+    TIME,
+    TORQUE,
+    TWIST,
+)
+from sim.effects import EFFECTS
+from sim.effects.effect import Stage, activated
+from sim.friction import friction_law
+from sim.motion import simulate_motion
+from sim.parameters import resolve
+from sim.shaft import ConstantSpeed
+from sim.solvers.contact_solver import Hook, solve_contact
+
+TRUE_STICK = load_material_rig("fluorocarbon-thesis")
+MEMORY = load_material_rig("fluorocarbon")
+NAMES = (
+    "partial_slip", "velocity_weakening", "velocity_strengthening", "static_ageing",
+    "critical_torque_scatter", "transfer_film", "frictional_heating", "viscoelastic_stiffness",
+    "amplitude_softening",
+)  # fmt: skip
+FORMS = [(name, form) for name in NAMES for form in EFFECTS[name].forms]
+RATE = 90e3
+
+
+def hook(name, seed=0, **given):
+    active = EFFECTS[name].active(given)
+    values = active.effect.pack(active.form, active.values, np.random.default_rng(seed))
+    return Hook(active.effect.contact, values, active.effect.n_states)
+
+
+def solve(*hooks, rig=TRUE_STICK, speed=1.0, interference=0.279e-3, samples=3000, refined=1):
+    """Torque and direction by the same solver, with or without effects."""
+    law = friction_law(rig.friction.name)
+    fit = rig.fit(interference)
+    coefficients = law.coefficients(resolve(law.name, law.parameters, rig.friction.parameters))
+    states, direction = solve_contact(
+        lumped_bushing(rig, interference, 3745.0).packed(),
+        fit.critical_torque,
+        fit.kinetic_torque,
+        np.full(samples, speed),
+        1.0 / RATE,
+        law=law.torque,
+        coefficients=coefficients,
+        law_state=law.state(coefficients),
+        hooks=hooks,
+        refined=refined,
+    )
+    return states[:, 1], direction
+
+
+def motion(*specs, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, seconds=0.5):
+    return simulate_motion(
+        rig,
+        ConstantSpeed(speed),
+        interference=0.279e-3,
+        support_stiffness=stiffness,
+        seconds=seconds,
+        rate=RATE,
+        effects=activated(tuple(LawSpec(name, given) for name, given in specs), EFFECTS),
+    )
+
+
+def touch(effect, state=None, *, critical=10.7, kinetic=8.0, stiffness=665.0, **context):
+    """Contact and rates of the states that an effect makes of one instant."""
+    index = {
+        "time": TIME, "speed": SLIDING_SPEED, "stick_time": STICK_TIME, "sticks": STICKS,
+        "twist": TWIST, "torque": TORQUE, "shaft_speed": SHAFT_SPEED,
+    }  # fmt: skip
+    now = np.zeros(N_CONTEXT)
+    for name, value in context.items():
+        now[index[name]] = value
+    contact = np.zeros(N_CONTACT)
+    contact[CRITICAL], contact[KINETIC], contact[STIFFNESS] = critical, kinetic, stiffness
+    state = np.zeros(effect.n_states) if state is None else np.array(state, dtype=float)
+    rates = np.zeros(effect.n_states)
+    effect.function(now, effect.values, state, rates, contact)
+    return contact, rates
+
+
+def slips(direction):
+    return int(np.count_nonzero(np.diff(np.abs(direction)) > 0))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_strength_zero_is_the_plain_model(name):
+    effect = EFFECTS[name]
+    plain = motion(seconds=0.1)
+    off = motion((name, {effect.strength: 0.0}), seconds=0.1)
+    assert np.array_equal(plain.torque, off.torque)
+    assert effect.stage is Stage.FRICTION
+    assert len(effect.forms) >= 3
+
+
+@pytest.mark.parametrize("rig", [TRUE_STICK, MEMORY], ids=["true stick", "memory"])
+@pytest.mark.parametrize(("name", "form"), FORMS)
+def test_little_of_an_effect_changes_little(name, form, rig):
+    little = hook(name, form=form, **{EFFECTS[name].strength: 1e-9})
+    torque, _ = solve(little, rig=rig, samples=1500)
+    plain, _ = solve(rig=rig, samples=1500)
+    assert np.abs(torque - plain).max() < 1e-5
+
+
+@pytest.mark.parametrize(("name", "form"), FORMS)
+def test_an_effect_is_seen(name, form):
+    sooner = {"growth_angle": 0.02} if name == "transfer_film" else {}
+    torque, _ = solve(hook(name, form=form, **sooner))
+    plain, _ = solve()
+    assert np.abs(torque - plain).max() > 0.05
+
+
+@pytest.mark.parametrize("rig", [TRUE_STICK, MEMORY], ids=["true stick", "memory"])
+@pytest.mark.parametrize(("name", "form"), FORMS)
+def test_reversing_the_shaft_reverses_the_torque(name, form, rig):
+    effect = hook(name, form=form)
+    forward, _ = solve(effect, rig=rig, samples=1500)
+    backward, _ = solve(effect, rig=rig, samples=1500, speed=-1.0)
+    assert np.array_equal(forward, -backward)
+
+
+@pytest.mark.parametrize(("name", "form"), FORMS)
+def test_integration_agrees_with_a_sixteenth_of_its_step(name, form):
+    effect = hook(name, form=form)
+    coarse, direction = solve(effect, samples=6000)
+    fine, _ = solve(effect, samples=6000, refined=16)
+    assert slips(direction) >= 1
+    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
+
+
+@pytest.mark.parametrize(("name", "form"), FORMS)
+def test_integration_with_a_law_agrees_with_a_sixteenth_of_its_step(name, form):
+    effect = hook(name, form=form)
+    coarse, _ = solve(effect, rig=MEMORY, samples=1200)
+    fine, _ = solve(effect, rig=MEMORY, samples=1200, refined=16)
+    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 1e-4 * fine.std()
+
+
+def test_two_effects_act_together():
+    heating, weakening = hook("frictional_heating"), hook("velocity_weakening")
+    both, _ = solve(heating, weakening)
+    swapped, _ = solve(weakening, heating)
+    one, _ = solve(heating)
+    assert np.abs(both - one).max() > 0.05
+    # Heating after weakening sees the weakened power, so the order matters, but little.
+    assert np.abs(both - swapped)[:1000].max() < 0.05
+
+
+def test_a_wrong_parameter_is_named():
+    with pytest.raises(ParameterError, match=r"partial_slip.*share = 0\.99"):
+        EFFECTS["partial_slip"].active({"share": 0.99})
+
+
+@pytest.mark.parametrize("form", EFFECTS["partial_slip"].forms)
+def test_torque_rises_ever_more_slowly_in_a_creeping_stick(form):
+    free, _ = solve()
+    crept, direction = solve(hook("partial_slip", form=form))
+    end = int(np.flatnonzero(direction)[0])
+    early, late = slice(0, end // 4), slice(3 * end // 4, end)
+    plain_end = int(np.argmax(free > 10.6))
+    assert end > 1.02 * plain_end
+    assert (
+        np.polyfit(np.arange(end)[late], crept[late], 1)[0]
+        < 0.9 * (np.polyfit(np.arange(end)[early], crept[early], 1)[0])
+    )
+
+
+@pytest.mark.parametrize("form", EFFECTS["partial_slip"].forms)
+def test_creep_grows_with_torque_and_ends_with_unloading(form):
+    effect = hook("partial_slip", form=form, share=0.8)
+    creep = [touch(effect, torque=t, shaft_speed=2.0)[0][CREEP] for t in (0.0, 3.0, 8.0, 10.7)]
+    assert creep == sorted(creep)
+    assert creep[0] == 0.0
+    assert 0.7 < creep[-1] <= 0.8
+    assert touch(effect, torque=8.0, shaft_speed=-2.0)[0][CREEP] == 0.0
+
+
+@pytest.mark.parametrize("form", EFFECTS["velocity_weakening"].forms)
+def test_weakening_sustains_oscillation_where_constant_torque_slides_steadily(form):
+    plain = motion(speed=9.0)
+    weak = motion(("velocity_weakening", {"form": form, "share": 0.25}), speed=9.0)
+    assert friction_regime(plain) is Regime.STEADY_SLIDING
+    assert friction_regime(weak) is not Regime.STEADY_SLIDING
+
+
+@pytest.mark.parametrize("name", ["velocity_weakening", "velocity_strengthening"])
+def test_steady_sliding_gives_the_torque_of_the_curve(name):
+    sign = -1.0 if name == "velocity_weakening" else 1.0
+    for form in EFFECTS[name].forms:
+        effect = hook(name, form=form)
+        at_rest, at_ten, fast = (
+            touch(effect, speed=v)[0][KINETIC] / 8.0 for v in (0.0, -10.0, 40.0)
+        )
+        assert at_rest == 1.0
+        assert 0.04 < sign * (at_ten - 1.0) <= 0.1 * (1.0 + 1e-12)
+        assert sign * fast > sign * at_ten
+
+
+def test_strengthening_ends_oscillation():
+    weak = {"share": 0.25}
+    alone = motion(("velocity_weakening", weak), speed=9.0)
+    held = motion(
+        ("velocity_weakening", weak), ("velocity_strengthening", {"gain": 0.4}), speed=9.0
+    )
+    assert friction_regime(alone) is not Regime.STEADY_SLIDING
+    assert friction_regime(held) is Regime.STEADY_SLIDING
+
+
+@pytest.mark.parametrize("form", EFFECTS["static_ageing"].forms)
+def test_ageing_ends_stick_slip_at_a_lower_speed(form):
+    def stick_slips(speed, *specs):
+        return friction_regime(motion(*specs, speed=speed)) is Regime.STICK_SLIP
+
+    aged = ("static_ageing", {"form": form, "ageing_time": 3e-3})
+    assert stick_slips(5.0)
+    assert stick_slips(0.5, aged)
+    assert not stick_slips(5.0, aged)
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    st.sampled_from(EFFECTS["static_ageing"].forms),
+    st.floats(0.0, 1.0),
+    st.floats(0.0, 1.0),
+    st.floats(1e-6, 1.0),
+)
+def test_strength_grows_with_age_between_kinetic_and_critical(form, share, early, further):
+    effect = hook("static_ageing", form=form, share=share)
+    young, old = (
+        touch(effect, stick_time=t, sticks=3.0, time=5.0)[0][CRITICAL]
+        for t in (early, early + further)
+    )
+    assert 8.0 <= young <= old <= 10.7 + 1e-12
+    assert touch(effect, sticks=3.0, time=5.0)[0][CRITICAL] == pytest.approx(10.7 - 2.7 * share)
+
+
+def test_ageing_reaches_laws_that_know_no_sticks():
+    plain, _ = solve(rig=MEMORY, samples=9000)
+    aged, _ = solve(hook("static_ageing", ageing_time=5e-3), rig=MEMORY, samples=9000)
+    assert aged[4500:].std() < 0.9 * plain[4500:].std()
+
+
+@pytest.mark.parametrize("form", EFFECTS["critical_torque_scatter"].forms)
+def test_scatter_has_the_spread_and_the_correlation_asked_for(form):
+    effect = hook("critical_torque_scatter", form=form, scatter=0.2, correlation=0.8)
+    torque = np.array(
+        [touch(effect, sticks=i, time=9.0)[0][CRITICAL] for i in np.arange(1.0, 4000.0)]
+    )
+    assert torque.std() / 2.7 == pytest.approx(0.2, rel=0.15)
+    assert torque.mean() == pytest.approx(10.7, abs=0.1)
+    lag = np.corrcoef(torque[1:], torque[:-1])[0, 1]
+    assert lag == pytest.approx(0.8 if form == "correlated" else 0.0, abs=0.06)
+
+
+def test_scatter_never_lets_the_contact_break_below_what_it_slides_at():
+    effect = hook("critical_torque_scatter", scatter=1.0)
+    least = min(touch(effect, sticks=i, time=99.0)[0][CRITICAL] for i in np.arange(1.0, 4000.0))
+    assert least == 8.0
+
+
+def test_scatter_makes_slips_irregular():
+    def spread(*hooks):
+        torque, direction = solve(*hooks, samples=30000)
+        starts = np.flatnonzero(np.diff(np.abs(direction)) > 0)[10:]
+        return torque[starts].std()
+
+    assert spread(hook("critical_torque_scatter", scatter=0.2)) > 3.0 * spread()
+
+
+def test_the_seed_decides_the_scatter():
+    one, same, other = (solve(hook("critical_torque_scatter", seed))[0] for seed in (1, 1, 2))
+    assert np.array_equal(one, same)
+    assert not np.array_equal(one, other)
+
+
+@pytest.mark.parametrize("form", EFFECTS["transfer_film"].forms)
+def test_a_film_raises_the_torque_three_to_four_times(form):
+    run = motion(("transfer_film", {"form": form, "growth_angle": 0.4}), speed=7.0)
+    late = run.torque[-9000:]
+    assert 3.0 < late.mean() / 8.0 < 4.0
+    assert 0.0 < late.std() < 0.05 * late.mean()
+    spectrum = np.abs(np.fft.rfft(late - late.mean())) ** 2
+    frequency = np.fft.rfftfreq(late.size, 1.0 / RATE)
+    inside = (frequency > 200.0) & (frequency < 1600.0)
+    assert spectrum[inside].sum() > 0.95 * spectrum.sum()
+
+
+def test_a_film_grows_with_the_angle_slid():
+    for form in EFFECTS["transfer_film"].forms:
+        effect = hook("transfer_film", form=form, roughness=0.0)
+        torque = [touch(effect, [angle])[0][KINETIC] for angle in (0.0, 0.5, 1.0, 50.0)]
+        assert torque == sorted(torque)
+        assert torque[0] == 8.0
+        assert torque[-1] == pytest.approx(28.0)
+        assert touch(effect, speed=-3.0)[1][0] == 3.0
+
+
+def test_a_film_without_drop_ends_stick_slip():
+    film = {"formed": 1.0, "drop_left": 0.0, "roughness": 0.0}
+    _, direction = solve(hook("transfer_film", **film), samples=30000)
+    assert (direction[15000:] == 1).all()
+
+
+@pytest.mark.parametrize("form", EFFECTS["frictional_heating"].forms)
+def test_heat_lowers_the_torque_over_a_run(form):
+    run = motion(("frictional_heating", {"form": form}), speed=10.0)
+    thirds = run.torque[9000:].reshape(3, -1).mean(axis=1)
+    assert thirds[0] > thirds[1] > thirds[2]
+    assert run.torque[9000:].mean() < 0.98 * 8.0
+
+
+def test_the_surface_warms_as_appendix_g_has_it():
+    effect = hook("frictional_heating", softening=1e-6)
+    assert warmed(effect, 0.23) == pytest.approx(26.0, rel=0.02)
+    assert warmed(effect, 0.92) == pytest.approx(52.0, rel=0.02)
+    paint = hook("frictional_heating", form="two_layer", softening=1e-6)
+    assert warmed(paint, 0.23) == pytest.approx(93.0, rel=0.08)
+
+
+def warmed(effect, seconds, steps=4000):
+    """Rise of the temperature at 30 Nm and 10 rad/s [K], by implicit Euler steps."""
+    state = np.zeros(effect.n_states)
+    _, source = touch(effect, state, kinetic=30.0, critical=30.0, speed=10.0)
+    _, unit = touch(effect, np.ones(effect.n_states), kinetic=30.0, critical=30.0, speed=0.0)
+    for _ in range(steps):
+        state = (state + seconds / steps * source) / (1.0 - seconds / steps * unit)
+    return state.sum()
+
+
+def test_softening_stops_at_the_floor():
+    effect = hook("frictional_heating", form="linear_with_floor", floor=0.4)
+    hot = np.full(effect.n_states, 100.0)
+    assert touch(effect, hot)[0][KINETIC] == pytest.approx(3.2)
+    assert touch(hook("frictional_heating", floor=0.4), hot)[0][KINETIC] < 3.2
+
+
+@pytest.mark.parametrize("form", EFFECTS["viscoelastic_stiffness"].forms)
+@pytest.mark.parametrize("frequency", [1.0, 300.0, 1e5])
+def test_branches_stiffen_with_frequency_and_always_dissipate(form, frequency):
+    effect = hook("viscoelastic_stiffness", form=form, stiffening=0.5)
+    omega = 2.0 * math.pi * frequency
+    time = np.arange(0.0, 1.0, 1.0 / 512.0)
+    # The branches are linear: their steady response to twist exp(i omega t) from the hook's rates.
+    n = effect.n_states
+    _, forced = touch(effect, twist=1.0)
+    _, relaxed = touch(effect, np.ones(n))
+    state = forced / (1j * omega - relaxed)
+    twist = np.exp(2j * np.pi * time)
+    torque = [touch(effect, (state * z).real, twist=z.real)[0][ELASTOMER_TORQUE] for z in twist]
+    modulus = 2.0 * np.mean(torque * twist.conj())
+    assert modulus.imag > 0.0
+    assert 0.0 < modulus.real < 0.5 * 665.0
+    if frequency == 1.0:
+        assert abs(modulus) < 0.02 * 665.0
+    if frequency == 1e5:
+        assert modulus.real > 0.45 * 665.0
+
+
+@pytest.mark.parametrize("form", EFFECTS["viscoelastic_stiffness"].forms)
+def test_a_stiffer_elastomer_slips_more_often_at_the_same_mean_torque(form):
+    plain, plain_direction = solve(samples=18000)
+    torque, direction = solve(hook("viscoelastic_stiffness", form=form), samples=18000)
+    assert slips(direction) > slips(plain_direction)
+    assert torque[9000:].mean() == pytest.approx(plain[9000:].mean(), rel=0.05)
+
+
+@pytest.mark.parametrize("form", EFFECTS["amplitude_softening"].forms)
+def test_large_amplitudes_slip_less_often_at_the_same_mean_torque(form):
+    plain, plain_direction = solve(samples=18000)
+    torque, direction = solve(hook("amplitude_softening", form=form), samples=18000)
+    assert slips(direction) < slips(plain_direction)
+    assert torque[9000:].mean() == pytest.approx(plain[9000:].mean(), rel=0.05)
+
+
+@pytest.mark.parametrize("form", EFFECTS["amplitude_softening"].forms)
+def test_a_static_twist_does_not_soften_and_torque_rises_with_every_departure(form):
+    effect = hook("amplitude_softening", form=form, share=0.8)
+
+    def torque(twist, mean):
+        contact, _ = touch(effect, [mean], twist=twist)
+        return contact[STIFFNESS] * twist + contact[ELASTOMER_TORQUE]
+
+    assert torque(0.02, 0.02) == pytest.approx(665.0 * 0.02)
+    departures = np.linspace(-0.05, 0.05, 2001)
+    curve = np.array([torque(0.02 + d, 0.02) for d in departures])
+    assert (np.diff(curve) > 0.0).all()
+    assert curve[-1] - curve[1000] == pytest.approx(curve[1000] - curve[0])
+    assert curve[-1] - curve[1000] < 0.4 * 665.0 * 0.05
+
+
+def test_effects_stay_within_a_rig_file():
+    rig = replace(TRUE_STICK, effects=(LawSpec("static_ageing", {"form": "power"}),))
+    (active,) = activated(rig.effects, EFFECTS)
+    assert active.form == "power"

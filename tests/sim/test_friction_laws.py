@@ -1,0 +1,380 @@
+"""Friction laws in their limits, alone on a surface that moves as told and on the rig."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from numba import float64, njit, types
+from scipy.optimize import brentq
+
+from models.errors import ParameterError
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.bushing import lumped_bushing
+from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE, N_CONTACT
+from sim.friction import LAWS, friction_law
+from sim.friction.bond_population import LAW as BONDS
+from sim.friction.master_curve import log_shift
+from sim.friction.maxwell_slip import N_ELEMENTS
+from sim.friction.shared.bristle import FASTEST, shear_speed
+from sim.parameters import resolve
+from sim.solvers.contact_solver import solve_contact
+
+RIG = load_material_rig("fluorocarbon-thesis")
+VIOLENT = load_material_rig("fluorocarbon")  # its critical torque is twice the kinetic one
+T_CRIT, T_KIN = 10.7, 8.0
+STEP = 5e-6
+
+STRIBECK = {
+    "stribeck_exponential": lambda x: np.exp(-abs(x)),
+    "stribeck_gaussian": lambda x: np.exp(-(x**2)),
+    "stribeck_lorentzian": lambda x: 1.0 / (1.0 + x**2),
+}
+NAMES = (
+    "ageing", "bond_population", "master_curve", "maxwell_slip", "rate_and_state", *STRIBECK,
+    "viscous",
+)  # fmt: skip
+CONSTANT_AT_EQUAL_TORQUES = tuple(n for n in NAMES if n not in {"bond_population", "viscous"})
+
+_VECTOR = float64[::1]
+
+
+@njit(_VECTOR(types.FunctionType(LAW_SIGNATURE), _VECTOR, _VECTOR, _VECTOR, _VECTOR, float64))
+def _followed(law, coefficients, contact, state, speed, step):
+    """Torque at each time while the surface slides at `speed`; `state` becomes the last."""
+    torque = np.empty(speed.size)
+    rates = np.zeros((4, state.size))
+    for i in range(speed.size):
+        v = speed[i]
+        torque[i] = law(v, coefficients, contact, state, rates[0])
+        law(v, coefficients, contact, state + 0.5 * step * rates[0], rates[1])
+        law(v, coefficients, contact, state + 0.5 * step * rates[1], rates[2])
+        law(v, coefficients, contact, state + step * rates[2], rates[3])
+        state += step / 6.0 * (rates[0] + 2.0 * rates[1] + 2.0 * rates[2] + rates[3])
+    return torque
+
+
+def follow(name, speed, given=None, torques=(T_CRIT, T_KIN), step=STEP):
+    """Torque over time, and the law's state at the end."""
+    law = friction_law(name)
+    coefficients = law.coefficients(resolve(name, law.parameters, given or {}))
+    contact = np.zeros(N_CONTACT)
+    contact[CRITICAL], contact[KINETIC] = torques
+    state = law.state(coefficients)
+    speed = np.ascontiguousarray(speed, dtype=float)
+    return _followed(law.torque, coefficients, contact, state, speed, step), state
+
+
+def steady(name, speed, given=None, torques=(T_CRIT, T_KIN), angle=0.05):
+    n = max(round(angle / abs(speed) / STEP), 20_000)
+    return follow(name, np.full(n, speed), given, torques)[0][-1]
+
+
+def on_the_rig(name, speed, given=None, *, seconds, step=STEP, refined=1, rig=RIG,
+               interference=0.279e-3, stiffness=2214.0):  # fmt: skip
+    law = friction_law(name)
+    coefficients = law.coefficients(resolve(name, law.parameters, given or {}))
+    fit = rig.fit(interference)
+    return solve_contact(
+        lumped_bushing(rig, interference, stiffness).packed(),
+        fit.critical_torque,
+        fit.kinetic_torque,
+        np.full(round(seconds / step), float(speed)),
+        step,
+        law=law.torque,
+        coefficients=coefficients,
+        law_state=law.state(coefficients),
+        refined=refined,
+    )[0]
+
+
+def expected_torque(name, v, given):
+    """What each law's steady torque is to be at v > 0, by its equations."""
+    p = resolve(name, friction_law(name).parameters, given)
+    drop = T_CRIT - T_KIN
+    if name in STRIBECK:
+        f, s = STRIBECK[name], p["second_share"]
+        fade = (1.0 - s) * f(v / p["first_speed"]) + s * f(v / p["second_speed"])
+        return T_KIN + drop * fade
+    if name == "viscous":
+        return T_KIN * (1.0 + v / p["doubling_speed"])
+    if name == "maxwell_slip":
+        return T_KIN + drop * math.exp(-v / p["stribeck_speed"])
+    if name == "master_curve":
+        shift = -8.86 * (p["temperature"] - p["glass_temperature"] - 50.0)
+        shift /= 101.6 + p["temperature"] - p["glass_temperature"] - 50.0
+        decades = (math.log10(v / p["peak_speed"]) + shift) / p["width"]
+        floor, peak = p["floor_share"] * T_KIN, p["peak_share"] * T_CRIT
+        return floor + (peak - floor) * math.exp(-0.5 * decades**2)
+    if name == "bond_population":
+        stiffness = p["bond_stiffness_per_torque"] * T_KIN
+
+        def rupture(u):
+            t_s = p["bonding_time"] * math.exp(T_CRIT / (stiffness * p["rupture_stretch"]))
+            return math.exp(u / p["rupture_stretch"]) / t_s
+
+        u = brentq(lambda u: u * rupture(u) - v, 0.0, 0.1)
+        n = 1.0 / (1.0 + rupture(u) * p["bonding_time"])
+        rubbing = (1.0 - n) * p["rubbing_share"] * T_KIN
+        return n * stiffness * u + rubbing + p["viscous_share_per_speed"] * T_KIN * v
+    age = p["renewal_angle"] / v
+    if name == "ageing":
+        return T_KIN + drop * (1.0 - math.exp(-age / p["ageing_time"]))
+    direct = p["direct_effect"] * math.log(1.0 + v / p["direct_speed"])
+    return T_KIN * (1.0 + direct) + drop * age / (age + p["ageing_time"])
+
+
+UNUSUAL = {
+    "bond_population": {"bonding_time": 1e-3, "rupture_stretch": 4e-4, "rubbing_share": 0.5},
+    "master_curve": {"temperature": 60.0, "peak_share": 1.3, "floor_share": 0.7},
+    "maxwell_slip": {"spread": 0.8, "stribeck_speed": 4.0},
+    "rate_and_state": {"direct_effect": 0.02, "ageing_time": 1e-3},
+    "viscous": {"doubling_speed": 30.0},
+    "ageing": {"renewal_angle": 2e-3},
+} | {name: {"second_share": 0.4, "second_speed": 12.0} for name in STRIBECK}
+
+
+@pytest.mark.parametrize("given", [{}, UNUSUAL], ids=["default", "unusual"])
+@pytest.mark.parametrize("speed", [0.3, 2.0, 15.0])
+@pytest.mark.parametrize("name", NAMES)
+def test_steady_sliding_gives_the_torque_of_the_law(name, speed, given):
+    values = given.get(name, {})
+    expected = expected_torque(name, speed, values)
+    assert steady(name, speed, values) == pytest.approx(expected, rel=1e-6)
+    assert steady(name, -speed, values) == pytest.approx(-expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", CONSTANT_AT_EQUAL_TORQUES)
+def test_equal_torques_make_a_constant_friction(name):
+    found = [steady(name, speed, torques=(T_KIN, T_KIN)) for speed in (0.2, 2.0, 20.0)]
+    assert found == pytest.approx([T_KIN] * 3, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_torques_twice_as_large_make_twice_the_friction(name):
+    speed = 5.0 * np.sin(np.linspace(0.0, 20.0, 4000))
+    single, _ = follow(name, speed)
+    double, _ = follow(name, speed, torques=(2.0 * T_CRIT, 2.0 * T_KIN))
+    assert double == pytest.approx(2.0 * single, rel=1e-9, abs=1e-9)
+
+
+def within(parameter):
+    if parameter.low > 0.0 and parameter.high / parameter.low > 20.0:
+        logs = st.floats(math.log(parameter.low), math.log(parameter.high))
+        return logs.map(lambda x: min(max(math.exp(x), parameter.low), parameter.high))
+    return st.floats(parameter.low, parameter.high)
+
+
+def any_values(name):
+    declared = {key: within(value) for key, value in friction_law(name).parameters.items()}
+    if name == "master_curve":  # above the glass temperature
+        declared["temperature"] = st.floats(50.0, 250.0)
+    return st.fixed_dictionaries(declared)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=15, deadline=None)
+@given(data=st.data())
+def test_sliding_one_way_never_gives_energy_back(name, data):
+    values = data.draw(any_values(name))
+    speed = data.draw(st.floats(0.01, 50.0)) * data.draw(st.sampled_from([-1.0, 1.0]))
+    torque, _ = follow(name, np.full(4000, speed), values)
+    assert np.min(torque * speed) >= 0.0
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=15, deadline=None)
+@given(data=st.data())
+def test_any_parameters_are_followed(name, data):
+    values = data.draw(any_values(name))
+    speed = data.draw(st.floats(0.25, 20.0))
+    interference = data.draw(st.sampled_from([0.178e-3, 0.279e-3, 0.381e-3]))
+    coarse, fine = (
+        on_the_rig(
+            name, speed, values, seconds=0.01, refined=n, rig=VIOLENT, interference=interference
+        )
+        for n in (1, 4)
+    )
+    assert np.abs(coarse[:, :2]).max() < 1.2 * np.abs(fine[:, :2]).max() + 0.1
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_reversing_the_shaft_reverses_everything(name):
+    forward, backward = (on_the_rig(name, v, seconds=0.02) for v in (5.0, -5.0))
+    assert np.array_equal(forward, -backward)
+
+
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+@pytest.mark.parametrize("name", NAMES)
+def test_ten_slip_cycles_agree_with_a_sixteenth_of_the_step(name, stiffness):
+    coarse, fine = (
+        on_the_rig(name, 2.5, seconds=0.08, step=2 * STEP, refined=n, stiffness=stiffness)[:, 1]
+        for n in (1, 16)
+    )
+    mean = fine.mean()
+    rises = np.flatnonzero((fine[1:] > mean) & (fine[:-1] <= mean))
+    assert rises.size > 10 or name == "viscous"
+    cycles = slice(0, rises[10] if rises.size > 10 else None)
+    error = np.sqrt(np.mean((coarse[cycles] - fine[cycles]) ** 2))
+    assert error < 1e-4 * np.sqrt(np.mean(fine[cycles] ** 2))
+
+
+def test_the_contact_shears_with_the_surface_until_it_would_settle_too_fast():
+    assert shear_speed(1.0, 6e-4) == pytest.approx(1.0, rel=1e-5)
+    assert shear_speed(1e6, 1e-4) / 1e-4 == pytest.approx(FASTEST, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", STRIBECK)
+def test_two_scales_of_one_speed_are_one_scale(name):
+    speed = 3.0 * np.sin(np.linspace(0.0, 20.0, 4000))
+    one, _ = follow(name, speed, {"first_speed": 2.0})
+    same = {"first_speed": 2.0, "second_speed": 2.0, "second_share": 0.3}
+    assert follow(name, speed, same)[0] == pytest.approx(one, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", STRIBECK)
+def test_a_stribeck_contact_holds_the_critical_torque_at_creeping_speed(name):
+    given = {"first_speed": 10.0, "second_share": 0.5, "contact_stiffness_per_torque": 1e4}
+    assert steady(name, 0.01, given, angle=2e-3) == pytest.approx(T_CRIT, rel=1e-3)
+
+
+def test_one_gaussian_scale_is_lugre():
+    speed = 3.0 * np.sin(np.linspace(0.0, 20.0, 4000))
+    gaussian, _ = follow("stribeck_gaussian", speed, {"first_speed": 0.7})
+    lugre, _ = follow("lugre", speed, {"stribeck_speed": 0.7})
+    assert gaussian == pytest.approx(lugre, rel=1e-3, abs=1e-3)
+
+
+@pytest.mark.parametrize("rest", [2e-4, 1e-3, 3e-3])
+def test_an_ageing_contact_breaks_at_a_torque_that_grows_with_its_rest(rest):
+    given = {"contact_stiffness_per_torque": 1e4, "renewal_angle": 1e-3}
+    parts = [(5.0, 0.02), (0.0, rest), (5.0, 0.005)]
+    speed = np.concatenate([np.full(round(t / 1e-6), v) for v, t in parts])
+    torque, _ = follow("ageing", speed, given, step=1e-6)
+    broke_at = torque[round((0.02 + rest) / 1e-6) :].max()
+    grown = T_KIN + (T_CRIT - T_KIN) * (1.0 - math.exp(-(1e-3 / 5.0 + rest) / 1e-3))
+    assert broke_at == pytest.approx(grown, abs=0.1 * (T_CRIT - T_KIN))
+
+
+def test_an_ageing_contact_does_not_slip_below_its_yield():
+    speed = np.repeat([1.0, 0.0, -1.0], [80, 2000, 80])  # to and fro by 0.4 mrad
+    torque, state = follow("ageing", speed, {"contact_stiffness_per_torque": 2000.0})
+    assert torque.max() > 0.5 * T_CRIT
+    assert state[0] == pytest.approx(0.0, abs=1e-9)
+    assert state[1] == pytest.approx(1.0 + speed.size * STEP, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["ageing", "rate_and_state"])
+def test_a_contact_that_never_ages_slides_at_the_kinetic_torque(name):
+    given = {"ageing_time": 1e6}
+    assert [steady(name, v, given) for v in (0.2, 20.0)] == pytest.approx([T_KIN] * 2, rel=1e-6)
+
+
+def test_the_direct_effect_answers_at_once_and_ageing_later():
+    given = {"direct_effect": 0.02, "renewal_angle": 2e-2, "ageing_time": 1e-2}
+    speed = np.repeat([1.0, 5.0], [20_000, 20_000])
+    torque, _ = follow("rate_and_state", speed, given)
+    before, after = torque[19_999], torque[-1]
+    assert torque[20_000:].max() > before + 0.5 * 0.02 * T_KIN * math.log(5.0)
+    assert after < before
+
+
+def elements(angle, spread, stiffness, strength):
+    thresholds = 1.0 + spread * ((2.0 * np.arange(N_ELEMENTS) + 1.0) / N_ELEMENTS - 1.0)
+    return np.minimum(stiffness * angle[:, None], thresholds * strength).mean(axis=1)
+
+
+@pytest.mark.parametrize("spread", [0.3, 0.8])
+def test_slow_loading_is_that_of_elements_which_yield_one_by_one(spread):
+    speed = np.full(60_000, 0.02)
+    torque, _ = follow("maxwell_slip", speed, {"spread": spread, "stribeck_speed": 1e4})
+    ideal = elements(np.arange(speed.size) * STEP * 0.02, spread, 1700.0 * T_KIN, T_CRIT)
+    assert np.abs(torque - ideal).max() < 0.12 * T_CRIT
+    assert torque[:900] == pytest.approx(ideal[:900], abs=1e-4)
+    assert torque[-1] == pytest.approx(T_CRIT, rel=1e-3)
+
+
+def test_a_small_loop_closes_in_maxwell_slip_and_is_forgotten():
+    load, back = np.full(8000, 0.015), np.full(1500, -0.015)
+    straight, _ = follow("maxwell_slip", np.concatenate([load, load]))
+    looped, _ = follow("maxwell_slip", np.concatenate([load, back, -back, load]))
+    assert looped[8000 + 750] < straight[8000] - 0.5
+    assert looped[-4000:] == pytest.approx(straight[-4000:], rel=0.01)
+
+
+def test_bonds_break_as_fast_as_they_form_at_the_critical_torque():
+    values = resolve("bond_population", BONDS.parameters, {})
+    coefficients = BONDS.coefficients(values)
+    contact = np.zeros(N_CONTACT)
+    contact[CRITICAL], contact[KINETIC] = T_CRIT, T_KIN
+    rates = np.zeros(3)
+    stretch = T_CRIT / (1700.0 * T_KIN)
+    torque = BONDS.torque(0.0, coefficients, contact, np.array([1.0, stretch, 0.0]), rates)
+    assert torque == pytest.approx(T_CRIT)
+    assert rates[0] == pytest.approx(-1.0 / values["bonding_time"])
+
+
+def test_a_bonded_contact_at_rest_relaxes_and_stays_bonded():
+    torque, state = follow("bond_population", np.repeat([1.0, 0.0], [60, 40_000]))
+    assert 0.0 < torque[-1] < 0.5 * torque.max()
+    assert state[0] > 0.9
+
+
+def test_a_fast_contact_has_no_bonds_and_rubs():
+    given = {"viscous_share_per_speed": 0.0, "bonding_time": 0.1}
+    torque, state = follow("bond_population", np.full(60_000, 40.0), given)
+    assert state[0] < 0.01
+    assert torque[-1] == pytest.approx(0.3 * T_KIN, rel=0.1)
+
+
+@given(st.floats(-100.0, 50.0), st.floats(0.0, 200.0), st.floats(0.01, 100.0))
+def test_the_shift_falls_with_temperature(glass, above, more):
+    assert log_shift(glass + above + more, glass) < log_shift(glass + above, glass)
+
+
+def test_the_shift_is_one_fifty_kelvin_above_the_glass_temperature():
+    assert log_shift(-20.0, -70.0) == 0.0
+
+
+def test_below_the_glass_temperature_there_is_no_master_curve():
+    law = friction_law("master_curve")
+    spec = LawSpec("master_curve", {"temperature": -40.0})
+    with pytest.raises(ParameterError, match=r"temperature = -40 C is below glass_temperature"):
+        law.coefficients(resolve("master_curve", law.parameters, spec.parameters))
+
+
+def test_warmth_does_to_friction_what_slowness_does():
+    warm, cold = 60.0, 20.0
+    faster = 10.0 ** (log_shift(cold, -20.0) - log_shift(warm, -20.0))
+    at_warm = steady("master_curve", 0.05 * faster, {"temperature": warm})
+    at_cold = steady("master_curve", 0.05, {"temperature": cold})
+    assert at_warm == pytest.approx(at_cold, rel=1e-6)
+
+
+def test_friction_peaks_at_the_critical_torque():
+    speed = 1.0 / 10.0 ** log_shift(40.0, -20.0)
+    given = {"temperature": 40.0, "peak_speed": 1.0}
+    assert steady("master_curve", speed, given) == pytest.approx(T_CRIT, rel=1e-9)
+
+
+@pytest.mark.parametrize(("glass", "rises"), [(-20.0, False), (-123.0, True)])
+def test_fluorocarbon_weakens_where_silicone_strengthens(glass, rises):
+    torques = [steady("master_curve", v, {"glass_temperature": glass}) for v in (1.0, 5.0, 13.0)]
+    assert torques == sorted(torques, reverse=not rises)
+    assert np.ptp(torques) > 0.01 * T_KIN
+
+
+@pytest.mark.parametrize("speed", [0.5, 5.0, 17.0])
+def test_viscous_friction_never_sustains_a_vibration(speed):
+    torque = on_the_rig("viscous", speed, seconds=0.5, step=1 / 90e3)[-9000:, 1]
+    assert torque.std() < 1e-6 * torque.mean()
+
+
+def test_without_viscosity_the_torque_does_not_rise():
+    assert steady("viscous", 20.0, {"doubling_speed": 1e9}) == pytest.approx(T_KIN, rel=1e-6)
+
+
+def test_every_law_is_found_by_its_name():
+    assert set(NAMES) < set(LAWS)
+    assert all(LAWS[name].name == name for name in LAWS)

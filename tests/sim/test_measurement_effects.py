@@ -1,0 +1,177 @@
+"""What sensors and cables add to the signals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import welch
+
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.acquisition import Acquisition
+from sim.effects import EFFECTS
+from sim.effects.effect import Stage
+from sim.run import simulate
+from tests.helpers.sensor_signals import RATE, random_signals, read, rms, tone
+
+MEASUREMENT = (
+    "background_noise", "mains_hum", "mount_resonance", "clipping", "gain_error", "channel_delay",
+)  # fmt: skip
+EVERY_FORM = [(name, form) for name in MEASUREMENT for form in EFFECTS[name].forms]
+STAGES = {
+    "speed_fluctuation": "drive", "shaft_compliance": "drive",
+    "partial_slip": "friction", "velocity_weakening": "friction",
+    "velocity_strengthening": "friction", "static_ageing": "friction",
+    "critical_torque_scatter": "friction", "transfer_film": "friction",
+    "frictional_heating": "friction", "viscoelastic_stiffness": "friction",
+    "amplitude_softening": "friction",
+    "beam_modes": "structure", "slip_pulse": "structure",
+    "plate_modes": "radiation", "room_reflections": "radiation",
+    **dict.fromkeys(MEASUREMENT, "measurement"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_every_effect_acts_in_the_stage_that_the_diagnosis_knows_it_by(name):
+    effect = EFFECTS[name]
+    assert effect.name == name
+    assert effect.stage == STAGES[name]
+    if effect.stage is Stage.MEASUREMENT:
+        assert effect.sensors is not None
+        assert effect.drive is effect.contact is effect.force is None
+
+
+@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
+def test_at_strength_zero_every_signal_is_itself(name, form):
+    signals = random_signals()
+    same = read(signals, name, form=form, **{EFFECTS[name].strength: 0.0})
+    assert list(same) == list(signals)
+    assert all(np.array_equal(same[kind], signals[kind]) for kind in signals)
+
+
+@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
+def test_the_effect_vanishes_as_its_strength_does(name, form):
+    signals = random_signals()
+    for strength in (1e-3, 1e-6, 1e-9, 1e-12):
+        given = {EFFECTS[name].strength: strength}
+        changed = read(signals, name, form=form, **given)
+        for kind, signal in signals.items():
+            # A delay counts in samples, the soft limit falls with the root of what it takes.
+            largest = 10.0 * np.abs(signal).max() * (strength * RATE + strength**0.5)
+            assert np.abs(changed[kind] - signal).max() <= largest
+
+
+@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
+def test_the_default_strength_changes_something_and_leaves_the_input_alone(name, form):
+    signals = random_signals()
+    before = {kind: signal.copy() for kind, signal in signals.items()}
+    changed = read(signals, name, form=form)
+    assert all(np.array_equal(signals[kind], before[kind]) for kind in signals)
+    assert list(changed) == list(signals)
+    assert not np.allclose(changed["acceleration"], signals["acceleration"], rtol=1e-3)
+    assert all(np.isfinite(signal).all() for signal in changed.values())
+
+
+@pytest.mark.parametrize(("name", "form"), EVERY_FORM)
+def test_the_seed_decides_and_nothing_else(name, form):
+    one, same, other = (read(random_signals(), name, seed, form=form) for seed in (3, 3, 4))
+    assert all(np.array_equal(one[kind], same[kind]) for kind in one)
+    scatters = any(not np.array_equal(one[kind], other[kind]) for kind in one)
+    assert scatters == (name in ("background_noise", "mains_hum") or form == "jitter")
+
+
+@pytest.mark.parametrize("name", MEASUREMENT)
+def test_further_channels_of_a_kind_are_read_as_the_first_and_other_kinds_are_left(name):
+    signals = {"acceleration_2": tone(900.0), "speed": np.full(48_000, 5.0)}
+    changed = read(signals, name)
+    assert not np.allclose(changed["acceleration_2"], signals["acceleration_2"])
+    assert np.array_equal(changed["speed"], signals["speed"])
+
+
+def test_effects_act_in_the_order_in_which_they_are_named():
+    hum, clip = LawSpec("mains_hum", {"acceleration": 500.0}), LawSpec("clipping", {"amount": 0.5})
+    rig = load_material_rig("fluorocarbon-thesis")
+
+    def peak(*specs):
+        run = simulate(
+            replace(rig, effects=specs), 5.0, seconds=0.1, acquisition=Acquisition(96e3, noise={})
+        )
+        return np.abs(run.recording["acceleration"]).max()
+
+    assert peak(hum, clip) == pytest.approx(0.5 * peak(hum), rel=1e-3)
+    assert peak(clip, hum) > 0.7 * peak(hum)
+
+
+def test_all_effects_of_the_measurement_compose_with_the_recording():
+    rig = load_material_rig("fluorocarbon")
+    rig = replace(rig, effects=tuple(LawSpec(name) for name in MEASUREMENT))
+    plain = simulate(replace(rig, effects=()), 5.0, seconds=0.1)
+    faulty = simulate(rig, 5.0, seconds=0.1)
+    assert faulty.recording.channel_names == plain.recording.channel_names
+    assert np.isfinite(faulty.recording.samples).all()
+    assert np.array_equal(faulty.motion.torque, plain.motion.torque)
+    assert np.array_equal(faulty.pressure, plain.pressure)
+    assert not np.allclose(faulty.recording["pressure"], plain.recording["pressure"])
+
+
+# Noise.
+
+
+@pytest.mark.parametrize("form", EFFECTS["background_noise"].forms)
+def test_a_level_of_noise_is_what_a_level_meter_shows_from_20_hz_to_20_khz(form):
+    silence = {"pressure": np.zeros(480_000), "torque": np.zeros(480_000)}
+    noise = read(silence, "background_noise", form=form, pressure_level=60.0, torque=0.3)
+    assert 20.0 * np.log10(in_band(noise["pressure"]) / 20e-6) == pytest.approx(60.0, abs=0.5)
+    assert in_band(noise["torque"]) == pytest.approx(0.3, rel=0.06)
+
+
+def in_band(signal):
+    spectrum = np.fft.rfft(signal)
+    frequency = np.fft.rfftfreq(signal.size, 1.0 / RATE)
+    spectrum[(frequency < 20.0) | (frequency > 20e3)] = 0.0
+    return rms(np.fft.irfft(spectrum))
+
+
+@pytest.mark.parametrize(("form", "slope"), [("white", 0.0), ("pink", -3.01), ("brown", -6.02)])
+def test_noise_falls_by_so_many_decibel_an_octave(form, slope):
+    noise = read({"torque": np.zeros(960_000)}, "background_noise", form=form)["torque"]
+    frequency, density = welch(noise, RATE, nperseg=8192)
+    inside = (frequency > 100.0) & (frequency < 20e3)
+    octaves, levels = np.log2(frequency[inside]), 10.0 * np.log10(density[inside])
+    assert np.polyfit(octaves, levels, 1)[0] == pytest.approx(slope, abs=0.1)
+
+
+def test_channels_do_not_share_their_noise():
+    silence = {"torque": np.zeros(9600), "acceleration": np.zeros(9600)}
+    noise = read(silence, "background_noise")
+    assert abs(np.corrcoef(noise["torque"], noise["acceleration"])[0, 1]) < 0.05
+
+
+# Hum.
+
+
+@pytest.mark.parametrize("form", EFFECTS["mains_hum"].forms)
+@pytest.mark.parametrize("frequency", [16.0, 50.0, 60.0, 400.0])
+def test_hum_has_its_rms_no_mean_and_only_harmonics_of_the_mains(form, frequency):
+    silence = {"acceleration": np.zeros(96_000)}
+    hum = read(silence, "mains_hum", form=form, frequency=frequency, acceleration=2.0)
+    hum = hum["acceleration"]
+    assert rms(hum) == pytest.approx(2.0, rel=1e-3)
+    assert abs(hum.mean()) < 1e-3
+    power = np.abs(np.fft.rfft(hum)) ** 2
+    assert power[:: round(frequency)].sum() == pytest.approx(power.sum(), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("form", "strongest", "absent"),
+    [
+        ("sine", [50], [100, 150]),
+        ("harmonics", [50, 150, 250], [100]),
+        ("rectifier", [100, 200], [50]),
+    ],
+)
+def test_the_form_of_a_hum_shows_in_its_lines(form, strongest, absent):
+    hum = read({"torque": np.zeros(96_000)}, "mains_hum", form=form)["torque"]
+    power = np.abs(np.fft.rfft(hum)) ** 2
+    assert sorted(np.argsort(power)[-len(strongest) :].tolist()) == strongest
+    assert power[absent].max() < 1e-6 * power.max()

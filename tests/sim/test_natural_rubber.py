@@ -1,0 +1,74 @@
+"""Natural rubber as the thesis found it (5.1.3, 5.2.2, 5.2.3): before, on and after its film."""
+
+import numpy as np
+import pytest
+
+from features.kernels.lines import find_lines
+from features.kernels.spectra import autospectrum
+from models.rig_files.rig_file import load_material_rig
+from noise.noise_definition import noise_of
+from sim.analysis.regime import Regime, friction_regime
+from sim.run import simulate
+
+BARE = ("natural-rubber", "natural-rubber-film-removed")
+
+
+def run(material, speed, stiffness=2214.0):
+    return simulate(
+        load_material_rig(material),
+        speed,
+        interference=0.127e-3,
+        support_stiffness=stiffness,
+        seconds=1.0,
+    )
+
+
+def torque_lines(found):
+    torque = found.motion.torque
+    return find_lines(autospectrum(torque[torque.size // 2 :], found.motion.rate), low=20, high=5e3)
+
+
+@pytest.mark.parametrize("material", BARE)
+@pytest.mark.parametrize(("stiffness", "mode"), [(2214.0, 250.0), (3745.0, 310.0)])
+@pytest.mark.parametrize("speed", [7.5, 10.0])
+def test_it_sticks_and_slips_at_the_first_torsional_mode(material, stiffness, mode, speed):
+    found = run(material, speed, stiffness)
+    assert friction_regime(found.motion) is Regime.STICK_SLIP
+    assert torque_lines(found).frequency[0] == pytest.approx(mode, rel=0.05)
+
+
+@pytest.mark.parametrize("material", BARE)
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+def test_its_chatter_is_heard_as_squawk(material, stiffness):
+    assert noise_of(run(material, 10.0, stiffness)) == "squawk"
+
+
+def test_without_film_it_slides_steadily_at_1_rad_s_on_the_softer_support_alone():
+    soft, stiff = (run("natural-rubber-film-removed", 1.0, k) for k in (2214.0, 3745.0))
+    assert friction_regime(soft.motion) is Regime.STEADY_SLIDING
+    assert friction_regime(stiff.motion) is Regime.STICK_SLIP
+
+
+def test_without_film_it_vibrates_to_the_fastest_speed_tried():
+    found = run("natural-rubber-film-removed", 19.75)
+    assert friction_regime(found.motion) is not Regime.STEADY_SLIDING
+
+
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+@pytest.mark.parametrize("speed", [1.0, 5.0, 10.0])
+def test_on_its_film_there_is_no_tone(speed, stiffness):
+    found = run("natural-rubber-film", speed, stiffness)
+    assert torque_lines(found).strongest_share < 0.25
+
+
+def test_its_film_makes_the_torque_three_to_four_times_as_large():
+    bare, film = (
+        run(m, 10.0).motion.torque.mean() for m in ("natural-rubber", "natural-rubber-film")
+    )
+    assert 3.0 < film / bare < 4.0
+
+
+def test_on_its_film_the_beams_shake_with_about_50_m_s2():
+    assert np.std(run("natural-rubber-film", 7.5).recording["acceleration"]) == pytest.approx(
+        50.0, rel=0.2
+    )

@@ -1,0 +1,75 @@
+"""Sound that comes by way of the room."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from models.radiation.impulse_responses import Response
+from models.radiation.rayleigh import SOUND_SPEED
+from sim.chain import changed_chain
+from sim.effects import EFFECTS
+
+RATE = 96e3
+
+
+def room(form, seed=0, **given):
+    one = np.ones(1)
+    active = EFFECTS["room_reflections"].active({"form": form, **given})
+    plain = Response(RATE, one, one, one, one)
+    return changed_chain(plain, [active], np.random.default_rng(seed)).torque_to_pressure
+
+
+@pytest.mark.parametrize("form", EFFECTS["room_reflections"].forms)
+@pytest.mark.parametrize("seed", range(3))
+def test_direct_sound_comes_first_and_as_it_was(form, seed):
+    taps = room(form, seed)
+    assert taps[0] == 1.0
+    quiet = np.flatnonzero(taps[1:])[0] + 1
+    assert quiet / RATE > 0.002
+    assert np.abs(taps[1:]).max() < 1.0
+
+
+def test_the_floor_makes_a_comb():
+    taps = room("floor", reverberation_time=3.0)
+    delay = 1.8 / SOUND_SPEED
+    frequency = np.arange(1, 9) / (2 * delay)
+    turn = np.exp(-2j * np.pi / RATE * np.outer(np.arange(taps.size), frequency))
+    gains = np.abs(taps @ turn)
+    assert np.all(gains[0::2] < 0.8)
+    assert np.all(gains[1::2] > 1.2)
+
+
+def test_the_first_wall_of_a_shoebox_is_heard_when_its_image_is():
+    taps = room("shoebox", distance=0.5, reverberation_time=3.0)
+    first = np.flatnonzero(np.abs(taps[1:]) > 0.05)[0] + 1
+    nearest = min(2 * 0.9 + 0.5, np.hypot(2 * 0.37 * 5.0, 0.5), 2 * (3.0 - 0.9) - 0.5)
+    assert first / RATE * SOUND_SPEED == pytest.approx(nearest - 0.5, abs=0.01)
+
+
+def test_late_reflections_of_a_shoebox_are_as_strong_as_the_diffuse_tail():
+    """Two ways to the same room: energy from 20 to 90 ms after the direct sound."""
+    late = slice(round(0.02 * RATE), round(0.09 * RATE))
+    given = {"reverberation_time": 0.4}
+    box = np.sum(room("shoebox", **given)[late] ** 2)
+    tail = np.mean([np.sum(room("diffuse", seed, **given)[late] ** 2) for seed in range(5)])
+    assert 10 * np.log10(box / tail) == pytest.approx(0.0, abs=3.0)
+
+
+@pytest.mark.parametrize("lasting", [0.2, 1.0])
+def test_the_tail_decays_by_60_db_in_the_reverberation_time(lasting):
+    taps = room("diffuse", reverberation_time=lasting)[1:]
+    remaining = np.cumsum(taps[::-1] ** 2)[::-1]
+    level = 10 * np.log10(remaining / remaining[0])
+    time = np.arange(taps.size) / RATE
+    fitted = (level < -5) & (level > -35)
+    assert -60.0 / np.polyfit(time[fitted], level[fitted], 1)[0] == pytest.approx(lasting, rel=0.05)
+
+
+def test_a_smaller_or_more_reverberant_room_is_louder():
+    def energy(**given):
+        return np.sum(room("diffuse", **given)[1:] ** 2)
+
+    assert energy(length=3.0) > 1.5 * energy(length=6.0)
+    assert energy(reverberation_time=0.8) > 1.5 * energy(reverberation_time=0.4)
+    assert energy(distance=1.2) == pytest.approx(4.0 * energy(distance=0.6))

@@ -1,0 +1,181 @@
+"""The shaft's end on a torsional spring."""
+
+import math
+
+import numpy as np
+import pytest
+
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.bushing import lumped_bushing
+from sim.contact import N_CONTACT, N_CONTEXT, SHAFT_INERTIA, SHAFT_LAG, SHAFT_LAG_RATE, SHAFT_TORQUE
+from sim.effects import EFFECTS
+from sim.effects.effect import Stage, activated
+from sim.friction import friction_law
+from sim.motion import simulate_motion
+from sim.parameters import resolve
+from sim.shaft import ConstantSpeed
+from sim.solvers.contact_solver import Hook, solve_contact
+
+TRUE_STICK = load_material_rig("fluorocarbon-thesis")
+MEMORY = load_material_rig("fluorocarbon")
+EFFECT = EFFECTS["shaft_compliance"]
+RATE = 90e3
+BOTH_RIGS = pytest.mark.parametrize("rig", [TRUE_STICK, MEMORY], ids=["true stick", "memory"])
+ALL_FORMS = pytest.mark.parametrize("form", EFFECT.forms)
+
+
+def hook(name="shaft_compliance", **given):
+    active = EFFECTS[name].active(given)
+    values = active.effect.pack(active.form, active.values, np.random.default_rng(0))
+    return Hook(active.effect.contact, values, active.effect.n_states)
+
+
+def solve(*hooks, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, samples=3000, refined=1):
+    law = friction_law(rig.friction.name)
+    fit = rig.fit(0.279e-3)
+    coefficients = law.coefficients(resolve(law.name, law.parameters, rig.friction.parameters))
+    return solve_contact(
+        lumped_bushing(rig, 0.279e-3, stiffness).packed(),
+        fit.critical_torque,
+        fit.kinetic_torque,
+        np.broadcast_to(speed, samples).astype(float),
+        1.0 / RATE,
+        law=law.torque,
+        coefficients=coefficients,
+        law_state=law.state(coefficients),
+        hooks=hooks,
+        refined=refined,
+    )
+
+
+def shaft_torque(effect, lag, rate):
+    context, contact = np.zeros(N_CONTEXT), np.zeros(N_CONTACT)
+    context[SHAFT_LAG], context[SHAFT_LAG_RATE] = lag, rate
+    effect.function(context, effect.values, np.zeros(0), np.zeros(0), contact)
+    return contact[SHAFT_TORQUE], contact[SHAFT_INERTIA]
+
+
+def test_a_rigid_shaft_is_the_plain_model():
+    def run(*specs):
+        return simulate_motion(
+            TRUE_STICK, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=2214.0,
+            seconds=0.1, rate=RATE, effects=activated(specs, EFFECTS),
+        )  # fmt: skip
+
+    rigid = run(LawSpec("shaft_compliance", {"compliance": 0.0}))
+    assert np.array_equal(rigid.torque, run().torque)
+    assert np.array_equal(rigid.shaft_speed, np.ones(9000))
+    assert EFFECT.stage is Stage.DRIVE
+    assert np.ptp(run(LawSpec("shaft_compliance")).shaft_speed) > 0.1
+
+
+@BOTH_RIGS
+@ALL_FORMS
+def test_a_nearly_rigid_shaft_changes_little(form, rig):
+    stiff, stiffer = (
+        solve(hook(form=form, compliance=kappa), rig=rig, samples=1500)[0][:, 1]
+        for kappa in (1e-6, 1e-8)
+    )
+    plain = solve(rig=rig, samples=1500)[0][:, 1]
+    assert np.abs(stiff - plain).max() < 0.2
+    assert np.abs(stiffer - plain).max() < 2e-3
+
+
+def test_the_default_shaft_has_the_mode_of_table_3_1():
+    torque, inertia = shaft_torque(hook(), 1e-3, 0.0)
+    assert math.sqrt(torque / 1e-3 / inertia) / (2.0 * math.pi) == pytest.approx(1568.0, rel=2e-3)
+
+
+def test_spring_and_damper_have_the_forms_they_are_named_for():
+    kappa = EFFECT.parameters["compliance"].default
+    reference = kappa * EFFECT.parameters["reference_torque"].default
+    linear, stiffening, quadratic = (hook(form=form) for form in EFFECT.forms)
+    for lag in (0.5 * reference, -reference, 2.0 * reference):
+        plain = shaft_torque(linear, lag, 0.0)[0]
+        assert plain == pytest.approx(lag / kappa)
+        assert shaft_torque(quadratic, lag, 0.0)[0] == pytest.approx(plain)
+        expected = plain * (1.0 + (lag / reference) ** 2)
+        assert shaft_torque(stiffening, lag, 0.0)[0] == pytest.approx(expected)
+    # Over a cycle that swings the torque by its reference both dampers dissipate the same.
+    omega = 2.0 * math.pi * 1568.0
+    rate = omega * reference * np.cos(2.0 * np.pi * np.arange(1000) / 1000)
+    lost = [np.mean([shaft_torque(h, 0.0, r)[0] * r for r in rate]) for h in (linear, quadratic)]
+    assert lost[0] > 0.0
+    assert lost[1] == pytest.approx(lost[0], rel=5e-3)
+
+
+@BOTH_RIGS
+@ALL_FORMS
+def test_reversing_the_shaft_reverses_the_motion(form, rig):
+    forward, backward = (
+        solve(hook(form=form), rig=rig, speed=v, samples=1500)[0] for v in (1.0, -1.0)
+    )
+    assert np.array_equal(forward, -backward)
+
+
+@ALL_FORMS
+@pytest.mark.parametrize("kappa", [1.48e-4, 1e-3])
+def test_integration_agrees_with_a_sixteenth_of_its_step(form, kappa):
+    effect = hook(form=form, compliance=kappa)
+    coarse, direction = solve(effect, samples=6000)
+    fine, _ = solve(effect, samples=6000, refined=16)
+    assert np.count_nonzero(np.diff(np.abs(direction)) > 0) >= 2
+    error = np.sqrt(np.mean((coarse - fine) ** 2, axis=0)) / fine.std(axis=0)
+    assert error[1] < 1e-4
+    assert error[6] < 5e-4
+
+
+def test_shaft_and_elastomer_are_springs_in_series():
+    kappa = 1.0 / 665.0
+    effect = hook(compliance=kappa, damping_ratio=1.0)
+    states, direction = solve(effect, stiffness=math.inf, samples=4000)
+    end = int(np.flatnonzero(direction)[0])
+    time = np.arange(end) / RATE
+    rise = np.polyfit(time[end // 2 :], states[end // 2 : end, 1], 1)[0]
+    assert rise == pytest.approx(1.0 / (kappa + 1.0 / 665.0), rel=0.01)
+
+
+def test_a_softer_shaft_slips_less_often():
+    counts = [
+        np.count_nonzero(np.diff(np.abs(solve(hook(compliance=k), samples=27000)[1])) > 0)
+        for k in (1e-6, 5e-4, 2e-3)
+    ]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > 1.5 * counts[-1]
+
+
+def test_the_shaft_end_keeps_up_with_its_drive_in_the_mean():
+    states, _ = solve(hook(compliance=1e-3), samples=45000)
+    assert states[9000:, 6].mean() == pytest.approx(1.0, abs=0.02)
+    assert np.ptp(states[9000:, 6]) > 1.0
+
+
+def test_what_the_drive_gives_is_stored_or_dissipated():
+    kappa = 1e-3
+    effect = hook(compliance=kappa)
+    states, _ = solve(effect, samples=18000)
+    friction, end = states[:, 0], states[:, 6]
+    lag = np.zeros_like(end)
+    np.cumsum(0.5 * (2.0 - end[1:] - end[:-1]) / RATE, out=lag[1:])
+    pairs = zip(lag, 1.0 - end, strict=True)
+    torque, inertia = np.array([shaft_torque(effect, a, v) for a, v in pairs]).T
+    given = np.sum(torque - friction * end) / RATE
+    stored = 0.5 * lag[-1] ** 2 / kappa + 0.5 * inertia[0] * (end[-1] ** 2 - end[0] ** 2)
+    damped = np.sum((torque - lag / kappa) * (1.0 - end)) / RATE
+    assert damped > 0.0
+    assert given - stored == pytest.approx(damped, rel=0.05)
+
+
+def test_it_acts_together_with_another_effect():
+    alone, _ = solve(hook())
+    both, _ = solve(hook(), hook("static_ageing"))
+    swapped, _ = solve(hook("static_ageing"), hook())
+    assert np.abs(both[:, 1] - alone[:, 1]).max() > 0.05
+    assert np.array_equal(both, swapped)
+
+
+def test_a_drive_that_starts_to_turn_makes_the_end_lag():
+    ramp = np.minimum(np.arange(3000) / RATE / 5e-3, 1.0)
+    states, _ = solve(hook(compliance=1e-3, inertia=1e-3), speed=ramp, samples=3000)
+    assert states[100, 6] < ramp[100]

@@ -1,0 +1,96 @@
+"""The blow in the anchors' joint at each slip."""
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.effects.slip_pulse import torque_drops
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed, Oscillation
+
+RIG = load_material_rig("fluorocarbon")
+
+
+def run(speed=2.5, interference=0.381e-3):
+    return simulate_motion(
+        RIG, ConstantSpeed(speed), interference=interference, support_stiffness=2214.0,
+        seconds=0.3, rate=96e3,
+    )  # fmt: skip
+
+
+def force(motion, **given):
+    active = EFFECTS["slip_pulse"].active(given)
+    return active.effect.force(motion, active.form, active.values)
+
+
+def test_without_amplitude_there_is_no_force():
+    assert not force(run(), amplitude=0.0).any()
+    assert activated((LawSpec("slip_pulse", {"amplitude": 0.0}),), EFFECTS) == []
+
+
+def test_force_is_proportional_to_the_amplitude():
+    motion = run()
+    single = force(motion, amplitude=10.0)
+    double = force(motion, amplitude=20.0)
+    assert single.any()
+    assert double == pytest.approx(2.0 * single)
+
+
+def test_slips_that_stay_below_the_threshold_strike_nothing():
+    settled = run(2.5, 0.279e-3).since(14_400)
+    assert torque_drops(settled.torque, 1.0)[0].size > 10
+    assert not force(settled, **RIG.effects[0].parameters).any()
+
+
+def test_blows_follow_the_direction_of_the_shaft():
+    forward, backward = force(run()), force(run(-2.5))
+    assert np.array_equal(forward, -backward)
+
+
+def test_each_fall_of_a_sawtooth_is_found_once():
+    sawtooth = 8.0 * ((np.arange(1000) / 100.0) % 1.0)
+    where, size = torque_drops(sawtooth, 2.0)
+    assert where.tolist() == list(range(100, 1000, 100))
+    assert size == pytest.approx(np.full(9, 7.92))
+
+
+def test_unknown_effects_and_parameters_are_refused_by_name():
+    with pytest.raises(ParameterError, match="'slip_puls' is unknown"):
+        activated((LawSpec("slip_puls"),), EFFECTS)
+    with pytest.raises(ParameterError, match="no parameter 'amplitud'"):
+        activated((LawSpec("slip_pulse", {"amplitud": 1.0}),), EFFECTS)
+    with pytest.raises(ParameterError, match="out of range"):
+        activated((LawSpec("slip_pulse", {"amplitude": -1.0}),), EFFECTS)
+    with pytest.raises(ParameterError, match="is no number"):
+        activated((LawSpec("slip_pulse", {"amplitude": "loud"}),), EFFECTS)
+
+
+@pytest.mark.parametrize("form", EFFECTS["slip_pulse"].forms)
+def test_every_form_of_a_blow_has_the_peak_that_the_drop_gives_it(form):
+    motion = run()
+    drops = torque_drops(motion.torque, 5.2)[1]
+    peak = 60.0 * np.sqrt((drops.max() - 5.2) / (6.94 - 5.2))
+    assert np.abs(force(motion, form=form)).max() == pytest.approx(peak, rel=0.2)
+
+
+def test_turning_back_is_no_slip():
+    swing = simulate_motion(
+        RIG, Oscillation(np.deg2rad(15.0), 2.0), interference=0.279e-3, support_stiffness=2214.0,
+        seconds=0.5, rate=96e3,
+    )  # fmt: skip
+    assert np.ptp(swing.torque) > 15.0
+    assert not force(swing).any()
+
+
+@pytest.mark.parametrize("form", EFFECTS["slip_pulse"].forms)
+@pytest.mark.parametrize("duration", [1e-5, 2e-5, 1e-4])
+def test_impulse_of_a_blow_goes_with_its_duration(form, duration):
+    motion = run()
+    long = force(motion, form=form, duration=1e-3).sum()
+    assert force(motion, form=form, duration=duration).sum() == pytest.approx(
+        long * duration / 1e-3, rel=0.05
+    )

@@ -1,0 +1,117 @@
+"""The shaft that does not turn evenly."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+EFFECT = EFFECTS["speed_fluctuation"]
+RATE = 10e3
+
+
+def driven(speed, seed=0, **parameters):
+    active = EFFECT.active(parameters)
+    return EFFECT.drive(speed, RATE, active.form, active.values, np.random.default_rng(seed))
+
+
+def even(speed=5.0, seconds=10.0):
+    return np.full(round(seconds * RATE), speed)
+
+
+def frequency_of(speed):
+    spectrum = np.abs(np.fft.rfft(speed - speed.mean()))
+    return np.fft.rfftfreq(speed.size, 1.0 / RATE)[np.argmax(spectrum)]
+
+
+@pytest.mark.parametrize("form", EFFECT.forms)
+def test_at_depth_zero_the_speed_is_the_drives_own(form):
+    swing = np.cos(np.arange(1000) / 50.0)
+    assert np.array_equal(driven(swing, depth=0.0, form=form), swing)
+
+
+@pytest.mark.parametrize("form", EFFECT.forms)
+def test_a_depth_gives_the_same_rms_in_every_form(form):
+    speed = driven(even(5.0, 40.0), depth=0.1, form=form, frequency=10.0, bandwidth=20.0)
+    assert speed.mean() == pytest.approx(5.0, rel=0.01)
+    assert speed.std() == pytest.approx(5.0 * 0.1 / 2**0.5, rel=0.05)
+
+
+@given(speed=st.floats(0.1, 20.0), depth=st.floats(1e-6, 0.3), form=st.sampled_from(EFFECT.forms))
+@settings(max_examples=30, deadline=None)
+def test_a_shaft_that_turns_backward_fluctuates_as_one_that_turns_forward(speed, depth, form):
+    given_ = {"depth": depth, "form": form, "frequency": 7.0}
+    forward, backward = (driven(even(s, 0.2), **given_) for s in (speed, -speed))
+    assert np.array_equal(forward, -backward)
+
+
+@given(depth=st.floats(1e-3, 0.3), seed=st.integers(0, 99))
+@settings(max_examples=20, deadline=None)
+def test_a_depth_is_the_amplitude_of_the_sine(depth, seed):
+    speed = driven(even(), seed, depth=depth, frequency=3.0)
+    assert speed.max() == pytest.approx(5.0 * (1.0 + depth), rel=1e-4)
+    assert speed.min() == pytest.approx(5.0 * (1.0 - depth), rel=1e-4)
+
+
+@pytest.mark.parametrize(("speed", "order"), [(2.0 * np.pi, 1.0), (2.0 * np.pi, 3.0), (-5.0, 12.0)])
+def test_the_sine_has_so_many_periods_a_turn(speed, order):
+    found = frequency_of(driven(even(speed), order=order))
+    assert found == pytest.approx(order * abs(speed) / (2.0 * np.pi), abs=0.06)
+
+
+def test_a_fixed_frequency_does_not_follow_the_shaft():
+    for speed in (1.0, 9.0):
+        assert frequency_of(driven(even(speed), frequency=25.0, order=40.0)) == 25.0
+
+
+def test_the_harmonics_fall_as_one_over_their_number():
+    speed = driven(even(), depth=0.1, form="harmonics", frequency=10.0)
+    lines = np.abs(np.fft.rfft(speed))[np.array([100, 200, 300, 400, 500])]
+    assert lines[:4] / lines[0] == pytest.approx(1.0 / np.arange(1, 5), rel=1e-6)
+    assert lines[4] < 1e-6 * lines[0]
+
+
+def test_the_random_form_loses_half_its_power_at_the_bandwidth():
+    speeds = [driven(even(), seed, depth=0.1, form="random", bandwidth=20.0) for seed in range(20)]
+    power = np.mean([np.abs(np.fft.rfft(speed - 5.0)) ** 2 for speed in speeds], axis=0)
+    low, corner = power[2:50].mean(), power[150:251].mean()  # around 20 Hz
+    assert corner / low == pytest.approx(0.5, rel=0.15)
+
+
+def test_the_random_form_is_stationary_from_the_start():
+    first = [
+        driven(even(5.0, 2e-4), seed, depth=0.1, form="random", bandwidth=1.0)[0]
+        for seed in range(2000)
+    ]
+    assert np.std(first) == pytest.approx(5.0 * 0.1 / 2**0.5, rel=0.06)
+
+
+@pytest.mark.parametrize("form", EFFECT.forms)
+def test_the_seed_decides_and_nothing_else(form):
+    one, same, other = (driven(even(), seed, form=form) for seed in (3, 3, 4))
+    assert np.array_equal(one, same)
+    assert not np.array_equal(one, other)
+
+
+@pytest.mark.parametrize("form", EFFECT.forms)
+def test_angle_and_torque_follow_the_uneven_shaft(form):
+    rig = load_material_rig("fluorocarbon-thesis")
+
+    def moved(depth):
+        spec = LawSpec("speed_fluctuation", {"depth": depth, "form": form, "frequency": 5.0})
+        return simulate_motion(
+            rig, ConstantSpeed(2.0), interference=0.279e-3, support_stiffness=3745.0, seconds=0.3,
+            rate=30e3, effects=activated((spec,), EFFECTS),
+        )  # fmt: skip
+
+    uneven, steady = moved(0.3), moved(0.0)
+    assert np.array_equal(steady.shaft_speed, np.full(9000, 2.0))
+    assert np.ptp(uneven.shaft_speed) > 0.3
+    between = 0.5 * (uneven.shaft_speed[1:] + uneven.shaft_speed[:-1])
+    assert 30e3 * np.diff(uneven.shaft_angle) == pytest.approx(between, rel=1e-6)
+    assert not np.allclose(uneven.torque, steady.torque, atol=0.1)

@@ -1,0 +1,112 @@
+"""Linear stability of steady sliding, against numbers found otherwise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from sim.analysis.critical_speeds import critical_speeds
+from sim.analysis.stability import steady_sliding
+from sim.effects import EFFECTS
+from sim.friction import LAWS
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+THESIS = load_material_rig("fluorocarbon-thesis")
+MEMORY = load_material_rig("fluorocarbon")
+SPEEDS = np.arange(0.25, 15.0, 0.25)
+
+
+def weakened(slope, speed=5.0, scale=1e3):
+    """Constant torque that falls by so much per speed, at `speed` [Nm s/rad]."""
+    kinetic = THESIS.fit(0.279e-3).kinetic_torque
+    share = -slope * scale / kinetic * np.exp(speed / scale)
+    values = {"share": float(share), "speed": scale}
+    return replace(THESIS, effects=(LawSpec("velocity_weakening", values),))
+
+
+@pytest.mark.parametrize(("support", "slope"), [(2214.0, -0.0465), (3745.0, -0.0346)])
+def test_sliding_loses_its_stability_at_the_slope_that_the_modes_damping_bears(support, slope):
+    gentle, steep = (
+        steady_sliding(weakened(factor * slope, scale=100.0), 5.0, 0.279e-3, support)
+        for factor in (0.97, 1.03)
+    )
+    assert gentle.growth < 0.0 < steep.growth
+
+
+def test_with_the_clamp_fixed_the_slope_is_that_of_the_elastomers_damping():
+    fixed = THESIS.elastomer_damping_share * 0.085
+    gentle, steep = (
+        steady_sliding(weakened(-factor * fixed, scale=100.0), 5.0, 0.279e-3, np.inf)
+        for factor in (0.99, 1.01)
+    )
+    assert gentle.growth < 0.0 < steep.growth
+
+
+@pytest.mark.parametrize("support", [2214.0, 3745.0, np.inf])
+def test_a_constant_torque_slides_stably_at_any_speed_however_it_sticks_and_slips(support):
+    assert steady_sliding(THESIS, SPEEDS, 0.279e-3, support).stable.all()
+
+
+@pytest.mark.parametrize("support", [2214.0, 3745.0, np.inf])
+@pytest.mark.parametrize("interference", [0.254e-3, 0.381e-3])
+def test_pdms_slides_stably_at_any_speed(interference, support):
+    speeds = np.arange(0.25, 17.25, 0.25)
+    assert steady_sliding(load_material_rig("PDMS"), speeds, interference, support).stable.all()
+
+
+@pytest.mark.parametrize(("speed", "support"), [(9.5, 2214.0), (12.5, 3745.0)])
+def test_a_vibration_dies_as_fast_in_simulation_as_stability_says(speed, support):
+    rate = 30e3
+    motion = simulate_motion(
+        MEMORY,
+        ConstantSpeed(speed),
+        interference=0.279e-3,
+        support_stiffness=support,
+        seconds=1.6,
+        rate=rate,
+        tolerance=1e-10,
+    )
+    torque = motion.torque - motion.torque[-1]
+    early, late = (np.std(torque[round(t * rate) : round((t + 0.1) * rate)]) for t in (0.6, 0.9))
+    found = steady_sliding(MEMORY, speed, 0.279e-3, support).growth
+    assert np.log(late / early) / 0.3 == pytest.approx(float(found), rel=0.02)
+
+
+def test_where_sliding_is_unstable_the_calibrated_fluorocarbon_vibrates_to_within_a_step():
+    speeds = SPEEDS[(SPEEDS >= 7.0) & (SPEEDS <= 9.5)]
+    stable = steady_sliding(MEMORY, speeds, 0.279e-3, 2214.0).stable
+    simulated = critical_speeds(MEMORY, 0.279e-3, 2214.0, speeds.tolist()).v_crit2
+    assert abs(speeds[~stable].max() - simulated) <= 0.25
+
+
+@pytest.mark.parametrize("law", list(LAWS))
+def test_every_law_has_a_finite_growth_with_and_without_clamp(law):
+    rig = replace(THESIS, friction=LawSpec(law))
+    found = steady_sliding(rig, SPEEDS, 0.279e-3, [[2214.0], [np.inf]])
+    assert found.growth.shape == (2, SPEEDS.size)
+    assert np.isfinite(found.growth).all()
+    assert (found.frequency >= 0.0).all()
+
+
+def test_friction_that_rises_with_speed_is_stable_everywhere():
+    rig = replace(THESIS, friction=LawSpec("viscous"))
+    assert steady_sliding(rig, SPEEDS).stable.all()
+
+
+@pytest.mark.parametrize("effect", [e.name for e in EFFECTS.values() if e.contact is not None])
+def test_effects_on_the_contact_leave_growth_finite(effect):
+    found = steady_sliding(replace(MEMORY, effects=(LawSpec(effect),)), SPEEDS[::8])
+    assert np.isfinite(found.growth).all()
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(0.3, 13.0), st.floats(0.178e-3, 0.381e-3), st.floats(1500.0, 5000.0))
+def test_either_way_of_turning_is_alike_and_many_at_once_are_as_one(speed, fit, support):
+    one = steady_sliding(MEMORY, speed, fit, support).growth
+    back = steady_sliding(MEMORY, -speed, fit, support).growth
+    several = steady_sliding(MEMORY, [1.0, speed], fit, support).growth
+    assert one == back == several[1]

@@ -1,0 +1,143 @@
+"""Strangers sound as their recipes state."""
+
+import numpy as np
+import pytest
+from scipy.signal import hilbert
+
+from features.kernels.harmonics import analyse_harmonics
+from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, stranger
+from noise.training.classifier.background_sounds.building import harmonics, repeated, voiced
+from noise.training.classifier.background_sounds.insects import chirping
+from noise.training.classifier.quiet import quiet
+
+RATE = 48e3
+
+HEARD = {
+    *("dog", "rooster", "pig", "cow", "frog", "cat", "hen", "sheep", "crow"),
+    *("fly", "cicada", "crickets", "birds"),
+    *("rain", "sea", "fire", "drops", "wind", "pouring", "flush", "thunder"),
+    *("baby", "sneeze", "cough", "breathing", "laughing", "snoring", "sipping", "speech"),
+    *("clapping", "footsteps", "door_knock", "mouse_click", "keyboard", "can_opening"),
+    *("clock_tick", "glass", "fireworks", "brushing", "hand_saw"),
+    *("washing_machine", "vacuum_cleaner", "helicopter", "chainsaw", "engine", "train", "airplane"),
+    *("alarm", "siren", "horn", "bells", "tone", "music"),
+}
+
+
+def spectrum(sound):
+    return np.abs(np.fft.rfft(sound)) ** 2
+
+
+def test_all_kinds_of_everyday_sounds_have_a_recipe():
+    assert set(RECIPES) >= HEARD
+    assert set(WEIGHTS) == set(RECIPES)
+
+
+@pytest.mark.parametrize("name", RECIPES)
+@pytest.mark.parametrize("rate", [16_000, 48_000])
+def test_every_recipe_makes_a_sound_that_can_be_made_again(name, rate):
+    for seed in range(2):
+        sound, again = (
+            RECIPES[name](rate // 2, float(rate), np.random.default_rng(seed)) for _ in range(2)
+        )
+        assert sound.shape == (rate // 2,)
+        assert np.isfinite(sound).all()
+        assert sound.tobytes() == again.tobytes()
+    assert stranger(rate // 2, float(rate), np.random.default_rng(1), name).std() > 0.0
+
+
+def test_a_cricket_sings_at_its_carrier_in_pulses_of_its_rate():
+    song = chirping(
+        96_000, RATE, carrier=4200.0, pulses_a_second=30.0, pulses_a_chirp=10_000,
+        chirps_a_second=2.0, rng=np.random.default_rng(3),
+    )  # fmt: skip
+    power = spectrum(song)
+    assert power[2 * 500 :].argmax() / 2 + 500 == pytest.approx(4200, rel=0.03)
+    beat = spectrum(np.abs(hilbert(song)) - np.abs(hilbert(song)).mean())
+    assert beat[2 * 15 : 2 * 45].argmax() / 2 + 15 == pytest.approx(30.0, abs=1.0)
+
+
+def test_a_crickets_chirp_has_the_pulses_stated():
+    song = chirping(
+        96_000, RATE, carrier=5000.0, pulses_a_second=40.0, pulses_a_chirp=3, chirps_a_second=2.0,
+        rng=np.random.default_rng(5),
+    )  # fmt: skip
+    loud = np.abs(hilbert(song)) > 0.25 * np.abs(song).max()
+    sounding = np.convolve(loud.astype(float), np.ones(240), mode="same") > 0
+    starts = np.flatnonzero(np.diff(sounding.astype(int)) > 0)
+    assert 10 <= starts.size <= 14
+
+
+def peaks_of_bursts(sound):
+    """Strongest frequency [Hz], to 20 Hz, of every loud piece of 50 ms."""
+    pieces = [sound[a : a + 2400] * np.hanning(2400) for a in range(0, 93_600, 1200)]
+    return [20 * spectrum(p)[15:].argmax() + 300 for p in pieces if p.std() > 0.4 * sound.std()]
+
+
+def test_an_alarm_has_a_few_exact_notes_where_a_bird_has_many():
+    def distinct(name, seed):
+        peaks = peaks_of_bursts(RECIPES[name](96_000, RATE, np.random.default_rng(seed)))
+        return len(set(peaks)) / len(peaks)
+
+    alarms = [distinct("alarm", seed) for seed in range(12)]
+    birds = [distinct("birds", seed) for seed in range(12)]
+    assert np.median(alarms) < 0.25 < np.median(birds)
+
+
+def test_a_steady_tone_does_not_move():
+    for seed in range(6):
+        sound = RECIPES["tone"](96_000, RATE, np.random.default_rng(seed))
+        halves = [spectrum(part * np.hanning(48_000))[60:].argmax() for part in np.split(sound, 2)]
+        assert halves[0] == pytest.approx(halves[1], abs=1)
+        assert halves[0] + 60 < 5000
+
+
+def test_a_voice_has_the_pitch_asked_for():
+    sound = voiced(48_000, RATE, np.full(48_000, 310.0), (900.0,), np.random.default_rng(0))
+    assert analyse_harmonics(sound, RATE).fundamental == pytest.approx(310.0, rel=0.05)
+
+
+def test_a_rough_voice_is_less_periodic_than_a_clear_one():
+    def repeats(roughness):
+        rng = np.random.default_rng(2)
+        sound = voiced(
+            48_000, RATE, np.full(48_000, 300.0), (900.0,), rng, roughness=roughness, breath=0.0
+        )
+        return np.corrcoef(sound[:-160], sound[160:])[0, 1]
+
+    assert repeats(1.0) < repeats(0.0) - 0.1
+
+
+def test_harmonics_lie_at_multiples_of_the_pitch_alone():
+    tone = harmonics(np.full(48_000, 500.0), RATE, 1.0, n_most=10)
+    power = spectrum(tone)
+    at = np.flatnonzero(power > 1e-6 * power.max())
+    assert set(np.round(at / 500.0) * 500) == set(at)
+
+
+def test_repeated_calls_have_gaps_between():
+    calls = repeated(48_000, RATE, (0.05, 0.06), (0.1, 0.12), np.ones, np.random.default_rng(0))
+    share = np.mean(calls > 0.0)
+    assert 0.2 < share < 0.5
+
+
+def test_ticks_of_a_clock_keep_their_beat():
+    for seed in range(6):
+        sound = RECIPES["clock_tick"](144_000, RATE, np.random.default_rng(seed))
+        envelope = np.convolve(np.abs(sound), np.ones(480), mode="same")
+        above = envelope > 0.3 * envelope.max()
+        starts = np.flatnonzero(np.diff(above.astype(int)) > 0)
+        gaps = np.diff(starts[np.concatenate([[True], np.diff(starts) > 2400])]) / RATE
+        assert gaps.std() < 0.25 * gaps.mean() + 0.01
+
+
+def test_quiet_knows_digital_silence_and_hum():
+    drawn = [quiet(24_000, RATE, np.random.default_rng(seed)) for seed in range(120)]
+    assert any(not sound.any() for sound in drawn)
+    assert all(np.isfinite(sound).all() for sound in drawn)
+
+    def low(sound):
+        power = spectrum(sound)
+        return power[: round(24_000 * 1500 / RATE)].sum() > 0.9 * power.sum() > 0
+
+    assert 10 < sum(map(low, drawn)) < 110

@@ -1,0 +1,131 @@
+"""The search that found the fluorocarbon, and what it may claim."""
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.condition import FIXED
+from models.errors import ParameterError
+from models.rig_files.rig_file import load_material_rig, load_rig
+from noise.training.calibrate.cells import CELLS, THIN_CELLS
+from noise.training.calibrate.objective import score
+from noise.training.calibrate.report import material_toml, measured_speeds, speeds_page
+from noise.training.calibrate.search import search
+from noise.training.calibrate.unknowns import MEAN_TORQUE, UNKNOWNS, rig_of, start, values_at
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+
+@pytest.fixture(scope="module")
+def rig():
+    return replace(load_material_rig("fluorocarbon"), effects=())
+
+
+def test_the_cells_are_tables_5_1_and_5_2_at_two_interferences():
+    assert len(CELLS) == 6
+    assert {cell.interference for cell in CELLS} == {0.279e-3}
+    assert {cell.interference for cell in THIN_CELLS} == {0.178e-3}
+    assert CELLS[0].speed == 4.5
+    assert str(CELLS[5]) == "v_crit2 at 0.279 mm, fixed"
+
+
+def test_every_unknown_starts_inside_its_limits():
+    assert all(u.low < u.start < u.high for u in UNKNOWNS.values())
+    assert all(u.low < u.round_start < u.high for u in UNKNOWNS.values())
+    for (name, unknown), value in zip(UNKNOWNS.items(), values_at(start()).values(), strict=True):
+        assert value == pytest.approx(unknown.start), name
+
+
+def test_a_point_beyond_the_limits_is_taken_back_to_them():
+    values = values_at(start() + 100.0)
+    assert all(values[name] == pytest.approx(unknown.high) for name, unknown in UNKNOWNS.items())
+
+
+def test_torque_at_5_rad_s_is_held_whatever_the_unknowns():
+    values = values_at(start()) | {"torque_drop": 6.0, "weakening": 1.0}
+    made = rig_of(values)
+    motion = simulate_motion(
+        # So much damping that it slides steadily.
+        replace(
+            made,
+            elastomer_damping_share=0.5,
+            fits=tuple(replace(f, damping={FIXED: 5.0}) for f in made.fits),
+        ),
+        ConstantSpeed(5.0),
+        interference=0.279e-3,
+        support_stiffness=FIXED,
+        seconds=0.5,
+        rate=15e3,
+    )
+    assert motion.torque[-1] == pytest.approx(MEAN_TORQUE, rel=1e-3)
+
+
+def test_torques_of_the_other_fits_follow_the_mean_torques():
+    made = rig_of(values_at(start()))
+    thin, middle, thick = made.fits
+    assert thin.critical_torque == pytest.approx(0.5 * middle.critical_torque)
+    assert thick.kinetic_torque == pytest.approx(3.0 * middle.kinetic_torque)
+
+
+def test_values_that_leave_no_kinetic_torque_make_no_rig_and_cost_much():
+    assert rig_of(values_at(start()) | {"weakening": 50.0, "weakening_speed": 200.0}) is None
+    assert score(None).cost > 50.0
+
+
+def test_the_score_of_a_rig_depends_on_the_cells_that_count(rig):
+    whole = score(rig, critical_speeds_alone=True)
+    part = score(rig, CELLS[:5], critical_speeds_alone=True)
+    assert whole.speeds == part.speeds
+    assert whole.cost - part.cost == pytest.approx(
+        20.0 * (whole.log_error(CELLS) - part.log_error(CELLS[:5]))
+    )
+
+
+def test_the_searchs_critical_speeds_are_those_reported_to_a_step_of_its_grid(rig):
+    seen = score(rig, critical_speeds_alone=True).speeds
+    cell = CELLS[5]
+    reported = measured_speeds(rig, (cell,))[cell]
+    assert abs(math.log(seen[cell] / reported)) < 0.13
+
+
+def test_error_page_is_the_rms_of_the_logarithms():
+    speeds = {CELLS[0]: 4.5 * math.e, CELLS[1]: 2.6}
+    assert f"log-rms error {math.sqrt(0.5):.3f}" in speeds_page("Fitted", speeds)
+
+
+def test_what_is_written_is_read_back_as_the_same_bushing(rig, tmp_path):
+    path = tmp_path / "found.toml"
+    path.write_text(material_toml(rig))
+    read = load_rig(path)
+    assert read.friction.parameters == pytest.approx(dict(rig.friction.parameters), rel=1e-3)
+    assert read.elastomer_damping_share == pytest.approx(rig.elastomer_damping_share, rel=1e-3)
+    for mine, its in zip(rig.fits, read.fits, strict=True):
+        assert its.critical_torque == pytest.approx(mine.critical_torque, rel=1e-3)
+        assert dict(its.damping) == pytest.approx(dict(mine.damping), rel=1e-3)
+
+
+def test_without_the_extra_one_line_says_how_to_install_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "cma", None)
+    with pytest.raises(ParameterError, match=r"bushing-noise\[calibrate\]"):
+        search(1)
+
+
+def test_command_explains_itself():
+    answer = subprocess.run(
+        [sys.executable, "-m", "noise.training.calibrate", "--help"], capture_output=True, text=True
+    )
+    assert answer.returncode == 0
+    assert "--leave-out" in answer.stdout
+
+
+@pytest.mark.slow
+def test_a_search_gets_better_and_is_the_same_again():
+    first = search(2, critical_speeds_alone=True)
+    again = search(2, critical_speeds_alone=True)
+    assert first.values == again.values
+    assert first.score.cost <= score(rig_of(values_at(start())), critical_speeds_alone=True).cost
+    assert np.isfinite(first.score.cost)

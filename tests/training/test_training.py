@@ -1,0 +1,96 @@
+"""What the classifier learns from, and that learning repeats itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError
+from noise.classifier import LABELS, load_classifier
+from noise.classifier.model import has_more_than_sound
+from noise.labels.windows import FEATURE_NAMES
+from noise.training.classifier.designs import random_design
+from noise.training.classifier.fit import draw_sample, learn, train
+from noise.training.classifier.own_samples import OwnSample
+
+
+def columns(classifier, sample):
+    return sample.features[:, [FEATURE_NAMES.index(name) for name in classifier.feature_names]]
+
+
+SAMPLES = [draw_sample(seed) for seed in np.random.SeedSequence(5).spawn(48)]
+
+
+@pytest.fixture(scope="module")
+def small():
+    return learn(SAMPLES, 34, 7, seed=3)
+
+
+def test_the_same_seed_gives_the_same_bytes_of_predictions(small):
+    again = learn(SAMPLES, 34, 7, seed=3)
+    features = columns(small, SAMPLES[0])
+    assert small.predict_proba(features).tobytes() == again.predict_proba(features).tobytes()
+    assert small.card == again.card
+
+
+def test_a_sample_is_the_same_again_whoever_draws_it():
+    (seed,) = np.random.SeedSequence(5).spawn(1)
+    again = draw_sample(seed)
+    assert again.features.tobytes() == SAMPLES[0].features.tobytes()
+    assert again.label == SAMPLES[0].label
+
+
+def test_no_bushing_is_simulated_for_what_is_made_up():
+    drawn = [draw_sample(s, bushings=False) for s in np.random.SeedSequence(6).spawn(12)]
+    assert not any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in drawn)
+    assert any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in SAMPLES)
+
+
+def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
+    assert 30 <= sum(small.card["samples"].values()) <= 34
+    assert 5 <= small.card["pressure"]["n"] <= 7
+    assert small.card["three_channels"]["n"] < small.card["pressure"]["n"]
+
+
+def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored():
+    clear_ones = [replace(s, ambiguous=False) for s in SAMPLES]
+    clear = learn(clear_ones, 34, 7, seed=0).card
+    unclear = [replace(s, ambiguous=i in (0, 36, 44)) for i, s in enumerate(SAMPLES)]
+    fewer = learn(unclear, 34, 7, seed=0).card
+    assert sum(fewer["samples"].values()) == sum(clear["samples"].values()) - 1
+    assert fewer["pressure"]["n"] == clear["pressure"]["n"] - 1
+
+
+def test_too_few_samples_to_know_every_label_are_refused():
+    with pytest.raises(ParameterError, match="draw more"):
+        train(seed=0, n_training=6, n_calibration=1, n_test=1)
+
+
+def test_every_label_occurs_among_the_samples():
+    assert {sample.label for sample in SAMPLES} == set(LABELS)
+
+
+def test_designs_differ_and_can_be_drawn_again():
+    first, again, other = (random_design(np.random.default_rng(s)) for s in (1, 1, 2))
+    assert first == again
+    assert first != other
+
+
+def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after():
+    labels = [label for label in LABELS if label != "squawk"]
+    own = [
+        OwnSample(sample.features[:, ::-1].copy(), "squawk", f"{i}.wav")
+        for i, sample in enumerate(s for s in SAMPLES if s.label in labels)
+    ]
+    said = learn(SAMPLES, 34, 7, seed=3, added=own).card["own"]
+    assert said["files"] + said["held_out_files"] == len(own)
+    assert said["accuracy_after"] > 0.8 > said["accuracy_before"]
+
+
+@pytest.mark.slow
+def test_the_shipped_classifier_is_what_training_with_seed_0_gives():
+    shipped, again = load_classifier(), train(seed=0)
+    samples = [draw_sample(seed) for seed in np.random.SeedSequence(9).spawn(20)]
+    features = np.concatenate([columns(shipped, sample) for sample in samples])
+    assert again.predict_proba(features).tobytes() == shipped.predict_proba(features).tobytes()
+    assert again.card == shipped.card
