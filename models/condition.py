@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-__all__ = ["FIXED", "Condition"]
+__all__ = ["FIXED", "Condition", "same_support"]
 
 FIXED = math.inf
 """Support stiffness of the clamp bolted to the baseplate [Nm/rad]."""
+
+_SAME = 1e-3  # relative difference
 
 
 @dataclass(frozen=True)
@@ -60,3 +62,14 @@ class Condition:
         if self.speed is not None:
             words.append(f"{self.speed:g} rad/s")
         return words
+
+
+def same_support(one: float, other: float) -> bool:
+    """Whether two support stiffnesses [Nm/rad] are the same, to a tenth of a percent.
+
+    Examples
+    --------
+    >>> same_support(2214.0, 2215.0), same_support(2214.0, FIXED), same_support(FIXED, FIXED)
+    (True, False, True)
+    """
+    return math.isclose(one, other, rel_tol=_SAME)

@@ -11,7 +11,8 @@ import numpy as np
 
 from models.condition import Condition
 from models.errors import ParameterError
-from models.radiation.rig_response import radiate, response
+from models.radiation.impulse_responses import radiate
+from models.radiation.rig_response import response
 from models.recording import Channel, Recording
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain

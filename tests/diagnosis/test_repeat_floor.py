@@ -17,7 +17,7 @@ from noise.diagnosis.gap.floor import case_gap, condition_key, repeat_gap, widen
 from noise.diagnosis.gap.scatter import Scatter
 from noise.diagnosis.gap.signature import GROUPS, NAMES, signature
 from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.paths import ways
+from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case
 from tests.blind.design import draw_design
 from tests.blind.effects import DEVELOPMENT
@@ -31,7 +31,7 @@ EXACT = Scatter(0.0, 0.0, 0.0)
 
 @pytest.fixture(scope="module")
 def found_ways():
-    return ways(RIG, 0.279e-3, 3745.0)
+    return torque_transfer_functions(RIG, 0.279e-3, 3745.0)
 
 
 def _runs(found_ways, seeds, *, rig=RIG, at=AT[0], seconds=0.4, scatter=None):

@@ -11,10 +11,10 @@ from scipy.signal import resample_poly
 
 from models.condition import FIXED, Condition
 from models.errors import ParameterError
-from models.radiation.impulse_responses import convolve
 from models.recording import Channel
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
+from models.transfer_functions.filtering import convolve
 from noise.long_run import simulate_to_file
 from noise.recordings import read_recording
 from noise.recordings.block_writer import write_blocks

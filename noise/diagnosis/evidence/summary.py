@@ -30,7 +30,7 @@ from noise.diagnosis.evidence.path_summary import (
 )
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.paths import KnownWays, predict
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import Effect
 
 __all__ = ["CaseTable", "NominalNumbers", "case_table", "summary", "through_same"]
@@ -77,7 +77,7 @@ class CaseTable:
     rate: float
 
 
-def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Numbers:
+def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, TransferFunction]) -> Numbers:
     """Summarise a recording against the rig that it is said to be of.
 
     Parameters
@@ -85,8 +85,8 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     recording : Recording
         With speed, interference and support stiffness in its condition.
     rig : Rig
-    found_ways : mapping of str to Way
-        As `noise.diagnosis.simulated.paths.ways` gives them.
+    found_ways : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
 
     Returns
     -------
@@ -152,9 +152,9 @@ class NominalNumbers:
     _kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = field(default_factory=dict)
 
     @cached_property
-    def ways(self) -> KnownWays:
+    def transfer_functions(self) -> TransferFunctionCache:
         """The rig's, each looked up once."""
-        return KnownWays(self.rig)
+        return TransferFunctionCache(self.rig)
 
     def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
@@ -162,7 +162,7 @@ class NominalNumbers:
         at = _condition(recording)
         like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
         if like not in self._kept:
-            found_ways = self.ways.at(at[1], at[2])
+            found_ways = self.transfer_functions.at(at[1], at[2])
             repeats = nominal_recordings(
                 self.rig,
                 c,
@@ -204,7 +204,7 @@ def case_table(
     """
     nominal = nominal or NominalNumbers(rig, library, seed)
     rows = [
-        summary(recording, rig, nominal.ways.at(*_condition(recording)[1:]))
+        summary(recording, rig, nominal.transfer_functions.at(*_condition(recording)[1:]))
         for recording in recordings
     ]
     means, spreads = zip(*(nominal.like(recording) for recording in recordings), strict=True)

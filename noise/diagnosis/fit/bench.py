@@ -193,7 +193,7 @@ class Bench:
                 c = like.condition
                 assert c.interference is not None
                 assert c.support_stiffness is not None
-                ways = self.runs.known_ways.at(c.interference, c.support_stiffness)
+                ways = self.runs.transfer_functions.at(c.interference, c.support_stiffness)
                 found = summary(run, self.rig, ways)
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import firwin, resample_poly
 
-from models.radiation.impulse_responses import Response, radiate
+from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.radiation.rig_response import response
 from models.recording import Channel, Recording
+from models.transfer_functions.impulse_response import impulse_response
 from noise.diagnosis.gap.scatter import Scatter, scattered
-from noise.diagnosis.simulated.impulse import impulse_of
 from sim.acquisition import Acquisition
 from sim.chain import changed_chain
 from sim.motion import simulate_motion
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from models.condition import Condition
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import ActiveEffect
     from sim.motion import Motion
 
@@ -67,26 +67,28 @@ def chain_of(
     rig: Rig,
     interference: float,
     support_stiffness: float,
-    ways: Mapping[str, Way],
+    ways: Mapping[str, TransferFunction],
     rate: float,
     *,
     blows: bool,
-) -> Response:
+) -> ImpulseResponses:
     """Return ways as impulse responses; those of blows in the anchors are modelled if asked for."""
     n = int(_LONGEST * rate)
-    torque_to = {name: impulse_of(way, rate, n) for name, way in ways.items()}
+    torque_to = {name: impulse_response(way, rate, n) for name, way in ways.items()}
     struck = sounding = np.zeros(1)
     if blows:
         modelled = response(rig, interference, support_stiffness, rate)
         struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
-    return Response(rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding)
+    return ImpulseResponses(
+        rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding
+    )
 
 
 def run_signals(
     rig: Rig,
     condition: Condition,
     effects: Sequence[ActiveEffect],
-    chain: Response,
+    chain: ImpulseResponses,
     seconds: float,
     rng: np.random.Generator,
     *,
@@ -101,7 +103,7 @@ def run_signals(
     condition : Condition
         Speed, interference and support stiffness.
     effects : sequence of ActiveEffect
-    chain : Response
+    chain : ImpulseResponses
         Ways without effects; its rate is that of the signals.
     seconds : float
         [s]
@@ -160,7 +162,7 @@ def moving(
 
 
 def heard(
-    motion: Motion, effects: Sequence[ActiveEffect], changed: Response
+    motion: Motion, effects: Sequence[ActiveEffect], changed: ImpulseResponses
 ) -> dict[str, NDArray[np.float64]]:
     """Send a motion along the chain; by `CHANNELS`, without what came before the recording."""
     force = np.zeros_like(motion.torque)

@@ -26,7 +26,7 @@ from noise.diagnosis.simulated.chain_run import (
     recorded,
     sampled_at,
 )
-from noise.diagnosis.simulated.paths import KnownWays, moved
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, shift_clamp_mode
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.recording import Recording
     from models.rig import LawSpec, Rig
     from noise.diagnosis.fit.forms.form import Form
@@ -83,14 +83,14 @@ class ModelRuns:
     rig: Rig
     library: Mapping[str, Effect]
     forms: dict[tuple[str, str], Form]
-    known_ways: KnownWays = field(init=False)
-    _chains: dict[object, Response] = field(init=False, default_factory=dict)
+    transfer_functions: TransferFunctionCache = field(init=False)
+    _chains: dict[object, ImpulseResponses] = field(init=False, default_factory=dict)
     _motions: dict[object, Motion] = field(init=False, default_factory=dict)
     _signals: dict[object, dict[str, NDArray[np.float64]]] = field(init=False, default_factory=dict)
     _parts: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.known_ways = KnownWays(self.rig)
+        self.transfer_functions = TransferFunctionCache(self.rig)
 
     def simulated(
         self, model: Model, like: Recording, seed: int, scatter: Scatter | None = None
@@ -207,14 +207,14 @@ class ModelRuns:
         support: float,
         rate: float,
         effects: Sequence[ActiveEffect],
-    ) -> Response:
+    ) -> ImpulseResponses:
         blows = bool(effects)
         lumped = lumped_bushing(once, interference, support)
         key = (interference, support, rate, blows, repr(lumped))
         if key not in self._chains:
             plain = lumped_bushing(self.rig, interference, support)
-            found = self.known_ways.at(interference, support)
-            ways = {name: moved(way, plain, lumped) for name, way in found.items()}
+            found = self.transfer_functions.at(interference, support)
+            ways = {name: shift_clamp_mode(way, plain, lumped) for name, way in found.items()}
             _keep(self._chains, key, chain_of(
                 self.rig, interference, support, ways, rate, blows=blows
             ))  # fmt: skip

@@ -1,8 +1,9 @@
 """What the rig file says would have been recorded: quick simulated repeats of a condition.
 
-The structure's ways are those of `noise.diagnosis.simulated.paths`, applied to the simulated
-torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and
-drive is run by `noise.diagnosis.simulated.replicates` instead, which knows all of them.
+The transfer functions are those of `noise.diagnosis.simulated.transfer_functions`, applied to the
+simulated torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond
+friction and drive is run by `noise.diagnosis.simulated.replicates` instead, which knows all of
+them.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from scipy.signal import resample_poly
 
 from noise.diagnosis.gap.scatter import Scatter, scattered
 from noise.diagnosis.simulated.chain_run import fine_rate, sensed
-from noise.diagnosis.simulated.paths import moved, predict
 from noise.diagnosis.simulated.replicates import replicates
+from noise.diagnosis.simulated.transfer_functions import predict, shift_clamp_mode
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import Effect
 
 __all__ = ["nominal_recordings"]
@@ -48,7 +49,7 @@ _FADE = 0.1
 def nominal_recordings(
     rig: Rig,
     condition: Condition,
-    found_ways: Mapping[str, Way],
+    found_ways: Mapping[str, TransferFunction],
     *,
     rate: float,
     seconds: float,
@@ -63,8 +64,8 @@ def nominal_recordings(
     rig : Rig
     condition : Condition
         Speed, interference and support stiffness; all must be known.
-    found_ways : mapping of str to Way
-        As `noise.diagnosis.simulated.paths.ways` gives them for this condition.
+    found_ways : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them for this condition.
     rate, seconds : float
         [Hz], [s]
     seeds : sequence of int
@@ -115,7 +116,7 @@ def nominal_recordings(
         faded = torque[kept].mean() + _faded(torque - torque[kept].mean(), rate)
         lumped = lumped_bushing(once, *at)
         outputs = {
-            name: predict(faded, rate, moved(found_ways[name], bushing, lumped))[kept]
+            name: predict(faded, rate, shift_clamp_mode(found_ways[name], bushing, lumped))[kept]
             for name in ("acceleration", "pressure")
         }
         signals = {

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.levels import a_weighted, fast_levels
-from models.radiation.rig_response import radiate, response
+from models.radiation.impulse_responses import radiate
+from models.radiation.rig_response import response
 from models.rig import damping_at
 from noise.noise_definition import Evidence, evidence_of
 from noise.screening.map.stretches import stretches_of
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Rig
     from sim.effects.effect import Effect
     from sim.motion import Motion
@@ -245,7 +246,7 @@ def _sound(
     rig: Rig,
     motion: Motion,
     start: int,
-    paths: Response,
+    paths: ImpulseResponses,
     library: Mapping[str, Effect],
 ) -> Sound:
     force = np.zeros_like(motion.torque)
@@ -267,7 +268,9 @@ def _loudest(sound: Sound) -> float:
     return float(heard[sound.before.size :].max())
 
 
-def _paths(rig: Rig, interference: float, support_stiffness: float, rate: float) -> Response:
+def _paths(
+    rig: Rig, interference: float, support_stiffness: float, rate: float
+) -> ImpulseResponses:
     """Responses of the structure, the beams' damping rounded so that few are made."""
     damping = damping_at(rig.fit(interference), support_stiffness)
     of_beams = (1.0 - rig.elastomer_damping_share) * damping
