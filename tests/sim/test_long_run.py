@@ -20,8 +20,7 @@ from noise.recordings import read_recording
 from noise.recordings.block_writer import write_blocks
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
-from sim.motion import simulate_motion
-from sim.motion_blocks import motion_blocks
+from sim.motion import motion_blocks, simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 from sim.streams import Convolution, Decimation
