@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import summary, through_same
@@ -190,9 +191,7 @@ class Bench:
                 run = through_same(
                     self.runs.simulated(model, like, 0, Scatter(0.0, 0.0, 0.0)), like
                 )
-                c = like.condition
-                assert c.interference is not None
-                assert c.support_stiffness is not None
+                c = known_condition(like.condition)
                 ways = self.runs.known_ways.at(c.interference, c.support_stiffness)
                 found = summary(run, self.rig, ways)
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])

@@ -13,22 +13,18 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from models.condition import known_condition
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.floor import condition_key
-from noise.diagnosis.gap.scatter import Scatter, scattered
+from noise.diagnosis.gap.scatter import Scatter, perturb_run
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
-from noise.diagnosis.simulated.chain_run import (
-    chain_of,
-    fine_rate,
-    heard,
-    moving,
-    read_by_sensors,
-    recorded,
-    sampled_at,
-)
+from noise.diagnosis.simulated.chain_run import chain_of, plan_repeat, record
 from noise.diagnosis.simulated.paths import KnownWays, moved
+from sim.acquisition import decimate
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
+from sim.pipeline import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
+from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -112,12 +108,14 @@ class ModelRuns:
             The model cannot be simulated.
         """
         scatter = scatter or Scatter()
-        fine = fine_rate(like.rate)
+        fine = DIAGNOSIS.rate(like.rate)
         effects = self._active(model)
-        signals = self._heard(model, effects, like, fine, seed, scatter)[1]
-        signals = read_by_sensors(signals, effects, fine, np.random.default_rng([seed, 2]))
-        rng = np.random.default_rng([seed, 3])
-        return recorded(signals, fine, like.rate, like.condition, rng, scatter)
+        signals = self._radiated(model, effects, like, fine, seed, scatter)[1]
+        signals = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
+        return record(
+            signals, like.rate, like.condition, np.random.default_rng([seed, 3]), scatter,
+            decimation=DIAGNOSIS.decimation(like.rate),
+        )  # fmt: skip
 
     def seen(self, model: Model, like: Recording, seed: int) -> NDArray[np.float64]:
         """Return the signature of a run without scatter and noise.
@@ -134,16 +132,16 @@ class ModelRuns:
         ParameterError
             The model cannot be simulated.
         """
-        effects, fine = self._active(model), fine_rate(like.rate)
-        key, signals = self._heard(model, effects, like, fine, seed, _EXACT)
-        read = read_by_sensors(signals, effects, fine, np.random.default_rng([seed, 2]))
+        effects, fine = self._active(model), DIAGNOSIS.rate(like.rate)
+        key, signals = self._radiated(model, effects, like, fine, seed, _EXACT)
+        read = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
         parts = {}
         for kind in KINDS:
             if like.first(kind) is None:
                 continue
             known = (key, kind) if read[kind] is signals[kind] else None
             if known is None or known not in self._parts:
-                sampled = sampled_at(read[kind], fine, like.rate)
+                sampled = decimate(read[kind], DIAGNOSIS.decimation(like.rate))
                 parts[kind] = channel_signature(sampled, like.rate, kind)
                 if known is not None:
                     _keep(self._parts, known, parts[kind])
@@ -164,7 +162,7 @@ class ModelRuns:
                 found.append(active)
         return found
 
-    def _heard(
+    def _radiated(
         self,
         model: Model,
         effects: Sequence[ActiveEffect],
@@ -183,21 +181,19 @@ class ModelRuns:
         key = (*of_motion, _key(on_way))
         if key in self._signals:
             return key, self._signals[key]
-        c, rng = like.condition, np.random.default_rng([seed, 0])
-        assert c.speed is not None
-        assert c.interference is not None
-        assert c.support_stiffness is not None
         factors = {n: math.exp(x) for n, x in zip(OFFSETS, model.offsets, strict=True)}
-        once = scattered(with_offsets(self.rig, factors), scatter, rng)
-        speed = c.speed * float(np.exp(scatter.structure * rng.normal()))
+        once, at = perturb_run(
+            with_offsets(self.rig, factors), known_condition(like.condition), scatter,
+            np.random.default_rng([seed, 0]),
+        )  # fmt: skip
+        plan = plan_repeat(once, at, on_motion, rate=fine, seconds=like.duration)
         if of_motion not in self._motions:
-            _keep(self._motions, of_motion, moving(
-                once, c, c.support_stiffness, speed, on_motion, like.duration, fine,
-                np.random.default_rng([seed, 1]),
-            ))  # fmt: skip
-        chain = self._chain(once, c.interference, c.support_stiffness, fine, on_way)
+            _keep(self._motions, of_motion, run_motion(plan, np.random.default_rng([seed, 1])))
+        motion = self._motions[of_motion]
+        chain = self._chain(once, at.interference, at.support_stiffness, fine, on_way)
         changed = changed_chain(chain, on_way, np.random.default_rng(0))
-        _keep(self._signals, key, heard(self._motions[of_motion], on_way, changed))
+        sound = radiate_motion(motion, changed, on_way)
+        _keep(self._signals, key, sensor_signals(motion, sound, plan.n_settling))
         return key, self._signals[key]
 
     def _chain(
