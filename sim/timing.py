@@ -55,4 +55,5 @@ SCREENING_SLOW = Timing(least_rate=30e3, settling=1.5)
 """Of a point whose vibration still grows or dies after that; some creaks set in that late."""
 
 REGIME_RATE = 15e3
-"""Of a motion of which only the regime is asked, stick-slip or not, and its slow lines [Hz]."""
+"""Of a motion of which only the regime and slow lines are asked [Hz]; it resolves stick, and the
+solution does not depend on it."""

@@ -170,7 +170,7 @@ class Bench:
         key = (repr(model), condition_key(like), len(seeds))
         if key not in self._signed:
             self._signed[key] = np.mean(
-                [self.runs.seen(model, like, seed) for seed in seeds], axis=0
+                [self.runs.noise_free_signature(model, like, seed) for seed in seeds], axis=0
             )
         return self._signed[key]
 
