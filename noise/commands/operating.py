@@ -62,7 +62,7 @@ def simulated_run(options: Namespace, rate: float) -> Run:
 def is_long(arguments: Mapping[str, Any]) -> bool:
     """Whether a run is better written in blocks than held in memory."""
     from sim.effects.effect import activated
-    from sim.motion_blocks import whole_run_effects
+    from sim.long_run import whole_run_effects
 
     effects = activated(arguments["rig"].effects, arguments["library"])
     seconds = arguments["seconds"]

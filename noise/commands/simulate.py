@@ -70,9 +70,10 @@ def run(options: Namespace) -> int:
         _check_plot(options.plot, options.seconds)
     arguments = run_arguments(options, options.rate)
     if options.out is not None and is_long(arguments):
-        from noise.long_run import simulate_to_file
+        from noise.long_run import write_run
+        from sim.long_run import simulate_blocks
 
-        _print_names(simulate_to_file(options.out, **arguments))
+        _print_names(write_run(options.out, simulate_blocks(**arguments)))
         return 0
     from sim.run import simulate
 

@@ -21,6 +21,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
+from sim.timing import REGIME_RATE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,8 +40,6 @@ SPEEDS = tuple(0.25 * i for i in range(1, 53))
 """From 0.25 to 13 rad/s, the range of the measurements."""
 
 _SECONDS = 1.0
-_RATE = 15e3
-"""Of the output [Hz]; it resolves stick, and the solution does not depend on it."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +144,7 @@ def regime_at(
             interference=interference,
             support_stiffness=support_stiffness,
             seconds=seconds,
-            rate=_RATE,
+            rate=REGIME_RATE,
             effects=activated(rig.effects, EFFECTS),
         )
     )

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
     channel_summary,
@@ -93,10 +94,7 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     dict of str to float
         What a missing channel would tell is missing.
     """
-    condition, rate = recording.condition, recording.rate
-    assert condition.speed is not None
-    assert condition.interference is not None
-    assert condition.support_stiffness is not None
+    condition, rate = known_condition(recording.condition), recording.rate
     signal = {
         kind: recording.samples[row]
         for kind in ("torque", *_OUTPUTS, "angle")
@@ -158,7 +156,7 @@ class NominalNumbers:
 
     def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
-        c = recording.condition
+        c = known_condition(recording.condition)
         at = _condition(recording)
         like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
         if like not in self._kept:
@@ -224,8 +222,8 @@ def case_table(
 
 
 def _condition(recording: Recording) -> tuple[float, float, float]:
-    c = recording.condition
-    return (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
+    c = known_condition(recording.condition)
+    return (c.speed, c.interference, c.support_stiffness)
 
 
 def through_same(repeat: Recording, recording: Recording) -> Recording:

@@ -25,6 +25,7 @@ from sim.effects.effect import activated
 from sim.friction import at_temperature
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
+from sim.timing import REGIME_RATE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,8 +38,7 @@ __all__ = ["use_grades", "use_risk"]
 _SPEEDS = 12
 
 _SECONDS = 1.0
-_RATE = 15e3
-"""Of the runs, judged on their last half as critical speeds are [s, Hz]."""
+"""Of the runs, judged on their last half as critical speeds are [s]."""
 
 
 def use_risk(design: Design, *, workers: int = -1) -> int:
@@ -111,7 +111,7 @@ def _measured(
         interference=interference,
         support_stiffness=support_stiffness,
         seconds=_SECONDS,
-        rate=_RATE,
+        rate=REGIME_RATE,
         effects=activated(rig.effects, EFFECTS),
     )
     regime = friction_regime(motion)

@@ -23,6 +23,7 @@ from noise.training.calibrate.cells import CELLS, NOISES, STICKING, SUPPORTS, TH
 from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
+from sim.timing import REGIME_RATE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -43,7 +44,6 @@ _WINDOW = 0.8, 1.35
 """Over what was measured: where the grid is fine."""
 
 _SECONDS = 0.8
-_RATE = 15e3
 
 _CRITICAL_SPEEDS, _THIN, _FLATNESS, _STICK, _NOISE = 20.0, 1.25, 2.0, 0.15, 0.25
 """Weights."""
@@ -172,13 +172,13 @@ def _settled(rig: Rig, task: Task) -> _Settled:
         interference=interference,
         support_stiffness=support,
         seconds=_SECONDS,
-        rate=_RATE,
+        rate=REGIME_RATE,
     )
     last = motion.since(motion.torque.size // 2)
     mean = float(np.mean(last.torque))
     torque = last.torque - mean
     amplitude = np.abs(np.fft.rfft(torque * np.hanning(torque.size)))
-    frequency = np.fft.rfftfreq(torque.size, 1.0 / _RATE)
+    frequency = np.fft.rfftfreq(torque.size, 1.0 / REGIME_RATE)
 
     def highest(band: tuple[float, float]) -> float:
         return float(amplitude[(frequency >= band[0]) & (frequency < band[1])].max())

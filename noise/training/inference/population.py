@@ -25,7 +25,7 @@ from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec, Rig
 from models.rig_files.rig_file import load_material_rig
 from noise.inference.hearing import RATES, as_recorded
-from noise.noise_definition import noise_of
+from noise.noise_definition import label_by_physics
 from noise.training.classifier.augmentation import resampled
 from sim.run import simulate
 
@@ -98,7 +98,7 @@ def draw_heard(rng: np.random.Generator) -> Heard:
     """
     while True:
         run = _draw_run(rng)
-        label = noise_of(run)
+        label = label_by_physics(run)
         if label != "none":
             break
     whole = rng.random() < 0.5
