@@ -48,7 +48,7 @@ def ensure_compile_cache() -> None:
         return
     os.environ[_VARIABLE] = str(own)
     if "numba" in sys.modules:  # it has read the variable
-        sys.modules["numba"].config.CACHE_DIR = str(own)  # type: ignore[attr-defined]
+        sys.modules["numba"].config.CACHE_DIR = str(own)
 
 
 def _writable(folder: Path) -> bool:
@@ -118,7 +118,7 @@ def _keep_nothing() -> None:
         """Keep nothing."""
 
     for kind in (Dispatcher, UFuncDispatcher):
-        kind.enable_caching = enable_caching
+        setattr(kind, "enable_caching", enable_caching)  # noqa: B010  # numba has no types
     from multiprocessing import parent_process
 
     if parent_process() is None and sys.stderr is not None:

@@ -59,7 +59,7 @@ def run(options: Namespace) -> int:
         check_target(options.out / "report.html")
     say("preparing")
     from models.rig_files.rig_file import load_rig
-    from noise.commands.user_effects import effect_library
+    from noise.base.user_effects import effect_library
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import diagnose_case
     from noise.diagnosis.outcome import as_json
