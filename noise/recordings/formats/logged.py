@@ -23,7 +23,7 @@ import numpy as np
 
 from models.errors import RecordingError
 from models.recording import CHANNEL_UNITS, Channel
-from noise.recordings.readers import RawSamples
+from noise.recordings.files import RawSamples
 from noise.recordings.sampling import SAME_RATE
 from noise.recordings.stated_condition import stated_condition
 from noise.recordings.units import kind_of_unit, known_units

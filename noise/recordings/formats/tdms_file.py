@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.recordings.readers import RawSamples
+    from noise.recordings.files import RawSamples
 
 __all__ = ["read_tdms_file"]
 
