@@ -13,9 +13,9 @@ from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, write_table
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -112,7 +112,7 @@ def run_batch(
     kept = nullcontext() if options.out is None else open_journal(
         options.out, work, fresh=options.fresh
     )  # fmt: skip
-    with kept as journal, _told_to_end():
+    with kept as journal, _termination_as_interrupt():
         try:
             for job, done in _progress(options, work, jobs, journal):
                 outcomes[job.index] = done
@@ -184,7 +184,7 @@ class _Terminated(KeyboardInterrupt):
 
 
 @contextmanager
-def _told_to_end() -> Iterator[None]:
+def _termination_as_interrupt() -> Iterator[None]:
     def end(*_: object) -> None:
         raise _Terminated
 

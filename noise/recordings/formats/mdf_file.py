@@ -16,7 +16,7 @@ from noise.recordings.formats.bounded import BoundedFile
 from noise.recordings.formats.logged import LoggedChannel, is_ours, raw_samples, refusing
 from noise.recordings.formats.mdf_blocks import COMMENT_LINK, check_mdf_blocks
 from noise.recordings.formats.mdf_comment import comment_properties
-from noise.recordings.sampling import even_rate
+from noise.recordings.formats.sampling import even_rate
 
 if TYPE_CHECKING:
     from pathlib import Path
