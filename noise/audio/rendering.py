@@ -1,7 +1,8 @@
 """Audio files of a set of recordings, whose gains belong together.
 
-It takes two passes: first every sound is measured, then the gain is chosen that suits them all, then each
-is written. What is kept between is a few numbers a sound, so that a set may be larger than memory.
+It takes two passes: first every sound is measured, then the gain is chosen that suits them all,
+then each is written. What is kept between is a few numbers a sound, so that a set may be larger
+than memory.
 """
 
 from __future__ import annotations
