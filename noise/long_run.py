@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.recordings.block_writer import write_blocks
+from noise.recordings.writing import write_blocks
 
 if TYPE_CHECKING:
     import os

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.base.progress import note, say
+from noise.base.user_effects import effect_library
 from noise.commands import options as opt
-from noise.commands.user_effects import effect_library
 
 if TYPE_CHECKING:
     from argparse import Namespace

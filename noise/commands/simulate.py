@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.atomic import check_target
 from noise.commands import options as opt
 from noise.commands.operating import is_long, run_arguments
-from noise.commands.targets import check_target
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from noise.long_run import write_run
 from noise.recordings import read_recording
-from noise.recordings.block_writer import write_blocks
+from noise.recordings.writing import write_blocks
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
 from sim.motion import motion_blocks, simulate_motion
