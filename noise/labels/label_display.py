@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from noise.classifier.model import LABELS
+from noise.base.label_names import LABELS
 
 __all__ = ["DARK_LABELS", "LABEL_COLOURS", "LABEL_LOOKS", "Look"]
 

@@ -12,7 +12,7 @@ import numpy as np
 from features.registry import KINDS
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
-from noise.classifier.model import LABELS
+from noise.base.label_names import LABELS
 from noise.labels.boundaries import change_points
 from noise.labels.frequencies import segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.classifier import LABELS
-from noise.inference import load_inference
-from noise.inference.segments import infer_stretch
+from noise.base.label_names import LABELS
+from noise.inference import infer_stretch, load_inference
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
