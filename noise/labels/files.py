@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.batch import find_jobs, perform_all
 from noise.labels.labelling import Labelling
-from noise.labels.table_display import LabelTable
+from noise.labels.table import LabelTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

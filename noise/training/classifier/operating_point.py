@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from noise.classifier.model import Calibration
-from noise.labels.viterbi import named_course
+from noise.labels.segmentation import labelled_stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -93,7 +93,7 @@ def file_name(p: NDArray[np.float64], none: int) -> int:
     >>> file_name(np.array([[0.9, 0.0, 0.1]] * 4 + [[0.0, 0.9, 0.1]] * 8), none=1)
     0
     """
-    edges, names = named_course(p)
+    edges, names = labelled_stretches(p)
     length = np.where(names == none, 0, np.diff(edges))
     return int(names[length.argmax()])
 
