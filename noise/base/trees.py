@@ -12,7 +12,6 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numba import njit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,8 +23,8 @@ __all__ = ["LEAF", "BoostedTrees", "QuantileForest", "Trees"]
 LEAF = -1
 """Stands for the feature of a node that asks for none."""
 
-_ROWS_AT_ONCE = 1024
-"""Samples whose leaves are held in memory."""
+_ROWS_AT_ONCE = 32
+"""Samples that are led to their leaves together: so many that they stay in the cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,17 +91,29 @@ class Trees:
         ndarray of int32, shape (n, n_trees)
             Nodes.
         """
-        found = np.empty((len(x), len(self.roots)), dtype=np.int32)
-        _descend(
-            np.ascontiguousarray(x, dtype=np.float64),
-            self.roots,
-            self.feature,
-            self.threshold,
-            self.children,
-            self.missing_left,
-            found,
-        )
+        found = np.tile(self.roots, (len(x), 1))
+        for first in range(0, len(x), _ROWS_AT_ONCE):
+            part = slice(first, first + _ROWS_AT_ONCE)
+            self._descend(x[part], found[part].reshape(-1))
         return found
+
+    def _descend(self, x: NDArray[np.floating[Any]], node: NDArray[np.int32]) -> None:
+        """Lead from the roots to the leaves, in place; row by row, tree by tree."""
+        way = np.arange(node.size)
+        start = way // len(self.roots) * x.shape[1]
+        values, children = x.reshape(-1), self.children.reshape(-1)
+        while way.size:
+            at = node.take(way)
+            feature = self.feature.take(at)
+            inner = np.flatnonzero(feature != LEAF)
+            if inner.size < way.size:
+                way, start = way.take(inner), start.take(inner)
+                at, feature = at.take(inner), feature.take(inner)
+            value = values.take(start + feature)
+            right = np.where(
+                np.isnan(value), ~self.missing_left.take(at), value > self.threshold.take(at)
+            )
+            node[way] = children.take(2 * at + right)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,15 +255,3 @@ class QuantileForest(Trees):
             raise ValueError("its leaves and their values do not fit together")
         left = np.arange(1, len(following) + 1, dtype=np.int32)
         return cls(children=np.stack([left, following], axis=1), **kept)
-
-
-@njit(cache=True, error_model="numpy")
-def _descend(x, roots, feature, threshold, children, missing_left, found):
-    for i in range(x.shape[0]):
-        for tree in range(len(roots)):
-            node = roots[tree]
-            while feature[node] >= 0:
-                v = x[i, feature[node]]
-                left = missing_left[node] if np.isnan(v) else v <= threshold[node]
-                node = children[node, 0] if left else children[node, 1]
-            found[i, tree] = node
