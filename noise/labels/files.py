@@ -10,7 +10,7 @@ from models.errors import ParameterError
 from noise.base.tables import check_table_path
 from noise.batch import find_jobs, open_journal, perform_all
 from noise.labels.labelling import Labelling
-from noise.labels.table_display import LabelTable
+from noise.labels.table import LabelTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

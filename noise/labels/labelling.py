@@ -53,7 +53,7 @@ class Labelling:
         return COLUMNS
 
     def prepare(self) -> None:
-        """Load the classifier, and what infers conditions."""
+        """Load the classifier and, where the user names one, what infers conditions."""
         _ = self._loaded, self._inference
 
     def identity(self) -> dict[str, str | float | None]:
@@ -78,8 +78,9 @@ class Labelling:
         return load_classifier(self.classifier)
 
     @cached_property
-    def _inference(self) -> Inference:
-        return load_inference(self.inference)
+    def _inference(self) -> Inference | None:
+        # The shipped one is loaded by the first noise whose condition is not logged.
+        return None if self.inference is None else load_inference(self.inference)
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the loaded models here: elsewhere they are loaded again."""

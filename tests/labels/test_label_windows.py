@@ -7,9 +7,8 @@ from scipy.signal import resample_poly
 
 from features.windows.table import WINDOW_NAMES, window_count
 from models.recording import Channel, Recording
-from noise.labels.boundaries import change_points
 from noise.labels.levels import CellLevels
-from noise.labels.viterbi import likeliest_course
+from noise.labels.segmentation import change_points, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import blocks as blocks_module
 from noise.recordings.blocks import RecordingBlocks, open_blocks
@@ -124,8 +123,8 @@ def test_the_change_from_noise_to_tone_is_found_to_50_ms(at):
 def test_a_short_doubt_is_no_segment_but_a_long_one_is():
     sure, other = [0.9, 0.1], [0.1, 0.9]
     doubt = [0.45, 0.55]
-    assert not likeliest_course(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
-    course = likeliest_course(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
+    assert not viterbi_path(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
+    course = viterbi_path(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
     assert course.tolist() == [0] * 4 + [1] * 4 + [0] * 4
 
 
