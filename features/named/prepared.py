@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from features.kernels.conditioning import (
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.modulation import Modulation, modulation
+from features.kernels.short_time import ShortTime, short_time
 from features.kernels.slip_drops import TorqueSlips, torque_slips
 from features.kernels.slip_pulses import (
     Pulses,
@@ -38,7 +39,6 @@ from features.kernels.slip_pulses import (
     squared,
 )
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
-from features.kernels.time_course import TimeCourse, time_course
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -58,6 +58,21 @@ _LEAST_IN_BAND = 1e-5
 
 _LEVEL_RESOLUTION = 25.0
 """Spacing of the bins from which the weighted level is summed [Hz]."""
+
+
+class TopBand(NamedTuple):
+    """A band above the common limit; NaN where the rate does not reach it.
+
+    Parameters
+    ----------
+    level : float
+        Re the band that is described [dB].
+    kurtosis : float
+        [-]; NaN also where the band holds nothing.
+    """
+
+    level: float
+    kurtosis: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,10 +181,10 @@ class Prepared:
         return spectral_shape(self.spectrum, low=self.low, high=self.limit)
 
     @cached_property
-    def course(self) -> TimeCourse:
-        """How it changes with time."""
+    def short_time(self) -> ShortTime:
+        """Tones and levels of its short segments, and how they change from one to the next."""
         x, rate = self.in_band
-        return time_course(x, rate, low=self.low, high=self.limit)
+        return short_time(x, rate, low=self.low, high=self.limit)
 
     @cached_property
     def analytic(self) -> tuple[NDArray[np.complex128], float]:
@@ -190,7 +205,7 @@ class Prepared:
         return modulation(np.sqrt(squared(analytic)), rate)
 
     @cached_property
-    def torque_slips(self) -> TorqueSlips:
+    def slips(self) -> TorqueSlips:
         """Slips of a torque, in its own unit."""
         return torque_slips(self.samples, self.rate)
 
@@ -225,17 +240,17 @@ class Prepared:
         return relative_db(float(part), float(whole))
 
     @cached_property
-    def top_bands(self) -> tuple[tuple[float, float], ...]:
-        """Level of each top band re the band described [dB], and its kurtosis; or NaN."""
+    def top_bands(self) -> tuple[TopBand, ...]:
+        """Of `TOP_BANDS`."""
         return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
 
-    def _top_band(self, low: float, high: float) -> tuple[float, float]:
+    def _top_band(self, low: float, high: float) -> TopBand:
         if high > usable_limit(self.rate):
-            return math.nan, math.nan
+            return TopBand(math.nan, math.nan)
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)
         level = relative_db(0.5 * float(power.mean()), self.in_band_power)
-        return level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan
+        return TopBand(level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan)
 
 
 LEAST_SHARE_DB = -80.0
