@@ -25,7 +25,14 @@ if TYPE_CHECKING:
 
     from features.kernels.conditioning import Transform
 
-__all__ = ["DEFAULT_RESOLUTION", "SpectralShape", "Spectrum", "autospectrum", "spectral_shape"]
+__all__ = [
+    "DEFAULT_RESOLUTION",
+    "SpectralShape",
+    "Spectrum",
+    "autospectrum",
+    "segment_spectra",
+    "spectral_shape",
+]
 
 DEFAULT_RESOLUTION = 4.0
 """Spacing of the bins [Hz] where nothing else is asked: a quarter of a second a segment."""
@@ -228,12 +235,57 @@ def segment_powers(
     starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
     segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
     window = _hann(length)
-    windowed = segments - segments.mean(axis=1, keepdims=True)
-    windowed *= window
-    bins = fft.rfft(windowed, transform_length or length, axis=1)
+    bins = _windowed_transforms(segments, window, transform_length or length)
     power = bins.real**2
     power += bins.imag**2
     return power, window
+
+
+def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
+    """Complex spectra of segments that overlap by half; samples that fill no segment are left out.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+    length : int
+        Samples of a segment.
+
+    Returns
+    -------
+    ndarray of complex, shape (n_segments, length // 2 + 1)
+        Each of its own mean removed; their mean square is the signal's, summed over both sides
+        [unit].
+
+    Notes
+    -----
+    Segments and window differ from those of `segment_powers` in the last bits, and in where the
+    segments begin, which the models of the diagnosis have learned with.
+
+    Examples
+    --------
+    >>> segment_spectra(np.ones(1024), 256).shape
+    (7, 129)
+    """
+    segments = np.lib.stride_tricks.sliding_window_view(x, length)[:: length // 2]
+    return _windowed_transforms(segments, _unit_hann(length), length)
+
+
+def _windowed_transforms(
+    segments: NDArray[np.float64], window: NDArray[np.float64], length: int
+) -> NDArray[np.complex128]:
+    """Transform the rows, each about its mean, windowed and filled up to `length`."""
+    windowed = segments - segments.mean(axis=1, keepdims=True)
+    windowed *= window
+    return np.asarray(fft.rfft(windowed, length, axis=1))
+
+
+@lru_cache(maxsize=8)
+def _unit_hann(length: int) -> NDArray[np.float64]:
+    """Hann window of unit energy."""
+    window = 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, length + 1)[:-1])
+    window /= math.sqrt(float((window**2).sum()))
+    window.setflags(write=False)
+    return np.asarray(window)
 
 
 @lru_cache(maxsize=16)

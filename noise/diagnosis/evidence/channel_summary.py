@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from noise.diagnosis.evidence.path_summary import segments
+from features.kernels.spectra import segment_spectra
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -59,7 +59,7 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
         "dwell_bottom": _dwell(low),
         "offset": mean / spread,
     }
-    power = np.percentile(np.abs(segments(x, 1024)) ** 2, 10, axis=0)
+    power = np.percentile(np.abs(segment_spectra(x, 1024)) ** 2, 10, axis=0)
     frequency = np.fft.rfftfreq(1024, 1.0 / rate)
     for i, (first, last) in enumerate(_FLOOR_BANDS):
         inside = (frequency > first) & (frequency < last)
