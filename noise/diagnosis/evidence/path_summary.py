@@ -74,7 +74,7 @@ def path_summary(
     left = (np.abs(of_m - of_p) ** 2).mean(axis=0)
     numbers = _by_band(pp, mm, pm, left, rate)
     numbers |= _transfer(frequency, pp, mm, pm, rate)
-    numbers |= _course(p, m, residual)
+    numbers |= _by_time(p, m, residual)
     numbers |= _blows(residual, rate, slips - ends.start / rate)
     return numbers, residual
 
@@ -178,7 +178,7 @@ def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
     }
 
 
-def _course(
+def _by_time(
     p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
 ) -> Numbers:
     quarter = residual.size // 4
