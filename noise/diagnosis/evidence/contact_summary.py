@@ -1,4 +1,4 @@
-"""What the contact did, in numbers that no phase enters: stick, slips, cycles, the torque as such.
+"""Contact in numbers that no phase enters: stick, slips, cycles, the torque as such.
 
 All come from a `Reconstruction` and are relative to what the rig file says of the condition, so
 that a rig as its file describes it has much the same numbers whatever its fit and speed:
@@ -49,7 +49,20 @@ _NEAR_PEAK = 6e-4
 
 
 def slip_starts(found: Reconstruction, speed: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the samples at which the surface begins to slip, and at which it is caught again."""
+    """Find the slips of a contact.
+
+    Parameters
+    ----------
+    found : Reconstruction
+    speed : float
+        Of the shaft, as set [rad/s].
+
+    Returns
+    -------
+    starts, ends : ndarray of int, shape (n_slips,)
+        Samples of the reconstruction at which the surface begins to slip, and at which it is caught
+        again.
+    """
     wanted = abs(speed)
     return slip_intervals(
         found.sliding_speed,
@@ -73,7 +86,9 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
     Returns
     -------
     dict of str to float
-        NaN, or missing, where a recording does not show it.
+        Torques over the file's critical or kinetic one and speeds over the shaft's [-], speeds
+        within a slip [rad/s]; times and rates as logarithms of seconds and 1/s. NaN, or missing,
+        where a recording does not show it.
     """
     starts, ends = slip_starts(found, speed)
     n = found.torque.size

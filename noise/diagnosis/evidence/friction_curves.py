@@ -1,4 +1,4 @@
-"""The friction torque rebuilt from a recording, over what it may depend on, with its uncertainty.
+"""Friction torque of a recording drawn over what it may depend on, with its uncertainty.
 
 While the surface slips the torque is drawn over the sliding speed; the torque at which each slip
 begins over the time for which the surface had stuck, over time and over the shaft's angle. Bins

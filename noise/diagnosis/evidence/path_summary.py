@@ -1,8 +1,8 @@
-"""How a channel compares with what the torque should have made of it, in numbers.
+"""Differences of a channel from what the torque should have made of it, in numbers.
 
-The torque that was measured is sent through the way that the rig file has, so that nothing the
-contact does enters: gain, delay and coherence by band, the shape of what the channel has too much,
-when it comes, and how it decays.
+The torque that was measured is sent through the transfer function that the rig file has, so that
+nothing the contact does enters: gain, delay and coherence by band, the shape of what the channel
+has too much, when it comes, and how it decays.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _ECHO = (6e-4, 2e-2)
 """In which echoes are looked for, after what is direct [s]."""
 
 _SHORT = 256
-"""Samples of a short segment, in which blows are told from what lasts."""
+"""Samples of a short segment, in which impacts are told from what lasts."""
 
 _CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
 
@@ -53,16 +53,19 @@ def path_summary(
     Parameters
     ----------
     predicted, measured : ndarray, shape (n,)
+        In the channel's unit.
     rate : float
-        [Hz]
+        Sampling rate [Hz].
     slips : ndarray, shape (n_slips,)
         Times at which the contact begins to slip [s].
 
     Returns
     -------
-    dict of str to float
-    residual : ndarray
-        Measured less predicted, without its ends.
+    numbers : dict of str to float
+        By name, those of a band with its number; ratios and coherences as logarithms [-], ``delay``
+        in microseconds, ``*_at`` as logarithms of seconds or hertz.
+    residual : ndarray, shape (n_kept,)
+        Measured less predicted, without its ends, in the channel's unit.
     """
     ends = slice(int(_LEAD * rate), predicted.size - int(_TAIL * rate))
     p, m = predicted[ends], measured[ends]
@@ -75,12 +78,25 @@ def path_summary(
     numbers = _by_band(pp, mm, pm, left, rate)
     numbers |= _transfer(frequency, pp, mm, pm, rate)
     numbers |= _by_time(p, m, residual)
-    numbers |= _blows(residual, rate, slips - ends.start / rate)
+    numbers |= _impacts(residual, rate, slips - ends.start / rate)
     return numbers, residual
 
 
 def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: float) -> Numbers:
-    """Coherence, by band, of what two channels have too much."""
+    """Coherence, by band, of what two channels have too much.
+
+    Parameters
+    ----------
+    one, other : ndarray, shape (n,)
+        Residuals as `path_summary` gives them, each in its unit.
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    dict of str to float
+        Logarithms of coherences [-].
+    """
     size = 2048
     x, y = segment_spectra(one, size), segment_spectra(other, size)
     frequency = np.asarray(np.fft.rfftfreq(size, 1.0 / rate), np.float64)
@@ -121,7 +137,7 @@ def _transfer(
     pm: NDArray[np.complex128],
     rate: float,
 ) -> Numbers:
-    """Gain, tilt, delay and decay of the way from predicted to measured."""
+    """Gain, tilt, delay and decay of the transfer function from predicted to measured."""
     inside = (frequency > _REFERENCE_BAND[0]) & (frequency < _REFERENCE_BAND[1])
     h = pm[inside] / np.maximum(pp[inside], 1e-30)
     coherence = np.abs(pm[inside]) ** 2 / (pp[inside] * mm[inside] + 1e-30)
@@ -181,6 +197,7 @@ def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
 def _by_time(
     p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
 ) -> Numbers:
+    """Size and drift of the residual over the quarters of a recording."""
     quarter = residual.size // 4
 
     def quarters(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -197,7 +214,8 @@ def _by_time(
     }
 
 
-def _blows(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float64]) -> Numbers:
+def _impacts(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float64]) -> Numbers:
+    """Level of the residual in short segments above and below 2.5 kHz, and after slips."""
     power = np.abs(segment_spectra(residual, _SHORT)) ** 2
     frequency = np.fft.rfftfreq(_SHORT, 1.0 / rate)
     high = power[:, (frequency > 2500.0) & (frequency < min(12e3, USABLE * rate))].sum(axis=1)
