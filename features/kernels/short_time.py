@@ -1,4 +1,4 @@
-"""How a noise changes from one moment to the next: its bands, its level, its strongest tone.
+"""Short-time analysis of a noise: its strongest tone, its bands and its level, as they change.
 
 A squeal is one tone that stays, a bark or a crow is tones that move, a creak is neither: that is
 seen in short segments, not in an average over the block. The segments last 64 ms, of which the
@@ -16,7 +16,7 @@ import numpy as np
 from scipy import ndimage
 
 from features.kernels.periodicity import track_periods
-from features.kernels.spectra import segment_powers
+from features.kernels.segments import segment_powers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import fft
 
 from features.kernels.conditioning import checked_signal
+from features.kernels.segments import segment_powers
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -25,23 +25,13 @@ if TYPE_CHECKING:
 
     from features.kernels.conditioning import Transform
 
-__all__ = [
-    "DEFAULT_RESOLUTION",
-    "SpectralShape",
-    "Spectrum",
-    "autospectrum",
-    "segment_spectra",
-    "spectral_shape",
-]
+__all__ = ["DEFAULT_RESOLUTION", "SpectralShape", "Spectrum", "autospectrum", "spectral_shape"]
 
 DEFAULT_RESOLUTION = 4.0
 """Spacing of the bins [Hz] where nothing else is asked: a quarter of a second a segment."""
 
 _ROLL_OFF = 0.85
 _HANN_NOISE_BANDWIDTH = 1.5
-_OVERLAP_SLACK = 0.02
-"""Segments that a signal may lack for an overlap of half: no further one for a few samples."""
-
 _FLATNESS_FLOOR = 1e-12
 
 _FADE_ENERGY = 0.375
@@ -204,96 +194,6 @@ def whole_spectrum(transform: Transform) -> Spectrum:
     spacing = transform.rate / transform.length
     frequency = np.arange(density.size, dtype=np.float64) * spacing
     return Spectrum(frequency, density, transform.rate, 1)
-
-
-def segment_powers(
-    x: NDArray[np.float64], length: int, *, transform_length: int | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Squared magnitudes of the transforms of Hann-windowed segments spread over a signal.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n_samples,)
-    length : int
-        Samples a segment, at most `n_samples`.
-    transform_length : int, optional
-        Zeros fill each segment up to it.
-
-    Returns
-    -------
-    power : ndarray, shape (n_segments, n_bins)
-    window : ndarray, shape (length,)
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> power, window = segment_powers(np.zeros(1000), 256)
-    >>> power.shape
-    (7, 129)
-    """
-    n_segments = 1 + math.ceil((x.size - length) / (length / 2) - _OVERLAP_SLACK)
-    starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
-    segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
-    window = _hann(length)
-    bins = _windowed_transforms(segments, window, transform_length or length)
-    power = bins.real**2
-    power += bins.imag**2
-    return power, window
-
-
-def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
-    """Complex spectra of segments that overlap by half; samples that fill no segment are left out.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n_samples,)
-    length : int
-        Samples of a segment.
-
-    Returns
-    -------
-    ndarray of complex, shape (n_segments, length // 2 + 1)
-        Each of its own mean removed; their mean square is the signal's, summed over both sides
-        [unit].
-
-    Notes
-    -----
-    Segments and window differ from those of `segment_powers` in the last bits, and in where the
-    segments begin, which the models of the diagnosis have learned with.
-
-    Examples
-    --------
-    >>> segment_spectra(np.ones(1024), 256).shape
-    (7, 129)
-    """
-    segments = np.lib.stride_tricks.sliding_window_view(x, length)[:: length // 2]
-    return _windowed_transforms(segments, _unit_hann(length), length)
-
-
-def _windowed_transforms(
-    segments: NDArray[np.float64], window: NDArray[np.float64], length: int
-) -> NDArray[np.complex128]:
-    """Transform the rows, each about its mean, windowed and filled up to `length`."""
-    windowed = segments - segments.mean(axis=1, keepdims=True)
-    windowed *= window
-    return np.asarray(fft.rfft(windowed, length, axis=1))
-
-
-@lru_cache(maxsize=8)
-def _unit_hann(length: int) -> NDArray[np.float64]:
-    """Hann window of unit energy."""
-    window = 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, length + 1)[:-1])
-    window /= math.sqrt(float((window**2).sum()))
-    window.setflags(write=False)
-    return np.asarray(window)
-
-
-@lru_cache(maxsize=16)
-def _hann(length: int) -> NDArray[np.float64]:
-    """Hann window; the same few lengths come again and again."""
-    window = np.sin(np.pi * np.arange(length) / length) ** 2
-    window.setflags(write=False)
-    return window
 
 
 def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralShape:

@@ -15,8 +15,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from features.kernels.bands import NOMINAL_THIRD_OCTAVES, REFERENCES
+from features.kernels.levels import LEAST_SHARE_DB
 from features.named.feature import THESIS_NOISES, THIS, Feature
-from features.named.prepared import LEAST_SHARE_DB
 
 if TYPE_CHECKING:
     from features.named.prepared import Prepared

@@ -27,6 +27,7 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.levels import LEAST_SHARE_DB, relative_db
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.modulation import Modulation, modulation
 from features.kernels.short_time import ShortTime, short_time
@@ -251,21 +252,6 @@ class Prepared:
         power = squared(top)
         level = relative_db(0.5 * float(power.mean()), self.in_band_power)
         return TopBand(level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan)
-
-
-LEAST_SHARE_DB = -80.0
-"""Lowest relative level that is told from nothing [dB]."""
-
-
-def relative_db(part: float, whole: float) -> float:
-    """Level of a part relative to a whole [dB], at least -80 dB.
-
-    Examples
-    --------
-    >>> relative_db(0.5, 5.0), relative_db(0.0, 1.0)
-    (-10.0, -80.0)
-    """
-    return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))
 
 
 def prepare(

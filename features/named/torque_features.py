@@ -14,8 +14,8 @@ import numpy as np
 
 from features.kernels.bands import band_power
 from features.kernels.conditioning import usable_limit
+from features.kernels.levels import relative_db
 from features.named.feature import THESIS_STICK_SLIP, THIS, Feature
-from features.named.prepared import relative_db
 from features.named.spectral_features import HARMONIC_FEATURES, LINE_FEATURES
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from features.kernels.spectra import segment_spectra
+from features.kernels.segments import segment_spectra
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

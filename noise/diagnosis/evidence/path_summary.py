@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, rfft
 
-from features.kernels.spectra import segment_spectra
+from features.kernels.segments import segment_spectra
 from noise.diagnosis.evidence.bands import USABLE, band_bins, segment_frequency
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.spectra import segment_spectra
+from features.kernels.segments import segment_spectra
 from noise.diagnosis.evidence.bands import band_bins, segment_frequency
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
