@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from noise.classifier import Classifier
     from noise.inference import Inference
 
-__all__ = ["Labelling"]
+__all__ = ["Labelling", "names_no_channels"]
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Labelling:
         """Return the rows of a recording, and whether it is calibrated."""
         with open_blocks(path, full_scale=self.full_scale) as blocks:
             recording = blocks or read_recording(path, full_scale=self.full_scale)
-            segments = label_recording(recording, self._loaded, per_track=_names_no_channels(path))
+            segments = label_recording(recording, self._loaded, per_track=names_no_channels(path))
             rows = label_rows(name, recording, segments, self._inference)
             return rows, recording.calibrated
 
@@ -91,7 +91,7 @@ class Labelling:
         }
 
 
-def _names_no_channels(path: Path) -> bool:
+def names_no_channels(path: Path) -> bool:
     """Whether it is a plain sound file, whose tracks stand for themselves."""
     sidecar = find_sidecar(path)
     return sidecar is None or read_sidecar(sidecar).channels is None

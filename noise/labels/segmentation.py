@@ -123,7 +123,7 @@ def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDA
     Parameters
     ----------
     frames : ndarray of float32, shape (n_frames, n_columns)
-        As `features.windows.table.Page` has them.
+        As `features.windows.table.WindowTable` has them.
     changes : ndarray of int, shape (n_changes,)
         Window after which each change is; rising.
 

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.registry import KINDS
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
 from noise.base.label_names import LABELS
 from noise.labels.frequencies import segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
 from noise.labels.segmentation import change_points, labelled_stretches
-from noise.labels.windows import FEATURE_NAMES, describe
+from noise.labels.windows import FEATURE_NAMES, can_be_described, describe, tracks
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
@@ -39,9 +38,6 @@ _SILENT_LEVEL_DBFS = -90.0
 
 _SURELY = 6.0
 """What is louder than silence by so much in its described part needs no second look [dB]."""
-
-_LEAST_RATE = 1000.0
-"""A recording sampled more slowly shows nothing of a noise [Hz]."""
 
 
 @dataclass(frozen=True)
@@ -149,14 +145,8 @@ def label_recording(
     >>> [segment.label for segment in label_recording(silent, load_classifier())]
     ['none']
     """
-    blocks = RecordingBlocks.of(recording)
-    if per_track and len(blocks.channels) > 1:
-        return Segments(
-            segment
-            for row in range(len(blocks.channels))
-            for segment in _label(blocks.track(row), classifier, str(row + 1))
-        )
-    return Segments(_label(blocks, classifier, "all"))
+    found = tracks(RecordingBlocks.of(recording), per_track=per_track)
+    return Segments(seg for name, track in found for seg in _label(track, classifier, name))
 
 
 def file_label(segments: list[Segment]) -> Segment:
@@ -183,7 +173,7 @@ def file_label(segments: list[Segment]) -> Segment:
 
 
 def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
-    if blocks.rate < _LEAST_RATE or all(blocks.first(kind) is None for kind in KINDS):
+    if not can_be_described(blocks):
         return [_nothing_to_tell(blocks, channel)]
     found = describe(blocks)
     columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
