@@ -43,9 +43,8 @@ from .kernels.spectra import (
 )
 from .modal.hammer import (
     Hit as Hit,
-    TransferEstimate as TransferEstimate,
     check_hit as check_hit,
-    transfer_estimate as transfer_estimate,
+    estimate_transfer_function as estimate_transfer_function,
 )
 from .modal.modal_fit import (
     fit_modes as fit_modes,

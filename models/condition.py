@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 from models.errors import ParameterError
 
-__all__ = ["FIXED", "Condition", "KnownCondition", "known_condition"]
+__all__ = ["FIXED", "Condition", "KnownCondition", "known_condition", "same_support"]
 
 FIXED = math.inf
 """Support stiffness of the clamp bolted to the baseplate [Nm/rad]."""
+
+_SAME = 1e-3  # relative difference
 
 
 @dataclass(frozen=True)
@@ -129,3 +131,14 @@ def known_condition(condition: Condition) -> KnownCondition:
             f"the condition states no {missing}; a run needs speed, interference and support"
         )
     return KnownCondition(speed, interference, support, condition.material, condition.temperature)
+
+
+def same_support(one: float, other: float) -> bool:
+    """Whether two support stiffnesses [Nm/rad] are the same, to a tenth of a percent.
+
+    Examples
+    --------
+    >>> same_support(2214.0, 2215.0), same_support(2214.0, FIXED), same_support(FIXED, FIXED)
+    (True, False, True)
+    """
+    return math.isclose(one, other, rel_tol=_SAME)

@@ -1,4 +1,4 @@
-"""How curves are drawn: style, colours, frequency axes, and how much of a curve is drawn.
+"""Drawing of curves: style, colours, frequency axes, and the thinning of long curves.
 
 A curve is thinned to what the paper can show, the lowest and the highest point of each column, so
 that an hour costs no more than a second and no peak is lost. An axis spans no less than what a
@@ -108,7 +108,15 @@ _SMALLEST = 1e-60  # stands for a density of zero
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Make figures in the style of this project, leaving the caller's as it is."""
+    """Make figures in the style of this project, leaving the caller's as it is.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> with styled():
+    ...     matplotlib.rcParams["axes.spines.top"]
+    False
+    """
     import matplotlib.style
 
     with matplotlib.style.context(["default", STYLE]):
@@ -201,7 +209,16 @@ def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64
 
 
 def frequency_axis(axes: Axes, low: float, high: float) -> None:
-    """Make the horizontal axis one of frequency, logarithmic from `low` to `high` [Hz]."""
+    """Make the horizontal axis one of frequency, logarithmic from `low` to `high` [Hz].
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> axes = Figure().subplots()
+    >>> frequency_axis(axes, 100.0, 1000.0)
+    >>> axes.get_xticks().tolist()
+    [100.0, 200.0, 500.0, 1000.0]
+    """
     from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
     axes.set_xscale("log")

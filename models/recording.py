@@ -43,8 +43,8 @@ class Channel:
     direction : tuple of 3 floats, optional
         Unit vector along which it measures.
     full_scale : float
-        Value of the channel, in its unit, at digital full scale of the file it came from; the
-        reference of levels in dBFS.
+        Value of the channel, in its unit, at digital full scale of the file it came from
+        [the channel's unit]; the reference of levels in dBFS.
 
     Examples
     --------

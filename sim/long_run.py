@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.condition import Condition
-    from models.radiation.rig_response import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.recording import Channel
     from models.rig import Rig
     from sim.effects.effect import ActiveEffect, Effect
@@ -199,7 +199,9 @@ def _with_force(
 
 
 def _signals(
-    blocks: Iterator[tuple[Motion, NDArray[np.float64] | None]], paths: Response, n_settling: int
+    blocks: Iterator[tuple[Motion, NDArray[np.float64] | None]],
+    paths: ImpulseResponses,
+    n_settling: int,
 ) -> Iterator[tuple[dict[str, NDArray[np.float64]], float]]:
     """Signals of each block as the sensors see them, and the angle where the recording starts."""
     by_torque = Convolution([paths.torque_to_acceleration, paths.torque_to_pressure])

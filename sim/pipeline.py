@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Rig
     from sim.effects.effect import ActiveEffect, Signals
     from sim.motion import Motion
@@ -138,13 +138,15 @@ def pulse_force(motion: Motion, effects: Sequence[ActiveEffect]) -> NDArray[np.f
     return force
 
 
-def radiate_motion(motion: Motion, paths: Response, effects: Sequence[ActiveEffect] = ()) -> Sound:
+def radiate_motion(
+    motion: Motion, paths: ImpulseResponses, effects: Sequence[ActiveEffect] = ()
+) -> Sound:
     """Send torque and pulses of a motion through structure and plate.
 
     Parameters
     ----------
     motion : Motion
-    paths : Response
+    paths : ImpulseResponses
         At the motion's rate, as effects have changed them.
     effects : sequence of ActiveEffect
         Of which some make pulses.

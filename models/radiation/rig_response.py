@@ -1,4 +1,4 @@
-"""From the torque in the bushing to what accelerometer and microphone record.
+"""The impulse responses of a rig: from torque to accelerometer and microphone.
 
 A chain of linear parts, put together once into four impulse responses: clamp and beams carry the
 torque to their anchors (`models.structure.beams`), the anchors drive the plate, and the plate
@@ -23,13 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.radiation.impulse_responses import (
-    FrequencyResponse,
-    Response,
-    convolve,
-    frequency_response,
-    radiate,
-)
+from models.radiation.impulse_responses import ImpulseResponses
 from models.rig import HIGHEST_PLATE_FREQUENCY, Beams, Microphone, Plate, Rig, damping_at
 from models.structure.beams import (
     ACCELERATION,
@@ -46,6 +40,7 @@ from models.structure.plate import (
     plate_modes,
     pressure_response,
 )
+from models.transfer_functions.filtering import convolve
 from models.transfer_functions.measured import with_measured
 
 if TYPE_CHECKING:
@@ -53,7 +48,7 @@ if TYPE_CHECKING:
 
     from models.structure.plate import PlateModes
 
-__all__ = ["FrequencyResponse", "Response", "frequency_response", "radiate", "response"]
+__all__ = ["response"]
 
 HIGHEST_BEAM_FREQUENCY = 40e3
 """Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""
@@ -71,7 +66,7 @@ def response(
     support_stiffness: float,
     rate: float,
     seconds: float = 0.7,
-) -> Response:
+) -> ImpulseResponses:
     """Impulse responses of a rig at one operating condition.
 
     The first torsional mode has the damping that the lumped model leaves to the beams,
@@ -90,11 +85,11 @@ def response(
         Sampling rate of torque, pulse and outputs [Hz]. 96 kHz carries all modes; lower ones
         leave out those above 0.45 of the rate and lose accuracy above a quarter of it.
     seconds : float, optional
-        Length of the responses; modes that still ring at their end are faded out.
+        Length of the responses [s]; modes that still ring at their end are faded out.
 
     Returns
     -------
-    Response
+    ImpulseResponses
 
     Raises
     ------
@@ -148,7 +143,7 @@ def _beam_response(
     damping_ratio: float,
     rate: float,
     n_samples: int,
-) -> Response:
+) -> ImpulseResponses:
     arm = beams.lever + beam_length(beams, support_stiffness)
     left, right = plate.clamp_position[0] - arm, plate.clamp_position[0] + arm
     if max(-left, right) >= plate.length / 2:
@@ -202,7 +197,7 @@ def _anchors_to_pressure(
 @lru_cache(maxsize=4)
 def _bolted_response(
     lever: float, plate: Plate, microphone: Microphone, rate: float, n_samples: int
-) -> Response:
+) -> ImpulseResponses:
     modes = _modes(plate, rate)
     x, y = plate.clamp_position
     moment = modes.slope([x], [y]).T
@@ -220,7 +215,7 @@ def _modes(plate: Plate, rate: float) -> PlateModes:
     return plate_modes(plate, min(HIGHEST_PLATE_FREQUENCY, BAND * rate))
 
 
-def _faded(rate: float, *responses: NDArray[np.float64]) -> Response:
+def _faded(rate: float, *responses: NDArray[np.float64]) -> ImpulseResponses:
     n_samples = responses[0].size
     end = round(FADE * n_samples)
     window = np.ones(n_samples)
@@ -228,4 +223,4 @@ def _faded(rate: float, *responses: NDArray[np.float64]) -> Response:
     faded = [window * impulse_response for impulse_response in responses]
     for impulse_response in faded:
         impulse_response.flags.writeable = False  # shared by all that ask for the same rig
-    return Response(rate, *faded)
+    return ImpulseResponses(rate, *faded)

@@ -142,8 +142,8 @@ def waves_at(
     ----------
     wave : ndarray, shape (...), complex
         Wavenumber times length.
-    position : float or ndarray, broadcast with `wave`
-        From 0 at the clamp to 1 at the anchor.
+    position : float or ndarray, shape (...)
+        From 0 at the clamp to 1 at the anchor [-]; broadcast with `wave`.
     derivative : int
 
     Returns

@@ -20,7 +20,13 @@ from scipy.signal import lfilter
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["ModalModel", "acceleration_section", "displacement_section", "ringing_samples"]
+__all__ = [
+    "ModalModel",
+    "acceleration_section",
+    "add_ringing",
+    "displacement_section",
+    "ringing_samples",
+]
 
 DECAY_EXPONENT = 14.0
 """A mode is followed until it has decayed by exp(14), 122 dB."""
@@ -158,6 +164,49 @@ def displacement_section(
     denominator = _poles(frequency, damping_ratio, rate)
     gain = denominator.sum() / (2 * np.pi * frequency) ** 2
     return gain * np.array([1.0, 10.0, 1.0]) / 12, denominator
+
+
+def add_ringing(
+    response: NDArray[np.float64],
+    frequencies: NDArray[np.float64],
+    damping_ratios: NDArray[np.float64],
+    inputs: NDArray[np.float64],
+    taps: NDArray[np.float64],
+    delay: int,
+    rate: float,
+) -> None:
+    """Add what modes radiate, each known for an impulse of its acceleration.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n_inputs, n_samples)
+        What is heard after a unit sample of each input; it is added to.
+    frequencies, damping_ratios : ndarray, shape (n_modes,)
+        [Hz] and [-]
+    inputs : ndarray, shape (n_modes, n_inputs)
+        Modal force for a unit of each input.
+    taps : ndarray, shape (n_taps, n_modes)
+        Filter from the acceleration q'' of each mode to what is heard.
+    delay : int
+        Samples that pass before the first tap.
+    rate : float
+        Sampling rate [Hz].
+
+    Examples
+    --------
+    >>> heard, one = np.zeros((1, 8)), np.ones((1, 1))
+    >>> add_ringing(heard, np.array([100.0]), np.array([0.01]), one, one, 3, 8e3)
+    >>> heard[0, :4].round(2)
+    array([0., 0., 0., 1.])
+    """
+    n_samples = response.shape[1]
+    for r, (frequency, ratio) in enumerate(zip(frequencies, damping_ratios, strict=True)):
+        ringing = taps.shape[0] + ringing_samples(frequency, ratio, rate, n_samples)
+        end = min(delay + ringing, n_samples)
+        excitation = np.zeros(ringing)
+        excitation[: taps.shape[0]] = taps[:, r]
+        heard = lfilter(*acceleration_section(frequency, ratio, rate), excitation)
+        response[:, delay:end] += np.outer(inputs[r], heard[: end - delay])
 
 
 def ringing_samples(frequency: float, damping_ratio: float, rate: float, n_samples: int) -> int:

@@ -18,10 +18,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy.signal import lfilter
 
 from models.radiation.rayleigh import rectangle_integral
-from models.structure.modal import ModalModel, acceleration_section, ringing_samples
+from models.structure.modal import ModalModel, add_ringing
 from models.structure.plate_basis import (
     Basis,
     LegendreBasis,
@@ -248,27 +247,11 @@ def pressure_response(
     for position, weight in microphone.images(modes.plate):
         taps, delay = _mode_taps(modes, position, rate)
         if delay < n_samples:
-            _add_rung(response, modes, drives, weight * taps, delay, rate)
+            add_ringing(
+                response, modes.frequencies, modes.damping_ratios, drives,
+                weight * taps / modes.mass, delay, rate,
+            )  # fmt: skip
     return response
-
-
-def _add_rung(
-    response: NDArray[np.float64],
-    modes: PlateModes,
-    drives: NDArray[np.float64],
-    taps: NDArray[np.float64],
-    delay: int,
-    rate: float,
-) -> None:
-    n_samples = response.shape[1]
-    for r in range(modes.frequencies.size):
-        frequency, ratio = float(modes.frequencies[r]), float(modes.damping_ratios[r])
-        ringing = taps.shape[0] + ringing_samples(frequency, ratio, rate, n_samples)
-        end = min(delay + ringing, n_samples)
-        excitation = np.zeros(ringing)
-        excitation[: taps.shape[0]] = taps[:, r] / modes.mass
-        heard = lfilter(*acceleration_section(frequency, ratio, rate), excitation)
-        response[:, delay:end] += np.outer(drives[r], heard[: end - delay])
 
 
 @lru_cache(maxsize=8)

@@ -1,4 +1,4 @@
-"""Functions that mode shapes of a rectangle are made of, and how they are put together.
+"""The functions that make up the mode shapes of a rectangle, and their products.
 
 A shape is a sum of products, one function of x times one of y. Simply supported plates need one
 product of sines a mode; other edges a sum over Legendre polynomials, which follow both waves and

@@ -76,6 +76,7 @@ def ritz_modes(
     edges : tuple of 4 texts
         At the smallest x, largest x, smallest y, largest y; each a key of `RESTRAINED`.
     poisson_ratio : float
+        [-]
     stiffness_per_mass : float
         D / (rho h), bending stiffness over mass per area [m4/s2].
     highest_frequency : float

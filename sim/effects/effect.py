@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import LawSpec
     from sim.motion import Motion
     from sim.parameters import Parameter
@@ -35,7 +35,9 @@ DriveFunction = Callable[
 ]
 ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
 SensorFunction = Callable[[Signals, float, str, Values, "np.random.Generator"], Signals]
-ChainFunction = Callable[["Response", str, Values, "np.random.Generator"], "Response"]
+ChainFunction = Callable[
+    ["ImpulseResponses", str, Values, "np.random.Generator"], "ImpulseResponses"
+]
 PackFunction = Callable[[str, Values, "np.random.Generator"], "NDArray[np.float64]"]
 
 

@@ -20,7 +20,7 @@ from models.condition import Condition
 from models.errors import ParameterError
 from models.html_table import MOST_ROWS, html_table
 from models.recording import Channel, Recording
-from models.transfer_functions.transfer_function import Frf
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.inference import Inferred, Interval
 from noise.labels import LabelTable, Segment, Segments
 from noise.pictures.conditions import LABEL_COLOURS
@@ -78,7 +78,7 @@ def label_table():
 def frf():
     f = np.linspace(0.0, 200.0, 401)
     response = 1.0 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f)
-    return Frf(f, response, np.where(f < 20.0, 0.2, 0.99), "N m", "m/s^2", "hits")
+    return TransferFunction(f, response, np.where(f < 20.0, 0.2, 0.99), "N m", "m/s^2", "hits")
 
 
 def modes():

@@ -14,7 +14,7 @@ from noise.diagnosis.evidence.channel_summary import (
 )
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.summary import summary
-from noise.diagnosis.simulated.paths import ways
+from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.helpers.small_rigs import RATE, RIG, at, only, run
 
 CONDITION = at(1.0)
@@ -27,7 +27,7 @@ def recording():
 
 @pytest.fixture(scope="module")
 def numbers_of():
-    found = ways(RIG, 0.279e-3, 2214.0)
+    found = torque_transfer_functions(RIG, 0.279e-3, 2214.0)
     return lambda recording: summary(recording, RIG, found)
 
 

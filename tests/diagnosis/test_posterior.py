@@ -208,10 +208,10 @@ def test_fewer_channels_leave_the_numbers_that_a_recording_without_them_has():
 
 def _numbers(recording):
     from noise.diagnosis.evidence.summary import summary
-    from noise.diagnosis.simulated.paths import ways
+    from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
     from tests.helpers.small_rigs import RIG
 
-    found = summary(recording, RIG, ways(RIG, 0.279e-3, 2214.0))
+    found = summary(recording, RIG, torque_transfer_functions(RIG, 0.279e-3, 2214.0))
     return found.keys(), found.values()
 
 

@@ -10,7 +10,6 @@ from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.radiation.impulse_responses import convolve
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.rig_response import response
 from models.rig import Beams, Microphone
@@ -18,6 +17,7 @@ from models.rig_files.rig_file import load_material_rig, load_rig
 from models.structure.beams import PULSE, TORQUE, beam_structure
 from models.structure.beams_sound import beams_pressure, strip_section
 from models.structure.beams_stiffness import beam_length
+from models.transfer_functions.filtering import convolve
 from sim.effects import EFFECTS
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.transfer_functions.files import FRF_ENDINGS, read_frf, write_frf
-from models.transfer_functions.transfer_function import Frf, check_band, trusted_band
+from models.transfer_functions.coherence import check_band, trusted_band
+from models.transfer_functions.files import ENDINGS, read_transfer_function, write_transfer_function
+from models.transfer_functions.transfer_function import TransferFunction
 from models.transfer_functions.uff import (
     TIME_RESPONSE,
     UffFunction,
@@ -18,14 +19,14 @@ H = F**2 * np.exp(1j * F / 30)
 
 
 def read(path):
-    return read_frf(path, input_unit="N m", output_unit="m/s^2")
+    return read_transfer_function(path, input_unit="N m", output_unit="m/s^2")
 
 
-@pytest.mark.parametrize("ending", FRF_ENDINGS)
+@pytest.mark.parametrize("ending", ENDINGS)
 @pytest.mark.parametrize("coherence", [None, np.cos(F / 50) ** 2])
 def test_a_response_is_read_as_it_was_written(tmp_path, ending, coherence):
     path = tmp_path / f"beam{ending}"
-    write_frf(path, Frf(F, H, coherence, "N m", "m/s^2"))
+    write_transfer_function(path, TransferFunction(F, H, coherence, "N m", "m/s^2"))
     back = read(path)
     np.testing.assert_allclose(back.frequency, F, rtol=1e-12)
     np.testing.assert_allclose(back.response, H, atol=1e-10 * np.abs(H).max())
@@ -50,10 +51,10 @@ def test_of_several_functions_the_one_in_the_right_unit_is_read(tmp_path):
     write_uff_functions(
         path, [UffFunction(4, F, k * H, unit, "N m") for k, unit in ((1, "m/s^2"), (2, "Pa"))]
     )
-    sound = read_frf(path, input_unit="N m", output_unit="Pa")
+    sound = read_transfer_function(path, input_unit="N m", output_unit="Pa")
     np.testing.assert_allclose(sound.response[-1], 2 * H[-1])
     with pytest.raises(ParameterError, match="holds 0 frequency response functions in m/s"):
-        read_frf(path, input_unit="N m", output_unit="m/s")
+        read_transfer_function(path, input_unit="N m", output_unit="m/s")
 
 
 def npz(path, **changed):
@@ -110,7 +111,7 @@ def test_a_csv_that_cannot_be_used_is_refused_by_column(tmp_path, text, message)
     assert str(refused.value).startswith(str(path))
 
 
-@pytest.mark.parametrize("ending", FRF_ENDINGS)
+@pytest.mark.parametrize("ending", ENDINGS)
 @pytest.mark.parametrize(
     "content", [b"", b"\x00\xff garbage \n 1,2", b"    -1\n    58\n  bad\n    -1\n"]
 )
@@ -123,7 +124,7 @@ def test_a_damaged_file_is_one_line(tmp_path, ending, content):
     assert "\n" not in str(refused.value)
 
 
-@pytest.mark.parametrize("ending", FRF_ENDINGS)
+@pytest.mark.parametrize("ending", ENDINGS)
 def test_a_missing_file_is_one_line(tmp_path, ending):
     with pytest.raises(ParameterError, match="nowhere"):
         read(tmp_path / f"nowhere{ending}")
@@ -142,12 +143,12 @@ def test_a_missing_library_names_the_command_that_installs_it(tmp_path, monkeypa
 
 def test_single_lines_of_low_coherence_leave_the_band_whole():
     coherence = np.where(np.arange(401) % 9 == 0, 0.0, 0.9)
-    assert trusted_band(Frf(F, H, coherence, "N m", "Pa")) == (F[1], F[-1])
+    assert trusted_band(TransferFunction(F, H, coherence, "N m", "Pa")) == (F[1], F[-1])
 
 
 def test_what_does_not_cohere_does_not_count_towards_the_band():
-    frf = Frf(F, H, np.where(F > 200, 0.1, 0.9), "N m", "Pa", "beam.npz")
+    frf = TransferFunction(F, H, np.where(F > 200, 0.1, 0.9), "N m", "Pa", "beam.npz")
     with pytest.raises(ParameterError, match=r"beam.npz: stops at 20\d.* with a coherence of 0.5"):
         check_band(frf, 10.0, 300.0)
     with pytest.raises(ParameterError, match=r"starts at 0.78125 Hz; it must reach from 0.5"):
-        check_band(Frf(F, H, None, "N m", "Pa"), 0.5, 300.0)
+        check_band(TransferFunction(F, H, None, "N m", "Pa"), 0.5, 300.0)

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.radiation.rig_response import frequency_response, radiate, response
+from models.radiation.impulse_responses import radiate
+from models.radiation.rig_response import response
+from models.rig_files.measured_file import measured_responses
 from models.rig_files.rig_file import load_material_rig, load_rig
-from models.transfer_functions.files import write_frf
-from models.transfer_functions.measured import measured_responses
-from models.transfer_functions.transfer_function import Frf
+from models.transfer_functions.files import write_transfer_function
+from models.transfer_functions.transfer_function import TransferFunction
+from tests.helpers.spectra import path_spectra
 
 FIT = 0.279e-3
 RATE = 48e3
@@ -32,14 +34,16 @@ def modelled():
 def written(folder, text=ENTRY, **kinds):
     """A rig file beside the responses that it names."""
     for name, (values, unit, f) in kinds.items():
-        write_frf(folder / f"{name}.npz", Frf(f, values, None, "N m", unit))
+        write_transfer_function(
+            folder / f"{name}.npz", TransferFunction(f, values, None, "N m", unit)
+        )
     path = folder / "rig.toml"
     path.write_text(text, encoding="utf-8")
     return path
 
 
 def rig_with(folder, modelled, gain=1.0, text=ENTRY, f=F):
-    h = frequency_response(modelled, f)
+    h = path_spectra(modelled, f)
     return load_rig(
         written(
             folder,
@@ -99,7 +103,7 @@ def test_a_response_that_reaches_far_enough_warns_of_nothing(tmp_path, modelled)
 
 
 def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
-    h = frequency_response(modelled, F).torque_to_acceleration.conj()
+    h = path_spectra(modelled, F).torque_to_acceleration.conj()
     rig = load_rig(written(tmp_path, a=(h, "m/s^2", F)))
     with pytest.raises(ParameterError, match=r"a\.npz: \d+ % of the response comes before its cau"):
         response(rig, FIT, 2214.0, RATE, seconds=0.7)

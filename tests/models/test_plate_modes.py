@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.radiation.impulse_responses import frequency_response
 from models.radiation.rig_response import response
 from models.rig_files.rig_file import load_material_rig
 from sim.chain import resonance
 from tests.helpers.chain_paths import RATE, changed, spectra
+from tests.helpers.spectra import path_spectra
 
 RIG = load_material_rig("fluorocarbon")
 
@@ -24,7 +24,7 @@ def plain():
 def test_a_lonely_resonance_adds_6_db_where_it_is_and_nothing_far_away(plain):
     louder = changed(plain, "plate_modes", frequency=2000.0)
     frequency = np.array([200.0, 2000.0, 15e3])
-    before, after = (frequency_response(each, frequency) for each in (plain, louder))
+    before, after = (path_spectra(each, frequency) for each in (plain, louder))
     for path in ("torque_to_pressure", "pulse_to_pressure"):
         gain = 20 * np.log10(np.abs(getattr(after, path) / getattr(before, path)))
         assert gain == pytest.approx([0.0, 6.02, 0.0], abs=0.02)

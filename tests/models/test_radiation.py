@@ -8,11 +8,13 @@ import pytest
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.radiation.rig_response import frequency_response, radiate, response
+from models.radiation.impulse_responses import radiate
+from models.radiation.rig_response import response
 from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
 from models.structure.beams_stiffness import beam_length
 from models.structure.plate import plate_modes, pressure_response
+from tests.helpers.spectra import path_spectra
 
 RATE = 96e3
 BENCH = Rig(
@@ -48,7 +50,7 @@ def _third_octaves(spectrum, frequency):
 @pytest.mark.parametrize("path", ["torque_to_pressure", "pulse_to_pressure"])
 def test_the_rig_answers_over_the_whole_band_to_15_khz(stiffness, path):
     frequency = np.geomspace(200, 16e3, 2000)
-    spectra = frequency_response(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
+    spectra = path_spectra(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
     levels = _third_octaves(getattr(spectra, path), frequency)
     assert levels.min() > levels.max() - 50
 
@@ -73,14 +75,14 @@ def test_torque_reaches_the_microphone_through_both_anchors():
     moment = anchors[ANCHOR_MOMENT - 1]
     right, left, right_turn, left_turn = heard @ kernel
     expected = force * (right - left) + moment * (right_turn + left_turn)
-    found = frequency_response(response(BENCH, SQUEAKY, 2214.0, RATE), frequency)
+    found = path_spectra(response(BENCH, SQUEAKY, 2214.0, RATE), frequency)
     assert np.abs(found.torque_to_pressure / expected) == pytest.approx(1, abs=0.05)
 
 
 @pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
 def test_acceleration_peaks_at_the_first_torsional_mode(stiffness):
     frequency = np.arange(100.0, 600.0, 0.5)
-    spectra = frequency_response(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
+    spectra = path_spectra(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
     peak = frequency[np.argmax(np.abs(spectra.torque_to_acceleration))]
     assert peak == pytest.approx(math.sqrt(stiffness * 1200) / (2 * math.pi), abs=1.5)
 
@@ -89,7 +91,7 @@ def test_damping_of_the_fit_sets_the_height_of_the_first_mode():
     frequency = np.arange(230.0, 290.0, 0.25)
     peaks = [
         np.abs(
-            frequency_response(response(BENCH, fit, 2214.0, RATE), frequency).torque_to_acceleration
+            path_spectra(response(BENCH, fit, 2214.0, RATE), frequency).torque_to_acceleration
         ).max()
         for fit in (SQUEAKY, TIGHT)
     ]
@@ -107,8 +109,8 @@ def test_bolting_the_clamp_down_silences_the_pulses():
 
 def test_the_bolted_clamp_has_no_torsional_mode():
     frequency = np.arange(150.0, 500.0, 1.0)
-    on_beams = frequency_response(response(BENCH, TIGHT, 2214.0, RATE), frequency)
-    bolted = frequency_response(response(BENCH, TIGHT, FIXED, RATE), frequency)
+    on_beams = path_spectra(response(BENCH, TIGHT, 2214.0, RATE), frequency)
+    bolted = path_spectra(response(BENCH, TIGHT, FIXED, RATE), frequency)
     loudest = np.abs(on_beams.torque_to_acceleration).max()
     assert np.abs(bolted.torque_to_acceleration).max() < 0.05 * loudest
     assert np.any(bolted.torque_to_pressure)
@@ -159,8 +161,7 @@ def test_pulses_at_the_rate_of_a_creak_are_heard_from_5_to_15_khz():
 def test_other_rates_give_the_same_response_in_the_common_band():
     frequency = np.geomspace(150, 5e3, 60)
     spectra = [
-        frequency_response(response(BENCH, SQUEAKY, 3745.0, rate), frequency)
-        for rate in (48e3, 96e3)
+        path_spectra(response(BENCH, SQUEAKY, 3745.0, rate), frequency) for rate in (48e3, 96e3)
     ]
     for path in ("torque_to_acceleration", "torque_to_pressure", "pulse_to_pressure"):
         low, high = (getattr(each, path) for each in spectra)
@@ -185,7 +186,7 @@ def test_at_the_same_support_stiffness_yielding_anchors_mean_shorter_beams_that_
     found = []
     for rig in (BENCH, soft):
         paths = response(rig, SQUEAKY, 2214.0, RATE, seconds=0.3)
-        spectrum = np.abs(frequency_response(paths, frequency).torque_to_acceleration)
+        spectrum = np.abs(path_spectra(paths, frequency).torque_to_acceleration)
         inner = spectrum[1:-1]
         peaks = np.flatnonzero((inner > spectrum[:-2]) & (inner > spectrum[2:]))
         found.append(frequency[1 + peaks])

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from models.radiation.impulse_responses import frequency_response
 from models.radiation.rig_response import response
 from models.rig_files.rig_file import load_material_rig
 from tests.helpers.chain_paths import RATE, changed, spectra
+from tests.helpers.spectra import path_spectra
 
 RIG = load_material_rig("fluorocarbon")
 
@@ -22,7 +22,7 @@ def plain():
 def test_a_further_mode_stands_out_in_acceleration_and_sound(plain):
     louder = changed(plain, "beam_modes", constant=20.0)
     frequency = np.array([4500.0])
-    before, after = (frequency_response(each, frequency) for each in (plain, louder))
+    before, after = (path_spectra(each, frequency) for each in (plain, louder))
     added = after.torque_to_acceleration - before.torque_to_acceleration
     assert np.abs(added) == pytest.approx(20.0 / (2 * 0.01), rel=1e-4)
     heard = after.torque_to_pressure - before.torque_to_pressure

@@ -11,10 +11,10 @@ from scipy.signal import resample_poly
 
 from models.condition import FIXED, Condition
 from models.errors import ParameterError
-from models.radiation.impulse_responses import convolve
 from models.recording import Channel
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
+from models.transfer_functions.filtering import convolve
 from noise.long_run import write_run
 from noise.recordings import read_recording
 from noise.recordings.writing import write_blocks
@@ -150,6 +150,7 @@ def test_memory_stays_below_300_MB_and_does_not_grow(tmp_path, material):  # noq
     code = f"""
 from pathlib import Path
 from models.rig_files.rig_file import load_material_rig
+from models.transfer_functions.filtering import convolve
 from noise.long_run import write_run
 from sim.long_run import simulate_blocks
 peaks, rig = [], load_material_rig({material!r})

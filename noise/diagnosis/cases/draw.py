@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.condition import KnownCondition
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Rig
     from noise.diagnosis.cases.rigs import Setting
     from sim.effects.effect import ActiveEffect
@@ -93,7 +93,7 @@ def draw_case(seed: int) -> DrawnCase:
 
 
 @lru_cache(maxsize=1)
-def _drawn_rig(number: int) -> tuple[Setting, dict[float, Response]]:
+def _drawn_rig(number: int) -> tuple[Setting, dict[float, ImpulseResponses]]:
     """Draw a rig with measured responses, and the true ones at the rate of the simulation."""
     rng = np.random.default_rng([0, number])
     setting = draw_setting(rng)
@@ -142,7 +142,7 @@ def _record(
     condition: KnownCondition,
     effects: list[ActiveEffect],
     offsets: Mapping[str, float],
-    plain: Response,
+    plain: ImpulseResponses,
     chain_seed: int,
     noise: Mapping[str, float],
     rng: np.random.Generator,

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft
 
-from models.radiation.impulse_responses import Response
+from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import MeasuredResponse
-from models.transfer_functions.transfer_function import Frf
+from models.transfer_functions.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -82,11 +82,11 @@ class Structure:
         acceleration, pressure = (_as_measured(h, rng) for h in self.from_torque(_LINES))
         return MeasuredResponse(
             support_stiffness,
-            Frf(_LINES, acceleration, None, "N m", "m/s^2", "torque_to_acceleration"),
-            Frf(_LINES, pressure, None, "N m", "Pa", "torque_to_pressure"),
+            TransferFunction(_LINES, acceleration, None, "N m", "m/s^2", "torque_to_acceleration"),
+            TransferFunction(_LINES, pressure, None, "N m", "Pa", "torque_to_pressure"),
         )
 
-    def response(self, rate: float) -> Response:
+    def response(self, rate: float) -> ImpulseResponses:
         """Impulse responses at a sampling rate [Hz]."""
         n = int(_LONGEST * rate)
         frequency = np.asarray(np.fft.rfftfreq(2 * n, 1.0 / rate), np.float64)
@@ -99,7 +99,7 @@ class Structure:
         def impulse(response: NDArray[np.complex128]) -> NDArray[np.float64]:
             return np.asarray(irfft(response * taper, 2 * n)[:n])
 
-        return Response(
+        return ImpulseResponses(
             rate, impulse(acceleration), impulse(pressure), impulse(struck),
             impulse(0.02 * late * struck),
         )  # fmt: skip

@@ -28,7 +28,7 @@ from noise.diagnosis.evidence.contact_summary import contact_summary, slip_start
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.paths import KnownWays, predict
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import Effect
 
 __all__ = ["CaseTable", "NominalNumbers", "case_table", "summary", "through_same"]
@@ -75,7 +75,9 @@ class CaseTable:
     rate: float
 
 
-def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Numbers:
+def summary(
+    recording: Recording, rig: Rig, transfer_functions: Mapping[str, TransferFunction]
+) -> Numbers:
     """Summarise a recording against the rig that it is said to be of.
 
     Parameters
@@ -83,8 +85,8 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     recording : Recording
         With speed, interference and support stiffness in its condition.
     rig : Rig
-    found_ways : mapping of str to Way
-        As `noise.diagnosis.simulated.paths.ways` gives them.
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
 
     Returns
     -------
@@ -120,7 +122,7 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     residuals = {}
     for kind in _OUTPUTS:
         if kind in signal:
-            expected = predict(torque, rate, found_ways[kind])
+            expected = predict(torque, rate, transfer_functions[kind])
             more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
             numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
     if len(residuals) == len(_OUTPUTS):
@@ -147,9 +149,9 @@ class NominalNumbers:
     _kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = field(default_factory=dict)
 
     @cached_property
-    def ways(self) -> KnownWays:
+    def transfer_functions(self) -> TransferFunctionCache:
         """The rig's, each looked up once."""
-        return KnownWays(self.rig)
+        return TransferFunctionCache(self.rig)
 
     def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
@@ -157,18 +159,20 @@ class NominalNumbers:
         at = _condition(recording)
         like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
         if like not in self._kept:
-            found_ways = self.ways.at(at[1], at[2])
+            transfer_functions = self.transfer_functions.at(at[1], at[2])
             repeats = nominal_recordings(
                 self.rig,
                 c,
-                found_ways,
+                transfer_functions,
                 rate=recording.rate,
                 seconds=recording.duration,
                 seeds=[self.seed + i for i in range(N_REPEATS)],
                 library=self.library,
             )
             heard = [through_same(repeat, recording) for repeat in repeats]
-            self._kept[like] = _moments([summary(repeat, self.rig, found_ways) for repeat in heard])
+            self._kept[like] = _moments(
+                [summary(repeat, self.rig, transfer_functions) for repeat in heard]
+            )
         return self._kept[like]
 
 
@@ -199,7 +203,7 @@ def case_table(
     """
     nominal = nominal or NominalNumbers(rig, library, seed)
     rows = [
-        summary(recording, rig, nominal.ways.at(*_condition(recording)[1:]))
+        summary(recording, rig, nominal.transfer_functions.at(*_condition(recording)[1:]))
         for recording in recordings
     ]
     means, spreads = zip(*(nominal.like(recording) for recording in recordings), strict=True)

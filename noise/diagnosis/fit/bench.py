@@ -192,8 +192,8 @@ class Bench:
                     self.runs.simulated(model, like, 0, Scatter(0.0, 0.0, 0.0)), like
                 )
                 c = known_condition(like.condition)
-                ways = self.runs.known_ways.at(c.interference, c.support_stiffness)
-                found = summary(run, self.rig, ways)
+                transfers = self.runs.transfer_functions.at(c.interference, c.support_stiffness)
+                found = summary(run, self.rig, transfers)
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
             z = (measured[i] - self._numbers[key]) / scale

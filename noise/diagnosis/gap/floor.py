@@ -26,7 +26,7 @@ from noise.diagnosis.gap.distance import (
 )
 from noise.diagnosis.gap.signature import GROUPS, group_of, signature
 from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.paths import KnownWays
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -92,11 +92,11 @@ def case_gap(
     True
     """
     simulated: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
-    known_ways = KnownWays(rig)
+    transfer_functions = TransferFunctionCache(rig)
     for recording in recordings:
         key, c = condition_key(recording), known_condition(recording.condition)
         if key not in simulated:
-            found = known_ways.at(key[1], key[2])
+            found = transfer_functions.at(key[1], key[2])
             runs = nominal_recordings(
                 rig, c, found, rate=recording.rate, seconds=recording.duration,
                 seeds=_seeds(seed, len(simulated), n_repeats), scatter=scatter, library=library,

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.radiation.impulse_responses import Response
+from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import response
 from models.recording import Channel, Recording
+from models.transfer_functions.impulse_response import impulse_response
 from noise.diagnosis.gap.scatter import Scatter, perturb_run
-from noise.diagnosis.simulated.impulse import impulse_of
 from sim.acquisition import Acquisition, decimate
 from sim.chain import changed_chain
 from sim.pipeline import Plan, apply_sensor_effects, radiate_motion, run_motion, sensor_signals
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from models.condition import Condition, KnownCondition
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import ActiveEffect
 
 __all__ = ["CHANNELS", "chain_of", "plan_repeat", "record", "run_signals"]
@@ -44,19 +44,21 @@ def chain_of(
     rig: Rig,
     interference: float,
     support_stiffness: float,
-    ways: Mapping[str, Way],
+    transfer_functions: Mapping[str, TransferFunction],
     rate: float,
     *,
     blows: bool,
-) -> Response:
-    """Return ways as impulse responses; those of blows in the anchors are modelled if asked for."""
+) -> ImpulseResponses:
+    """Return the impulse responses of a rig; those of pulses in the anchors only if asked for."""
     n = int(_LONGEST * rate)
-    torque_to = {name: impulse_of(way, rate, n) for name, way in ways.items()}
+    torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
     struck = sounding = np.zeros(1)
     if blows:
         modelled = response(rig, interference, support_stiffness, rate)
         struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
-    return Response(rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding)
+    return ImpulseResponses(
+        rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding
+    )
 
 
 def plan_repeat(
@@ -108,7 +110,7 @@ def run_signals(
     rig: Rig,
     condition: KnownCondition,
     effects: Sequence[ActiveEffect],
-    chain: Response,
+    chain: ImpulseResponses,
     seconds: float,
     rng: np.random.Generator,
     *,
@@ -122,7 +124,7 @@ def run_signals(
     rig : Rig
     condition : KnownCondition
     effects : sequence of ActiveEffect
-    chain : Response
+    chain : ImpulseResponses
         Responses without effects; their rate is that of the signals.
     seconds : float
         [s]

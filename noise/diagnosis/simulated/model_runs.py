@@ -20,7 +20,7 @@ from noise.diagnosis.gap.floor import condition_key
 from noise.diagnosis.gap.scatter import Scatter, perturb_run
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
 from noise.diagnosis.simulated.chain_run import chain_of, plan_repeat, record
-from noise.diagnosis.simulated.paths import KnownWays, moved
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, shift_clamp_mode
 from sim.acquisition import decimate
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.recording import Recording
     from models.rig import LawSpec, Rig
     from noise.diagnosis.fit.forms.form import Form
@@ -81,14 +81,14 @@ class ModelRuns:
     rig: Rig
     library: Mapping[str, Effect]
     forms: dict[tuple[str, str], Form]
-    known_ways: KnownWays = field(init=False)
-    _responses: _Kept[Response] = field(init=False, default_factory=lambda: _Kept())
+    transfer_functions: TransferFunctionCache = field(init=False)
+    _responses: _Kept[ImpulseResponses] = field(init=False, default_factory=lambda: _Kept())
     _motions: _Kept[Motion] = field(init=False, default_factory=lambda: _Kept())
     _signals: _Kept[Signals] = field(init=False, default_factory=lambda: _Kept())
     _parts: _Kept[NDArray[np.float64]] = field(init=False, default_factory=lambda: _Kept())
 
     def __post_init__(self) -> None:
-        self.known_ways = KnownWays(self.rig)
+        self.transfer_functions = TransferFunctionCache(self.rig)
 
     def simulated(
         self, model: Model, like: Recording, seed: int, scatter: Scatter | None = None
@@ -199,17 +199,16 @@ class ModelRuns:
 
         return key, self._signals.get(key, radiated)
 
-    def _paths(self, plan: Plan, *, blows: bool) -> Response:
+    def _paths(self, plan: Plan, *, blows: bool) -> ImpulseResponses:
         """Impulse responses of the rig, the clamp's mode where a plan's rig has it."""
         at = (plan.interference, plan.support_stiffness)
         lumped = lumped_bushing(plan.rig, *at)
 
-        def made() -> Response:
+        def made() -> ImpulseResponses:
             plain = lumped_bushing(self.rig, *at)
-            ways = {
-                name: moved(way, plain, lumped) for name, way in self.known_ways.at(*at).items()
-            }
-            return chain_of(self.rig, *at, ways, plan.rate, blows=blows)
+            nominal = self.transfer_functions.at(*at)
+            moved = {name: shift_clamp_mode(h, plain, lumped) for name, h in nominal.items()}
+            return chain_of(self.rig, *at, moved, plan.rate, blows=blows)
 
         return self._responses.get((*at, plan.rate, blows, repr(lumped)), made)
 

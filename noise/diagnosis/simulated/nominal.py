@@ -1,6 +1,6 @@
 """What the rig file says would have been recorded: quick simulated repeats of a condition.
 
-The structure's ways are those of `noise.diagnosis.simulated.paths`, applied to the simulated
+The transfer functions are those of the structure, applied to the simulated
 torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and
 drive is run by `sim.run.simulate` instead, which knows all of them.
 """
@@ -15,7 +15,7 @@ import numpy as np
 
 from noise.diagnosis.gap.scatter import Scatter, perturb_rig, perturb_run
 from noise.diagnosis.simulated.chain_run import plan_repeat, record
-from noise.diagnosis.simulated.paths import moved, predict
+from noise.diagnosis.simulated.transfer_functions import predict, shift_clamp_mode
 from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from models.condition import KnownCondition
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import Effect
 
 __all__ = ["nominal_recordings"]
@@ -47,7 +47,7 @@ _FADE = 0.1
 def nominal_recordings(
     rig: Rig,
     condition: KnownCondition,
-    found_ways: Mapping[str, Way],
+    transfer_functions: Mapping[str, TransferFunction],
     *,
     rate: float,
     seconds: float,
@@ -61,8 +61,8 @@ def nominal_recordings(
     ----------
     rig : Rig
     condition : KnownCondition
-    found_ways : mapping of str to Way
-        As `noise.diagnosis.simulated.paths.ways` gives them for this condition.
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them for this condition.
     rate, seconds : float
         [Hz], [s]
     seeds : sequence of int
@@ -102,7 +102,9 @@ def nominal_recordings(
         faded = torque[kept].mean() + _faded(torque - torque[kept].mean(), rate)
         lumped = lumped_bushing(once, *at)
         outputs = {
-            name: predict(faded, rate, moved(found_ways[name], bushing, lumped))[kept]
+            name: predict(faded, rate, shift_clamp_mode(transfer_functions[name], bushing, lumped))[
+                kept
+            ]
             for name in ("acceleration", "pressure")
         }
         signals = {

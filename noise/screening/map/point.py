@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Rig
     from sim.effects.effect import Effect
     from sim.motion import Motion
@@ -233,7 +233,7 @@ def _swing(motion: Motion) -> float:
     return float(np.std(motion.torque)) / (LEAST_OSCILLATION * mean) if mean > 0.0 else math.inf
 
 
-def _sound(plan: Plan, motion: Motion, paths: Response) -> Sound:
+def _sound(plan: Plan, motion: Motion, paths: ImpulseResponses) -> Sound:
     sound, start = radiate_motion(motion, paths, plan.effects), plan.n_settling
     return Sound(
         motion.since(start),
@@ -250,7 +250,9 @@ def _loudest(sound: Sound) -> float:
     return float(heard[sound.before.size :].max())
 
 
-def _paths(rig: Rig, interference: float, support_stiffness: float, rate: float) -> Response:
+def _paths(
+    rig: Rig, interference: float, support_stiffness: float, rate: float
+) -> ImpulseResponses:
     """Responses of the structure, the beams' damping rounded so that few are made."""
     damping = damping_at(rig.fit(interference), support_stiffness)
     of_beams = (1.0 - rig.elastomer_damping_share) * damping

@@ -22,7 +22,7 @@ from sim.parameters import Parameter
 if TYPE_CHECKING:
     from typing import Any
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
 
 Array = NDArray[np.float64]
 
@@ -81,11 +81,13 @@ def on_chain(
     name: str,
     form: str,
     strength: float,
-    change: Callable[[Response, np.random.Generator], Response],
+    change: Callable[[ImpulseResponses, np.random.Generator], ImpulseResponses],
 ) -> Effect:
     """Make an effect on the way from torque to sound; neutral at strength 0."""
 
-    def chain(response: Response, _form: str, _values: Any, rng: np.random.Generator) -> Response:
+    def chain(
+        response: ImpulseResponses, _form: str, _values: Any, rng: np.random.Generator
+    ) -> ImpulseResponses:
         return change(response, rng) if strength > 0.0 else response
 
     return _made(name, form, strength, chain=chain)

@@ -9,12 +9,12 @@ from scipy.signal import butter, lfilter
 
 from noise.diagnosis.cases.variants.common import Array, Recipe, log_uniform, on_chain
 from noise.diagnosis.cases.variants.structure import waveguide
-from sim.chain import HIGHEST_SHARE, resonance, through, total
+from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Effect
 
 __all__ = ["PLATE", "ROOM"]
@@ -25,15 +25,15 @@ Rng = np.random.Generator
 def _added(name: str, form: str, a: float, taps: Callable[[float, Rng], Array]) -> Effect:
     """Add to the direct sound what ``taps(rate, rng)`` makes of it."""
 
-    def change(paths: Response, rng: Rng) -> Response:
-        return through(paths, total([np.ones(1), a * taps(paths.rate, rng)]))
+    def change(paths: ImpulseResponses, rng: Rng) -> ImpulseResponses:
+        return filter_pressure(paths, padded_sum([np.ones(1), a * taps(paths.rate, rng)]))
 
     return on_chain(name, form, a, change)
 
 
 def _rings(rate: float, modes: list[tuple[float, float, float]]) -> Array:
     """Resonances of unit peak: frequency [Hz], damping ratio, sense and strength."""
-    return total(
+    return padded_sum(
         [np.zeros(1)]
         + [
             strength * resonance([0.0, 2.0 * damping, 0.0], frequency, damping, rate)
@@ -97,7 +97,7 @@ def _corridor(a: float, rng: Rng) -> Effect:
     def taps(rate: float, _rng: Rng) -> Array:
         flutter = _spaced(orders * way, 1.5 * wall**orders / np.sqrt(orders), rate)
         few = np.arange(1.0, 4.0)
-        return total([flutter, _spaced(few * apart, 1.5 * side**few, rate)])
+        return padded_sum([flutter, _spaced(few * apart, 1.5 * side**few, rate)])
 
     return _added("room_reflections", "corridor", a, taps)
 
@@ -123,7 +123,7 @@ def _coupled(a: float, rng: Rng) -> Effect:
 
     def taps(rate: float, rng: Rng) -> Array:
         near, far = _decay(rate, rng, fast, starts[0]), _decay(rate, rng, slow, starts.sum())
-        return size * total([(1.0 - share) * near, share * far])
+        return size * padded_sum([(1.0 - share) * near, share * far])
 
     return _added("room_reflections", "coupled", a, taps)
 

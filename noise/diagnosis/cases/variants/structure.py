@@ -15,13 +15,13 @@ from noise.diagnosis.cases.variants.common import (
     on_chain,
     on_joint,
 )
-from sim.chain import HIGHEST_SHARE, resonance, total
+from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 from sim.effects.slip_pulse import torque_drops
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Effect
     from sim.motion import Motion
 
@@ -70,7 +70,7 @@ def _with_modes(form: str, a: float, rng: Rng, modes: list[tuple[float, float, f
     """Add modes: frequency [Hz], damping ratio, constant."""
     mass = log_uniform(rng, 0.005, 0.08)
 
-    def change(paths: Response, _rng: Rng) -> Response:
+    def change(paths: ImpulseResponses, _rng: Rng) -> ImpulseResponses:
         if not np.any(paths.pulse_to_acceleration):
             return paths  # the clamp is bolted down
         accelerations, forces = [paths.torque_to_acceleration], [np.zeros(1)]
@@ -80,17 +80,17 @@ def _with_modes(form: str, a: float, rng: Rng, modes: list[tuple[float, float, f
             mode = frequency, damping, paths.rate
             accelerations.append(a * constant * resonance([1.0, 0.0, 0.0], *mode))
             forces.append(a * mass * constant * resonance([0.0, 0.0, 1.0], *mode))
-        return _heard(paths, total(accelerations), total(forces))
+        return _heard(paths, padded_sum(accelerations), padded_sum(forces))
 
     return on_chain("beam_modes", form, a, change)
 
 
-def _heard(paths: Response, acceleration: Array, force: Array) -> Response:
+def _heard(paths: ImpulseResponses, acceleration: Array, force: Array) -> ImpulseResponses:
     heard = fftconvolve(force, paths.pulse_to_pressure)
     return replace(
         paths,
         torque_to_acceleration=acceleration,
-        torque_to_pressure=total([paths.torque_to_pressure, heard]),
+        torque_to_pressure=padded_sum([paths.torque_to_pressure, heard]),
     )
 
 
@@ -126,14 +126,14 @@ def _beam_waveguide(a: float, rng: Rng) -> Effect:
     reflection = float(rng.choice([-1.0, 1.0])) * (1.0 - log_uniform(rng, 0.02, 0.25))
     dullness, mass = float(rng.uniform(0.05, 0.5)), log_uniform(rng, 0.005, 0.08)
 
-    def change(paths: Response, _rng: Rng) -> Response:
+    def change(paths: ImpulseResponses, _rng: Rng) -> ImpulseResponses:
         if not np.any(paths.pulse_to_acceleration):
             return paths
         echoes = waveguide(paths.rate, first, reflection, dullness)
         b, c = butter(2, 2.0 * 0.4 * first / paths.rate, "highpass")
         moved = a * constant * np.asarray(lfilter(b, c, np.append(echoes, np.zeros(512))))
         b, c = butter(2, 2.0 * min(6.0 * first, 0.4 * paths.rate) / paths.rate)
-        both = total([paths.torque_to_acceleration, moved])
+        both = padded_sum([paths.torque_to_acceleration, moved])
         return _heard(paths, both, mass * np.asarray(lfilter(b, c, moved)))
 
     return on_chain("beam_modes", "waveguide", a, change)

@@ -1,7 +1,7 @@
 """Recordings beside what their own torque should have made of them: what forms are estimated from.
 
-A torque that was measured is sent along the ways of the rig file, so that nothing that the contact
-does stands between; the shaft's own course is taken from its angle.
+A torque that was measured is sent through the transfer functions of the rig file, so that nothing
+that the contact does stands between; the shaft's own course is taken from its angle.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ import numpy as np
 
 from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import shaft_speed
-from noise.diagnosis.simulated.paths import predict
+from noise.diagnosis.simulated.transfer_functions import predict
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.fit.bench import Bench
-    from noise.diagnosis.simulated.paths import Way
 
 __all__ = ["Compared", "compared"]
 
@@ -41,8 +41,8 @@ class Compared:
         By kind of channel; those that were recorded.
     expected : dict of str to ndarray
         Of acceleration and pressure, by the measured torque.
-    ways : mapping of str to Way
-        That they were sent along.
+    transfer_functions : mapping of str to TransferFunction
+        That it was sent through.
     course : ndarray, optional
         Shaft speed over its mean, less 1.
     signature, nominal, scale : ndarray
@@ -53,7 +53,7 @@ class Compared:
     free: bool
     measured: dict[str, NDArray[np.float64]]
     expected: dict[str, NDArray[np.float64]]
-    ways: Mapping[str, Way]
+    transfer_functions: Mapping[str, TransferFunction]
     course: NDArray[np.float64] | None
     signature: NDArray[np.float64]
     nominal: NDArray[np.float64]
@@ -85,11 +85,11 @@ def _one(bench: Bench, i: int) -> Compared:
         if (row := recording.first(kind)) is not None
     }
     expected: dict[str, NDArray[np.float64]] = {}
-    ways: Mapping[str, Way] = {}
+    transfers: Mapping[str, TransferFunction] = {}
     if "torque" in measured:
-        ways = bench.runs.known_ways.at(c.interference, c.support_stiffness)
+        transfers = bench.runs.transfer_functions.at(c.interference, c.support_stiffness)
         expected = {
-            kind: predict(measured["torque"], rate, ways[kind])
+            kind: predict(measured["torque"], rate, transfers[kind])
             for kind in ("acceleration", "pressure")
             if kind in measured
         }
@@ -99,6 +99,6 @@ def _one(bench: Bench, i: int) -> Compared:
         course = np.asarray(speed / (speed.mean() or 1.0) - 1.0)
     reference = bench.references[i]
     return Compared(
-        rate, not math.isinf(c.support_stiffness), measured, expected, ways, course,
+        rate, not math.isinf(c.support_stiffness), measured, expected, transfers, course,
         bench.signatures[i], reference.mean, reference.scale,
     )  # fmt: skip

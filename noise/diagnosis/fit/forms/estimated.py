@@ -10,10 +10,10 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.fit.forms.added import hum_forms, noise_forms
-from noise.diagnosis.fit.forms.blows import blow_forms
 from noise.diagnosis.fit.forms.compared import compared
 from noise.diagnosis.fit.forms.courses import gain_forms, speed_forms
 from noise.diagnosis.fit.forms.filters import beam_forms, radiation_forms, sensor_forms
+from noise.diagnosis.fit.forms.impacts import impact_forms
 from noise.diagnosis.fit.forms.overloads import overload_forms
 
 if TYPE_CHECKING:
@@ -63,6 +63,6 @@ _ESTIMATED: dict[str, Callable[[Sequence[Compared]], list[Form]]] = {
         *radiation_forms("room_reflections", c, 0.05),
         *radiation_forms("room_reflections", c, 0.2),
     ],
-    "slip_pulse": blow_forms,
+    "slip_pulse": impact_forms,
     "speed_fluctuation": speed_forms,
 }

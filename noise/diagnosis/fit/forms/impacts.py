@@ -1,4 +1,4 @@
-"""Blows at slips, estimated: what each drop of the torque does to acceleration and sound."""
+"""Impacts at slips, estimated: what each drop of the torque does to acceleration and sound."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.transfer_functions.impulse_response import impulse_response
 from noise.diagnosis.fit.forms.filters import made_effect
 from noise.diagnosis.fit.forms.form import Form
-from noise.diagnosis.fit.forms.transfer import Transfer, estimated_transfer
-from noise.diagnosis.simulated.impulse import impulse_of
-from noise.diagnosis.simulated.paths import Way
+from noise.diagnosis.fit.forms.wiener import wiener_estimate
 from sim.effects.slip_pulse import torque_drops
 
 if TYPE_CHECKING:
@@ -19,25 +18,26 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
+    from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.fit.forms.compared import Compared
     from sim.effects.effect import Effect
     from sim.motion import Motion
 
-__all__ = ["blow_forms"]
+__all__ = ["impact_forms"]
 
 _LENGTH = 0.08
-"""How long a blow rings on [s]."""
+"""How long an impact rings on [s]."""
 
 _POWERS = (0.5, 1.0, 0.0)
-"""Of a drop, to which its blow is proportional."""
+"""Of a drop, to which its impact is proportional."""
 
 _LEAST_DROP = 0.15
 """Smallest drop that counts, as a share of the torque's range."""
 
 
-def blow_forms(compared: Sequence[Compared]) -> list[Form]:
-    """Estimate the blows.
+def impact_forms(compared: Sequence[Compared]) -> list[Form]:
+    """Estimate the impacts.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def blow_forms(compared: Sequence[Compared]) -> list[Form]:
     Returns
     -------
     list of Form
-        By the power of the drop that a blow is proportional to.
+        By the power of the drop that an impact is proportional to.
     """
     having = [c for c in compared if {"acceleration", "pressure"} <= set(c.expected)]
     return [_form(having, power) for power in _POWERS] if having else []
@@ -56,7 +56,7 @@ def _form(compared: Sequence[Compared], power: float) -> Form:
     rate = compared[0].rate
     trains = [_train(c.measured["torque"], power) for c in compared]
     found = {
-        kind: estimated_transfer(
+        kind: wiener_estimate(
             [
                 (train, c.measured[kind] - c.expected[kind])
                 for train, c in zip(trains, compared, strict=True)
@@ -73,8 +73,8 @@ def _form(compared: Sequence[Compared], power: float) -> Form:
             return amount * _train(motion.torque, power)
 
         def chain(
-            paths: Response, _form: str, _values: object, _rng: np.random.Generator
-        ) -> Response:
+            paths: ImpulseResponses, _form: str, _values: object, _rng: np.random.Generator
+        ) -> ImpulseResponses:
             struck, heard = (_kernel(found[k], paths.rate, rate) for k in found)
             return replace(paths, pulse_to_acceleration=struck, pulse_to_pressure=heard)
 
@@ -93,7 +93,6 @@ def _train(torque: NDArray[np.float64], power: float) -> NDArray[np.float64]:
     return train
 
 
-def _kernel(found: Transfer, rate: float, estimated_at: float) -> NDArray[np.float64]:
+def _kernel(found: TransferFunction, rate: float, estimated_at: float) -> NDArray[np.float64]:
     """Response to one sample, which is shorter at a higher rate."""
-    taps = impulse_of(Way(found.frequency, found.response), rate, round(_LENGTH * rate))
-    return np.asarray(taps * (rate / estimated_at))
+    return impulse_response(found, rate, round(_LENGTH * rate)) * (rate / estimated_at)

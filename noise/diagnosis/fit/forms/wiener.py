@@ -1,4 +1,4 @@
-"""The linear part that a signal has too much, estimated over several recordings.
+"""The transfer function from what went in to what came out too much, by Wiener's least squares.
 
 With x what went in and r what came out too much, <X* R> / <X* X> line by line is the best linear
 guess, and a poor one between the harmonics of the slips, where x has next to nothing. So the
@@ -18,14 +18,14 @@ from scipy.linalg import solve_toeplitz
 from scipy.ndimage import uniform_filter1d
 from scipy.signal.windows import tukey
 
+from models.transfer_functions.transfer_function import TransferFunction
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from noise.diagnosis.simulated.paths import Way
-
-__all__ = ["Noise", "Transfer", "estimated_transfer", "filtered_by"]
+__all__ = ["Noise", "wiener_estimate"]
 
 _LEAD = 0.08
 """Left out at the start, where what rings on from before is missing [s]."""
@@ -37,7 +37,7 @@ _LEAST = 3e-3
 """White noise added to the whitened input, over its power."""
 
 _USABLE = (0.40, 0.45)
-"""Shares of the sampling rate between which a transfer fades."""
+"""Shares of the sampling rate between which a transfer function fades."""
 
 _FADE = 0.25
 """Of an impulse response, as a share of its length."""
@@ -56,45 +56,23 @@ class Noise:
     Parameters
     ----------
     level : float
-        White noise of the output over the transfer that is looked for, rms, in the input's unit.
-    way : Way, optional
-        That the torque was sent along, with its noise, to make the input.
+        White noise of the output over the transfer function looked for, rms, in the input's unit.
+    transfer : TransferFunction, optional
+        Through which a torque was sent, with its noise, to make the input.
     """
 
     level: float
-    way: Way | None = None
+    transfer: TransferFunction | None = None
 
     def power(self, frequency: NDArray[np.float64]) -> NDArray[np.float64]:
         """Mean square at each frequency, for a window of unit energy."""
         power = np.full(frequency.size, self.level**2)
-        if self.way is not None:
-            power += np.abs(_TORQUE_NOISE * self.way.at(frequency)) ** 2
+        if self.transfer is not None:
+            power += np.abs(_TORQUE_NOISE * self.transfer.at(frequency, falls_below=True)) ** 2
         return power
 
 
-@dataclass(frozen=True, eq=False)
-class Transfer:
-    """A transfer function as a table.
-
-    Parameters
-    ----------
-    frequency : ndarray, shape (n,)
-        [Hz]
-    response : ndarray of complex, shape (n,)
-        0 towards the last.
-    """
-
-    frequency: NDArray[np.float64]
-    response: NDArray[np.complex128]
-
-    def at(self, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
-        """Response at other frequencies; 0 beyond the table."""
-        real = np.interp(frequency, self.frequency, self.response.real, right=0.0)
-        imaginary = np.interp(frequency, self.frequency, self.response.imag, right=0.0)
-        return np.asarray(real + 1j * imaginary)
-
-
-def estimated_transfer(
+def wiener_estimate(
     pairs: Sequence[tuple[NDArray[np.float64], NDArray[np.float64]]],
     rate: float,
     length: float,
@@ -102,17 +80,17 @@ def estimated_transfer(
     *,
     noise: Sequence[Noise] | None = None,
     restored: bool = False,
-) -> Transfer:
+) -> TransferFunction:
     """Estimate what makes the second of each pair from the first.
 
     Parameters
     ----------
-    pairs : sequence of (ndarray, ndarray)
-        Of one recording each, all at one rate.
+    pairs : sequence of (ndarray of shape (n,), ndarray of shape (n,))
+        What went in and what came out, of one recording each, all at one rate; in any units.
     rate : float
-        [Hz]
+        Sampling rate [Hz].
     length, before : float
-        How long the impulse response is, after and before the blow [s].
+        How long the impulse response is, after and before the impulse [s].
     noise : sequence of Noise, optional
         One a pair.
     restored : bool
@@ -120,14 +98,15 @@ def estimated_transfer(
 
     Returns
     -------
-    Transfer
+    TransferFunction
+        0 towards its last line.
 
     Examples
     --------
     >>> rng = np.random.default_rng(0)
     >>> x = rng.standard_normal(8000)
     >>> late = np.concatenate([np.zeros(5), 0.5 * x[:-5]])
-    >>> found = estimated_transfer([(x, late)], 8e3, 0.01)
+    >>> found = wiener_estimate([(x, late)], 8e3, 0.01)
     >>> round(float(abs(found.at(np.array([1000.0]))[0])), 1)
     0.5
     """
@@ -161,7 +140,7 @@ def estimated_transfer(
     found = np.asarray(rfft(impulse) * fading)
     if restored:
         found *= _lost(np.abs(found) ** 2 * power, out, frequency)
-    return Transfer(frequency, found)
+    return TransferFunction(frequency, found)
 
 
 def _lost(
@@ -173,22 +152,3 @@ def _lost(
     sums = [np.bincount(place, x, minlength=edges.size + 1) for x in (kept, whole)]
     lost = np.sqrt(np.clip(sums[1] / (sums[0] + 1e-30), 1.0, _MOST_LOST))
     return np.asarray(lost[place])
-
-
-def filtered_by(
-    signal: NDArray[np.float64], rate: float, transfer: Transfer
-) -> NDArray[np.float64]:
-    """Send a signal through a transfer function, as if its ends went on.
-
-    Examples
-    --------
-    >>> double = Transfer(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
-    >>> bool(np.allclose(filtered_by(np.ones(100), 8e3, double), 2.0))
-    True
-    """
-    n = next_fast_len(2 * signal.size, real=True)
-    gap = n - signal.size
-    bridge = np.linspace(signal[-1], signal[0], gap + 2)[1:-1]
-    spectrum = rfft(np.concatenate([signal, bridge]))
-    frequency = np.asarray(np.fft.rfftfreq(n, 1.0 / rate), np.float64)
-    return np.asarray(irfft(spectrum * transfer.at(frequency), n)[: signal.size])

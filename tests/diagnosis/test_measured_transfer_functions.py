@@ -1,4 +1,4 @@
-"""Measured ways from torque to sound: resonances between the lines, no echo, poles that move."""
+"""Measured transfer functions: resonances between the lines, no echo, poles that move."""
 
 from __future__ import annotations
 
@@ -10,10 +10,14 @@ import pytest
 from models.condition import Condition
 from models.rig_files.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
-from models.transfer_functions.transfer_function import Frf
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.gap.scatter import Scatter, perturb_rig
 from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.paths import Way, moved, predict, ways
+from noise.diagnosis.simulated.transfer_functions import (
+    predict,
+    shift_clamp_mode,
+    torque_transfer_functions,
+)
 from sim.bushing import lumped_bushing
 
 RIG = load_material_rig("fluorocarbon-thesis")
@@ -26,18 +30,20 @@ def _mode(f, at=259.0, damping=0.02):
 
 
 def _measured(response):
-    frf = Frf(LINES, response.astype(complex), None, "N m", "m/s^2")
+    frf = TransferFunction(LINES, response.astype(complex), None, "N m", "m/s^2")
     entry = MeasuredResponse(2214.0, frf, replace(frf, output_unit="Pa"))
-    return ways(replace(RIG, measured=(entry,)), 0.279e-3, 2214.0)["acceleration"]
+    return torque_transfer_functions(replace(RIG, measured=(entry,)), 0.279e-3, 2214.0)[
+        "acceleration"
+    ]
 
 
 def test_between_its_lines_a_resonance_is_what_it_is():
     f = np.arange(240.0, 280.0, 0.3)
-    straight = np.abs(Way(LINES, _mode(LINES)).at(f) - _mode(f)).max()
+    straight = np.abs(TransferFunction(LINES, _mode(LINES)).at(f) - _mode(f)).max()
     assert np.abs(_measured(_mode(LINES)).at(f) - _mode(f)).max() < 0.2 * straight
 
 
-def test_a_measured_way_does_not_echo_after_one_over_its_spacing():
+def test_a_measured_transfer_function_does_not_echo_after_one_over_its_spacing():
     torque = np.zeros(24_000)
     torque[2400] = 1.0
     rung = predict(torque, 24e3, _measured(_mode(LINES)))
@@ -47,10 +53,10 @@ def test_a_measured_way_does_not_echo_after_one_over_its_spacing():
 
 def test_lines_that_are_not_equally_spaced_are_left_alone():
     uneven = np.geomspace(10.0, 5000.0, 400)
-    frf = Frf(uneven, _mode(uneven), None, "N m", "m/s^2")
+    frf = TransferFunction(uneven, _mode(uneven), None, "N m", "m/s^2")
     entry = MeasuredResponse(2214.0, frf, replace(frf, output_unit="Pa"))
-    found = ways(replace(RIG, measured=(entry,)), 0.279e-3, 2214.0)
-    assert np.array_equal(found["acceleration"].frequency, uneven)
+    found = torque_transfer_functions(replace(RIG, measured=(entry,)), 0.279e-3, 2214.0)
+    assert np.array_equal(found["acceleration"].frequencies, uneven)
 
 
 def test_a_lighter_clamp_rings_higher():
@@ -63,16 +69,24 @@ def test_a_lighter_clamp_rings_higher():
     )
     before, after = (
         f[np.argmax(np.abs(w.response))]
-        for w in (Way(f, clamp), moved(Way(f, clamp), nominal, lighter))
+        for w in (
+            TransferFunction(f, clamp),
+            shift_clamp_mode(TransferFunction(f, clamp), nominal, lighter),
+        )
     )
     assert after / before == pytest.approx(0.9**-0.5, rel=1e-3)
 
 
 def test_a_quiet_steady_rig_is_quiet_from_start_to_end_of_a_recording():
     condition = Condition(speed=8.0, interference=0.279e-3, support_stiffness=2214.0)
-    way = _measured(_mode(LINES))
+    transfer = _measured(_mode(LINES))
     (run,) = nominal_recordings(
-        RIG, condition, {"acceleration": way, "pressure": way}, rate=30e3, seconds=0.5, seeds=(1,)
+        RIG,
+        condition,
+        {"acceleration": transfer, "pressure": transfer},
+        rate=30e3,
+        seconds=0.5,
+        seeds=(1,),
     )
     assert np.abs(run["acceleration"]).max() < 0.5
 
