@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.spectra import autospectrum
-from noise.pages.traces import KINDS
 from noise.pictures.axes import (
     BLUE,
     GREY,
@@ -25,6 +24,7 @@ from noise.pictures.axes import (
     styled,
     thinned,
 )
+from noise.pictures.channel_kinds import KINDS
 from noise.pictures.window import Window, run_window
 from sim.run_display import torque_curves
 

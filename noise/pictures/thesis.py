@@ -19,8 +19,9 @@ from noise.pictures.measured import FITS
 from noise.pictures.model_traces import exact_trace, listing_trace, model_traces
 from noise.pictures.slips import plot_damping, plot_slip_histories, plot_slip_orbits
 from noise.pictures.spectra import SpectraColumn, plot_spectra
-from noise.pictures.speeds import plot_sweep, plot_torque_of_fits, support_words
+from noise.pictures.speeds import plot_sweep, plot_torque_of_fits
 from noise.pictures.sweep import sweep_torque
+from noise.pictures.titles import support_words
 from noise.thesis.runs import (
     CALIBRATED,
     LONG,

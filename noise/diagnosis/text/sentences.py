@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis, EffectFinding
 
 __all__ = [
+    "answer",
     "closed_sentence",
     "equivalence_sentences",
     "finding_of",
@@ -65,6 +66,20 @@ def headline(diagnosis: Diagnosis) -> str:
         case ("unknown",):
             return "Unknown cause"
     return f"Missing: {joined([cause_of(name).name for name in diagnosis.verdict])}"
+
+
+def answer(diagnosis: Diagnosis) -> list[str]:
+    """Return all sentences of the answer: verdict, location, what cannot be told apart.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> answer(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0))
+    ['Recordings and simulation differ no more than repeats do: there is nothing to explain (gap
+      0.9, floor 1, p = 0.60).']
+    """
+    sentences = [verdict_sentence(diagnosis), location_sentence(diagnosis)]
+    return [*filter(None, sentences), *equivalence_sentences(diagnosis)]
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:

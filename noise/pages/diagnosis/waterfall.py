@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from noise.diagnosis.text.sentences import closed_sentence, finding_of
 from noise.diagnosis.text.words import cause_of, joined, percent
+from noise.pages.engine.ticks import round_ticks
 
 if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis, EffectFinding
@@ -102,7 +103,8 @@ def waterfall(diagnosis: Diagnosis) -> Waterfall | None:
         bars.append(Bar("what is left", 0.0, gap, "left", f"{gap:.2f}"))
     top = 1.04 * max(floor, *(bar.high for bar in bars))
     words = closed if closed is not None else _closed_so_far(before, gap, floor, len(bars) > 1)
-    return Waterfall(tuple(bars), floor, top, _ticks(top), _sentence(words))
+    ticks = tuple(round_ticks(0.0, top, _TICKS))
+    return Waterfall(tuple(bars), floor, top, ticks, _sentence(words))
 
 
 def _fitted(diagnosis: Diagnosis) -> EffectFinding | None:
@@ -157,14 +159,3 @@ def _sentence(words: str) -> str:
 
 def _known(value: float | None, otherwise: float) -> float:
     return otherwise if value is None else value
-
-
-def _ticks(top: float) -> tuple[float, ...]:
-    """Return about `_TICKS` round numbers from zero to `top`."""
-    step = next(
-        step
-        for decade in (10.0**n for n in range(-2, 9))
-        for step in (decade, 2.0 * decade, 5.0 * decade)
-        if top / step <= _TICKS
-    )
-    return tuple(step * n for n in range(math.floor(top / step) + 1))

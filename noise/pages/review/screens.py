@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import RecordingError
 from noise.classifier import LABELS
-from noise.pictures.speeds import support_words
+from noise.pictures.titles import support_words
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,7 +1,7 @@
-"""What the page of a diagnosis shows, in words and shares of a width, ready for the template.
+"""Stages, causes, parameters and places as the page of a diagnosis shows them.
 
-Here is decided what a reader sees first and what waits in the details; the template only lays it
-out. None becomes "not determined", so that a gap in the data is never read as a zero.
+All is in words and shares of a width, ready for the template. Here is decided what a reader sees
+first and what waits in the details; the template only lays it out.
 """
 
 from __future__ import annotations
@@ -11,7 +11,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.text.sentences import finding_of, parameter_name
-from noise.diagnosis.text.words import STAGES, cause_of, evidence, p_number, percent
+from noise.diagnosis.text.words import (
+    NOT_DETERMINED,
+    STAGES,
+    cause_of,
+    evidence,
+    number,
+    p_number,
+    percent,
+)
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -20,18 +28,9 @@ if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis, EffectFinding, Location
 
 __all__ = [
-    "NOT_DETERMINED",
-    "CauseRow",
-    "ParameterRow",
-    "StageBox",
-    "cause_rows",
-    "number",
-    "parameter_rows",
-    "place_rows",
+    "CauseRow", "ParameterRow", "StageBox", "cause_rows", "parameter_rows", "place_rows",
     "stage_boxes",
-]
-
-NOT_DETERMINED = "not determined"
+]  # fmt: skip
 
 _PASSED_ON = {
     "drive": "speed",
@@ -115,19 +114,6 @@ class ParameterRow:
     width: float
     one: float
     off: bool
-
-
-def number(value: float | None, form: str = ".2f") -> str:
-    """Return a number as it is printed.
-
-    Examples
-    --------
-    >>> number(-1.234), number(None)
-    ('−1.23', 'not determined')
-    """
-    if value is None or not math.isfinite(value):
-        return NOT_DETERMINED
-    return format(value, form).replace("-", "\N{MINUS SIGN}")
 
 
 def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
