@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 from matplotlib.patches import Patch, Rectangle
 
+from models.drawing import styled
 from models.errors import ParameterError
 from noise.classifier import LABELS
 from noise.labels.label_display import DARK_LABELS, LABEL_COLOURS
-from noise.pictures.axes import new_figure, styled
+from noise.pictures.axes import new_figure
 from noise.pictures.titles import place_title
 
 if TYPE_CHECKING:

@@ -9,17 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
+from models.drawing import BLUE, GREEN, GREY, VERMILION, styled
 from models.errors import ParameterError
-from noise.pictures.axes import (
-    BLUE,
-    GREEN,
-    GREY,
-    MODEL_COLOURS,
-    VERMILION,
-    legend_below,
-    new_figure,
-    styled,
-)
+from noise.pictures.axes import MODEL_COLOURS, legend_below, new_figure
 from noise.pictures.measured import FIRST_MODE, FITS, LINES, MEAN_TORQUE, V_CRIT1, V_CRIT2
 from noise.pictures.titles import support_words
 
