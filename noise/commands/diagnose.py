@@ -84,5 +84,5 @@ def run(options: Namespace) -> int:
         say(sentence)
     finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
     if finding is not None and finding.closed is not None:
-        say(f"The fit {closed_sentence(finding)}.")
+        say(closed_sentence(finding))
     return 1 if case.refused else 0

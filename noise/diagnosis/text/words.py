@@ -181,14 +181,16 @@ def p_number(p_value: float) -> str:
     return f"p = {p_value:.{2 if p_value >= 0.1 else 3 if p_value >= 0.01 else 4}f}"
 
 
-def percent(share: float) -> str:
+def percent(share: float | None) -> str:
     """Return a share in per cent; no estimate of a chance is said to be certain by rounding.
 
     Examples
     --------
-    >>> percent(0.5), percent(0.996), percent(0.001), percent(-0.2)
-    ('50 %', '> 99 %', '< 1 %', '−20 %')
+    >>> percent(0.5), percent(0.996), percent(0.001), percent(-0.2), percent(None)
+    ('50 %', '> 99 %', '< 1 %', '−20 %', 'not determined')
     """
+    if share is None or not math.isfinite(share):
+        return NOT_DETERMINED
     if 0.0 < share < 0.01:
         return "< 1 %"
     if 0.99 < share < 1.0:

@@ -104,7 +104,8 @@ def waterfall(diagnosis: Diagnosis) -> Waterfall | None:
     top = 1.04 * max(floor, *(bar.high for bar in bars))
     words = closed if closed is not None else _closed_so_far(before, gap, floor, len(bars) > 1)
     ticks = tuple(round_ticks(0.0, top, _TICKS))
-    return Waterfall(tuple(bars), floor, top, ticks, _sentence(words))
+    undetermined = "How much of the gap can be closed was not determined."
+    return Waterfall(tuple(bars), floor, top, ticks, words or undetermined)
 
 
 def _fitted(diagnosis: Diagnosis) -> EffectFinding | None:
@@ -143,18 +144,11 @@ def _step(label: str, before: float, after: float) -> Bar:
 
 def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str:
     if before <= floor:
-        return "the nominal gap is no larger than the floor, so there is nothing to close"
+        return "The nominal gap is no larger than the floor, so there is nothing to close."
     if not fitted:
         return ""
     share = percent((before - gap) / (before - floor))
-    return f"refitted parameters close {share} of the closable gap"
-
-
-def _sentence(words: str) -> str:
-    if not words:
-        return "How much of the gap can be closed was not determined."
-    words = f"the fit {words}" if words.startswith("closes") else words
-    return f"{words[0].upper()}{words[1:]}."
+    return f"Refitted parameters close {share} of the closable gap."
 
 
 def _known(value: float | None, otherwise: float) -> float:

@@ -218,7 +218,7 @@ def recorded_maps(
     playable = set(heard)
     places = conditions_map(rows)
     known = [p for p in places if p.speed is not None and p.interference is not None]
-    shown = {one for place in known for one in place.recordings}
+    placed = {one for place in known for one in place.recordings}
     everything = {one for place in places for one in place.recordings}
     maps = []
     for title, group in groupby(known, key=_title):
@@ -227,7 +227,7 @@ def recorded_maps(
         up = axis_of([_middle(place.interference) for place in known], edges=False)
         spots = tuple(_spot(place, across, up, titles, playable) for place in here)
         maps.append(ConditionMap(title, across, up, (), spots))
-    return maps, len(everything - shown)
+    return maps, len(everything - placed)
 
 
 def _runs(labels: Sequence[str]) -> tuple[tuple[int, int, str], ...]:

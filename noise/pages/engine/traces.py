@@ -177,12 +177,12 @@ def _own_channel(recording: Recording, channel: str) -> str:
     return channel
 
 
-def common_scales(shown: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
+def common_scales(drawn: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
     """Find the scales that traces of one kind share.
 
     Parameters
     ----------
-    shown : iterable of Trace
+    drawn : iterable of Trace
         All traces of a page.
 
     Returns
@@ -203,7 +203,7 @@ def common_scales(shown: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
     {('pressure', True): Scale(swing=1.0, reach=1.0, top=90.0)}
     """
     scales: dict[tuple[str, bool], Scale] = {}
-    for trace in shown:
+    for trace in drawn:
         kind, key = KINDS[trace.kind], (trace.kind, trace.calibrated)
         middle, swing = trace.swing
         swing = max(swing, kind.least_swing)
