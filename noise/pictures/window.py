@@ -1,4 +1,4 @@
-"""Which part of a run is shown enlarged: a few slips, where the run is at its liveliest.
+"""Window of a run that is shown enlarged: a few slips, where the run is at its liveliest.
 
 At constant speed any part is as good, and the middle is taken. A shaft that swings or runs up is
 quiet for most of the time; there it is the part about the largest acceleration of the beam.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.pages.diagnosis.figures import CURVES, as_svg, new_panel
-from noise.pages.figures import Panel
-from noise.pictures.axes import styled
+from models.drawing import styled
+from noise.pages.diagnosis.figures import CURVES, draw
+from noise.pages.engine.panels import Panel, as_svg, new_panel
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -50,7 +50,7 @@ def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
 
 def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
     title, across, scale = _OVER[over]
-    figure, axes = new_panel(title)
+    figure, axes = new_panel(title, across, "Torque [Nm]")
     words = []
     for name, courses in contacts.items():
         course, curve = getattr(courses, over), CURVES[name]
@@ -58,12 +58,6 @@ def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
             continue
         x = scale * course.x
         axes.fill_between(x, course.low, course.high, color=curve.colour, alpha=0.18, linewidth=0)
-        style = (0.0, (4.0, 1.6)) if curve.dashed else "-"
-        axes.plot(
-            x, course.torque, color=curve.colour, linewidth=curve.width, linestyle=style,
-            marker="o", markersize=3.0,
-        )  # fmt: skip
+        draw(axes, name, x, course.torque, marker="o")
         words.append(f"{curve.label} {course.torque.min():.3g} to {course.torque.max():.3g} Nm")
-    axes.set_xlabel(across)
-    axes.set_ylabel("Torque [Nm]")
     return Panel(as_svg(figure), f"{title}, over {across.lower()}: {'; '.join(words)}.")

@@ -22,16 +22,18 @@ from models.recording import REFERENCE_PRESSURE
 from noise.audio.gain import full_scale_without_clipping, true_peak
 from noise.audio.sound import FADE
 from noise.audio.wav import integers
-from noise.pages.review.entries import RATE, stretch_start
+from noise.pages.engine.entry import RATE, stretch_start
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from noise.pages.review.entries import Entry
+    from noise.pages.engine.entry import Entry
 
-__all__ = ["BYTES_A_SECOND", "SHORTEST", "Clip", "Gain", "common_gain", "make_clips"]
+__all__ = [
+    "BYTES_A_SECOND", "SHORTEST", "Clip", "Gain", "common_gain", "full_scale_words", "make_clips",
+]  # fmt: skip
 
 SHORTEST = 1.0
 """No sound is made shorter than this for the sake of the budget [s]."""
@@ -72,14 +74,13 @@ class Gain:
         Examples
         --------
         >>> Gain(2.0, None).sentences[0]
-        'Calibrated sounds share one gain and may be compared: full scale = 2 Pa (100 dB peak).'
+        'Calibrated sounds share one gain and may be compared: full scale = 2 Pa (100 dB peak re 20
+        µPa).'
         """
         told = []
         if self.calibrated is not None:
-            level = 20.0 * math.log10(self.calibrated / REFERENCE_PRESSURE)
-            worth = f"full scale = {self.calibrated:.4g} Pa ({level:.0f} dB peak)"
             how = "are level-true" if self.stated else "share one gain and may be compared"
-            told.append(f"Calibrated sounds {how}: {worth}.")
+            told.append(f"Calibrated sounds {how}: {full_scale_words(self.calibrated)}.")
         if self.uncalibrated is not None:
             decibel = f"{-20.0 * math.log10(self.uncalibrated):+.1f}".replace("-", "\N{MINUS SIGN}")
             told.append(
@@ -100,20 +101,35 @@ class Clip:
         What is in it, in the unit of the entry.
     start, end : float
         Which stretch of the recording it is [s].
+    full_scale : float
+        What full scale of it is worth, in the unit of the entry.
     """
 
     flac: bytes
     samples: NDArray[np.float32]
     start: float
     end: float
+    full_scale: float
 
 
-def common_gain(entries: Sequence[Entry], pascal: float | None = None) -> Gain:
+def full_scale_words(full_scale: float) -> str:
+    """Say what full scale is worth [Pa].
+
+    Examples
+    --------
+    >>> full_scale_words(2.0)
+    'full scale = 2 Pa (100 dB peak re 20 µPa)'
+    """
+    level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
+    return f"full scale = {full_scale:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
+
+
+def common_gain(entries: Iterable[Entry], pascal: float | None = None) -> Gain:
     """Choose the gain of a set.
 
     Parameters
     ----------
-    entries : sequence of Entry
+    entries : iterable of Entry
     pascal : float, optional
         Full scale of calibrated sounds [Pa]; by default what the loudest of them needs.
 
@@ -123,7 +139,7 @@ def common_gain(entries: Sequence[Entry], pascal: float | None = None) -> Gain:
         A sound would clip at the full scale given.
     """
     peaks: dict[bool, dict[str, float]] = {True: {}, False: {}}
-    for entry, largest in _that_may_be_loudest(entries):
+    for entry, largest in _that_may_be_loudest(list(entries)):
         peak = true_peak(largest.astype(np.float64), RATE)
         peaks[entry.calibrated][entry.title] = peak
     least = {
@@ -142,23 +158,28 @@ def common_gain(entries: Sequence[Entry], pascal: float | None = None) -> Gain:
 
 
 def make_clips(
-    entries: Sequence[Entry], gain: Gain, budget: float, rng: np.random.Generator
-) -> tuple[list[Clip | None], float | None]:
+    entries: Mapping[str, Entry],
+    gain: Gain,
+    *,
+    budget: float = math.inf,
+    dither: np.random.Generator | None = None,
+) -> tuple[dict[str, Clip], float | None]:
     """Encode sounds, shortened where they would exceed a budget.
 
     Parameters
     ----------
-    entries : sequence of Entry
+    entries : mapping of str to Entry
+        By id.
     gain : Gain
     budget : float
         What the sounds may take up on the page [byte].
-    rng : numpy.random.Generator
-        Of the dither.
+    dither : numpy.random.Generator, optional
+        By default there is no dither, and silence stays digital zero.
 
     Returns
     -------
-    clips : list of Clip or None
-        None where an entry has no sound.
+    clips : dict of str to Clip
+        Of the entries that have a sound.
     shortened : float or None
         To how many seconds the longer ones are cut [s]; None where none is cut.
 
@@ -166,21 +187,35 @@ def make_clips(
     ------
     ParameterError
         Not even `SHORTEST` seconds of each would fit.
+
+    Examples
+    --------
+    >>> from noise.pages.engine.entry import Entry
+    >>> silence = Entry("silence", duration=1.0, sound=np.zeros(RATE, np.float32))
+    >>> clips, shortened = make_clips({"s1": silence}, Gain(1.0, None))
+    >>> clips["s1"].end, shortened
+    (1.0, None)
     """
-    seeds = rng.integers(1 << 62, size=len(entries))
-    clips = [_clip(entry, math.inf, gain, seed) for entry, seed in zip(entries, seeds, strict=True)]
+    seeds = [None if dither is None else int(dither.integers(1 << 62)) for _ in entries]
+
+    def cut_to(longest: float) -> dict[str, Clip]:
+        return {
+            key: _clip(entry, entry.sound, longest, gain, seed)
+            for (key, entry), seed in zip(entries.items(), seeds, strict=True)
+            if entry.sound is not None
+        }
+
+    clips = cut_to(math.inf)
     if _weight(clips) <= budget:
         return clips, None
-    length = _length_that_fits([clip for clip in clips if clip is not None], budget)
+    length = _length_that_fits(list(clips.values()), budget)
     if length < SHORTEST:
         raise ParameterError(
-            f"{sum(clip is not None for clip in clips)} sounds of {SHORTEST:g} s each do not fit "
+            f"{len(clips)} sounds of {SHORTEST:g} s each do not fit "
             f"into {budget / 1e6:.3g} MB that are left for them; allow more, or name fewer"
         )
     while True:
-        clips = [
-            _clip(entry, length, gain, seed) for entry, seed in zip(entries, seeds, strict=True)
-        ]
+        clips = cut_to(length)
         if _weight(clips) <= budget or length <= SHORTEST:
             return clips, length
         length = max(SHORTEST, 0.9 * length)  # the loud parts were kept
@@ -200,14 +235,12 @@ def _that_may_be_loudest(
         yield from ((entry, sound) for entry, sound, largest in heard if largest >= 0.25 * most)
 
 
-def _clip(entry: Entry, longest: float, gain: Gain, seed: int) -> Clip | None:
-    if entry.sound is None:
-        return None
-    whole = entry.sound.size / RATE
-    samples, offset = entry.sound, entry.offset
+def _clip(
+    entry: Entry, samples: NDArray[np.float32], longest: float, gain: Gain, seed: int | None
+) -> Clip:
+    whole, offset = samples.size / RATE, entry.offset
     if whole > longest:
-        rows = entry.rows
-        first = stretch_start(rows, entry.duration, longest) - offset
+        first = stretch_start(entry.rows, entry.duration, longest) - offset
         first = min(max(first, 0.0), whole - longest)
         begin = round(first * RATE)
         samples = samples[begin : begin + round(longest * RATE)].copy()
@@ -216,16 +249,17 @@ def _clip(entry: Entry, longest: float, gain: Gain, seed: int) -> Clip | None:
         flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / n) ** 2
         samples[:n] *= flank
         samples[samples.size - n :] *= flank[::-1]
-    fractions = samples / gain.of(entry)
-    dither = np.random.default_rng(seed)
-    steps = np.frombuffer(integers(fractions.astype(np.float64), _BITS, dither), "<i2")
+    full_scale = gain.of(entry)
+    fractions = (samples / full_scale).astype(np.float64)
+    dither = None if seed is None else np.random.default_rng(seed)
+    steps = np.frombuffer(integers(fractions, _BITS, dither), "<i2")
     flac = io.BytesIO()
     soundfile.write(flac, steps, RATE, format="FLAC", subtype="PCM_16")
-    return Clip(flac.getvalue(), samples, offset, offset + samples.size / RATE)
+    return Clip(flac.getvalue(), samples, offset, offset + samples.size / RATE, full_scale)
 
 
-def _weight(clips: Sequence[Clip | None]) -> float:
-    return sum(_BASE64 * len(clip.flac) for clip in clips if clip is not None)
+def _weight(clips: Mapping[str, Clip]) -> float:
+    return sum(_BASE64 * len(clip.flac) for clip in clips.values())
 
 
 def _length_that_fits(clips: Sequence[Clip], budget: float) -> float:

@@ -1,7 +1,7 @@
-"""What the page of a diagnosis shows, in words and shares of a width, ready for the template.
+"""Stages, causes, parameters and places as the page of a diagnosis shows them.
 
-Here is decided what a reader sees first and what waits in the details; the template only lays it
-out. None becomes "not determined", so that a gap in the data is never read as a zero.
+All is in words and shares of a width, ready for the template. Here is decided what a reader sees
+first and what waits in the details; the template only lays it out.
 """
 
 from __future__ import annotations
@@ -10,8 +10,16 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.text.sentences import finding_of, parameter_name
-from noise.diagnosis.text.words import STAGES, cause_of, evidence, p_number, percent
+from noise.diagnosis.text.sentences import closed_words, finding_of, parameter_name
+from noise.diagnosis.text.words import (
+    NOT_DETERMINED,
+    STAGES,
+    cause_of,
+    evidence,
+    number,
+    p_number,
+    percent,
+)
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -20,18 +28,9 @@ if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis, EffectFinding, Location
 
 __all__ = [
-    "NOT_DETERMINED",
-    "CauseRow",
-    "ParameterRow",
-    "StageBox",
-    "cause_rows",
-    "number",
-    "parameter_rows",
-    "place_rows",
+    "CauseRow", "ParameterRow", "StageBox", "cause_rows", "parameter_rows", "place_rows",
     "stage_boxes",
-]
-
-NOT_DETERMINED = "not determined"
+]  # fmt: skip
 
 _PASSED_ON = {
     "drive": "speed",
@@ -117,19 +116,6 @@ class ParameterRow:
     off: bool
 
 
-def number(value: float | None, form: str = ".2f") -> str:
-    """Return a number as it is printed.
-
-    Examples
-    --------
-    >>> number(-1.234), number(None)
-    ('−1.23', 'not determined')
-    """
-    if value is None or not math.isfinite(value):
-        return NOT_DETERMINED
-    return format(value, form).replace("-", "\N{MINUS SIGN}")
-
-
 def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
     """Return the chain from drive to measurement.
 
@@ -153,7 +139,7 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
                 gap=number(None if finding is None else finding.gap),
                 p_value=p_number(p_value) if math.isfinite(p_value) else "",
                 words=evidence(p_value) if math.isfinite(p_value) else "",
-                share=_share(None if finding is None else finding.share),
+                share=percent(None if finding is None else finding.share),
                 guilty=diagnosis.location is not None and diagnosis.location.stage == name,
                 differs=p_value < _SMALL_P,
                 causes=tuple(cause_of(c).name for c, stage in acting.items() if stage == name),
@@ -170,9 +156,9 @@ def cause_rows(diagnosis: Diagnosis) -> tuple[tuple[CauseRow, ...], tuple[CauseR
     --------
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> chances = {"none": 0.9, "parameters": 0.06, "mains_hum": 0.02, "clipping": 0.01}
-    >>> shown, others = cause_rows(
+    >>> likely, others = cause_rows(
     ...     Diagnosis((), (), None, {}, (), chances, {}, "", (), 1.0, 1.0, 0.6, 1.0))
-    >>> [row.name for row in shown], [row.name for row in others]
+    >>> [row.name for row in likely], [row.name for row in others]
     (['no gap', 'parameters', 'mains hum'], ['clipping'])
     """
     chances: dict[str, float] = dict(diagnosis.probabilities)
@@ -249,8 +235,8 @@ def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
         probability=probability,
         chance=percent(probability),
         named=name in diagnosis.verdict or (name == "none" and not diagnosis.verdict),
-        closed="" if beside else _closed(finding),
-        by_effect=_share(None if finding is None else finding.closed_by_effect),
+        closed="" if beside else closed_words(finding),
+        by_effect=percent(None if finding is None else finding.closed_by_effect),
         strength="" if beside or finding is None else _strength(finding),
         fitted=any(gap is not None for gap in gaps),
         gaps=(number(gaps[0]), number(gaps[1]), number(gaps[2]), number(gaps[3])),
@@ -263,15 +249,6 @@ def _stage_of(diagnosis: Diagnosis, name: str) -> str:
     if finding is not None:
         return str(finding.stage)
     return str(EFFECTS[name].stage) if name in EFFECTS else ""
-
-
-def _closed(finding: EffectFinding | None) -> str:
-    if finding is None or finding.closed is None:
-        return NOT_DETERMINED
-    words = percent(finding.closed)
-    if finding.closed_low is None or finding.closed_high is None:
-        return words
-    return f"{words} ({percent(finding.closed_low)} to {percent(finding.closed_high)})"
 
 
 def _strength(finding: EffectFinding) -> str:
@@ -293,9 +270,3 @@ def _fitted(finding: EffectFinding) -> tuple[str, ...]:
         unit = known[name].unit if name in known else ""
         words.append(f"{parameter_name(name)} {text} {unit}".strip())
     return tuple(words)
-
-
-def _share(share: float | None) -> str:
-    if share is None or not math.isfinite(share):
-        return NOT_DETERMINED
-    return percent(share)

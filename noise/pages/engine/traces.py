@@ -1,4 +1,4 @@
-"""What the review page draws of a recording, and the scales that make recordings comparable.
+"""Traces of a recording that a page draws, and the scales that make recordings comparable.
 
 Autospectra are for comparing levels: those of one kind of channel share one axis over all
 recordings of a page. Time histories are for seeing shapes: each has its own scale, which spans no
@@ -12,21 +12,20 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from features.kernels.spectra import Spectrum, autospectrum
-from models.drawing import CHANNEL_LOOKS
-from models.recording import REFERENCE_PRESSURE
+from models.drawing import levels
+from noise.pictures.channel_kinds import KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from models.recording import Recording
     from noise.labels.segments import Segment
 
-__all__ = ["HIGHEST", "KINDS", "LOWEST", "Kind", "Scale", "Trace", "common_scales", "traces"]
+__all__ = ["HIGHEST", "LOWEST", "Scale", "Trace", "common_scales", "traces"]
 
 LOWEST, HIGHEST = 20.0, 15e3
 """Ends of the frequency axis [Hz]: of hearing, and of creak (thesis, section 5.3)."""
@@ -34,52 +33,7 @@ LOWEST, HIGHEST = 20.0, 15e3
 _LEAST_SHARE = 1 / 20
 _HEADROOM = 3.0  # above the highest level [dB]
 _LEAST_SAMPLES = 16  # that have an autospectrum
-_SMALLEST = 1e-60  # stands for a density of zero
 _FULL_SCALE_QUIET = -60.0
-
-
-@dataclass(frozen=True)
-class Kind:
-    """How a kind of channel is shown.
-
-    Parameters
-    ----------
-    name : str
-    unit : str
-        As it is written on an axis.
-    colour : str
-    reference : float
-        Of levels, in the channel's unit; that of ISO 1683 where there is one.
-    density : str
-        The reference of the autospectral density in words.
-    least_swing : float
-        Taken for the swing of a signal that swings less, in the channel's unit.
-    quiet : float
-        A spectrum's axis ends no lower [dB].
-    """
-
-    name: str
-    unit: str
-    colour: str
-    reference: float
-    density: str
-    least_swing: float
-    quiet: float
-
-
-_COLOURS = {kind: look.colour for kind, look in CHANNEL_LOOKS.items()}
-
-KINDS = {
-    "torque": Kind("Torque", "Nm", _COLOURS["torque"], 1.0, "(1 Nm)²/Hz", 0.1, -40.0),
-    "acceleration": Kind(
-        "Beam acceleration", "m/s²", _COLOURS["acceleration"], 1e-6, "(1 µm/s²)²/Hz", 0.1, 80.0
-    ),
-    "pressure": Kind(
-        "Sound pressure", "Pa", _COLOURS["pressure"], REFERENCE_PRESSURE, "(20 µPa)²/Hz", 1e-3, 40.0
-    ),
-}
-"""The kinds of channel that are shown, in their order. Blue, green and near-black are told apart
-by every eye (Okabe and Ito, Color universal design, 2008)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +72,7 @@ class Trace:
         frequency = self.spectrum.frequency
         shown = (frequency >= LOWEST) & (frequency <= HIGHEST)
         reference = KINDS[self.kind].reference if self.calibrated else 1.0
-        density = np.maximum(self.spectrum.density[shown] / reference**2, _SMALLEST)
-        return frequency[shown], 10.0 * np.log10(density)
+        return frequency[shown], levels(self.spectrum.density[shown], reference)
 
     @property
     def swing(self) -> tuple[float, float]:
@@ -181,6 +134,7 @@ def traces(recording: Recording, segment: Segment, window: float) -> tuple[Trace
 
     Examples
     --------
+    >>> import numpy as np
     >>> from models.recording import Channel, Recording
     >>> from noise.labels.segments import Segment
     >>> silence = Recording(np.zeros((1, 9600)), 48e3, (Channel("pressure"),))
@@ -223,12 +177,12 @@ def _own_channel(recording: Recording, channel: str) -> str:
     return channel
 
 
-def common_scales(shown: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
+def common_scales(drawn: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
     """Find the scales that traces of one kind share.
 
     Parameters
     ----------
-    shown : iterable of Trace
+    drawn : iterable of Trace
         All traces of a page.
 
     Returns
@@ -238,6 +192,7 @@ def common_scales(shown: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
 
     Examples
     --------
+    >>> import numpy as np
     >>> from models.recording import Channel, Recording
     >>> from noise.labels.segments import Segment
     >>> t = np.arange(9600) / 48e3
@@ -248,7 +203,7 @@ def common_scales(shown: Iterable[Trace]) -> dict[tuple[str, bool], Scale]:
     {('pressure', True): Scale(swing=1.0, reach=1.0, top=90.0)}
     """
     scales: dict[tuple[str, bool], Scale] = {}
-    for trace in shown:
+    for trace in drawn:
         kind, key = KINDS[trace.kind], (trace.kind, trace.calibrated)
         middle, swing = trace.swing
         swing = max(swing, kind.least_swing)

@@ -8,14 +8,13 @@ projector and costs no toner.
 
 from __future__ import annotations
 
+import io
 import math
-import struct
-import zlib
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.pages.review.entries import RATE
+from noise.pages.engine.entry import RATE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -102,23 +101,14 @@ def scale_picture() -> bytes:
 
 
 def _png(steps: NDArray[np.uint8]) -> bytes:
-    """Write a PNG file of four bits a pixel (ISO/IEC 15948)."""
+    """Write a PNG file of four bits a pixel."""
     from matplotlib import colormaps
+    from PIL import Image
 
     colours = (255 * colormaps["magma_r"](np.linspace(0.0, 1.0, _COLOURS))[:, :3]).astype(np.uint8)
     colours[0] = 255
-    height, width = steps.shape
-    even = np.pad(steps, ((0, 0), (0, width % 2)))
-    lines = np.pad(even[:, ::2] << 4 | even[:, 1::2], ((0, 0), (1, 0)))  # none is filtered
-    header = struct.pack(">IIBBBBB", width, height, 4, 3, 0, 0, 0)
-    chunks = [
-        (b"IHDR", header),
-        (b"PLTE", colours.tobytes()),
-        (b"IDAT", zlib.compress(lines.tobytes(), 9)),
-        (b"IEND", b""),
-    ]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(content)) + name + content
-        + struct.pack(">I", zlib.crc32(name + content))
-        for name, content in chunks
-    )  # fmt: skip
+    image = Image.fromarray(steps).convert("P")
+    image.putpalette(colours.tobytes())
+    png = io.BytesIO()
+    image.save(png, "PNG", bits=4, optimize=True)
+    return png.getvalue()

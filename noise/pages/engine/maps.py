@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.labels.conditions import conditions_map
-from noise.pictures.speeds import support_words
+from noise.pages.engine.ticks import round_ticks
+from noise.pictures.titles import place_title
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -124,11 +125,9 @@ def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
     if high - low <= 1e-9 * max(abs(high), 1e-9):
         room = 0.25 * abs(high) or 1.0
     low, high = low - room, high + room
-    step = _round_step((high - low) / _MOST_TICKS)
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     ticks = tuple(
-        (round((step * n - low) / (high - low), 4), f"{step * n:.6g}")
-        for n in range(first, last + 1)
+        (round((tick - low) / (high - low), 4), f"{tick:.6g}")
+        for tick in round_ticks(low, high, _MOST_TICKS)
     )
     return Axis(low, high, ticks)
 
@@ -219,7 +218,7 @@ def recorded_maps(
     playable = set(heard)
     places = conditions_map(rows)
     known = [p for p in places if p.speed is not None and p.interference is not None]
-    shown = {one for place in known for one in place.recordings}
+    placed = {one for place in known for one in place.recordings}
     everything = {one for place in places for one in place.recordings}
     maps = []
     for title, group in groupby(known, key=_title):
@@ -228,7 +227,7 @@ def recorded_maps(
         up = axis_of([_middle(place.interference) for place in known], edges=False)
         spots = tuple(_spot(place, across, up, titles, playable) for place in here)
         maps.append(ConditionMap(title, across, up, (), spots))
-    return maps, len(everything - shown)
+    return maps, len(everything - placed)
 
 
 def _runs(labels: Sequence[str]) -> tuple[tuple[int, int, str], ...]:
@@ -253,13 +252,7 @@ def _spot(
 
 
 def _title(place: Place) -> str:
-    material = place.material or "material not known"
-    support = place.support_stiffness
-    if support is None:
-        return f"{material}, support not known"
-    if support.low == support.high:
-        return f"{material}, {support_words(support.low)}"
-    return f"{material}, {support.low:.4g} to {support.high:.4g} Nm/rad"
+    return place_title(place.material, place.support_stiffness)
 
 
 def _middle(found: Range | None) -> float:
@@ -292,8 +285,3 @@ def _nearest(
     y = 0.5 * (y_edges[1:] + y_edges[:-1]) / height
     _, found = tree.query(np.stack(np.meshgrid(x, y), axis=-1))
     return [[labels[one] for one in row] for row in found]
-
-
-def _round_step(least: float) -> float:
-    decade = 10.0 ** math.floor(math.log10(least))
-    return next(step * decade for step in (1, 2, 5, 10) if least <= step * decade * (1 + 1e-9))

@@ -1,72 +1,36 @@
-"""Figures of a recording for the review page: time history and autospectrum of each channel.
-
-Each panel is an SVG of its own with its axes in the same place, so that a page lays them out as two
-columns on a projector and as one on a telephone, and print stays sharp. No pyplot: a library must
-not touch the caller's figures, settings or screen.
-"""
+"""Figures of a recording: time history and autospectrum of each channel, a panel each."""
 
 from __future__ import annotations
 
-import io
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import matplotlib.style
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
-from models.drawing import thinned
+from models.drawing import styled, thinned
 from models.errors import ParameterError
-from noise.pages.traces import HIGHEST, KINDS, LOWEST, Trace, common_scales, traces
+from noise.pages.engine.panels import COLUMNS, Panel, as_svg, new_panel, panel_frequencies
+from noise.pages.engine.traces import HIGHEST, LOWEST, Trace, common_scales, traces
+from noise.pictures.channel_kinds import KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from matplotlib.axes import Axes
-
     from models.recording import Recording
     from noise.labels.segments import Segment
-    from noise.pages.traces import Kind, Scale
+    from noise.pages.engine.traces import Scale
+    from noise.pictures.channel_kinds import Kind
 
-__all__ = ["WINDOW", "ChannelPanels", "EntryFigure", "Panel", "entry_figures"]
+__all__ = ["WINDOW", "ChannelPanels", "EntryFigure", "entry_figures"]
 
 WINDOW = 0.05
 """Length of the time histories [s]: two slips of a creak at 40 Hz, and no more than some fifty
 cycles of a squeal, which is as many as a panel keeps apart."""
 
-_TICKS = {20: "20", 50: "50", 100: "100", 200: "200", 500: "500"}
-_TICKS |= {1000: "1k", 2000: "2k", 5000: "5k", 10000: "10k"}
 _DYNAMIC_RANGE = 120.0  # of a spectrum's axis [dB]
-_COLUMNS = 500  # steps across a panel that the eye can tell apart
-_SIZE = (5.2, 2.5)  # of a panel [inch]
-_AXES = (0.19, 0.215, 0.785, 0.665)
 _PREFIXES = ((5e-4, 1e6, "µ", "ppm "), (0.5, 1e3, "m", "‰ "))  # of values below
-_STYLE = {
-    "svg.fonttype": "path",  # the same on every machine, whatever fonts it has
-    "svg.hashsalt": "bushing-noise",
-    "font.family": "DejaVu Sans",
-    "font.size": 11.0,
-    "axes.titlesize": 11.5,
-    "xtick.labelsize": 10.5,
-    "ytick.labelsize": 10.5,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#444444",
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.7,
-}
-
-
-@dataclass(frozen=True)
-class Panel:
-    """One picture: an SVG file's bytes, and in words what it shows."""
-
-    svg: bytes
-    alt: str
 
 
 @dataclass(frozen=True)
@@ -92,6 +56,11 @@ class EntryFigure:
 
     rows: tuple[ChannelPanels, ...]
     caption: str
+
+    @property
+    def panels(self) -> tuple[Panel, ...]:
+        """All pictures, row by row."""
+        return tuple(panel for row in self.rows for panel in (row.time, row.spectrum))
 
 
 def entry_figures(
@@ -135,11 +104,11 @@ def entry_figures(
     """
     if not (math.isfinite(window) and window > 0):
         raise ParameterError(f"window is {window}; it is a positive number of seconds")
-    shown = [traces(recording, segment, window) for recording, segment in entries]
-    scales = common_scales(trace for entry in shown for trace in entry)
+    drawn = [traces(recording, segment, window) for recording, segment in entries]
+    scales = common_scales(trace for entry in drawn for trace in entry)
     figures = []
-    with matplotlib.style.context(["default", _STYLE]):
-        for (_, segment), entry in zip(entries, shown, strict=True):
+    with styled():
+        for (_, segment), entry in zip(entries, drawn, strict=True):
             rows = []
             for trace in entry:
                 scale = scales[trace.kind, trace.calibrated]
@@ -156,22 +125,21 @@ def _time_panel(trace: Trace, scale: Scale) -> Panel:
     factor, unit = _display_unit(kind, scale.reach, calibrated=trace.calibrated)
     t = np.arange(trace.samples.size, dtype=np.float64) * (1e3 / trace.rate)
     length = 1e3 * trace.samples.size / trace.rate
-    figure, axes = _panel(kind.name)
+    across = f"Time from {trace.start:.3f} s [ms]"
+    figure, axes = new_panel(kind.name, across, f"{kind.name} [{unit}]")
     axes.plot(
-        *thinned(t, factor * trace.samples, columns=_COLUMNS), color=kind.colour, linewidth=1.2
+        *thinned(t, factor * trace.samples, columns=COLUMNS), color=kind.colour, linewidth=1.2
     )
     axes.set_xlim(0.0, length)
     axes.set_ylim(factor * (middle - swing), factor * (middle + swing))
     axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
     axes.ticklabel_format(axis="y", style="plain", useOffset=False)
-    axes.set_xlabel(f"Time from {trace.start:.3f} s [ms]")
-    axes.set_ylabel(f"{kind.name} [{unit}]")
     low, high = factor * float(trace.samples.min()), factor * float(trace.samples.max())
     alt = (
         f"{kind.name} over {length:.3g} ms from {trace.start:.3f} s: between {low:.3g} and "
         f"{high:.3g} {unit}."
     )
-    return Panel(_svg(figure), alt)
+    return Panel(as_svg(figure), alt)
 
 
 def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Panel:
@@ -179,21 +147,15 @@ def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Pane
     density = kind.density if trace.calibrated else "FS²/Hz"
     bottom = scale.top - _DYNAMIC_RANGE
     f, levels = trace.levels
-    figure, axes = _panel(f"{kind.name}, autospectrum")
+    figure, axes = new_panel(f"{kind.name}, autospectrum", "Frequency [Hz]", f"dB re {density}")
     if frequency is not None and LOWEST <= frequency <= HIGHEST:
         axes.axvline(frequency, color="#777777", linewidth=1.0, linestyle=(0, (4, 3)))
     drawn = np.maximum(levels, bottom - 5.0)
-    curve = thinned(f, drawn, position=np.log(f), columns=_COLUMNS)
+    curve = thinned(f, drawn, position=np.log(f), columns=COLUMNS)
     axes.plot(*curve, color=kind.colour, linewidth=1.0)
-    axes.set_xscale("log")
-    axes.set_xlim(LOWEST, HIGHEST)
+    panel_frequencies(axes, LOWEST, HIGHEST)
     axes.set_ylim(bottom, scale.top)
-    axes.xaxis.set_major_locator(FixedLocator(list(_TICKS)))
-    axes.xaxis.set_minor_locator(FixedLocator([]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: _TICKS[round(x)]))
     axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-    axes.set_xlabel("Frequency [Hz]")
-    axes.set_ylabel(f"dB re {density}")
     alt = f"Autospectrum of the {kind.name.lower()} from 20 Hz to 15 kHz: "
     if levels.max(initial=-math.inf) >= bottom:
         peak = int(levels.argmax())
@@ -201,7 +163,7 @@ def _spectrum_panel(trace: Trace, scale: Scale, frequency: float | None) -> Pane
     else:
         axes.text(0.5, 0.08, "below this axis", transform=axes.transAxes, ha="center")
         alt += f"all below {bottom:.0f} dB re {density}."
-    return Panel(_svg(figure), alt)
+    return Panel(as_svg(figure), alt)
 
 
 def _caption(entry: Sequence[Trace]) -> str:
@@ -222,18 +184,3 @@ def _display_unit(kind: Kind, reach: float, *, calibrated: bool) -> tuple[float,
         if reach < below:
             return factor, f"{prefix}{kind.unit}" if calibrated else f"{share}FS"
     return 1.0, kind.unit if calibrated else "FS"
-
-
-def _panel(title: str) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=_SIZE)
-    axes = figure.add_axes(_AXES)
-    axes.set_title(title, loc="left", fontweight="bold", color="#222222")
-    # At the same place in every panel, however wide the numbers are.
-    axes.yaxis.set_label_coords(-0.19, 0.5)
-    return figure, axes
-
-
-def _svg(figure: Figure) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    return buffer.getvalue()

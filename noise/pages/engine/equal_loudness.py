@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.audio.gain import LOUDNESS_BLOCK, TARGET_LOUDNESS, loudness
-from noise.pages.review.entries import RATE
+from noise.pages.engine.entry import RATE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
