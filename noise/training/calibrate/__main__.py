@@ -1,6 +1,6 @@
-"""Fit the fluorocarbon to the thesis's tables, and hold out: ``python -m noise.training.calibrate``.
+"""Command that fits the fluorocarbon to the thesis's tables, and holds out.
 
-Without options it judges the shipped material. ``--generations N`` searches; ``--leave-out``
+``python -m noise.training.calibrate`` without options it judges the shipped material. ``--generations N`` searches; ``--leave-out``
 searches again with each of the six critical speeds at 0.279 mm left out, from round numbers.
 """
 
