@@ -113,22 +113,6 @@ def test_nothing_matters_to_what_does_not_vary():
     assert {(one.first.value, one.total.value, one.total.high) for one in found} == {(0, 0, 0)}
 
 
-def test_the_estimators_are_those_of_scipy():
-    seen = []
-
-    def output(x):
-        seen.append(ishigami(x))
-        return seen[-1]
-
-    found = in_order(sobol_indices(output, ANGLES, np.random.default_rng(0), samples=256))
-    a, b, *mixed = seen[0].reshape(5, 256)
-    reference = stats.sobol_indices(
-        func={"f_A": a[None], "f_B": b[None], "f_AB": np.array(mixed)[:, None]}, n=256
-    )
-    np.testing.assert_allclose([one.first.value for one in found], reference.first_order)
-    np.testing.assert_allclose([one.total.value for one in found], reference.total_order)
-
-
 @pytest.mark.parametrize("options", [{"samples": 100}, {"samples": 32}, {"confidence": 0.0}])
 def test_what_cannot_be_used_is_refused(options):
     with pytest.raises(ParameterError, match="power of two"):
