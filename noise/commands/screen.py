@@ -151,9 +151,9 @@ def run(options: Namespace) -> int:
 
 
 def _given(options: Namespace) -> Use:
+    from noise.screening.design.axis_values import text_values
     from noise.screening.design.design import SPEED_STEP, Use
     from noise.screening.design.tolerances import ABSOLUTE_ZERO
-    from noise.screening.map.axes import text_values
 
     def read(option: str, text: str | None, **more: object) -> tuple[float, ...]:
         values: Callable[..., tuple[float, ...]] = text_values
@@ -174,8 +174,8 @@ def _given(options: Namespace) -> Use:
 
 
 def _swinging(text: str) -> Swinging:
+    from noise.screening.design.axis_values import text_values
     from noise.screening.design.design import FREQUENCY_STEP, Swinging
-    from noise.screening.map.axes import text_values
 
     degrees, comma, frequency = text.partition(",")
     if not comma:

@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING
 from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig, material_names, read_toml, rig_from
+from noise.screening.design.axis_values import axis_values
 from noise.screening.design.tolerances import ABSOLUTE_ZERO, read_tolerances
-from noise.screening.map.axes import axis_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
+from noise.screening.design.axis_values import spread
 from noise.screening.design.design import SPEED_STEP, Use
 from noise.screening.design.environments import DRY, environment
-from noise.screening.map.axes import spread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.screening.map.batches import LABELS, Batch
-from noise.screening.map.carry import carried
+from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES
 from noise.screening.map.refine import HOW, STRIDE, refined_map
 from sim.analysis.regime import Regime
@@ -152,7 +152,7 @@ def map_design(
         most=most,
         stride=stride or (_stride(axes[2], _FIT_APART), _stride(speed, _SPEED_APART)),
     )
-    level = carried(level, found.codes, found.how)
+    level = interpolate_levels(level, found.codes, found.how)
     how = np.array(HOW)[found.how].reshape(shape)
     result = DesignMap(
         design=design,

@@ -20,14 +20,14 @@ from scipy import stats
 
 from models.errors import ParameterError
 from noise.screening.parts.estimate import Estimate
-from noise.screening.parts.scatter import names_of, parts, sobol_points
+from noise.screening.parts.sampling import parts, sobol_points
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
-    from noise.screening.parts.scatter import Scatter
+    from noise.screening.parts.sampling import Distribution
 
 __all__ = ["Sensitivity", "sobol_indices"]
 
@@ -56,7 +56,7 @@ class Sensitivity:
 
 def sobol_indices(
     output: Callable[[NDArray[np.float64]], ArrayLike],
-    scatters: Sequence[Scatter],
+    distributions: Mapping[str, Distribution],
     rng: np.random.Generator,
     *,
     samples: int = 256,
@@ -69,7 +69,7 @@ def sobol_indices(
     output : callable
         Of parameters, shape (n, d), a row a part; returns n finite numbers. It is called once,
         with ``samples * (d + 2)`` rows.
-    scatters : sequence of Scatter, length d
+    distributions : mapping of str to Distribution, length d
     rng : numpy.random.Generator
         Of the samples and of the bootstrap.
     samples : int
@@ -89,15 +89,15 @@ def sobol_indices(
 
     Examples
     --------
-    Of a product of two factors that scatter alike, each matters as much:
+    Of a product of two factors that vary alike, each matters as much:
 
-    >>> from noise.screening.parts.scatter import Scatter
-    >>> both = [Scatter(name, "uniform", 0.1) for name in ("stiffness", "friction")]
+    >>> from scipy.stats import uniform
+    >>> both = {name: uniform(0.9, 0.2) for name in ("stiffness", "friction")}
     >>> found = sobol_indices(lambda x: x[:, 0] * x[:, 1], both, np.random.default_rng(0))
     >>> sorted((index.name, round(index.total.value, 1)) for index in found)
     [('friction', 0.5), ('stiffness', 0.5)]
     """
-    names = names_of(scatters)
+    names = tuple(distributions)
     if samples < 2 * _SCRAMBLINGS or samples & (samples - 1) or not 0.0 < confidence < 1.0:
         raise ParameterError(
             f"Sobol' indices: samples = {samples} must be a power of two from "
@@ -108,7 +108,7 @@ def sobol_indices(
     points = np.vstack([sobol_points(2 * d, rng).random(each) for _ in range(_SCRAMBLINGS)])
     a, b = points[:, :d], points[:, d:]
     mixed = [np.where(np.arange(d) == i, b, a) for i in range(d)]
-    values = np.asarray(output(parts(scatters, np.vstack([a, b, *mixed]))), dtype=np.float64)
+    values = np.asarray(output(parts(distributions, np.vstack([a, b, *mixed]))), dtype=np.float64)
     if values.shape != (samples * (d + 2),) or not np.isfinite(values).all():
         raise ParameterError(
             f"Sobol' indices: the output must be {samples * (d + 2)} finite numbers, one a part"
