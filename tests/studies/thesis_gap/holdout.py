@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.diagnosis.fit.closing import closed_fraction
 from noise.training.calibrate.cells import CELLS
 from tests.studies.thesis_gap.candidates import Candidate
 from tests.studies.thesis_gap.fit import Trials, fitted_point
@@ -160,4 +161,4 @@ def _shares(
     b, a, f = (
         np.sqrt(np.mean(np.square(values)[chosen], axis=1)) for values in (before, after, floor)
     )
-    return np.where(b > f, (b - a) / np.where(b > f, b - f, 1.0), 0.0)
+    return np.where(b > f, closed_fraction(b, a, np.where(b > f, f, b - 1.0)), 0.0)
