@@ -1,4 +1,4 @@
-"""Sound power of the plate, and where the power of its drives goes.
+"""Sound power of the plate, and the balance of the power that is supplied to it.
 
 Radiated power follows from the plate's velocity spectrum over wavenumbers: only components slower
 than k = omega / c travel away. Over that disc the integral is smooth once k_x = k s and

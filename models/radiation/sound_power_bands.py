@@ -1,4 +1,4 @@
-"""Sound power per one-third octave, as a sound power measurement states it.
+"""Sound power in one-third octaves, as a sound power measurement states it.
 
 Bands are those of base ten (IEC 61260-1). In each one the frequencies computed lie close enough for
 the narrowest resonance: half its width apart, which sums a resonance to half a percent.

@@ -1,4 +1,4 @@
-"""Where stick and vibration end: Tables 5.1 and 5.2, and what the thesis simulated (6.3.1).
+"""Critical speeds of Tables 5.1 and 5.2, and stick-slip as the thesis simulated it (6.3.1).
 
 The thesis simulated at 1, 2.5, 5, 7.5 and 10 rad/s, so "stick-slip through 5 rad/s" admits an end
 anywhere below 7.5. There the end of the first unbroken range counts, islands above it do not.

@@ -27,7 +27,7 @@ def sure(probability):
 
 
 def places(*candidates):
-    return {one.candidate.name: one.place for one in ranked(candidates)}
+    return {one.candidate.name: one.rank for one in ranked(candidates)}
 
 
 @settings(max_examples=50)
@@ -150,7 +150,7 @@ def test_the_ranking_does_not_depend_on_the_order_given(designs, random):
     found = ranked(candidates)
     random.shuffle(candidates)
     assert ranked(candidates) == found
-    assert [one.place for one in found] == sorted(one.place for one in found)
+    assert [one.rank for one in found] == sorted(one.rank for one in found)
 
 
 def candidate(name, rig):

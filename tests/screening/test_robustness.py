@@ -54,7 +54,7 @@ def quieter():
 
 def test_a_design_quieter_by_construction_is_ranked_first(plain, quieter):
     found = ranked([plain.candidate, quieter.candidate])
-    assert [(one.place, one.candidate.name) for one in found] == [
+    assert [(one.rank, one.candidate.name) for one in found] == [
         (1, "damped"),
         (2, "fluorocarbon"),
     ]

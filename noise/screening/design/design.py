@@ -1,4 +1,4 @@
-"""A bushing design as a file, and how it is used.
+"""Bushing design: a rig, its use and its tolerances, read from a file.
 
 A design file is a rig file with two tables more: ``[design]`` says what the design is called and
 what it will meet in use, ``[tolerances]`` how far built ones lie from it. The name of a material

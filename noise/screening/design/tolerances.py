@@ -1,4 +1,4 @@
-"""How far a built bushing may lie from its drawing: the ``[tolerances]`` of a design file.
+"""Tolerances of built bushings about their drawing: the ``[tolerances]`` of a design file.
 
 Each entry becomes a factor on the nominal value, which is what a population is drawn in: a number
 is a relative standard deviation, ``absolute`` a standard deviation in the unit of the design file,
@@ -55,7 +55,8 @@ class Tolerance:
     kind : str
         ``relative`` or ``absolute``, a standard deviation of a normal distribution; or ``limits``.
     first, second : float
-        The standard deviation, and nothing; or the limits.
+        The standard deviation, as a share [-] or in the unit of `PARAMETERS`, and nothing; or the
+        limits, in that unit.
 
     Examples
     --------

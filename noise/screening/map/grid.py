@@ -1,4 +1,4 @@
-"""Over which conditions a design is mapped: what the caller says, else its use, else its rig."""
+"""Grid of conditions over which a design is mapped: the caller's, its use's or its rig's."""
 
 from __future__ import annotations
 

@@ -38,16 +38,17 @@ class Advice:
     name : str
         Of the parameter.
     value : float
-        To set it to.
+        To set it to, in the unit of the design variable.
     change : float
-        From the nominal value, as a share of it.
+        From the nominal value, as a share of it [-].
     cost : float
+        In the unit of the design variable's cost.
     enough : bool
         Whether it brings what was asked for; otherwise it is what serves best within the range.
     steady : bool
         Whether a somewhat larger change brings it as well; otherwise it stands on an island.
     gain : float
-        Margin gained by it; NaN where no margin was asked for.
+        Margin gained by it, in the margin's unit; NaN where no margin was asked for.
     slope : float
         Margin gained by small changes, over the change as a share of the nominal value; NaN where
         no margin was asked for, or where it is infinite close by.

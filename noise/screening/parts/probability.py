@@ -1,4 +1,4 @@
-"""How probable each noise is among parts made within their tolerances.
+"""Probability of each noise among parts within their tolerances, with intervals.
 
 Thirty-two scramblings of one quasi-random sequence run side by side and are doubled in length
 until every interval is as narrow as was asked for. How far the scramblings differ tells what a
@@ -53,7 +53,7 @@ class Probabilities:
     samples : int
         Parts that were looked at.
     confidence : float
-        That an interval holds the true probability.
+        That an interval holds the true probability [-].
     reached : bool
         Whether all intervals are as narrow as was asked for.
     """
@@ -103,9 +103,9 @@ def label_probabilities(
     labels : sequence of str
         To be told of even if no part has them; others are told of once they occur.
     half_width : float
-        Of each interval, at most.
+        Of each interval, at most [-].
     confidence : float
-        Of each interval, from 0 to 1.
+        Of each interval, from 0 to 1 [-].
     most : int
         Parts to look at, at most; from 64 on they double.
 

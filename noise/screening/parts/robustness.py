@@ -146,7 +146,7 @@ def robustness(
     rng : numpy.random.Generator
         Of the parts.
     half_width, confidence : float
-        Of the probabilities' intervals, and the confidence of all intervals.
+        Of the probabilities' intervals, and the confidence of all intervals [-].
     samples : int
         Of the Sobol' indices, a power of two from 64 on.
     gain : float

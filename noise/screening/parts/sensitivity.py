@@ -46,7 +46,7 @@ class Sensitivity:
     name : str
         Of the parameter.
     first, total : Estimate
-        Sobol' indices; what is estimated may lie a little below 0 or above 1.
+        Sobol' indices [-]; what is estimated may lie a little below 0 or above 1.
     """
 
     name: str
@@ -75,7 +75,7 @@ def sobol_indices(
     samples : int
         A power of two from 64 on; the more parameters and the rougher the output, the more.
     confidence : float
-        Of each interval, from 0 to 1.
+        Of each interval, from 0 to 1 [-].
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The risk number of a design over its use, from runs of its nominal rig.
+"""Risk number of a design over its use, from runs of its nominal rig.
 
 How hard a blow is, is told by the torque: by how much its swing would accelerate the free clamp
 where the beams hold it. That is what the accelerometer reads in stick-slip, within a factor of two,

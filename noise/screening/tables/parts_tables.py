@@ -1,4 +1,4 @@
-"""What tolerances and changes do, as tables and in words."""
+"""Tables and sentences about what tolerances and changes do."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How designs, screens and robustness show themselves in a notebook."""
+"""Display of designs, screenings and robustness in a notebook."""
 
 from __future__ import annotations
 

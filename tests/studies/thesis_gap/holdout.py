@@ -1,4 +1,4 @@
-"""Cell left out by cell left out: what a candidate predicts where it was not fitted.
+"""Cross-validation: what a candidate predicts at each cell that it was not fitted to.
 
 Closed is (before - after) / (before - floor), each the root mean square over the cells: before is
 the constant-torque model, after the candidate fitted to the five other cells, floor what reading
