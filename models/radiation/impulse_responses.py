@@ -17,7 +17,9 @@ from scipy.fft import irfft, next_fast_len, rfft
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FrequencyResponse", "Response", "convolve", "frequency_response", "radiate"]
+__all__ = [
+    "FrequencyResponse", "Response", "convolve", "frequency_response", "radiate", "radiate_pulses",
+]  # fmt: skip
 
 Path = Literal[
     "torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration", "pulse_to_pressure"
@@ -112,9 +114,39 @@ def radiate(
     acceleration = _along(response, "torque_to_acceleration", change)
     pressure = _along(response, "torque_to_pressure", change)
     if pulse_force is not None and np.any(pulse_force):
-        acceleration += _along(response, "pulse_to_acceleration", pulse_force)
-        pressure += _along(response, "pulse_to_pressure", pulse_force)
+        struck, sounding = radiate_pulses(response, pulse_force)
+        acceleration += struck
+        pressure += sounding
     return acceleration, pressure
+
+
+def radiate_pulses(
+    response: Response, pulse_force: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Acceleration and sound pressure that pulses cause, without those of the torque.
+
+    Parameters
+    ----------
+    response : Response
+    pulse_force : ndarray, shape (n,)
+        Of the anchors on the plate, sampled at the response's rate [N].
+
+    Returns
+    -------
+    acceleration, pressure : ndarray, shape (n,)
+        [m/s2] and [Pa]
+
+    Examples
+    --------
+    >>> echo = Response(48e3, np.ones(1), np.ones(1), np.array([2.0]), np.array([0.0, 3.0]))
+    >>> acceleration, pressure = radiate_pulses(echo, np.array([1.0, 0.0]))
+    >>> acceleration.round(9), pressure.round(9)
+    (array([2., 0.]), array([0., 3.]))
+    """
+    return (
+        _along(response, "pulse_to_acceleration", pulse_force),
+        _along(response, "pulse_to_pressure", pulse_force),
+    )
 
 
 def frequency_response(response: Response, frequency: ArrayLike) -> FrequencyResponse:

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.atomic import check_target
 from noise.base.progress import say
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -59,7 +59,7 @@ def run(options: Namespace) -> int:
         check_target(options.out / "report.html")
     say("preparing")
     from models.rig_files.rig_file import load_rig
-    from noise.commands.user_effects import effect_library
+    from noise.base.user_effects import effect_library
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import diagnose_case
     from noise.diagnosis.outcome import as_json

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.base.progress import note, say
+from noise.base.user_effects import effect_library
 from noise.commands import options as opt
-from noise.commands.user_effects import effect_library
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -51,7 +51,7 @@ def given_options(options: Namespace) -> list[str]:
 def is_long(arguments: Mapping[str, Any]) -> bool:
     """Whether a run is better written in blocks than held in memory."""
     from sim.effects.effect import activated
-    from sim.motion_blocks import whole_run_effects
+    from sim.long_run import whole_run_effects
 
     effects = activated(arguments["rig"].effects, arguments["library"])
     seconds = arguments["seconds"]

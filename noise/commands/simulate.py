@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
+from noise.base.atomic import check_target
 from noise.base.progress import note, say
 from noise.base.tables import check_table_path, write_table
 from noise.commands import options as opt
 from noise.commands.operating import is_long, run_arguments
-from noise.commands.targets import check_target
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -94,9 +94,10 @@ def run(options: Namespace) -> int:
             _check_seconds(option, options.seconds)
     arguments = run_arguments(options, options.rate)
     if options.out is not None and is_long(arguments):
-        from noise.long_run import simulate_to_file
+        from noise.long_run import write_run
+        from sim.long_run import simulate_blocks
 
-        _print_names(simulate_to_file(options.out, **arguments))
+        _print_names(write_run(options.out, simulate_blocks(**arguments)))
         return 0
     from sim.run import simulate
 

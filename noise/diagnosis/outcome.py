@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from models.recording import Recording
-    from noise.diagnosis.evidence.contact_course import ContactCourses
+    from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
 __all__ = [
     "Diagnosis",
@@ -124,7 +124,7 @@ class Illustration:
     measured: Recording
     before: Recording
     after: Recording | None
-    contacts: Mapping[str, ContactCourses] = field(default_factory=dict)
+    contacts: Mapping[str, FrictionCurves] = field(default_factory=dict)
     """The friction torque of each, by ``measured``, ``before`` and ``after``."""
 
 

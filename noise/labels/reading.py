@@ -12,8 +12,8 @@ import math
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
+from noise.base.label_names import LABELS
 from noise.base.tables import check_table_path
-from noise.classifier import LABELS
 from noise.labels.table import COLUMNS
 
 if TYPE_CHECKING:

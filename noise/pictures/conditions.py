@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from matplotlib.patches import Patch, Rectangle
 
 from models.errors import ParameterError
-from noise.classifier import LABELS
+from noise.base.label_names import LABELS
 from noise.labels.label_display import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure, styled
 from noise.pictures.speeds import support_words

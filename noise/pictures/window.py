@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.harmonics import analyse_harmonics
-from features.kernels.slip_drops import torque_slips
+from features.kernels import slip_drops
 from sim.analysis.regime import LEAST_OSCILLATION
 
 if TYPE_CHECKING:
@@ -104,11 +103,7 @@ def repetition_rate(torque: NDArray[np.floating], rate: float) -> float | None:
     """
     if torque.size < _LEAST_SAMPLES or not oscillates(torque):
         return None
-    slips = torque_slips(torque, rate)
-    if np.isfinite(slips.mean_interval):
-        return 1.0 / slips.mean_interval
-    period = analyse_harmonics(torque, rate).fundamental
-    return float(period) if np.isfinite(period) else None
+    return slip_drops.repetition_rate(torque, rate)
 
 
 def oscillates(torque: NDArray[np.floating]) -> bool:

@@ -22,6 +22,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
+from sim.timing import REGIME_RATE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -44,8 +45,6 @@ SPEEDS = tuple(0.25 * i for i in range(1, 53))
 """From 0.25 to 13 rad/s, the range of the measurements."""
 
 _SECONDS = 1.0
-_RATE = 15e3
-"""Of the output [Hz]; it resolves stick, and the solution does not depend on it."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +176,7 @@ def motion_from_rest(
         interference=interference,
         support_stiffness=support_stiffness,
         seconds=seconds,
-        rate=_RATE,
+        rate=REGIME_RATE,
         effects=activated(rig.effects, EFFECTS),
     )
 

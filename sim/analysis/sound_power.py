@@ -30,6 +30,7 @@ from models.structure.beams_stiffness import beam_length
 from models.structure.plate import plate_modes
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
+from sim.pipeline import pulse_force
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -117,10 +118,7 @@ def motion_sound_power(
             f"sound power: the run lasts {motion.torque.size / motion.rate:g} s; it must last "
             f"{SHORTEST:g} s or more for the band at {LOWEST:g} Hz"
         )
-    pulses = np.zeros_like(motion.torque)
-    for active in activated(rig.effects, library or EFFECTS):
-        if active.effect.force is not None:
-            pulses += active.effect.force(motion, active.form, active.values)
+    pulses = pulse_force(motion, activated(rig.effects, library or EFFECTS))
     frequency, inputs = _cross_spectra(np.stack([motion.torque, pulses]), motion.rate)
     modes = plate_modes(rig.plate, HIGHEST_PLATE_FREQUENCY)
     transfer = np.zeros((2, 2, frequency.size), dtype=np.complex128)

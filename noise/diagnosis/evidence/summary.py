@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.kernels.segments import segment_spectra
+from models.condition import known_condition
+from noise.diagnosis.evidence.bands import band_bins, segment_frequency
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
     channel_summary,
@@ -22,12 +25,7 @@ from noise.diagnosis.evidence.channel_summary import (
     shaft_speed,
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
-from noise.diagnosis.evidence.path_summary import (
-    BAND_EDGES,
-    common_residual,
-    path_summary,
-    segments,
-)
+from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.paths import KnownWays, predict
@@ -93,10 +91,7 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     dict of str to float
         What a missing channel would tell is missing.
     """
-    condition, rate = recording.condition, recording.rate
-    assert condition.speed is not None
-    assert condition.interference is not None
-    assert condition.support_stiffness is not None
+    condition, rate = known_condition(recording.condition), recording.rate
     signal = {
         kind: recording.samples[row]
         for kind in ("torque", *_OUTPUTS, "angle")
@@ -158,7 +153,7 @@ class NominalNumbers:
 
     def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
-        c = recording.condition
+        c = known_condition(recording.condition)
         at = _condition(recording)
         like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
         if like not in self._kept:
@@ -224,8 +219,8 @@ def case_table(
 
 
 def _condition(recording: Recording) -> tuple[float, float, float]:
-    c = recording.condition
-    return (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
+    c = known_condition(recording.condition)
+    return (c.speed, c.interference, c.support_stiffness)
 
 
 def through_same(repeat: Recording, recording: Recording) -> Recording:
@@ -237,13 +232,10 @@ def through_same(repeat: Recording, recording: Recording) -> Recording:
 
 
 def _levels(x: NDArray[np.float64], rate: float) -> Numbers:
-    size = 2048 if rate < 40e3 else 4096
-    power = (np.abs(segments(x, size)) ** 2).mean(axis=0)
-    place = np.digitize(np.fft.rfftfreq(size, 1.0 / rate), BAND_EDGES)
+    power = (np.abs(segment_spectra(x, segment_frequency(rate)[0])) ** 2).mean(axis=0)
     return {
-        f"band_{i}": 0.5 * math.log(float(power[place == i].mean()) + 1e-14)
-        for i in range(1, BAND_EDGES.size)
-        if BAND_EDGES[i] < 0.42 * rate and (place == i).any()
+        f"band_{i}": 0.5 * math.log(float(power[inside].mean()) + 1e-14)
+        for i, inside in band_bins(rate)
     }
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import summary, through_same
@@ -169,7 +170,7 @@ class Bench:
         key = (repr(model), condition_key(like), len(seeds))
         if key not in self._signed:
             self._signed[key] = np.mean(
-                [self.runs.seen(model, like, seed) for seed in seeds], axis=0
+                [self.runs.noise_free_signature(model, like, seed) for seed in seeds], axis=0
             )
         return self._signed[key]
 
@@ -190,9 +191,7 @@ class Bench:
                 run = through_same(
                     self.runs.simulated(model, like, 0, Scatter(0.0, 0.0, 0.0)), like
                 )
-                c = like.condition
-                assert c.interference is not None
-                assert c.support_stiffness is not None
+                c = known_condition(like.condition)
                 ways = self.runs.known_ways.at(c.interference, c.support_stiffness)
                 found = summary(run, self.rig, ways)
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])

@@ -20,7 +20,7 @@ import soundfile
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE
 from noise.base.atomic import atomic
-from noise.classifier import LABELS
+from noise.base.label_names import LABELS
 from noise.pages.figures import entry_figures
 from noise.pages.templating import as_base64, template
 

@@ -11,7 +11,7 @@ from noise.pictures.axes import styled
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from noise.diagnosis.evidence.contact_course import ContactCourses
+    from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
 __all__ = ["contact_panels"]
 
@@ -24,12 +24,12 @@ _OVER = {
 """Title, what is across, and its scale."""
 
 
-def contact_panels(contacts: Mapping[str, ContactCourses]) -> tuple[Panel, ...]:
+def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
     """Draw the friction torque with its 90 % interval.
 
     Parameters
     ----------
-    contacts : mapping of str to ContactCourses
+    contacts : mapping of str to FrictionCurves
         By ``measured``, ``before`` and ``after``.
 
     Returns
@@ -48,7 +48,7 @@ def contact_panels(contacts: Mapping[str, ContactCourses]) -> tuple[Panel, ...]:
         return tuple(_panel(name, contacts) for name in _OVER)
 
 
-def _panel(over: str, contacts: Mapping[str, ContactCourses]) -> Panel:
+def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
     title, across, scale = _OVER[over]
     figure, axes = new_panel(title)
     words = []

@@ -17,8 +17,9 @@ import numpy as np
 from models.condition import Condition
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.atomic import atomic
+from noise.base.label_names import LABELS
 from noise.base.progress import counted, track
-from noise.classifier import LABELS, load_classifier
+from noise.classifier import load_classifier
 from noise.pages.review.clips import BYTES_A_SECOND, SHORTEST, common_gain, make_clips
 from noise.pages.review.diagnoses import read_diagnosis
 from noise.pages.review.entries import read_entry, without_sound

@@ -17,7 +17,7 @@ from models.errors import BushingNoiseError, ParameterError
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.reading import read_label_table
 from noise.recordings import find_recordings
-from noise.recordings.readers import READERS
+from noise.recordings.files import READERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import RecordingError
-from noise.classifier import LABELS
+from noise.base.label_names import LABELS
 from noise.pictures.speeds import support_words
 
 if TYPE_CHECKING:

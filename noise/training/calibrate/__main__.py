@@ -1,8 +1,7 @@
-"""Command that fits the fluorocarbon to the thesis's tables, and holds out.
+"""Fit of the fluorocarbon to the thesis's tables: ``python -m noise.training.calibrate``.
 
-``python -m noise.training.calibrate`` without options judges the shipped material. ``--generations
-N`` searches; ``--leave-out N`` searches again with each of the six critical speeds at 0.279 mm left
-out, from round numbers.
+Without options it judges the shipped material. ``--generations N`` searches; ``--leave-out``
+searches again with each of the six critical speeds at 0.279 mm left out, from round numbers.
 """
 
 from __future__ import annotations

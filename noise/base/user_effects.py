@@ -1,4 +1,4 @@
-"""Effects of the user's own, as the option ``--effects`` takes them.
+"""Effects of the user's own, checked, as ``--effects`` and `noise.diagnose` take them.
 
 They are code that the program has not seen, so what they return is checked, and what goes wrong in
 them is told with the file, the effect and the line, not as a defect of the program.
@@ -7,6 +7,7 @@ them is told with the file, the effect and the line, not as a defect of the prog
 from __future__ import annotations
 
 import traceback
+from collections import ChainMap
 from dataclasses import replace
 from functools import wraps
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from models.errors import BushingNoiseError, ParameterError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from typing import TypeVar
 
     from sim.effects.effect import Effect, Signals
@@ -29,23 +30,45 @@ _LONGEST_MESSAGE = 300
 """Messages of compilers go on for pages."""
 
 
-def effect_library(path: Path | None) -> Mapping[str, Effect]:
-    """Return the shipped effects and, with a file, the user's own.
+def effect_library(paths: Path | Sequence[Path] | None) -> Mapping[str, Effect]:
+    """Return the shipped effects and the user's own.
+
+    Parameters
+    ----------
+    paths : Path or sequence of Path, optional
+        Python files that define effects. They are run.
+
+    Returns
+    -------
+    mapping of str to Effect
 
     Raises
     ------
     ParameterError
-        The file cannot be run, or what it defines cannot be used as an effect.
+        A file cannot be run, what it defines cannot be used as an effect, or two files define one
+        of the same name.
 
     Examples
     --------
     >>> "slip_pulse" in effect_library(None)
     True
     """
+    from sim.effects import EFFECTS
+
+    own: dict[str, Effect] = {}
+    for path in [paths] if isinstance(paths, Path) else paths or ():
+        for name, effect in _own_effects(path).items():
+            if name in own:
+                raise ParameterError(
+                    f"--effects {path}: effect {name!r} is defined in another file as well"
+                )
+            own[name] = _guarded(effect, path)
+    return ChainMap(own, EFFECTS) if own else EFFECTS  # type: ignore[arg-type]  # only read
+
+
+def _own_effects(path: Path) -> dict[str, Effect]:
     from sim.effects import EFFECTS, load_effects
 
-    if path is None:
-        return EFFECTS
     try:
         library = load_effects(path)
     except (ParameterError, SystemExit) as error:
@@ -53,10 +76,7 @@ def effect_library(path: Path | None) -> Mapping[str, Effect]:
         raise ParameterError(
             f"--effects {path}: {text.removeprefix(f'effects {path}: ')}"
         ) from None
-    return {
-        name: effect if name in EFFECTS else _guarded(effect, path)
-        for name, effect in library.items()
-    }
+    return {name: effect for name, effect in library.items() if name not in EFFECTS}
 
 
 def _guarded(effect: Effect, path: Path) -> Effect:

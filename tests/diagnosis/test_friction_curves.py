@@ -8,53 +8,53 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from noise.diagnosis.evidence.contact_course import contact_courses
+from noise.diagnosis.evidence.friction_curves import friction_curves
 from noise.pages.diagnosis.contact_figures import contact_panels
 from tests.helpers.small_rigs import RIG, at, only, run
 
 FIT = RIG.fits[0]
 
 
-def _courses(*effects, speed=1.5, support=FIXED):
-    return contact_courses(run(at(speed, support), *effects, seconds=0.8), RIG)
+def _curves(*effects, speed=1.5, support=FIXED):
+    return friction_curves(run(at(speed, support), *effects, seconds=0.8), RIG)
 
 
 @pytest.fixture(scope="module")
 def plain():
-    return _courses()
+    return _curves()
 
 
 def test_a_plain_contact_slides_at_the_kinetic_torque_at_any_speed(plain):
-    course = plain.sliding_speed
-    assert course.x.size >= 3
-    middle = course.x < 0.8 * course.x.max()
-    assert course.torque[middle] == pytest.approx(FIT.kinetic_torque, rel=0.06)
+    curve = plain.sliding_speed
+    assert curve.x.size >= 3
+    middle = curve.x < 0.8 * curve.x.max()
+    assert curve.torque[middle] == pytest.approx(FIT.kinetic_torque, rel=0.06)
 
 
 @pytest.mark.parametrize("over", ["time_stuck", "time", "angle"])
 def test_a_plain_contact_lets_go_at_the_critical_torque_whatever_went_before(plain, over):
-    course = getattr(plain, over)
-    assert course.torque == pytest.approx(FIT.critical_torque, rel=0.06)
-    assert (course.low < course.torque).all()
-    assert (course.high > course.torque).all()
-    assert (np.diff(course.x) >= 0).all()
+    curve = getattr(plain, over)
+    assert curve.torque == pytest.approx(FIT.critical_torque, rel=0.06)
+    assert (curve.low < curve.torque).all()
+    assert (curve.high > curve.torque).all()
+    assert (np.diff(curve.x) >= 0).all()
 
 
 def test_an_ageing_contact_holds_more_the_longer_it_stuck():
     ageing = ("static_ageing", {"share": 0.6, "ageing_time": 0.004})
-    slow, fast = (_courses(ageing, speed=v).time_stuck for v in (0.6, 1.2))
+    slow, fast = (_curves(ageing, speed=v).time_stuck for v in (0.6, 1.2))
     assert slow.x.mean() > fast.x.mean()
     assert slow.torque.mean() > fast.torque.mean()
 
 
 def test_a_heated_contact_loses_torque_over_time_and_angle():
-    hot = _courses(("frictional_heating", {"softening": 0.02}), speed=3.0)
-    for course in (hot.time, hot.angle):
-        assert course.torque[-1] < course.torque[0]
+    hot = _curves(("frictional_heating", {"softening": 0.02}), speed=3.0)
+    for curve in (hot.time, hot.angle):
+        assert curve.torque[-1] < curve.torque[0]
 
 
 def test_scatter_widens_the_interval(plain):
-    scattered = _courses(("critical_torque_scatter", {"scatter": 0.15, "correlation": 0.0}))
+    scattered = _curves(("critical_torque_scatter", {"scatter": 0.15, "correlation": 0.0}))
     width = np.median(plain.time.high - plain.time.low)
     assert np.median(scattered.time.high - scattered.time.low) > 1.3 * width
 
@@ -62,14 +62,14 @@ def test_scatter_widens_the_interval(plain):
 def test_a_shaft_that_turns_the_other_way_has_the_same_contact():
     recording = run(at(2.0), seconds=0.5)
     mirrored = replace(recording, samples=-recording.samples, condition=at(-2.0))
-    one, other = contact_courses(recording, RIG), contact_courses(mirrored, RIG)
+    one, other = friction_curves(recording, RIG), friction_curves(mirrored, RIG)
     assert other.time.torque == pytest.approx(one.time.torque)
     assert other.angle.x == pytest.approx(one.angle.x)
 
 
 def test_without_torque_or_slips_there_is_nothing_to_draw():
-    assert contact_courses(only(run(at(2.0)), "pressure"), RIG) is None
-    assert _courses(speed=30.0) is None
+    assert friction_curves(only(run(at(2.0)), "pressure"), RIG) is None
+    assert _curves(speed=30.0) is None
     assert contact_panels({}) == ()
 
 

@@ -1,4 +1,4 @@
-"""What a trained model shows of itself: how it was trained, and how well it did."""
+"""Display of a trained model in a notebook: how it was trained, and how well it did."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from models.html_table import html_table
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["card_html"]
+__all__ = ["model_display"]
 
 
-def card_html(name: str, facts: Sequence[Sequence[str]], card: Mapping[str, object]) -> str:
-    """Return a model's card as a table; of what is nested, the numbers of the first level.
+def model_display(name: str, facts: Sequence[Sequence[str]], card: Mapping[str, object]) -> str:
+    """Return a model's card as a table in HTML; of what is nested, the numbers of the first level.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def card_html(name: str, facts: Sequence[Sequence[str]], card: Mapping[str, obje
 
     Examples
     --------
-    >>> table = card_html("Classifier", [], {"seed": 3, "sound": {"accuracy": 0.91234}})
+    >>> table = model_display("Classifier", [], {"seed": 3, "sound": {"accuracy": 0.91234}})
     >>> "accuracy 0.912" in table, "seed" in table
     (True, True)
     """

@@ -20,7 +20,7 @@ from tests.blind.score.log import LOG, commit
 from tests.blind.score.run import Asked, score_sealed
 from tests.blind.score.truth import truth_of
 
-BLIND = Path(__file__).parent
+BLIND = Path(__file__).parents[1] / "blind"
 
 
 def _lines(log):

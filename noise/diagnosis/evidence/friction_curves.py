@@ -1,4 +1,4 @@
-"""The friction torque rebuilt from a recording, over what it may depend on, with its uncertainty.
+"""Friction torque of a recording drawn over what it may depend on, with its uncertainty.
 
 While the surface slips the torque is drawn over the sliding speed; the torque at which each slip
 begins over the time for which the surface had stuck, over time and over the shaft's angle. Bins
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
 
-__all__ = ["ContactCourses", "Course", "contact_courses"]
+__all__ = ["FrictionCurves", "TorqueCurve", "friction_curves"]
 
 _SPEED_EDGES = np.array([2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 40.0, 50.0])
 """Of bins of the sliding speed [rad/s]."""
@@ -34,7 +34,7 @@ _BINS = 10
 """Of slips, at most."""
 
 _FEWEST = 4
-"""Slips that make a course, and a bin."""
+"""Slips that make a curve, and a bin."""
 
 _NEAR = 6e-4
 """Before a slip's start, in which its torque is looked for [s]."""
@@ -44,15 +44,15 @@ _SURE = 1.645
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class TorqueCurve:
     """A mean torque and its 90 % interval; all arrays have shape (n_bins,).
 
     Parameters
     ----------
     x : ndarray
-        What it is drawn over.
+        What it is drawn over, in the unit of its field in `FrictionCurves`.
     torque, low, high : ndarray
-        [Nm]
+        Mean and limits of its interval [Nm].
     """
 
     x: NDArray[np.float64]
@@ -62,35 +62,36 @@ class Course:
 
 
 @dataclass(frozen=True)
-class ContactCourses:
+class FrictionCurves:
     """The friction torque of one recording.
 
     Parameters
     ----------
-    sliding_speed : Course
+    sliding_speed : TorqueCurve
         While the surface slips, over the sliding speed [rad/s].
-    time_stuck, time, angle : Course
+    time_stuck, time, angle : TorqueCurve
         When a slip begins, over the time stuck before it [s], over time [s] and over the angle by
         which the shaft has turned [rad].
     """
 
-    sliding_speed: Course
-    time_stuck: Course
-    time: Course
-    angle: Course
+    sliding_speed: TorqueCurve
+    time_stuck: TorqueCurve
+    time: TorqueCurve
+    angle: TorqueCurve
 
 
-def contact_courses(recording: Recording, rig: Rig) -> ContactCourses | None:
+def friction_curves(recording: Recording, rig: Rig) -> FrictionCurves | None:
     """Rebuild the friction torque of a recording.
 
     Parameters
     ----------
     recording : Recording
     rig : Rig
+        Whose stiffness, damping and inertias the torque in the contact is rebuilt with.
 
     Returns
     -------
-    ContactCourses or None
+    FrictionCurves or None
         None where no torque or no condition is known, or where too few slips are.
 
     Examples
@@ -99,7 +100,7 @@ def contact_courses(recording: Recording, rig: Rig) -> ContactCourses | None:
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> run = simulate(rig, 1.0, interference=0.279e-3, support_stiffness=3745.0, seconds=0.4)
-    >>> found = contact_courses(run.recording, rig)
+    >>> found = friction_curves(run.recording, rig)
     >>> bool(np.all(abs(found.time.torque - 10.7) < 0.5))  # the critical torque, at any time
     True
     """
@@ -120,7 +121,7 @@ def contact_courses(recording: Recording, rig: Rig) -> ContactCourses | None:
     peaks = np.array([found.friction_torque[max(a - near, 0) : a + 2].max() for a in starts])
     when = found.start + starts / rate
     turned = np.cumsum(found.shaft_speed) / rate
-    return ContactCourses(
+    return FrictionCurves(
         sliding_speed=_over_speed(found.sliding_speed, found.friction_torque, starts, ends),
         time_stuck=_binned((starts[1:] - ends[:-1]) / rate, peaks[1:]),
         time=_binned(when, peaks),
@@ -133,7 +134,7 @@ def _over_speed(
     torque: NDArray[np.float64],
     starts: NDArray[np.int64],
     ends: NDArray[np.int64],
-) -> Course:
+) -> TorqueCurve:
     """Mean over slips of each slip's mean in a class of speed."""
     rows = []
     for a, b in zip(starts.tolist(), ends.tolist(), strict=True):
@@ -145,17 +146,17 @@ def _over_speed(
     table = np.array(rows)
     known = np.isfinite(table).sum(axis=0) >= _FEWEST
     middles = 0.5 * (_SPEED_EDGES[1:] + _SPEED_EDGES[:-1])
-    return _course(middles[known], [column[np.isfinite(column)] for column in table.T[known]])
+    return _curve(middles[known], [column[np.isfinite(column)] for column in table.T[known]])
 
 
-def _binned(x: NDArray[np.float64], torque: NDArray[np.float64]) -> Course:
+def _binned(x: NDArray[np.float64], torque: NDArray[np.float64]) -> TorqueCurve:
     order = np.argsort(x, kind="stable")
     parts = np.array_split(order, max(1, min(_BINS, x.size // _FEWEST)))
-    return _course(np.array([x[part].mean() for part in parts]), [torque[part] for part in parts])
+    return _curve(np.array([x[part].mean() for part in parts]), [torque[part] for part in parts])
 
 
-def _course(x: NDArray[np.float64], groups: list[NDArray[np.float64]]) -> Course:
+def _curve(x: NDArray[np.float64], groups: list[NDArray[np.float64]]) -> TorqueCurve:
     mean = np.array([group.mean() for group in groups])
     error = np.array([group.std(ddof=1) / np.sqrt(group.size) for group in groups])
     sure = _SURE * np.hypot(error, Scatter().gain * mean)
-    return Course(x, mean, mean - sure, mean + sure)
+    return TorqueCurve(x, mean, mean - sure, mean + sure)

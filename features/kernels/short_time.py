@@ -1,4 +1,4 @@
-"""How a noise changes from one moment to the next: its bands, its level, its strongest tone.
+"""Short-time analysis of a noise: its strongest tone, its bands and its level, as they change.
 
 A squeal is one tone that stays, a bark or a crow is tones that move, a creak is neither: that is
 seen in short segments, not in an average over the block. The segments last 64 ms, of which the
@@ -16,12 +16,12 @@ import numpy as np
 from scipy import ndimage
 
 from features.kernels.periodicity import track_periods
-from features.kernels.spectra import segment_powers
+from features.kernels.segments import segment_powers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["TimeCourse", "time_course"]
+__all__ = ["ShortTime", "short_time"]
 
 _SEGMENT = 0.064
 """Length of a segment [s]."""
@@ -58,7 +58,7 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True)
-class TimeCourse:
+class ShortTime:
     """Changes over the length of a signal, segments counting by their energy.
 
     Parameters
@@ -69,7 +69,7 @@ class TimeCourse:
         Mean number of lines in a segment, within 20 dB of its strongest and 13 dB above its floor.
     second_tone : float
         Mean level of a segment's second line relative to its strongest [dB], at least -20.
-    short_periodicity : float
+    periodicity : float
         Mean autocorrelation of a segment at its fundamental's period, 0 to 1.
     fundamental_wander : float
         Robust standard deviation of the fundamental [octave]; NaN unless four segments have one.
@@ -86,14 +86,14 @@ class TimeCourse:
     tone_share: float
     tone_count: float
     second_tone: float
-    short_periodicity: float
+    periodicity: float
     fundamental_wander: float
     continuity: float
     flux: float
     level_variation: float
 
 
-def time_course(x: NDArray[np.float64], rate: float, *, low: float, high: float) -> TimeCourse:
+def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) -> ShortTime:
     """Describe how a signal changes between two frequencies.
 
     Parameters
@@ -107,13 +107,13 @@ def time_course(x: NDArray[np.float64], rate: float, *, low: float, high: float)
 
     Returns
     -------
-    TimeCourse
+    ShortTime
 
     Examples
     --------
     >>> import numpy as np
     >>> t = np.arange(16000) / 16e3
-    >>> glide = time_course(np.sin(2 * np.pi * (2500 + 300 * t) * t), 16e3, low=150.0, high=7e3)
+    >>> glide = short_time(np.sin(2 * np.pi * (2500 + 300 * t) * t), 16e3, low=150.0, high=7e3)
     >>> round(glide.tone_share, 2), round(glide.continuity, 2), round(glide.tone_count, 2)
     (1.0, 1.0, 1.0)
     """
@@ -143,11 +143,11 @@ def time_course(x: NDArray[np.float64], rate: float, *, low: float, high: float)
         flux = float(pairs @ (0.5 * np.abs(np.diff(bands, axis=0)).sum(axis=1)))
         quietest = max(float(energy.max()) * 10.0 ** (0.1 * _QUIETEST_DB), _TINY)
         level_variation = float(np.std(10.0 * np.log10(np.maximum(energy, quietest))))
-    return TimeCourse(
+    return ShortTime(
         tone_share=float(weight @ share),
         tone_count=float(weight @ count),
         second_tone=float(weight @ second),
-        short_periodicity=float(weight @ strength),
+        periodicity=float(weight @ strength),
         fundamental_wander=_wander(frequency, strength, weight),
         continuity=continuity,
         flux=flux,

@@ -1,9 +1,9 @@
-"""What lies between a bushing and the recordings that the inferred intervals hold for.
+"""Recording chain between a bushing and the recordings that the inferred intervals hold for.
 
 Room, microphone and noise are simpler here than the classifier's
 (`noise.training.classifier.augmentation`): to be called by its name a sound has to be known through
 a telephone too, but an interval of 90 % is a statement about one population, and stays what it was
-when the classifier learns to hear more.
+when the classifier learns to know more.
 """
 
 from __future__ import annotations
@@ -18,10 +18,7 @@ from scipy.signal import fftconvolve
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["RATES", "as_recorded"]
-
-RATES = (16_000, 22_050, 30_000, 44_100, 48_000)
-"""Sampling rates that recordings come in [Hz]."""
+__all__ = ["recorded"]
 
 
 def _coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -33,23 +30,23 @@ def _coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[n
     return np.asarray(noise / noise.std())
 
 
-def as_recorded(
+def recorded(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Hear a sound in some room through some microphone, with some noise.
+    """Record a sound in some room through some microphone, with some noise.
 
     Parameters
     ----------
     sound : ndarray, shape (n,)
-        Pressure close to the source.
+        Pressure close to the source [Pa].
     rate : float
-        [Hz]
+        Sampling rate [Hz].
     rng : numpy.random.Generator
 
     Returns
     -------
     ndarray, shape (n,)
-        Of unit standard deviation or, where the sound is zero, noise alone.
+        Of unit standard deviation [-] or, where the sound is zero, noise alone.
     """
     heard = sound
     if rng.random() < 0.7:

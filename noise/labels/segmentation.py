@@ -1,4 +1,7 @@
-"""Where one label ends and the next begins, to the hundredth of a second.
+"""Segmentation of a recording: the Viterbi path of labels, and when each change happens.
+
+Neighbouring windows share half of what they hold, so each speaks for itself by half only; and a
+noise seldom changes into another within a second. The best path under both is Viterbi's.
 
 Windows tell what is heard but not when it began. Between two of different labels lies one change at
 most, and it is where the short frames before and after it differ most: the split with the largest
@@ -18,7 +21,16 @@ from features.windows.working import FRAME_RATE, RATE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["change_points"]
+__all__ = ["change_points", "labelled_stretches", "viterbi_path"]
+
+_OWN_SHARE = 0.5
+"""Of a window in what it holds [-]."""
+
+_CHANGE = 0.15
+"""How likely a change of label from one window to the next is, relative to none [-]."""
+
+_LEAST = 1e-4
+"""Probability that none falls below [-]."""
 
 _SPREADS = {"flatness": 6.0, "peak_share": 0.25, "second": 10.0, "flux": 0.3, "voiced": 0.3}
 """By how much frames of one noise differ in what is compared beside the bands."""
@@ -37,13 +49,81 @@ _LEAD = 0.5 * FRAME / RATE - 0.5 / FRAME_RATE
 """From a frame's place in the row to the moment halfway between its middle and the one before."""
 
 
+def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the label of each window on the likeliest path.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (n_windows, n_labels)
+        Without unit; each row sums to 1.
+
+    Returns
+    -------
+    ndarray of int, shape (n_windows,)
+        Columns of `probabilities`.
+
+    Examples
+    --------
+    >>> flickering = np.array([[0.9, 0.1]] * 4 + [[0.4, 0.6]] + [[0.9, 0.1]] * 4)
+    >>> viterbi_path(flickering).tolist()
+    [0, 0, 0, 0, 0, 0, 0, 0, 0]
+    """
+    n, labels = probabilities.shape
+    spoken = _OWN_SHARE * np.log(np.maximum(probabilities, _LEAST))
+    change = np.log(_CHANGE)
+    origin = np.empty((n, labels), dtype=np.intp)
+    score = spoken[0]
+    for i in range(1, n):
+        best = int(score.argmax())
+        changed = score[best] + change
+        origin[i] = np.where(score >= changed, np.arange(labels), best)
+        score = np.maximum(score, changed) + spoken[i]
+    path = np.empty(n, dtype=np.intp)
+    path[-1] = score.argmax()
+    for i in range(n - 1, 0, -1):
+        path[i - 1] = origin[i, path[i]]
+    return path
+
+
+def labelled_stretches(
+    probabilities: NDArray[np.float64],
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the stretches of the Viterbi path, each called what its windows are together.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (n_windows, n_labels)
+        Without unit; each row sums to 1.
+
+    Returns
+    -------
+    edges : ndarray of int, shape (n_stretches + 1,)
+        First window of each stretch, and the number of windows.
+    names : ndarray of int, shape (n_stretches,)
+        Columns of their labels, of which neighbours differ.
+
+    Examples
+    --------
+    >>> edges, names = labelled_stretches(np.array([[0.9, 0.1]] * 4 + [[0.1, 0.9]] * 6))
+    >>> edges.tolist(), names.tolist()
+    ([0, 4, 10], [0, 1])
+    """
+    n = len(probabilities)
+    changes = np.flatnonzero(np.diff(viterbi_path(probabilities))) + 1
+    edges = np.concatenate([[0], changes, [n]])
+    sums = np.add.reduceat(probabilities, edges[:-1], axis=0)
+    names = sums.argmax(axis=1)
+    first = np.concatenate([[True], names[1:] != names[:-1]])
+    return np.concatenate([edges[:-1][first], [n]]), names[first]
+
+
 def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDArray[np.float64]:
     """Find when each change between two windows happens.
 
     Parameters
     ----------
     frames : ndarray of float32, shape (n_frames, n_columns)
-        As `features.windows.table.Page` has them.
+        As `features.windows.table.WindowTable` has them.
     changes : ndarray of int, shape (n_changes,)
         Window after which each change is; rising.
 
