@@ -1,4 +1,4 @@
-"""From the options of an operating condition to the simulated run."""
+"""Operating condition from the options of a command, as arguments of the simulation."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ if TYPE_CHECKING:
 
     from models.rig import LawSpec, Rig
     from sim.effects.effect import Effect
-    from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-__all__ = ["CONDITION_OPTIONS", "given_options", "is_long", "run_arguments", "simulated_run"]
+__all__ = ["CONDITION_OPTIONS", "given_options", "is_long", "run_arguments"]
 
 CONDITION_OPTIONS = (
     "speed",
@@ -47,16 +46,6 @@ def given_options(options: Namespace) -> list[str]:
         for name in CONDITION_OPTIONS
         if getattr(options, name) is not None
     ]
-
-
-def simulated_run(options: Namespace, rate: float) -> Run:
-    """Simulate the run that the options of a condition describe.
-
-    Parameters and errors are those of `run_arguments`.
-    """
-    from sim.run import simulate
-
-    return simulate(**run_arguments(options, rate))
 
 
 def is_long(arguments: Mapping[str, Any]) -> bool:

@@ -11,7 +11,7 @@ from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from noise.noise_definition import is_ambiguous, run_criteria
 from noise.screening.design.design import Design, Swinging, Use
-from noise.screening.map.batches import judging
+from noise.screening.map.batches import batch_evaluator
 from noise.screening.map.grid import grid_of
 from noise.screening.map.mapping import map_design
 from noise.screening.map.point import judge
@@ -26,7 +26,7 @@ FLUOROCARBON = load_material_rig("fluorocarbon")
 
 def mapped(material, use, **more):
     design = Design(material, load_material_rig(material))
-    with judging() as judged:
+    with batch_evaluator() as judged:
         return map_design(design.rig, grid_of(design, use), judged, design=material, **more)
 
 

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.fit.closing import closed_fraction
 from noise.diagnosis.text.sentences import closed_sentence, finding_of
 from noise.diagnosis.text.words import cause_of, joined, percent
 from noise.pages.engine.ticks import round_ticks
@@ -147,7 +148,7 @@ def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str
         return "The nominal gap is no larger than the floor, so there is nothing to close."
     if not fitted:
         return ""
-    share = percent((before - gap) / (before - floor))
+    share = percent(closed_fraction(before, gap, floor))
     return f"Refitted parameters close {share} of the closable gap."
 
 

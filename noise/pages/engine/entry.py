@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from models.condition import Condition
-from noise.base.progress import counted
 from noise.base.label_names import LABELS
+from noise.base.progress import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

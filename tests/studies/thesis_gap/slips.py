@@ -1,4 +1,4 @@
-"""The second measure: slip frequencies, which no candidate is fitted to.
+"""Slip frequencies as a second measure, which no candidate is fitted to.
 
 Conclusion 3: with beams the slip frequency never exceeds the first torsional mode, 250 or 310 Hz.
 5.2.1: at 0.381 mm it rises by 10 to 25 Hz with each 2.5 rad/s. With the clamp fixed, at 1 rad/s and

@@ -1,4 +1,4 @@
-"""Values along an axis of a map, as design files and options give them.
+"""Parser of the values along an axis of a map, from design files and options.
 
 A number, a list, or a range ``LOW..HIGH`` with as many points as asked for, ``LOW..HIGH/N``. A
 range without them has those of a map that shows a boundary where it is: a speed every eighth of a
@@ -54,11 +54,11 @@ def text_values(
     what : str
         What messages call it, such as ``--speed``.
     step : float, optional
-        Of a range without a number of points.
+        Of a range without a number of points, in the unit of the axis.
     points : int
         Of a range without one, where there is no step.
     low : float
-        Least value.
+        Least value, in the unit of the axis.
     open_low : bool
         Whether `low` itself is refused.
     fixed : bool

@@ -1,4 +1,4 @@
-"""A parameter that can be changed, as far as it can be had and paid for."""
+"""Design variable: a parameter that can be changed, with its range and the cost of a change."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from dataclasses import dataclass
 
 from models.errors import ParameterError
 
-__all__ = ["Lever"]
+__all__ = ["DesignVariable"]
 
 
 @dataclass(frozen=True)
-class Lever:
+class DesignVariable:
     """A parameter that can be changed.
 
     Parameters
     ----------
     name : str
     low, high : float
-        The least and the most that can be had.
+        The least and the most that can be had, in the unit of the parameter.
     nominal : float
-        As it is; the default suits parameters that are given as factors.
+        As it is; the default suits parameters that are given as factors [-].
     cost : float
-        Of a change as large as the nominal value, in any unit that all levers share.
+        Of a change as large as the nominal value, in any unit that all variables share.
 
     Raises
     ------
@@ -40,32 +40,37 @@ class Lever:
         inside = self.low <= self.nominal <= self.high and self.low < self.high
         if not (inside and math.isfinite(self.low) and math.isfinite(self.high)):
             raise ParameterError(
-                f"lever {self.name}: {self.low:g} to {self.high:g} must be a range that holds the "
-                f"nominal value {self.nominal:g}"
+                f"design variable {self.name}: {self.low:g} to {self.high:g} must be a range that "
+                f"holds the nominal value {self.nominal:g}"
             )
         if self.nominal == 0.0 or not 0.0 <= self.cost < math.inf:
             raise ParameterError(
-                f"lever {self.name}: nominal = {self.nominal:g} must not be 0, and "
+                f"design variable {self.name}: nominal = {self.nominal:g} must not be 0, and "
                 f"cost = {self.cost:g} be 0 or more"
             )
 
     def within(self, budget: float) -> tuple[float, float]:
-        """Range that a budget allows.
+        """Range that a budget allows, in the unit of the parameter.
+
+        Parameters
+        ----------
+        budget : float
+            In the unit of the cost.
 
         Examples
         --------
-        >>> Lever("damping", 0.5, 3.0, cost=2.0).within(1.0)
+        >>> DesignVariable("damping", 0.5, 3.0, cost=2.0).within(1.0)
         (0.5, 1.5)
         """
         most = budget * abs(self.nominal) / self.cost if self.cost > 0.0 else math.inf
         return max(self.low, self.nominal - most), min(self.high, self.nominal + most)
 
     def price(self, value: float) -> float:
-        """Cost of a change to `value`.
+        """Cost of a change to a value of the parameter.
 
         Examples
         --------
-        >>> Lever("damping", 0.5, 3.0, cost=2.0).price(0.5)
+        >>> DesignVariable("damping", 0.5, 3.0, cost=2.0).price(0.5)
         1.0
         """
         return abs(value / self.nominal - 1.0) * self.cost
