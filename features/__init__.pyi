@@ -70,3 +70,7 @@ from .sound_quality import (
 from .transformer import (
     RecordingFeatures as RecordingFeatures,
 )
+from .windows.declared import (
+    WINDOW_FEATURES as WINDOW_FEATURES,
+    WindowFeature as WindowFeature,
+)

@@ -41,13 +41,10 @@ KINDS = (*ACOUSTIC_KINDS, "torque")
 """Kinds of channel that have features."""
 
 
-FEATURES: tuple[Feature, ...] = (
-    *SPECTRAL_FEATURES,
-    *BAND_FEATURES,
-    *TEMPORAL_FEATURES,
-    *TORQUE_FEATURES,
-)
-"""All features of all kinds."""
+_ACOUSTIC: tuple[Feature, ...] = (*SPECTRAL_FEATURES, *BAND_FEATURES, *TEMPORAL_FEATURES)
+
+FEATURES: tuple[Feature, ...] = tuple(dict.fromkeys((*_ACOUSTIC, *TORQUE_FEATURES)))
+"""All features of all kinds; those of several kinds stand once."""
 
 
 def features_of(kind: str) -> tuple[Feature, ...]:
@@ -73,7 +70,8 @@ def features_of(kind: str) -> tuple[Feature, ...]:
     """
     if kind not in KINDS:
         raise ParameterError(f"channels of kind {kind!r} have no features; use {', '.join(KINDS)}")
-    return tuple(f for f in FEATURES if kind in f.kinds)
+    table = TORQUE_FEATURES if kind == "torque" else _ACOUSTIC
+    return tuple(feature for feature in table if kind in feature.kinds)
 
 
 def feature_names(kind: str) -> tuple[str, ...]:

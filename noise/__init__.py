@@ -112,3 +112,4 @@ def _refuse_hidden_packages() -> None:
 
 
 _refuse_hidden_packages()
+import_module("models")  # names the folder for compiled code, before anything is compiled

@@ -10,6 +10,7 @@ a friction tone wanders by about that much in a second and is still one tone.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -71,6 +72,11 @@ class Lines:
     power: NDArray[np.float64]
     prominence: NDArray[np.float64]
     total: float
+
+    @property
+    def strongest(self) -> float:
+        """Frequency of the strongest line [Hz], NaN if there is none."""
+        return float(self.frequency[0]) if self.frequency.size else math.nan
 
     @property
     def strongest_share(self) -> float:

@@ -156,7 +156,7 @@ def track_periods(
     Examples
     --------
     >>> import numpy as np
-    >>> from features.kernels.spectra import segment_powers
+    >>> from features.kernels.segments import segment_powers
     >>> tone = np.sin(2 * np.pi * 400 * np.arange(4096) / 16e3)
     >>> power, _ = segment_powers(tone, 1024)
     >>> track_periods(power, 16e3 / 1024, lowest=60.0)[0].round().tolist()

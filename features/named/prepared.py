@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,10 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.levels import LEAST_SHARE_DB, relative_db
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.modulation import Modulation, modulation
+from features.kernels.short_time import ShortTime, short_time
 from features.kernels.slip_drops import TorqueSlips, torque_slips
 from features.kernels.slip_pulses import (
     Pulses,
@@ -38,7 +40,6 @@ from features.kernels.slip_pulses import (
     squared,
 )
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
-from features.kernels.time_course import TimeCourse, time_course
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -58,6 +59,21 @@ _LEAST_IN_BAND = 1e-5
 
 _LEVEL_RESOLUTION = 25.0
 """Spacing of the bins from which the weighted level is summed [Hz]."""
+
+
+class TopBand(NamedTuple):
+    """A band above the common limit; NaN where the rate does not reach it.
+
+    Parameters
+    ----------
+    level : float
+        Re the band that is described [dB].
+    kurtosis : float
+        [-]; NaN also where the band holds nothing.
+    """
+
+    level: float
+    kurtosis: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,10 +182,10 @@ class Prepared:
         return spectral_shape(self.spectrum, low=self.low, high=self.limit)
 
     @cached_property
-    def course(self) -> TimeCourse:
-        """How it changes with time."""
+    def short_time(self) -> ShortTime:
+        """Tones and levels of its short segments, and how they change from one to the next."""
         x, rate = self.in_band
-        return time_course(x, rate, low=self.low, high=self.limit)
+        return short_time(x, rate, low=self.low, high=self.limit)
 
     @cached_property
     def analytic(self) -> tuple[NDArray[np.complex128], float]:
@@ -190,7 +206,7 @@ class Prepared:
         return modulation(np.sqrt(squared(analytic)), rate)
 
     @cached_property
-    def torque_slips(self) -> TorqueSlips:
+    def slips(self) -> TorqueSlips:
         """Slips of a torque, in its own unit."""
         return torque_slips(self.samples, self.rate)
 
@@ -225,32 +241,17 @@ class Prepared:
         return relative_db(float(part), float(whole))
 
     @cached_property
-    def top_bands(self) -> tuple[tuple[float, float], ...]:
-        """Level of each top band re the band described [dB], and its kurtosis; or NaN."""
+    def top_bands(self) -> tuple[TopBand, ...]:
+        """Of `TOP_BANDS`."""
         return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
 
-    def _top_band(self, low: float, high: float) -> tuple[float, float]:
+    def _top_band(self, low: float, high: float) -> TopBand:
         if high > usable_limit(self.rate):
-            return math.nan, math.nan
+            return TopBand(math.nan, math.nan)
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)
         level = relative_db(0.5 * float(power.mean()), self.in_band_power)
-        return level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan
-
-
-LEAST_SHARE_DB = -80.0
-"""Lowest relative level that is told from nothing [dB]."""
-
-
-def relative_db(part: float, whole: float) -> float:
-    """Level of a part relative to a whole [dB], at least -80 dB.
-
-    Examples
-    --------
-    >>> relative_db(0.5, 5.0), relative_db(0.0, 1.0)
-    (-10.0, -80.0)
-    """
-    return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))
+        return TopBand(level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan)
 
 
 def prepare(

@@ -18,7 +18,7 @@ from models.transfer_functions.filtering import convolve, transform_size
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["ImpulseResponses", "radiate"]
+__all__ = ["ImpulseResponses", "radiate", "radiate_pulses"]
 
 Path = Literal[
     "torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration", "pulse_to_pressure"
@@ -88,9 +88,39 @@ def radiate(
     acceleration = _along(paths, "torque_to_acceleration", change)
     pressure = _along(paths, "torque_to_pressure", change)
     if pulse_force is not None and np.any(pulse_force):
-        acceleration += _along(paths, "pulse_to_acceleration", pulse_force)
-        pressure += _along(paths, "pulse_to_pressure", pulse_force)
+        struck, sounding = radiate_pulses(paths, pulse_force)
+        acceleration += struck
+        pressure += sounding
     return acceleration, pressure
+
+
+def radiate_pulses(
+    paths: ImpulseResponses, pulse_force: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Acceleration and sound pressure that pulses cause, without those of the torque.
+
+    Parameters
+    ----------
+    paths : ImpulseResponses
+    pulse_force : ndarray, shape (n,)
+        Of the anchors on the plate, sampled at their rate [N].
+
+    Returns
+    -------
+    acceleration, pressure : ndarray, shape (n,)
+        [m/s2] and [Pa]
+
+    Examples
+    --------
+    >>> echo = ImpulseResponses(48e3, np.ones(1), np.ones(1), np.array([2.0]), np.array([0.0, 3.0]))
+    >>> acceleration, pressure = radiate_pulses(echo, np.array([1.0, 0.0]))
+    >>> acceleration.round(9), pressure.round(9)
+    (array([2., 0.]), array([0., 3.]))
+    """
+    return (
+        _along(paths, "pulse_to_acceleration", pulse_force),
+        _along(paths, "pulse_to_pressure", pulse_force),
+    )
 
 
 def _along(paths: ImpulseResponses, path: Path, signal: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from models.structure.plate import PlateModes
 
-__all__ = ["response"]
+__all__ = ["anchor_drives", "first_mode_damping", "response"]
 
 HIGHEST_BEAM_FREQUENCY = 40e3
 """Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""
@@ -117,20 +117,57 @@ def response(
     if math.isinf(support_stiffness):
         bolted = _bolted_response(rig.beams.lever, rig.plate, rig.microphone, rate, n_samples)
         return with_measured(bolted, rig.measured, support_stiffness)
-    damping = (1 - rig.elastomer_damping_share) * damping_at(
-        rig.fit(interference), support_stiffness
-    )
     modelled = _beam_response(
         rig.beams,
         rig.plate,
         rig.microphone,
         support_stiffness,
         rig.clamp_inertia,
-        damping / (2 * math.sqrt(support_stiffness * rig.clamp_inertia)),
+        first_mode_damping(rig, interference, support_stiffness),
         rate,
         n_samples,
     )
     return with_measured(modelled, rig.measured, support_stiffness)
+
+
+def first_mode_damping(rig: Rig, interference: float, support_stiffness: float) -> float:
+    """Damping ratio of the first torsional mode of clamp and beams [-].
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        k_B [Nm/rad], finite.
+    """
+    damping = (1 - rig.elastomer_damping_share) * damping_at(
+        rig.fit(interference), support_stiffness
+    )
+    return damping / (2 * math.sqrt(support_stiffness * rig.clamp_inertia))
+
+
+def anchor_drives(modes: PlateModes, arm: float) -> NDArray[np.float64]:
+    """Drives of the plate by the right anchor's force and moment, the left one acting along.
+
+    Parameters
+    ----------
+    modes : PlateModes
+    arm : float
+        Distance of the anchors from the shaft's axis [m].
+
+    Returns
+    -------
+    ndarray, shape (n_modes, 2)
+    """
+    x, y = modes.plate.clamp_position
+    return np.stack(
+        [
+            modes.shape(x + arm, y) - modes.shape(x - arm, y),
+            modes.slope(x + arm, y) + modes.slope(x - arm, y),
+        ],
+        axis=1,
+    )
 
 
 @lru_cache(maxsize=16)
@@ -183,15 +220,7 @@ def _anchors_to_pressure(
 ) -> NDArray[np.float64]:
     """Pressure by the right anchor's force and moment, the left one acting along."""
     modes = _modes(plate, rate)
-    x, y = plate.clamp_position
-    drives = np.stack(
-        [
-            modes.shape(x + arm, y) - modes.shape(x - arm, y),
-            modes.slope(x + arm, y) + modes.slope(x - arm, y),
-        ],
-        axis=1,
-    )
-    return pressure_response(modes, drives, microphone, rate, n_samples)
+    return pressure_response(modes, anchor_drives(modes, arm), microphone, rate, n_samples)
 
 
 @lru_cache(maxsize=4)

@@ -12,7 +12,7 @@ from noise.audio.gain import (
     least_full_scale,
     true_peak,
 )
-from noise.audio.sequence import Part, Sequel, back_to_back
+from noise.audio.sequence import JoinedSound, Part, back_to_back
 from noise.audio.sound import audible
 from noise.audio.wav import BITS
 
@@ -20,8 +20,8 @@ __all__ = [
     "BITS",
     "QUIETEST_FULL_SCALE",
     "Assessment",
+    "JoinedSound",
     "Part",
-    "Sequel",
     "assess",
     "audible",
     "back_to_back",

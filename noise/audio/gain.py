@@ -1,4 +1,4 @@
-"""How loud a sound is written: one number, the value of a sample at full scale.
+"""Gain of a sound file: one number, the value of a sample at full scale.
 
 There are three ways to choose it. Calibrated: a listening room is set to so many pascals at full
 scale, and a sound that would clip there is refused. Common: one full scale for all sounds of a

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
-from noise.base.atomic import atomic
+from noise.base.atomic import atomic, check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, write_table
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace

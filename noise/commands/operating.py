@@ -1,4 +1,4 @@
-"""From the options of an operating condition to the simulated run."""
+"""Operating condition from the options of a command, as arguments of the simulation."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.base.progress import note, say
+from noise.base.user_effects import effect_library
 from noise.commands import options as opt
-from noise.commands.user_effects import effect_library
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -19,10 +19,9 @@ if TYPE_CHECKING:
 
     from models.rig import LawSpec, Rig
     from sim.effects.effect import Effect
-    from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-__all__ = ["CONDITION_OPTIONS", "given_options", "is_long", "run_arguments", "simulated_run"]
+__all__ = ["CONDITION_OPTIONS", "given_options", "is_long", "run_arguments"]
 
 CONDITION_OPTIONS = (
     "speed",
@@ -49,20 +48,10 @@ def given_options(options: Namespace) -> list[str]:
     ]
 
 
-def simulated_run(options: Namespace, rate: float) -> Run:
-    """Simulate the run that the options of a condition describe.
-
-    Parameters and errors are those of `run_arguments`.
-    """
-    from sim.run import simulate
-
-    return simulate(**run_arguments(options, rate))
-
-
 def is_long(arguments: Mapping[str, Any]) -> bool:
     """Whether a run is better written in blocks than held in memory."""
     from sim.effects.effect import activated
-    from sim.motion_blocks import whole_run_effects
+    from sim.long_run import whole_run_effects
 
     effects = activated(arguments["rig"].effects, arguments["library"])
     seconds = arguments["seconds"]

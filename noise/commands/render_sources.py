@@ -1,4 +1,4 @@
-"""What ``render`` is given: recordings, folders of them, rig files, conditions in quotes.
+"""Inputs of ``render``: recordings, folders of them, rig files, conditions in quotes.
 
 A rig file and a condition are simulated; they take what they do not say themselves from the
 options of the call, so that two designs meet the same condition, with the same random numbers.

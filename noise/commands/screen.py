@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.atomic import check_target
 from noise.base.progress import say
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -108,7 +108,7 @@ def configure(parser: ArgumentParser) -> None:
     )
     shared = parser.add_mutually_exclusive_group()
     shared.add_argument(
-        "--workers", type=_workers, default=-1, metavar="N", help="threads (default: one a core)"
+        "--workers", type=_count, default=-1, metavar="N", help="threads (default: one a core)"
     )
     shared.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
@@ -151,9 +151,9 @@ def run(options: Namespace) -> int:
 
 
 def _given(options: Namespace) -> Use:
+    from noise.screening.design.axis_values import text_values
     from noise.screening.design.design import SPEED_STEP, Use
     from noise.screening.design.tolerances import ABSOLUTE_ZERO
-    from noise.screening.map.axes import text_values
 
     def read(option: str, text: str | None, **more: object) -> tuple[float, ...]:
         values: Callable[..., tuple[float, ...]] = text_values
@@ -174,8 +174,8 @@ def _given(options: Namespace) -> Use:
 
 
 def _swinging(text: str) -> Swinging:
+    from noise.screening.design.axis_values import text_values
     from noise.screening.design.design import FREQUENCY_STEP, Swinging
-    from noise.screening.map.axes import text_values
 
     degrees, comma, frequency = text.partition(",")
     if not comma:
@@ -219,16 +219,10 @@ def _write(folder: Path, found: Screening) -> None:
 
 
 def _simulations(text: str) -> float:
-    if text.strip().lower() == "all":
-        return math.inf
-    if not text.strip().isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(
-            f"is {text!r}, expected a whole number of 1 or more, or all"
-        )
-    return int(text)
+    return math.inf if text.strip().lower() == "all" else _count(text, ", or all")
 
 
-def _workers(text: str) -> int:
+def _count(text: str, more: str = "") -> int:
     if not text.strip().isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
+        raise argparse.ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more{more}")
     return int(text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from models.condition import same_support
+from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.recordings import find_recordings, read_recording
@@ -143,7 +143,7 @@ def usable(recording: Recording, rig: Rig) -> Recording:
         )
     return replace(
         recording,
-        condition=replace(
-            condition, speed=speed, interference=interference, support_stiffness=support
+        condition=KnownCondition(
+            speed, interference, support, condition.material, condition.temperature
         ),
     )

@@ -1,8 +1,7 @@
 """Labels in time, and the table that links them to operating conditions."""
 
-from noise.labels.segments import Segment, file_label, label_recording
-from noise.labels.table import COLUMNS, error_row, label_rows
-from noise.labels.table_display import LabelTable, Segments
+from noise.labels.segments import Segment, Segments, file_label, label_recording
+from noise.labels.table import COLUMNS, LabelTable, error_row, label_rows
 
 __all__ = [
     "COLUMNS",

@@ -1,4 +1,4 @@
-"""The one frequency that goes with a label: of the slips of a creak or squawk, else of the tone."""
+"""Frequency of a labelled segment: of the slips of a creak or squawk, of the line of a squeal."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.windows.declared import WINDOW_FEATURES
 from noise.labels.windows import FEATURE_NAMES
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ _LEAST_BLOWS = math.log2(3.0 / 10.0)
 """Fewer blows a second tell no rate [octave re 10 Hz]."""
 
 _COLUMN = {name: i for i, name in enumerate(FEATURE_NAMES)}
+_DECLARED = {feature.name: feature for feature in WINDOW_FEATURES}
 
 
 def segment_frequency(features: NDArray[np.float32], label: str) -> float | None:
@@ -29,13 +31,13 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        Of the segment's windows, by `noise.labels.windows.FEATURE_NAMES`.
+        Of the segment's windows, by `noise.labels.windows.FEATURE_NAMES`, in their declared units.
     label : str
 
     Returns
     -------
     float or None
-        Of the torque where there is one; ``None`` for ``none``, or where nothing is found.
+        [Hz], of the torque where there is one; ``None`` for ``none``, or where nothing is found.
 
     Examples
     --------
@@ -56,31 +58,34 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
         if label == "creak":
             found = _blow_rate(features, kind)
         if slips and found is None:
-            found = _octaves(features, f"{kind}_fundamental", 100.0)
+            found = _frequency(features, kind, "fundamental")
         if found is None:
             counted = features[features[:, _COLUMN[f"{kind}_line_count"]] > 0]
-            found = _octaves(counted, f"{kind}_line_frequency", 1000.0)
+            found = _frequency(counted, kind, "line_frequency")
         if found is not None:
             return found
     return None
 
 
 def _blow_rate(features: NDArray[np.float32], kind: str) -> float | None:
+    """Rate of a creak's blows [Hz], of their period where most windows have one."""
     for part in ("high_", ""):
         strength = features[:, _COLUMN[f"{kind}_{part}period_strength"]]
         periodic = features[strength > _PERIODIC]
         if 2 * len(periodic) > len(features):
-            return _octaves(periodic, f"{kind}_{part}period_rate", 10.0)
+            return _frequency(periodic, kind, f"{part}period_rate")
     rate = features[:, _COLUMN[f"{kind}_high_blow_rate"]]
-    return _octaves(features[rate > _LEAST_BLOWS], f"{kind}_high_blow_rate", 10.0)
+    return _frequency(features[rate > _LEAST_BLOWS], kind, "high_blow_rate")
 
 
-def _octaves(features: NDArray[np.float32], name: str, reference: float) -> float | None:
-    octave = _median(features, name)
-    return None if octave is None else reference * 2.0**octave
+def _frequency(features: NDArray[np.float32], kind: str, name: str) -> float | None:
+    """Median of a window feature that counts in octaves [Hz]."""
+    octave = _median(features, f"{kind}_{name}")
+    return None if octave is None else _DECLARED[name].hertz(octave)
 
 
 def _median(features: NDArray[np.float32], name: str) -> float | None:
+    """Median of what is known of a column, in the column's unit."""
     values = features[:, _COLUMN[name]]
     values = values[np.isfinite(values)]
     return float(np.median(values)) if values.size else None

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from noise.classifier import Classifier
     from noise.inference import Inference
 
-__all__ = ["Labelling"]
+__all__ = ["Labelling", "names_no_channels"]
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Labelling:
         return COLUMNS
 
     def prepare(self) -> None:
-        """Load the classifier, and what infers conditions."""
+        """Load the classifier and, where the user names one, what infers conditions."""
         _ = self._loaded, self._inference
 
     def identity(self) -> dict[str, str | float | None]:
@@ -69,7 +69,7 @@ class Labelling:
         """Return the rows of a recording, and whether it is calibrated."""
         with open_blocks(path, full_scale=self.full_scale) as blocks:
             recording = blocks or read_recording(path, full_scale=self.full_scale)
-            segments = label_recording(recording, self._loaded, per_track=_names_no_channels(path))
+            segments = label_recording(recording, self._loaded, per_track=names_no_channels(path))
             rows = label_rows(name, recording, segments, self._inference)
             return rows, recording.calibrated
 
@@ -78,8 +78,9 @@ class Labelling:
         return load_classifier(self.classifier)
 
     @cached_property
-    def _inference(self) -> Inference:
-        return load_inference(self.inference)
+    def _inference(self) -> Inference | None:
+        # The shipped one is loaded by the first noise whose condition is not logged.
+        return None if self.inference is None else load_inference(self.inference)
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the loaded models here: elsewhere they are loaded again."""
@@ -90,7 +91,7 @@ class Labelling:
         }
 
 
-def _names_no_channels(path: Path) -> bool:
+def names_no_channels(path: Path) -> bool:
     """Whether it is a plain sound file, whose tracks stand for themselves."""
     sidecar = find_sidecar(path)
     return sidecar is None or read_sidecar(sidecar).channels is None

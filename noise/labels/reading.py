@@ -6,14 +6,12 @@ the others of the label table are empty where it has none.
 
 from __future__ import annotations
 
-import csv
-import json
 import math
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
-from noise.base.tables import check_table_path
-from noise.classifier import LABELS
+from noise.base.label_names import LABELS
+from noise.base.tables import read_table
 from noise.labels.table import COLUMNS
 
 if TYPE_CHECKING:
@@ -63,14 +61,10 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     >>> row["label"], row["speed_rad_s"], row["material"]
     ('creak', 5.0, None)
     """
-    check_table_path(path)
-    readers = {".csv": _read_csv, ".jsonl": _read_json_lines, ".parquet": _read_parquet}
-    try:
-        rows = readers[path.suffix.lower()](path)
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, csv.Error) as error:
-        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
+    columns, rows = read_table(path)
+    missing = [column for column in _NEEDED if column not in columns]
+    if missing and path.suffix.lower() == ".csv":
+        raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
     checked = []
     for number, row in enumerate(rows, 1):
         try:
@@ -80,27 +74,6 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
                 raise
             refusals.append(str(error))
     return checked
-
-
-def _read_csv(path: Path) -> list[dict[str, object]]:
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        reader = csv.DictReader(file)
-        missing = [column for column in _NEEDED if column not in (reader.fieldnames or ())]
-        if missing:
-            raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
-        return [{str(column): value for column, value in row.items()} for row in reader]
-
-
-def _read_json_lines(path: Path) -> list[dict[str, object]]:
-    with path.open(encoding="utf-8") as file:
-        return [json.loads(line) for line in file if line.strip()]
-
-
-def _read_parquet(path: Path) -> list[dict[str, object]]:
-    from pyarrow import parquet
-
-    rows: list[dict[str, object]] = parquet.read_table(path).to_pylist()
-    return rows
 
 
 def _checked(row: object, where: str) -> dict[str, object]:

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.classifier import LABELS
-from noise.inference import load_inference
-from noise.inference.segments import infer_stretch
+from noise.base.label_names import LABELS
+from noise.inference import infer_stretch, load_inference
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from models.condition import Condition
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from noise.inference import Inference, Interval
     from noise.labels.segments import Segment
 
-__all__ = ["COLUMNS", "error_row", "label_rows"]
+__all__ = ["COLUMNS", "LabelTable", "error_row", "label_rows"]
 
 _SPEED_BLOCK = 0.02
 """Length over which the angle is averaged before its slope is taken [s]."""
@@ -53,6 +54,74 @@ COLUMNS = (
     "material", "material_source", "error",
 )  # fmt: skip
 """Columns of the table, all of them always there."""
+
+
+class LabelTable(list[dict[str, object]]):
+    """The label table of recordings: one row a segment, by `COLUMNS`.
+
+    A table of pandas or polars is made of it as of any list of dictionaries.
+
+    Examples
+    --------
+    >>> row = {"file": "run07.wav", "label": "creak", "start_s": 0.0, "end_s": 1.0, "error": None}
+    >>> LabelTable([row, {"file": "b.wav", "label": None, "error": "is empty"}]).refused
+    {'b.wav': 'is empty'}
+    """
+
+    @property
+    def refused(self) -> dict[str, str]:
+        """Why files could not be read, by file."""
+        return {str(row["file"]): str(row["error"]) for row in self if row.get("error")}
+
+    def write(self, path: str | Path) -> None:
+        """Write the table, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            Ends in .csv, .jsonl or .parquet.
+
+        Raises
+        ------
+        ParameterError
+            No table can be written there.
+        """
+        from noise.base.tables import check_table_path, write_table
+
+        check_table_path(path)
+        write_table(path, COLUMNS, self)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the labels over time, one row a file.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            Nothing is labelled.
+        """
+        from noise.labels.label_display import draw_tracks
+
+        tracks: dict[str, list[tuple[float, float, str]]] = {}
+        for row in self:
+            start, end, label = row["start_s"], row["end_s"], row["label"]
+            if isinstance(start, float) and isinstance(end, float) and isinstance(label, str):
+                track = "" if row["channel"] == "all" else f", track {row['channel']}"
+                tracks.setdefault(f"{row['file']}{track}", []).append((start, end, label))
+        return draw_tracks(tracks, ax)
+
+    def _repr_html_(self) -> str:
+        from noise.labels.label_display import table_html
+
+        return table_html(self)
 
 
 def label_rows(

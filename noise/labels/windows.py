@@ -15,8 +15,8 @@ import numpy as np
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.named.prepared import ACOUSTIC_KINDS
-from features.registry import feature_names, feature_vector
-from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_page, window_count
+from features.registry import KINDS, feature_names, feature_vector
+from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_windows, window_count
 from features.windows.working import FRAME_RATE, MARGIN, RATE, block_length, working_block
 from models.errors import ParameterError
 from noise.labels.levels import CellLevels
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from features.windows.table import Page
+    from features.windows.table import WindowTable
     from features.windows.working import Block
     from noise.recordings.blocks import RecordingBlocks
 
-__all__ = ["FEATURE_NAMES", "Described", "describe"]
+__all__ = ["FEATURE_NAMES", "Described", "can_be_described", "describe", "tracks"]
 
 _TORQUE_NAMES = feature_names("torque")
 
@@ -39,6 +39,9 @@ FEATURE_NAMES = (
     *(f"torque_{name}" for name in _TORQUE_NAMES),
 )
 """Of a window of a recording; NaN for the kinds of channel that it does not have."""
+
+_LEAST_RATE = 1000.0
+"""A recording sampled more slowly shows nothing of a noise [Hz]."""
 
 _FADE = 0.01
 """The ends of a recording are faded in and out [s]: cut hum would click."""
@@ -59,7 +62,7 @@ class Described:
     level : ndarray, shape (n_windows,)
         Power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
     frames : ndarray of float32, shape (n_frames, n)
-        Of that channel, as `features.windows.table.Page` has them.
+        Of that channel, as `features.windows.table.WindowTable` has them.
     cells : CellLevels
         Of that channel, all frequencies.
     """
@@ -68,6 +71,27 @@ class Described:
     level: NDArray[np.float32]
     frames: NDArray[np.float32]
     cells: CellLevels
+
+
+def can_be_described(blocks: RecordingBlocks) -> bool:
+    """Whether a recording has a channel that noises show in, sampled fast enough."""
+    return blocks.rate >= _LEAST_RATE and any(blocks.first(kind) is not None for kind in KINDS)
+
+
+def tracks(blocks: RecordingBlocks, *, per_track: bool) -> Iterator[tuple[str, RecordingBlocks]]:
+    """Yield what is described on its own, with its name in the column ``channel``.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+    per_track : bool
+        Whether each channel stands for itself, as the tracks of a plain sound file do.
+    """
+    if per_track and len(blocks.channels) > 1:
+        for row in range(len(blocks.channels)):
+            yield str(row + 1), blocks.track(row)
+    else:
+        yield "all", blocks
 
 
 def describe(blocks: RecordingBlocks) -> Described:
@@ -136,7 +160,7 @@ class _Reader:
         for first in range(0, count, a_page):
             yield first, min(a_page, count - first)
 
-    def page(self, row: int, first: int, windows: int) -> Page:
+    def page(self, row: int, first: int, windows: int) -> WindowTable:
         """Describe a page of a channel."""
         number = round(first * HOP) // self._useful
         start = number * self._useful * RATE
@@ -156,7 +180,7 @@ class _Reader:
             )
         )
         frames = math.ceil(size * FRAME_RATE / RATE)
-        return describe_page(
+        return describe_windows(
             sound[:size],
             high[:size],
             top[:frames],

@@ -1,4 +1,4 @@
-"""The same condition in three models: the thesis's program, its equations exactly, the calibrated.
+"""Traces of one condition in three models: the thesis's listing, its equations, the calibrated one.
 
 Slips are compared by laying them over each other, so each trace knows when its slips begin: where
 stick ends, or, in a contact that creeps, where the torque starts to drop.
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.slip_drops import torque_slips
+from models.errors import ParameterError
 from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, rig_of
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.thesis_listing import STEP
@@ -23,7 +24,10 @@ from sim.shaft import ConstantSpeed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Trace", "exact_trace", "listing_trace", "model_traces"]
+__all__ = ["SHOWN", "Trace", "exact_trace", "listing_trace", "model_traces"]
+
+SHOWN = 0.08
+"""How much of a settled run is shown over time [s]."""
 
 _RATE = 100e3
 """Of the exact and the calibrated traces [Hz]: a slip lasts half a millisecond."""
@@ -66,6 +70,24 @@ class Trace:
             clamp_speed=None if self.clamp_speed is None else self.clamp_speed[part],
             slips=self.slips[(self.slips >= start) & (self.slips < end)] - start,
         )
+
+    def middle(self, seconds: float) -> Trace:
+        """Return so many seconds of the settled run, from its middle on."""
+        start = 0.5 * float(self.time[-1])
+        return self.during(start, start + seconds)
+
+    @property
+    def clamp_acceleration(self) -> NDArray[np.float64]:
+        """Acceleration of the clamp [rad/s^2].
+
+        Raises
+        ------
+        ParameterError
+            The model does not write the clamp's speed.
+        """
+        if self.clamp_speed is None:
+            raise ParameterError(f"{self.name}: does not tell the clamp's speed")
+        return np.asarray(np.gradient(self.clamp_speed, self.time))
 
     def settled_slip(self) -> float:
         """When the first slip of the last half begins [s]; the middle of the run if none does."""

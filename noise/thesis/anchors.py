@@ -1,4 +1,4 @@
-"""Anchors that yield: one set of dimensions for all modes that were measured, and its stiffness.
+"""Modes and stiffness with anchors that yield, fitted to all modes that were measured.
 
 Rigid anchors, assumption (5) of 3.1.1, put the bending modes measured at 900 and 1375 Hz 22 and
 42 % too high. Fitted are the anchors' stiffness and the clamp's inertia; what the thesis gives is

@@ -1,4 +1,4 @@
-"""Where stick and vibration end: Tables 5.1 and 5.2, and what the thesis simulated (6.3.1).
+"""Critical speeds of Tables 5.1 and 5.2, and stick-slip as the thesis simulated it (6.3.1).
 
 The thesis simulated at 1, 2.5, 5, 7.5 and 10 rad/s, so "stick-slip through 5 rad/s" admits an end
 anywhere below 7.5. There the end of the first unbroken range counts, islands above it do not.
@@ -21,7 +21,7 @@ from noise.thesis.runs import (
     stick_share,
 )
 from sim.analysis.critical_damping import with_damping
-from sim.analysis.critical_speeds import SPEEDS, critical_speeds, stick_slip_ranges
+from sim.analysis.critical_speeds import SPEEDS, critical_speeds, stick_slip_ranges, unbroken_ranges
 from sim.analysis.regime import LEAST_STICK
 
 __all__ = ["MEASURED", "contradiction", "simulated", "transitions"]
@@ -135,14 +135,8 @@ def _exact_ranges(case: Case) -> tuple[tuple[float, float], ...]:
 
 
 def _listing_ranges(case: Case) -> tuple[tuple[float, float], ...]:
-    ranges: list[tuple[float, float]] = []
-    stuck_before = False
-    for speed in SPEEDS:
-        sticks = listing_stick_share(case.at(speed), _SECONDS) > LEAST_STICK
-        if sticks:
-            ranges.append((ranges.pop()[0] if stuck_before else speed, speed))
-        stuck_before = sticks
-    return tuple(ranges)
+    shares = (listing_stick_share(case.at(speed), _SECONDS) for speed in SPEEDS)
+    return unbroken_ranges(SPEEDS, (share > LEAST_STICK for share in shares))
 
 
 def _first(ranges: tuple[tuple[float, float], ...]) -> float:

@@ -1,4 +1,4 @@
-"""The damping that ends stick-slip (6.3.2), and what Table 5.5 has to do with Table 5.1."""
+"""Damping that ends stick-slip (6.3.2), and that of Table 5.5, which must not."""
 
 from __future__ import annotations
 

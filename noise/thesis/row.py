@@ -1,4 +1,4 @@
-"""One published number beside the computed ones, and what is to be said of it.
+"""Row of the table: one published number beside the computed ones, and the verdict on it.
 
 The verdict follows from numbers alone, by the tolerance that a row states: nobody's opinion is in
 it. A row says which of its columns is judged. What was measured is judged on the calibrated column

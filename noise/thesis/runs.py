@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.harmonics import analyse_harmonics
+from features.kernels import slip_drops
 from features.kernels.lines import find_lines
-from features.kernels.slip_drops import torque_slips
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
 from models.rig_files.rig_file import load_material_rig
@@ -199,11 +198,7 @@ def repetition_rate(material: str, case: Case) -> float | None:
     run = _settled(motion(material, case))
     if rig_of(material).friction.name == "coulomb":
         return _rate_of_ends(run.stuck, RATE)
-    slips = torque_slips(run.torque, RATE)
-    if math.isfinite(slips.mean_interval):
-        return 1.0 / slips.mean_interval
-    period = analyse_harmonics(run.torque, RATE).fundamental
-    return period if math.isfinite(period) else None
+    return slip_drops.repetition_rate(run.torque, RATE)
 
 
 def third_over_second(material: str, case: Case) -> float | None:

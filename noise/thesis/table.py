@@ -1,4 +1,4 @@
-"""The whole table: groups of rows in their order."""
+"""Groups of rows of the table, in their order."""
 
 from __future__ import annotations
 

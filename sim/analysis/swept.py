@@ -1,4 +1,4 @@
-"""What a sweep found: features by name, with the conditions that they belong to.
+"""Result of a sweep: features by name, with the conditions that they belong to.
 
 It is the dictionary of arrays that programs take, and knows beside it what a table or a picture of
 them needs.

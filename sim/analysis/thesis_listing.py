@@ -1,4 +1,4 @@
-"""The program of the thesis's Appendix F, line by line, errors included.
+"""Program of the thesis's Appendix F, line by line, errors included.
 
 The published simulations came from it, so what it gives is what they can be compared with; the
 equations that it means to solve are solved exactly by `sim.solvers.stick_slip`. Every statement

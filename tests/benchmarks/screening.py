@@ -17,8 +17,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.rig_files.rig_file import load_material_rig
+from noise.screening.design.axis_values import spread
 from noise.screening.design.design import Use
-from noise.screening.map.axes import spread
 from noise.screening.map.point import judge
 from noise.screening.screen import screen
 from sim.analysis.critical_speeds import regime_at

@@ -5,18 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from noise.diagnosis.evidence.bands import BAND_EDGES, band_bins
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
     channel_summary,
     hum_summary,
     shaft_speed,
 )
-from noise.diagnosis.evidence.path_summary import (
-    BAND_EDGES,
-    band_names,
-    common_residual,
-    path_summary,
-)
+from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.summary import summary
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.helpers.small_rigs import RATE, RIG, at, only, run
@@ -168,7 +164,7 @@ def test_noise_that_the_torque_does_not_explain_is_incoherent_in_its_band_alone(
         butter(6, [low * 1.05, high / 1.05], "band", fs=RATE, output="sos"), more
     )
     numbers, _ = path_summary(x, x + more, RATE, np.empty(0))
-    seen = {i: numbers[f"incoherent_{i}"] for i in band_names(RATE)}
+    seen = {i: numbers[f"incoherent_{i}"] for i, _ in band_bins(RATE)}
     assert max(seen, key=seen.get) == 9
     assert all(seen[9] - seen[i] > 2.0 for i in seen if abs(i - 9) > 1)
 

@@ -9,8 +9,9 @@ from dataclasses import replace
 import pytest
 
 from models.condition import FIXED
+from models.errors import ParameterError
+from noise.base.user_effects import effect_library
 from noise.cli import main
-from noise.commands.user_effects import effect_library
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.fit.own import with_own
 from noise.diagnosis.outcome import EffectFinding, as_json
@@ -237,6 +238,24 @@ def test_an_effect_of_the_users_own_takes_the_verdict_when_it_is_the_cause(
     assert first["parameters"]["share"] == pytest.approx(0.8, abs=0.2)
     assert first["closed"] > 0.5
     assert told["location"]["stage"] == "measurement"
+
+
+def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path, capsys):
+    mine, other = tmp_path / "rectifier.py", tmp_path / "other.py"
+    mine.write_text(RECTIFIER)
+    other.write_text(RECTIFIER.replace('"rectifier"', '"folded"'))
+    listed = RIG_FILE.replace("effects = []", 'effects = ["rectifier:share=0.8"]')
+    recordings = _recordings(("rectifier", {"share": 0.8}), library=effect_library(mine))
+    data, rig = write_case(tmp_path, recordings, listed)
+    told = _told(capsys, data, "--rig", rig, "--effects", mine, "--quick")
+    for effects in (mine, [str(mine), other]):
+        found = as_json(diagnose(data, rig, effects=effects, quick=True))
+        assert {**found, "seconds": 0.0} == {**told, "seconds": 0.0}
+    (tmp_path / "mine.py").write_text(RECTIFIER)
+    with pytest.raises(ParameterError, match=r"mine.py: effect 'rectifier' is defined in another"):
+        diagnose(data, rig, effects=[mine, tmp_path / "mine.py"], quick=True)
+    with pytest.raises(ParameterError, match=r"nowhere\.py"):
+        diagnose(data, rig, effects=tmp_path / "nowhere.py")
 
 
 def test_an_effect_of_the_users_own_that_is_not_the_cause_is_listed_behind(

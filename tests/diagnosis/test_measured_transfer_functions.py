@@ -11,7 +11,7 @@ from models.condition import Condition
 from models.rig_files.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.gap.scatter import Scatter, scattered
+from noise.diagnosis.gap.scatter import Scatter, perturb_rig
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import (
     predict,
@@ -93,7 +93,7 @@ def test_a_quiet_steady_rig_is_quiet_from_start_to_end_of_a_recording():
 
 def test_critical_and_kinetic_torque_scatter_each_on_its_own():
     rng = np.random.default_rng(1)
-    fits = [scattered(RIG, Scatter(), rng).fit(0.279e-3) for _ in range(2000)]
+    fits = [perturb_rig(RIG, Scatter(), rng).fit(0.279e-3) for _ in range(2000)]
     kinetic = np.log([fit.kinetic_torque for fit in fits])
     excess = np.log([fit.critical_torque - fit.kinetic_torque for fit in fits])
     assert kinetic.std() == pytest.approx(0.02, rel=0.1)

@@ -5,11 +5,14 @@ import pytest
 import soundfile
 from scipy.signal import resample_poly
 
+from features.windows.courses import COURSE_NAMES
+from features.windows.declared import WINDOW_FEATURES
+from features.windows.rhythm import RHYTHM_NAMES
 from features.windows.table import WINDOW_NAMES, window_count
+from features.windows.tones import TONE_NAMES
 from models.recording import Channel, Recording
-from noise.labels.boundaries import change_points
 from noise.labels.levels import CellLevels
-from noise.labels.viterbi import likeliest_course
+from noise.labels.segmentation import change_points, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import blocks as blocks_module
 from noise.recordings.blocks import RecordingBlocks, open_blocks
@@ -33,6 +36,16 @@ def noise(seconds, rate=48_000, seed=0):
     since = np.mod(time, 0.025)
     blows = np.exp(-since / 0.004) * np.sin(2 * np.pi * 3100.0 * since)
     return blows + 0.3 * np.sin(2 * np.pi * 880.0 * time) + 0.02 * coloured_noise(n, 1.0, rng)
+
+
+def test_windows_are_declared_in_the_order_in_which_they_are_computed():
+    high = (f"high_{name}" for name in RHYTHM_NAMES)
+    computed = (*COURSE_NAMES, *TONE_NAMES, *RHYTHM_NAMES, *high)
+    assert WINDOW_NAMES[: len(computed)] == computed
+    assert len(set(WINDOW_NAMES)) == len(WINDOW_NAMES)
+    for feature in WINDOW_FEATURES:
+        assert feature.unit
+        assert feature.definition.endswith(".")
 
 
 @pytest.fixture(scope="module")
@@ -124,8 +137,8 @@ def test_the_change_from_noise_to_tone_is_found_to_50_ms(at):
 def test_a_short_doubt_is_no_segment_but_a_long_one_is():
     sure, other = [0.9, 0.1], [0.1, 0.9]
     doubt = [0.45, 0.55]
-    assert not likeliest_course(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
-    course = likeliest_course(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
+    assert not viterbi_path(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
+    course = viterbi_path(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
     assert course.tolist() == [0] * 4 + [1] * 4 + [0] * 4
 
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
+from noise.pages.engine.maps import HEIGHT, WIDTH, areas_of, axis_of, recorded_maps
 from noise.pages.review import simulated
 from noise.pages.review.design_rig import rig_of
-from noise.pages.review.maps import HEIGHT, WIDTH, areas_of, axis_of, recorded_maps
 from noise.pages.review.screens import ScreenPoint, read_screen
 from noise.pages.review.simulated import MOST_SILENT, chosen_points
 from tests.helpers.made_reviews import row, screen_rows, write_screen

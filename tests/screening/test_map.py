@@ -9,9 +9,9 @@ import pytest
 from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.noise_definition import evidence, is_ambiguous
+from noise.noise_definition import is_ambiguous, run_criteria
 from noise.screening.design.design import Design, Swinging, Use
-from noise.screening.map.batches import judging
+from noise.screening.map.batches import batch_evaluator
 from noise.screening.map.grid import grid_of
 from noise.screening.map.mapping import map_design
 from noise.screening.map.point import judge
@@ -26,7 +26,7 @@ FLUOROCARBON = load_material_rig("fluorocarbon")
 
 def mapped(material, use, **more):
     design = Design(material, load_material_rig(material))
-    with judging() as judged:
+    with batch_evaluator() as judged:
         return map_design(design.rig, grid_of(design, use), judged, design=material, **more)
 
 
@@ -80,9 +80,9 @@ def test_points_are_labelled_as_whole_recordings_are():
             "support_stiffness": float(rng.choice([2214.0, 3745.0])),
         }
         speed = rng.uniform(0.5, 12.5)
-        truth = evidence(simulate(FLUOROCARBON, speed, **where))
-        if not is_ambiguous(truth):
-            alike.append(judge(FLUOROCARBON, speed, **where).label == truth.name)
+        criteria = run_criteria(simulate(FLUOROCARBON, speed, **where))
+        if not is_ambiguous(criteria):
+            alike.append(judge(FLUOROCARBON, speed, **where).label == criteria.label)
     assert len(alike) > 3
     assert all(alike)
 

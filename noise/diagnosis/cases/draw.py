@@ -13,7 +13,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import resample_poly
 
 from models.recording import Channel, Recording
 from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
@@ -23,17 +22,18 @@ from noise.diagnosis.cases.truth import KINDS, Truth
 from noise.diagnosis.cases.unknown_effects import STRANGERS, draw_stranger
 from noise.diagnosis.cases.variants import draw_variant
 from noise.diagnosis.gap.scatter import Scatter
-from noise.diagnosis.simulated.chain_run import CHANNELS, fine_rate, run_signals
-from sim.acquisition import Acquisition
+from noise.diagnosis.simulated.chain_run import CHANNELS, run_signals
+from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
+from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from models.condition import Condition
+    from models.condition import KnownCondition
     from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Rig
     from noise.diagnosis.cases.rigs import Setting
@@ -84,7 +84,7 @@ def draw_case(seed: int) -> DrawnCase:
     louder = {name: level * rng.uniform(0.7, 1.6) for name, level in Acquisition().noise.items()}
     recordings = tuple(
         _record(
-            setting, condition, effects, dict(truth.offsets), plain[_support(condition)],
+            setting, condition, effects, dict(truth.offsets), plain[condition.support_stiffness],
             chain_seed, louder, rng,
         )
         for condition in setting.conditions
@@ -99,10 +99,10 @@ def _drawn_rig(number: int) -> tuple[Setting, dict[float, ImpulseResponses]]:
     setting = draw_setting(rng)
     structures = {
         support: draw_structure(lumped_bushing(setting.rig, 0.279e-3, support), rng)
-        for support in sorted({_support(c) for c in setting.conditions})
+        for support in sorted({c.support_stiffness for c in setting.conditions})
     }
     measured = tuple(s.measured(support, rng) for support, s in structures.items())
-    fine = fine_rate(setting.rate)
+    fine = DIAGNOSIS.rate(setting.rate)
     return (
         replace(setting, rig=replace(setting.rig, measured=measured)),
         {support: s.response(fine) for support, s in structures.items()},
@@ -139,7 +139,7 @@ def _drawn_effect(name: str, strength: float, rng: np.random.Generator) -> Activ
 
 def _record(
     setting: Setting,
-    condition: Condition,
+    condition: KnownCondition,
     effects: list[ActiveEffect],
     offsets: Mapping[str, float],
     plain: ImpulseResponses,
@@ -148,12 +148,11 @@ def _record(
     rng: np.random.Generator,
 ) -> Recording:
     scatter, chance = Scatter(), np.random.default_rng(int(rng.integers(2**31)))
-    fine = plain.rate
     signals = run_signals(
         with_offsets(setting.rig, offsets), condition, effects, plain, setting.seconds, chance,
         chain_seed=chain_seed,
     )  # fmt: skip
-    decimation = round(fine / setting.rate)
+    decimation = DIAGNOSIS.decimation(setting.rate)
     samples = [
         _sampled(
             signals[name], decimation, noise[name], 0.0 if name == "angle" else scatter.gain, chance
@@ -173,7 +172,7 @@ def _sampled(
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
     """Decimate, and add white noise, a coloured one and a drift."""
-    x = resample_poly(signal, 1, decimation, padtype="line")
+    x = decimate(signal, decimation)
     f = np.fft.rfftfreq(x.size)
     slow = np.fft.irfft(np.fft.rfft(rng.standard_normal(x.size)) / np.sqrt(1.0 + f / 1e-3), x.size)
     drift = rng.standard_normal() * np.linspace(-1.0, 1.0, x.size)
@@ -186,8 +185,3 @@ def _sampled(
 
 def _strength(rng: np.random.Generator) -> float:
     return math.exp(rng.uniform(math.log(WEAKEST), 0.0))
-
-
-def _support(condition: Condition) -> float:
-    assert condition.support_stiffness is not None
-    return condition.support_stiffness

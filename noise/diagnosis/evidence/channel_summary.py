@@ -1,4 +1,4 @@
-"""The health of a channel in numbers: clipping, offset, hum, noise floor; and of the shaft's angle.
+"""Health of a channel in numbers: clipping, offset, hum, noise floor; and of the shaft's angle.
 
 None needs a model: a sensor that fails shows it in its own signal.
 """
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from noise.diagnosis.evidence.path_summary import segments
+from features.kernels.segments import segment_spectra
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,12 +36,14 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     Parameters
     ----------
     x : ndarray, shape (n,)
+        In the channel's unit.
     rate : float
-        [Hz]
+        Sampling rate [Hz].
 
     Returns
     -------
     dict of str to float
+        [-], but ``floor_*``: logarithms of amplitudes in the channel's unit.
     """
     top, bottom = float(x.max()), float(x.min())
     span = top - bottom + 1e-12
@@ -59,7 +61,7 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
         "dwell_bottom": _dwell(low),
         "offset": mean / spread,
     }
-    power = np.percentile(np.abs(segments(x, 1024)) ** 2, 10, axis=0)
+    power = np.percentile(np.abs(segment_spectra(x, 1024)) ** 2, 10, axis=0)
     frequency = np.fft.rfftfreq(1024, 1.0 / rate)
     for i, (first, last) in enumerate(_FLOOR_BANDS):
         inside = (frequency > first) & (frequency < last)
@@ -68,7 +70,20 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
 
 
 def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
-    """Summarise how far the mains' harmonics stand out of what lies beside them."""
+    """Summarise how far the mains' harmonics stand out of what lies beside them.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        In the channel's unit.
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    dict of str to float
+        Logarithms of ratios of power [-]; ``hum_level`` that of an amplitude in the channel's unit.
+    """
     n = x.size
     power = np.abs(rfft(_detrended(x) * np.hanning(n))) ** 2
     spacing = rate / n
@@ -86,11 +101,25 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
 
 
 def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numbers:
-    """Summarise how evenly the shaft turns; `speed` is what was set [rad/s]."""
+    """Summarise how evenly the shaft turns.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        [rad], rising.
+    speed : float
+        As set [rad/s].
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    dict of str to float
+        Speeds as logarithms of their ratio to `speed` [-], ``unevenness`` that of an angle in
+        radian, ``speed_line_at`` that of a frequency in hertz.
+    """
     n = angle.size
-    time = np.arange(n, dtype=np.float64) / rate
-    mean_speed = _slope(time, angle)
-    left = angle - angle.mean() - mean_speed * (time - time.mean())
+    mean_speed, left = _about_line(angle, rate)
     block = max(1, int(2.5e-3 * rate))
     means = left[: n // block * block].reshape(-1, block).mean(axis=1)
     v = np.diff(means) * rate / block / abs(speed)
@@ -112,7 +141,19 @@ def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numb
 
 
 def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Speed of the shaft from its angle, below 60 Hz [rad/s].
+    """Speed of the shaft from its angle, below 60 Hz.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        [rad]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [rad/s]
 
     Examples
     --------
@@ -122,9 +163,7 @@ def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     2.63
     """
     n = angle.size
-    time = np.arange(n, dtype=np.float64) / rate
-    mean_speed = _slope(time, angle)
-    left = angle - angle.mean() - mean_speed * (time - time.mean())
+    mean_speed, left = _about_line(angle, rate)
     # Turned about its ends, so that neither its value nor its slope jumps there.
     m = min(round(0.05 * rate), n - 1)
     before, after = 2.0 * left[0] - left[m:0:-1], 2.0 * left[-1] - left[-2 : -m - 2 : -1]
@@ -136,8 +175,16 @@ def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     return np.asarray(mean_speed + irfft(rfft(extended, length) * s * gain, length)[m : m + n])
 
 
-def _line(power: NDArray[np.float64], place: float) -> float:
-    k = round(place)
+def _about_line(angle: NDArray[np.float64], rate: float) -> tuple[float, NDArray[np.float64]]:
+    """Mean speed [rad/s], and what the angle has besides [rad]."""
+    time = np.arange(angle.size, dtype=np.float64) / rate
+    speed = _slope(time, angle)
+    return speed, angle - angle.mean() - speed * (time - time.mean())
+
+
+def _line(power: NDArray[np.float64], bin_number: float) -> float:
+    """Logarithm of the power of a line over the median of what lies beside it [-]."""
+    k = round(bin_number)
     if k + 13 > power.size:
         return 0.0
     beside = np.concatenate([power[max(k - 12, 1) : max(k - 4, 1)], power[k + 5 : k + 13]])
@@ -161,6 +208,6 @@ def _log_share(chosen: NDArray[np.bool_]) -> float:
 
 
 def _dwell(chosen: NDArray[np.bool_]) -> float:
-    """Mean samples of a stay."""
+    """Logarithm of the mean length of a stay in samples [-]."""
     stays = max(int(np.count_nonzero(chosen[1:] & ~chosen[:-1])), 1)
     return math.log(max(float(chosen.sum()), 1.0) / stays)

@@ -1,4 +1,4 @@
-"""The mean cycle of a contact: its torque before each slip and after each catch, and what rings.
+"""Mean cycle of a contact in numbers: torque before each slip, after each catch, and what rings.
 
 Averaged over all cycles at fixed times from the slip's start or the catch, noise and scatter fall
 away while the shape stays: how the contact lets go, how far the torque falls, at which frequency
@@ -54,8 +54,8 @@ def cycle_shape(
     Returns
     -------
     dict of str to float
-        Torques over the critical one, speeds over that of the shaft; a time that hardly any cycle
-        reaches is left out.
+        Torques over the critical one, speeds over that of the shaft, relative changes of stiffness,
+        damping and inertia [-]; a time that hardly any cycle reaches is left out.
     """
     if starts.size < _FEWEST:
         return {}

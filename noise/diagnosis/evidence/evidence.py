@@ -1,4 +1,4 @@
-"""A case as one row of numbers: what the posterior looks at.
+"""A case as one row of numbers, from which the posterior is computed.
 
 Each number of a recording becomes its difference from the rig file's simulation, in units of the
 scatter that repeats have (`scale`, from cases without a cause). Over the recordings of a case six
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = ["LARGEST", "MISSING", "aligned", "evidence", "evidence_names", "scale_of"]
+__all__ = ["LARGEST", "MISSING", "PARTS", "aligned", "evidence", "evidence_names", "scale_of"]
 
 PARTS = ("middle", "sure", "spread", "largest", "with_speed", "repeats", "as_is")
+"""Of each number's differences over the recordings of a case, in the order of the row."""
 
 MISSING = -999.0
 """Stands for what a case does not show; a tree splits it off."""
@@ -37,12 +38,39 @@ _LEAST_SHARE = 1e-2
 
 
 def evidence_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Names of the columns of `evidence` for numbers of these names."""
+    """Names of the columns of `evidence`.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the numbers that count.
+
+    Returns
+    -------
+    tuple of str
+        Part and number, part by part; then how many recordings there are and their rate.
+
+    Examples
+    --------
+    >>> evidence_names(["torque_offset"])[0]
+    'middle:torque_offset'
+    """
     return (*(f"{part}:{name}" for part in PARTS for name in names), "recordings", "rate")
 
 
 def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64], ...]:
-    """Measured, nominal and scatter of a case with its columns as named, NaN where it has none."""
+    """Numbers of a case in the order of names.
+
+    Parameters
+    ----------
+    table : CaseTable
+    names : sequence of str
+
+    Returns
+    -------
+    measured, nominal, scatter : ndarray, shape (n_recordings, n_names)
+        Each in the unit of its number; NaN where the case has none of that name.
+    """
     place = {name: i for i, name in enumerate(table.names)}
     found = [place.get(name, -1) for name in names]
     known = np.array(found) >= 0
@@ -57,7 +85,19 @@ def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64]
 
 
 def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> NDArray[np.float64]:
-    """Scatter of each number about its nominal value over cases without a cause."""
+    """Scatter of each number about its nominal value.
+
+    Parameters
+    ----------
+    tables : sequence of CaseTable
+        Cases without a cause.
+    names : sequence of str
+
+    Returns
+    -------
+    ndarray, shape (n_names,)
+        Half of what lies between the 16th and the 84th percentile, in the unit of each number.
+    """
     away, levels = [], []
     for table in tables:
         measured, nominal, _ = aligned(table, names)
@@ -86,7 +126,7 @@ def evidence(
 
     Returns
     -------
-    ndarray of float32
+    ndarray of float32, shape (n_columns,)
         By `evidence_names`; `MISSING` where undefined.
     """
     measured, nominal, scatter = aligned(table, names)

@@ -1,4 +1,4 @@
-"""The friction torque that no sensor sees, rebuilt from the torque that one does.
+"""Friction torque, which no sensor sees, rebuilt from the torque of the cell.
 
 The torque cell reads T = k_E (theta1 - theta2) + c (theta1' - theta2'), the elastomer's torque on
 the clamp. The clamp's angle follows from it by the clamp's own equation (Figure 4.1),
@@ -150,6 +150,18 @@ def reconstruct(
 
 def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     """Lead a signal back to its start along half a cosine, so that a transform sees no step.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        In any unit.
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n_closed,)
+        A quarter of a second longer, or more for a fast transform.
 
     Examples
     --------

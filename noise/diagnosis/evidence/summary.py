@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.kernels.segments import segment_spectra
+from models.condition import known_condition
+from noise.diagnosis.evidence.bands import band_bins, segment_frequency
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
     channel_summary,
@@ -22,12 +25,7 @@ from noise.diagnosis.evidence.channel_summary import (
     shaft_speed,
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
-from noise.diagnosis.evidence.path_summary import (
-    BAND_EDGES,
-    common_residual,
-    path_summary,
-    segments,
-)
+from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
@@ -77,7 +75,9 @@ class CaseTable:
     rate: float
 
 
-def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, TransferFunction]) -> Numbers:
+def summary(
+    recording: Recording, rig: Rig, transfer_functions: Mapping[str, TransferFunction]
+) -> Numbers:
     """Summarise a recording against the rig that it is said to be of.
 
     Parameters
@@ -85,7 +85,7 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, TransferFun
     recording : Recording
         With speed, interference and support stiffness in its condition.
     rig : Rig
-    found_ways : mapping of str to TransferFunction
+    transfer_functions : mapping of str to TransferFunction
         As `torque_transfer_functions` gives them.
 
     Returns
@@ -93,10 +93,7 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, TransferFun
     dict of str to float
         What a missing channel would tell is missing.
     """
-    condition, rate = recording.condition, recording.rate
-    assert condition.speed is not None
-    assert condition.interference is not None
-    assert condition.support_stiffness is not None
+    condition, rate = known_condition(recording.condition), recording.rate
     signal = {
         kind: recording.samples[row]
         for kind in ("torque", *_OUTPUTS, "angle")
@@ -125,7 +122,7 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, TransferFun
     residuals = {}
     for kind in _OUTPUTS:
         if kind in signal:
-            expected = predict(torque, rate, found_ways[kind])
+            expected = predict(torque, rate, transfer_functions[kind])
             more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
             numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
     if len(residuals) == len(_OUTPUTS):
@@ -158,22 +155,24 @@ class NominalNumbers:
 
     def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
-        c = recording.condition
+        c = known_condition(recording.condition)
         at = _condition(recording)
         like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
         if like not in self._kept:
-            found_ways = self.transfer_functions.at(at[1], at[2])
+            transfer_functions = self.transfer_functions.at(at[1], at[2])
             repeats = nominal_recordings(
                 self.rig,
                 c,
-                found_ways,
+                transfer_functions,
                 rate=recording.rate,
                 seconds=recording.duration,
                 seeds=[self.seed + i for i in range(N_REPEATS)],
                 library=self.library,
             )
             heard = [through_same(repeat, recording) for repeat in repeats]
-            self._kept[like] = _moments([summary(repeat, self.rig, found_ways) for repeat in heard])
+            self._kept[like] = _moments(
+                [summary(repeat, self.rig, transfer_functions) for repeat in heard]
+            )
         return self._kept[like]
 
 
@@ -224,8 +223,8 @@ def case_table(
 
 
 def _condition(recording: Recording) -> tuple[float, float, float]:
-    c = recording.condition
-    return (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
+    c = known_condition(recording.condition)
+    return (c.speed, c.interference, c.support_stiffness)
 
 
 def through_same(repeat: Recording, recording: Recording) -> Recording:
@@ -237,13 +236,10 @@ def through_same(repeat: Recording, recording: Recording) -> Recording:
 
 
 def _levels(x: NDArray[np.float64], rate: float) -> Numbers:
-    size = 2048 if rate < 40e3 else 4096
-    power = (np.abs(segments(x, size)) ** 2).mean(axis=0)
-    place = np.digitize(np.fft.rfftfreq(size, 1.0 / rate), BAND_EDGES)
+    power = (np.abs(segment_spectra(x, segment_frequency(rate)[0])) ** 2).mean(axis=0)
     return {
-        f"band_{i}": 0.5 * math.log(float(power[place == i].mean()) + 1e-14)
-        for i in range(1, BAND_EDGES.size)
-        if BAND_EDGES[i] < 0.42 * rate and (place == i).any()
+        f"band_{i}": 0.5 * math.log(float(power[inside].mean()) + 1e-14)
+        for i, inside in band_bins(rate)
     }
 
 

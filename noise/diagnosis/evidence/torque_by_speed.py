@@ -1,4 +1,4 @@
-"""The friction torque over the sliding speed: by classes of speed, and as a law of all slips.
+"""Friction torque over sliding speed in numbers: by classes of speed, and as a law of all slips.
 
 The way up and the way down of a slip are kept apart, since a contact with a memory has another
 torque on either. A fitted level, slope and bend use all samples at once and scatter less than the
@@ -49,7 +49,7 @@ def torque_by_speed(
     Returns
     -------
     dict of str to float
-        Torques over the kinetic one of the rig file.
+        Torques over the kinetic one of the rig file [-].
     """
     faster = np.gradient(found.sliding_speed) > 0.0
     numbers: dict[str, float] = {}

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import summary, through_same
@@ -169,7 +170,7 @@ class Bench:
         key = (repr(model), condition_key(like), len(seeds))
         if key not in self._signed:
             self._signed[key] = np.mean(
-                [self.runs.seen(model, like, seed) for seed in seeds], axis=0
+                [self.runs.noise_free_signature(model, like, seed) for seed in seeds], axis=0
             )
         return self._signed[key]
 
@@ -190,11 +191,9 @@ class Bench:
                 run = through_same(
                     self.runs.simulated(model, like, 0, Scatter(0.0, 0.0, 0.0)), like
                 )
-                c = like.condition
-                assert c.interference is not None
-                assert c.support_stiffness is not None
-                ways = self.runs.transfer_functions.at(c.interference, c.support_stiffness)
-                found = summary(run, self.rig, ways)
+                c = known_condition(like.condition)
+                transfers = self.runs.transfer_functions.at(c.interference, c.support_stiffness)
+                found = summary(run, self.rig, transfers)
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
             z = (measured[i] - self._numbers[key]) / scale

@@ -10,14 +10,16 @@ interval is for what the effect closes, of which the fit has shown a part.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scores", "closed_interval", "closed_share", "root"]
+__all__ = ["Scores", "closed_fraction", "closed_interval", "closed_share", "root"]
+
+_Gap = TypeVar("_Gap", float, "NDArray[np.float64]")
 
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor."""
@@ -49,6 +51,22 @@ def root(squared: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.mean(squared)))
 
 
+def closed_fraction(before: _Gap, after: _Gap, floor: _Gap | float = 1.0) -> _Gap:
+    """Share of what lies above the floor that is closed; negative where the gap grew [-].
+
+    Parameters
+    ----------
+    before, after, floor : float or ndarray
+        Gaps without and with a change, and that of repeats, all in the same unit.
+
+    Examples
+    --------
+    >>> closed_fraction(3.0, 1.5)
+    0.75
+    """
+    return (before - after) / (before - floor)
+
+
 def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> float | None:
     """Share of the closable gap; None where there is less than `CLOSABLE` to close.
 
@@ -58,7 +76,7 @@ def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> flo
     (0.5, None)
     """
     gap, left = root(before), max(root(after), 1.0)
-    return None if gap - 1.0 < CLOSABLE else (gap - left) / (gap - 1.0)
+    return None if gap - 1.0 < CLOSABLE else closed_fraction(gap, left)
 
 
 def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None:
@@ -88,8 +106,8 @@ def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None
         if gap - 1.0 < CLOSABLE:
             gap = root(scores.before)
         left = root(scores.after[place]) + _FLOOR_SPREAD / np.sqrt(n) * rng.standard_normal()
-        found.append((gap - max(left, 1.0)) / (gap - 1.0))
+        found.append(closed_fraction(gap, max(left, 1.0)))
     low = float(np.percentile(found, _LEVEL[0]))
     gap = root(scores.before)
     lowest = 1.0 - 1.645 * _FLOOR_SPREAD / float(np.sqrt(n))
-    return min(low, 1.0), (gap - lowest) / (gap - 1.0)
+    return min(low, 1.0), closed_fraction(gap, lowest)

@@ -14,7 +14,7 @@ import numpy as np
 
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.causes.location import locate
-from noise.diagnosis.evidence.contact_course import contact_courses
+from noise.diagnosis.evidence.friction_curves import friction_curves
 from noise.diagnosis.fit.bench import Bench, Model
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, root
 from noise.diagnosis.fit.fit_effect import fit_effect, strength_of
@@ -227,8 +227,8 @@ def _illustration(case: Case, bench: Bench, i: int, after: Model | None) -> Illu
     }
     if after is not None:
         shown["after"] = bench.simulated(after, case.recordings[i], 7)
-    courses = {name: contact_courses(recording, case.rig) for name, recording in shown.items()}
-    contacts = {name: course for name, course in courses.items() if course is not None}
+    found = {name: friction_curves(recording, case.rig) for name, recording in shown.items()}
+    contacts = {name: curves for name, curves in found.items() if curves is not None}
     return Illustration(
         case.names[i], shown["measured"], shown["before"], shown.get("after"), contacts
     )

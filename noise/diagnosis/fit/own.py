@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.fit.closing import closed_fraction
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -48,7 +50,7 @@ def with_own(
         return diagnosis
     closed = findings[best].closed
     if closed is None:  # a small gap; what is left of the recalibrated one tells
-        closed = (recalibrated - fitted[best]) / (recalibrated - 1.0)
+        closed = closed_fraction(recalibrated, fitted[best])
     closed = min(max(closed, 0.0), 1.0)
     rest = 1.0 - closed
     probabilities = {name: rest * p for name, p in diagnosis.probabilities.items()}

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from noise.diagnosis.gap.blocks import block_signatures
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
@@ -93,7 +94,7 @@ def case_gap(
     simulated: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
     transfer_functions = TransferFunctionCache(rig)
     for recording in recordings:
-        key, c = condition_key(recording), recording.condition
+        key, c = condition_key(recording), known_condition(recording.condition)
         if key not in simulated:
             found = transfer_functions.at(key[1], key[2])
             runs = nominal_recordings(
@@ -266,10 +267,7 @@ def condition_key(recording: Recording) -> tuple[float, ...]:
     tuple of float
         Speed, interference, support stiffness, sampling rate and length.
     """
-    c = recording.condition
-    assert c.speed is not None
-    assert c.interference is not None
-    assert c.support_stiffness is not None
+    c = known_condition(recording.condition)
     return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
 
 

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from models.condition import KnownCondition
     from models.rig import Fit, Rig
 
-__all__ = ["Scatter", "scattered"]
+__all__ = ["Scatter", "perturb_rig", "perturb_run"]
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,52 @@ class Scatter:
     structure: float = 0.004
     gain: float = 0.01
 
+    def structure_factor(self, rng: np.random.Generator) -> float:
+        """Draw by what a value of the structure differs in one run [-]."""
+        return float(np.exp(self.structure * rng.normal()))
 
-def scattered(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
+
+def perturb_run(
+    rig: Rig,
+    condition: KnownCondition,
+    scatter: Scatter,
+    rng: np.random.Generator,
+    *,
+    support: bool = False,
+) -> tuple[Rig, KnownCondition]:
+    """Draw a rig and its condition as one of its runs finds them.
+
+    Parameters
+    ----------
+    rig : Rig
+    condition : KnownCondition
+    scatter : Scatter
+    rng : numpy.random.Generator
+    support : bool
+        Whether the support's stiffness scatters as well, where the clamp is not bolted down.
+
+    Returns
+    -------
+    Rig, KnownCondition
+
+    Examples
+    --------
+    >>> from models.condition import KnownCondition
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig, at = load_material_rig("PDMS"), KnownCondition(5.0, 0.279e-3, 2214.0)
+    >>> once = perturb_run(rig, at, Scatter(), np.random.default_rng(1))[1]
+    >>> once.speed != 5.0, once.support_stiffness
+    (True, 2214.0)
+    """
+    stiffness = condition.support_stiffness
+    if support and not math.isinf(stiffness):
+        stiffness *= scatter.structure_factor(rng)
+    once = perturb_rig(rig, scatter, rng)
+    speed = condition.speed * scatter.structure_factor(rng)
+    return once, replace(condition, speed=speed, support_stiffness=stiffness)
+
+
+def perturb_rig(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
     """Draw a rig as one of its runs finds it.
 
     Parameters
@@ -57,7 +102,7 @@ def scattered(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> once = scattered(rig, Scatter(), np.random.default_rng(1))
+    >>> once = perturb_rig(rig, Scatter(), np.random.default_rng(1))
     >>> 0.9 < once.elastomer_inertia / rig.elastomer_inertia < 1.1
     True
     """

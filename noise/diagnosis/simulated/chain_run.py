@@ -1,80 +1,57 @@
-"""A run of the rig through ways that are given: with any effects, quickly, many times over.
+"""Runs of a rig through impulse responses that are given: with any effects, quickly, often.
 
-`sim.run.simulate` makes the ways anew from the rig; the diagnosis runs one rig and its variations
-hundreds of times, and has the ways measured. The order of events is the same.
+`sim.run.simulate` makes the responses anew from the rig; the diagnosis runs one rig and its
+variations hundreds of times, and has the responses measured. The stages are those of
+`sim.pipeline`, the timing `sim.timing.DIAGNOSIS`.
 """
 
 from __future__ import annotations
 
-import math
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import firwin, resample_poly
 
-from models.radiation.impulse_responses import ImpulseResponses, radiate
+from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import response
 from models.recording import Channel, Recording
 from models.transfer_functions.impulse_response import impulse_response
-from noise.diagnosis.gap.scatter import Scatter, scattered
-from sim.acquisition import Acquisition
+from noise.diagnosis.gap.scatter import Scatter, perturb_run
+from sim.acquisition import Acquisition, decimate
 from sim.chain import changed_chain
-from sim.motion import simulate_motion
+from sim.pipeline import Plan, apply_sensor_effects, radiate_motion, run_motion, sensor_signals
 from sim.shaft import ConstantSpeed
+from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from models.condition import Condition
+    from models.condition import Condition, KnownCondition
     from models.rig import Rig
     from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import ActiveEffect
-    from sim.motion import Motion
 
-__all__ = [
-    "CHANNELS", "SETTLING", "chain_of", "fine_rate", "found_by_run", "heard", "moving",
-    "read_by_sensors", "recorded", "run_signals", "sampled_at",
-    "sensed",
-]  # fmt: skip
+__all__ = ["CHANNELS", "chain_of", "plan_repeat", "record", "run_signals"]
 
 CHANNELS = ("torque", "acceleration", "pressure", "angle")
 
-_LEAST_RATE = 75e3
-"""Of motion and sound [Hz]."""
-
-SETTLING = 0.35
-"""How long the shaft has turned before the recording starts [s]."""
-
 _LONGEST = 0.25
 """Impulse responses are followed so long [s]."""
-
-
-def fine_rate(rate: float) -> float:
-    """Rate of motion and sound for a sampling rate [Hz].
-
-    Examples
-    --------
-    >>> fine_rate(30e3), fine_rate(48e3)
-    (90000.0, 96000.0)
-    """
-    return math.ceil(_LEAST_RATE / rate) * rate
 
 
 def chain_of(
     rig: Rig,
     interference: float,
     support_stiffness: float,
-    ways: Mapping[str, TransferFunction],
+    transfer_functions: Mapping[str, TransferFunction],
     rate: float,
     *,
     blows: bool,
 ) -> ImpulseResponses:
-    """Return ways as impulse responses; those of blows in the anchors are modelled if asked for."""
+    """Return the impulse responses of a rig; those of pulses in the anchors only if asked for."""
     n = int(_LONGEST * rate)
-    torque_to = {name: impulse_response(way, rate, n) for name, way in ways.items()}
+    torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
     struck = sounding = np.zeros(1)
     if blows:
         modelled = response(rig, interference, support_stiffness, rate)
@@ -84,9 +61,54 @@ def chain_of(
     )
 
 
+def plan_repeat(
+    rig: Rig,
+    condition: KnownCondition,
+    effects: Sequence[ActiveEffect],
+    *,
+    rate: float,
+    seconds: float,
+) -> Plan:
+    """Plan a run at a condition.
+
+    Parameters
+    ----------
+    rig : Rig
+    condition : KnownCondition
+    effects : sequence of ActiveEffect
+    rate : float
+        Of motion and sound [Hz].
+    seconds : float
+        Of the recording [s].
+
+    Returns
+    -------
+    Plan
+
+    Examples
+    --------
+    >>> from models.condition import KnownCondition
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> at = KnownCondition(5.0, 0.279e-3, 2214.0)
+    >>> plan = plan_repeat(load_material_rig("PDMS"), at, (), rate=DIAGNOSIS.rate(30e3), seconds=1)
+    >>> plan.rate, plan.n_settling, plan.n_kept
+    (90000.0, 31500, 90000)
+    """
+    return Plan(
+        rig=rig,
+        shaft=ConstantSpeed(condition.speed),
+        interference=condition.interference,
+        support_stiffness=condition.support_stiffness,
+        effects=effects,
+        rate=rate,
+        n_settling=round(DIAGNOSIS.settling * rate),
+        n_kept=round(seconds * rate),
+    )
+
+
 def run_signals(
     rig: Rig,
-    condition: Condition,
+    condition: KnownCondition,
     effects: Sequence[ActiveEffect],
     chain: ImpulseResponses,
     seconds: float,
@@ -100,11 +122,10 @@ def run_signals(
     Parameters
     ----------
     rig : Rig
-    condition : Condition
-        Speed, interference and support stiffness.
+    condition : KnownCondition
     effects : sequence of ActiveEffect
     chain : ImpulseResponses
-        Ways without effects; its rate is that of the signals.
+        Responses without effects; their rate is that of the signals.
     seconds : float
         [s]
     rng : numpy.random.Generator
@@ -116,122 +137,54 @@ def run_signals(
     -------
     dict of str to ndarray
         By `CHANNELS`, without noise.
+
+    Raises
+    ------
+    ParameterError
+        The rig cannot be simulated.
     """
-    scatter = scatter or Scatter()
-    once, support, speed = found_by_run(rig, condition, scatter, rng)
-    motion = moving(once, condition, support, speed, effects, seconds, chain.rate, rng)
+    once, at = perturb_run(rig, condition, scatter or Scatter(), rng, support=True)
+    plan = plan_repeat(once, at, effects, rate=chain.rate, seconds=seconds)
+    motion = run_motion(plan, rng)
     changed = changed_chain(chain, effects, np.random.default_rng(chain_seed))
-    return read_by_sensors(heard(motion, effects, changed), effects, chain.rate, rng)
+    sound = radiate_motion(motion, changed, effects)
+    signals = sensor_signals(motion, sound, plan.n_settling)
+    return apply_sensor_effects(signals, effects, chain.rate, rng)
 
 
-def found_by_run(
-    rig: Rig, condition: Condition, scatter: Scatter, rng: np.random.Generator
-) -> tuple[Rig, float, float]:
-    """Draw a rig, its support's stiffness [Nm/rad] and the speed [rad/s] as one run finds them."""
-    assert condition.speed is not None
-    assert condition.support_stiffness is not None
-    support = condition.support_stiffness
-    if not math.isinf(support):
-        support *= float(np.exp(scatter.structure * rng.normal()))
-    once = scattered(rig, scatter, rng)
-    return once, support, condition.speed * float(np.exp(scatter.structure * rng.normal()))
-
-
-def moving(
-    rig: Rig,
-    condition: Condition,
-    support: float,
-    speed: float,
-    effects: Sequence[ActiveEffect],
-    seconds: float,
-    rate: float,
-    rng: np.random.Generator,
-) -> Motion:
-    """Move a rig from rest for the recording's length, and `SETTLING` before."""
-    assert condition.interference is not None
-    return simulate_motion(
-        rig,
-        ConstantSpeed(speed),
-        interference=condition.interference,
-        support_stiffness=support,
-        seconds=(round(SETTLING * rate) + round(seconds * rate)) / rate,
-        rate=rate,
-        effects=effects,
-        rng=rng,
-    )
-
-
-def heard(
-    motion: Motion, effects: Sequence[ActiveEffect], changed: ImpulseResponses
-) -> dict[str, NDArray[np.float64]]:
-    """Send a motion along the chain; by `CHANNELS`, without what came before the recording."""
-    force = np.zeros_like(motion.torque)
-    for active in effects:
-        if active.effect.force is not None:
-            force += active.effect.force(motion, active.form, active.values)
-    acceleration, pressure = radiate(changed, motion.torque, force)
-    settling = round(SETTLING * motion.rate)
-    return {
-        "torque": motion.torque[settling:],
-        "acceleration": acceleration[settling:],
-        "pressure": pressure[settling:],
-        "angle": motion.shaft_angle[settling:] - motion.shaft_angle[settling],
-    }
-
-
-def read_by_sensors(
-    signals: dict[str, NDArray[np.float64]],
-    effects: Sequence[ActiveEffect],
-    rate: float,
-    rng: np.random.Generator,
-) -> dict[str, NDArray[np.float64]]:
-    """Let the effects on sensors change signals, in their order."""
-    for active in effects:
-        if active.effect.sensors is not None:
-            signals = active.effect.sensors(signals, rate, active.form, active.values, rng)
-    return signals
-
-
-def recorded(
-    signals: Mapping[str, NDArray[np.float64]],
-    fine: float,
-    rate: float,
-    condition: Condition,
-    rng: np.random.Generator,
-    scatter: Scatter | None = None,
-) -> Recording:
-    """Sample signals and read them by good instruments, as `sensed` does."""
-    sampled = {name: sampled_at(signals[name], fine, rate) for name in CHANNELS}
-    return sensed(sampled, rate, condition, rng, scatter)
-
-
-def sampled_at(signal: NDArray[np.float64], fine: float, rate: float) -> NDArray[np.float64]:
-    """Sample a signal at a rate that its own is a multiple of."""
-    decimation = round(fine / rate)
-    return np.asarray(
-        resample_poly(signal, 1, decimation, padtype="line", window=_anti_alias(decimation))
-    )
-
-
-@lru_cache(maxsize=8)
-def _anti_alias(decimation: int) -> NDArray[np.float64]:
-    taps = firwin(20 * decimation + 1, 1.0 / decimation, window=("kaiser", 5.0))
-    return np.asarray(taps, np.float64)
-
-
-def sensed(
+def record(
     signals: Mapping[str, NDArray[np.float64]],
     rate: float,
     condition: Condition,
     rng: np.random.Generator,
     scatter: Scatter | None = None,
+    *,
+    decimation: int = 1,
 ) -> Recording:
-    """Read samples as good instruments do: gains that scatter, a little white noise."""
+    """Sample signals by good instruments: gains that scatter, a little white noise.
+
+    Parameters
+    ----------
+    signals : mapping of str to ndarray, shape (n,)
+        By `CHANNELS`, at `decimation` times the sampling rate.
+    rate : float
+        Sampling rate [Hz].
+    condition : Condition
+    rng : numpy.random.Generator
+        Of gains and noise.
+    scatter : Scatter, optional
+        Of the gains.
+    decimation : int
+
+    Returns
+    -------
+    Recording
+    """
     scatter = scatter or Scatter()
     levels = Acquisition().noise
     rows = []
     for name in CHANNELS:
-        x = signals[name]
+        x = decimate(signals[name], decimation)
         gain = 1.0 if name == "angle" else 1.0 + scatter.gain * rng.normal()
         rows.append(gain * x + levels[name] * rng.standard_normal(x.size))
     return Recording(np.stack(rows), rate, tuple(Channel(name) for name in CHANNELS), condition)

@@ -1,4 +1,4 @@
-"""What a review is made of: the paths that were named, sorted by what they hold.
+"""Inputs of a review: the paths that were named, sorted by what they hold.
 
 A file is taken at its word and refused where it is not what its ending says. A folder is searched:
 what in it is of no known kind, such as a table of features, is passed over, because folders of
@@ -17,7 +17,7 @@ from models.errors import BushingNoiseError, ParameterError
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.reading import read_label_table
 from noise.recordings import find_recordings
-from noise.recordings.readers import READERS
+from noise.recordings.files import READERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -46,6 +46,18 @@ class Refusal:
 
     name: str
     reason: str
+
+    @classmethod
+    def of(cls, path: Path, error: BushingNoiseError | str) -> Refusal:
+        """Refuse a file for an error, whose message may begin with its path.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> Refusal.of(Path("run07.wav"), "run07.wav: is empty").reason
+        'is empty'
+        """
+        return cls(str(path), str(error).removeprefix(f"{path}: "))
 
 
 @dataclass(frozen=True)
@@ -236,7 +248,7 @@ def _read_tables(paths: Iterable[Path]) -> tuple[list[LabelTable], list[Refusal]
             tables.append(LabelTable(path, tuple(rows)))
         except BushingNoiseError as error:
             lines.append(str(error))
-        refused += [Refusal(str(path), line.removeprefix(f"{path}: ")) for line in lines]
+        refused += [Refusal.of(path, line) for line in lines]
     return tables, refused
 
 

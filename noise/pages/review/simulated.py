@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.audio.sound import audible
-from noise.pages.review.entries import RATE, Entry
+from noise.pages.engine.entry import RATE, Entry
 from sim.acquisition import Acquisition
 from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation
@@ -129,11 +129,8 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
         title=f"{point.speed:.3g} rad/s, {point.interference:.3g} mm, {screened.title}",
         rows=(row,),
         condition=replace(run.recording.condition, material=screened.design),
-        origin="simulated",
         duration=SECONDS,
         sound=audible(run.recording, RATE).astype(np.float32),
-        offset=0.0,
-        calibrated=True,
         note="simulated for this page; label and level are the screen's",
     )
 

@@ -17,8 +17,8 @@ from models.errors import RecordingError, not_installed
 from noise.recordings.formats.bounded import BoundedFile
 from noise.recordings.formats.hdf5_texts import check_texts
 from noise.recordings.formats.logged import LoggedChannel, raw_samples, refusing
-from noise.recordings.sampling import even_rate, whole_rate
-from noise.recordings.stated_condition import CONDITIONS
+from noise.recordings.formats.sampling import even_rate, whole_rate
+from noise.recordings.formats.stated_condition import CONDITIONS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.recordings.readers import RawSamples
+    from noise.recordings.files import RawSamples
 
 __all__ = ["read_hdf5_file"]
 

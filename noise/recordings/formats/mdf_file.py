@@ -16,14 +16,14 @@ from noise.recordings.formats.bounded import BoundedFile
 from noise.recordings.formats.logged import LoggedChannel, is_ours, raw_samples, refusing
 from noise.recordings.formats.mdf_blocks import COMMENT_LINK, check_mdf_blocks
 from noise.recordings.formats.mdf_comment import comment_properties
-from noise.recordings.sampling import even_rate
+from noise.recordings.formats.sampling import even_rate
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from noise.recordings.readers import RawSamples
+    from noise.recordings.files import RawSamples
 
 __all__ = ["read_mdf_file"]
 

@@ -16,8 +16,8 @@ import numpy as np
 from models.errors import RecordingError, not_installed
 from noise.recordings.formats.bounded import BoundedFile
 from noise.recordings.formats.logged import LoggedChannel, raw_samples, refusing
+from noise.recordings.formats.sampling import even_rate, whole_rate
 from noise.recordings.formats.tdms_segments import check_tdms_segments
-from noise.recordings.sampling import even_rate, whole_rate
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.recordings.readers import RawSamples
+    from noise.recordings.files import RawSamples
 
 __all__ = ["read_tdms_file"]
 

@@ -1,4 +1,4 @@
-"""A bushing design as a file, and how it is used.
+"""Bushing design: a rig, its use and its tolerances, read from a file.
 
 A design file is a rig file with two tables more: ``[design]`` says what the design is called and
 what it will meet in use, ``[tolerances]`` how far built ones lie from it. The name of a material
@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING
 from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig, material_names, read_toml, rig_from
+from noise.screening.design.axis_values import axis_values
 from noise.screening.design.tolerances import ABSOLUTE_ZERO, read_tolerances
-from noise.screening.map.axes import axis_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Surroundings of a bushing: cold, hot, wet, dust, grease, as sets of friction parameters.
+"""Environments of a bushing: cold, hot, wet, dust, grease, as sets of friction parameters.
 
 The thesis recommends to study them (Recommendation 5) and measured none. Each set is assumed,
 number by number with its reasoning, in ``environments.toml`` beside this file; a rig in one of them
@@ -37,7 +37,7 @@ class Environment:
     temperature : float
         [degree Celsius]
     elastomer_stiffness, damping, critical_torque, kinetic_torque : float
-        Factors on those of each fit.
+        Factors on those of each fit [-].
     effects : tuple of LawSpec
         What the contact does beyond its friction law.
     why : tuple of str

@@ -1,4 +1,4 @@
-"""The map of one design in one environment: what happens at each condition of a grid.
+"""Map of one design in one environment: regime, noise and level at each condition of a grid.
 
 Where the friction law does not know the temperature the map of one temperature is that of all, and
 its copies say so. Stability is asked at every point of constant speed; a swinging shaft has no
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.screening.map.batches import LABELS, Batch
-from noise.screening.map.carry import carried
+from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES
 from noise.screening.map.refine import HOW, STRIDE, refined_map
 from sim.analysis.regime import Regime
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Rig
-    from noise.screening.map.batches import Judge
+    from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
 
 __all__ = ["UNCHANGED", "DesignMap", "map_design"]
@@ -84,7 +84,7 @@ class DesignMap:
 def map_design(
     rig: Rig,
     grid: Grid,
-    judge: Judge,
+    evaluate: Evaluator,
     *,
     design: str,
     environment: str = "dry",
@@ -98,8 +98,8 @@ def map_design(
     rig : Rig
         In its environment.
     grid : Grid
-    judge : callable
-        Of `noise.screening.map.batches.judging`.
+    evaluate : callable
+        Of `noise.screening.map.batches.batch_evaluator`.
     design, environment : str
         Names.
     most : int, optional
@@ -129,7 +129,7 @@ def map_design(
 
     def simulate(points: NDArray[np.int64]) -> NDArray[np.int64]:
         plane, row, column = points.T
-        judged = judge(
+        rows = evaluate(
             Batch(
                 rig,
                 speed[column],
@@ -139,8 +139,8 @@ def map_design(
                 axes[0][plane // shape[1]],
             )
         )
-        level[plane, row, column] = judged[:, 2]
-        return (judged[:, 0] * len(LABELS) + judged[:, 1]).astype(np.int64)
+        level[plane, row, column] = rows[:, 2]
+        return (rows[:, 0] * len(LABELS) + rows[:, 1]).astype(np.int64)
 
     growth = np.full(planes, np.nan) if swings else _growth(rig, axes, speed).reshape(planes)
     found = refined_map(
@@ -152,7 +152,7 @@ def map_design(
         most=most,
         stride=stride or (_stride(axes[2], _FIT_APART), _stride(speed, _SPEED_APART)),
     )
-    level = carried(level, found.codes, found.how)
+    level = interpolate_levels(level, found.codes, found.how)
     how = np.array(HOW)[found.how].reshape(shape)
     result = DesignMap(
         design=design,

@@ -21,17 +21,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.levels import a_weighted, fast_levels
-from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import response
 from models.rig import damping_at
-from noise.noise_definition import Evidence, evidence_of
+from noise.noise_definition import NoiseCriteria, noise_criteria
 from noise.screening.map.stretches import stretches_of
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import at_temperature
-from sim.motion import simulate_motion
+from sim.pipeline import Plan, radiate_motion, run_motion
 from sim.shaft import ConstantSpeed, Oscillation
+from sim.timing import SCREENING, SCREENING_SLOW
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -42,21 +42,17 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from sim.effects.effect import Effect
     from sim.motion import Motion
-    from sim.shaft import ShaftMotion
+    from sim.timing import Timing
 
 __all__ = ["REGIMES", "Judged", "Sound", "judge", "point_sound"]
 
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""
 
-_RATE = 30e3
-"""Of motion and sound [Hz]: creaks reach 15 kHz."""
-
 _TOLERANCE = 1e-5
 
-_SHORT = 0.6, 1.2
-_LONG = 1.5, 2.1
-"""When a run begins to be judged, and when it ends [s]."""
+_JUDGED = 0.6
+"""Length of what is judged, after settling [s]."""
 
 _SETTLED = 0.8
 """Least ratio of the vibration's strength, from one third of what is judged to the last."""
@@ -76,14 +72,14 @@ class Judged:
         ``creak``, ``squawk``, ``squeal`` or ``none``.
     level : float
         L_AFmax of the sound [dB re 20 uPa]; NaN where it slides steadily.
-    evidence : Evidence, optional
+    criteria : NoiseCriteria, optional
         What the label follows from; None where it slides steadily.
     """
 
     regime: Regime
     label: str
     level: float
-    evidence: Evidence | None = None
+    criteria: NoiseCriteria | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,18 +146,19 @@ def judge(
     >>> judge(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0).label
     'squeal'
     """
-    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
-    motion, start = _settled(rig, shaft, interference, support_stiffness, _RATE, library)
-    stretches = stretches_of(motion.since(start), swings=isinstance(shaft, Oscillation))
+    plan = _plan(rig, shaft, interference, support_stiffness, temperature, library, SCREENING)
+    plan, motion = _settled(plan)
+    swings = isinstance(shaft, Oscillation)
+    stretches = stretches_of(motion.since(plan.n_settling), swings=swings)
     if all(_swing(stretch) <= 1.0 for stretch in stretches):
         return Judged(Regime.STEADY_SLIDING, "none", math.nan)
-    heard_by, support = structure or (rig, support_stiffness)
-    paths = _paths(heard_by, interference, support, motion.rate)
-    sound = _sound(rig, motion, start, paths, library)
-    found = _evidence(sound, stretches)
+    heard_by, support = structure or (plan.rig, support_stiffness)
+    paths = _paths(heard_by, interference, support, plan.rate)
+    sound = _sound(plan, motion, paths)
+    found = _criteria(sound, stretches)
     regime = Regime.STICK_SLIP if found.stick > 1.0 else Regime.QUASI_HARMONIC
-    label = found.name
-    if isinstance(shaft, Oscillation) and label == "creak" and found.blows < 0.0:
+    label = found.label
+    if swings and label == "creak" and found.blows < 0.0:
         label = "squawk"  # lines that follow the speed, which no single spectrum shows
     return Judged(regime, label, _loudest(sound), found)
 
@@ -177,33 +174,49 @@ def point_sound(
     library: Mapping[str, Effect] = EFFECTS,
 ) -> Sound:
     """Return motion and sound of a point as `judge` looks at them, at another rate [Hz]."""
-    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
-    span = _LONG if not isinstance(shaft, Oscillation) else _swing_span(shaft)
-    motion = _motion(rig, shaft, interference, support_stiffness, rate, library, span[1])
-    paths = _paths(rig, interference, support_stiffness, rate)
-    return _sound(rig, motion, round(span[0] * rate), paths, library)
+    plan = _plan(
+        rig, shaft, interference, support_stiffness, temperature, library, SCREENING_SLOW, rate
+    )
+    paths = _paths(plan.rig, interference, support_stiffness, rate)
+    return _sound(plan, run_motion(plan, tolerance=_TOLERANCE), paths)
 
 
-def _settled(
+def _plan(
     rig: Rig,
     shaft: float | Oscillation,
     interference: float,
     support_stiffness: float,
-    rate: float,
+    temperature: float,
     library: Mapping[str, Effect],
-) -> tuple[Motion, int]:
-    """Motion of a run, and the sample from which on it is judged."""
-    span = _swing_span(shaft) if isinstance(shaft, Oscillation) else _SHORT
-    motion = _motion(rig, shaft, interference, support_stiffness, rate, library, span[1])
-    settled = isinstance(shaft, Oscillation) or _is_settled(motion.since(round(span[0] * rate)))
-    if not settled:
-        span = _LONG
-        motion = _motion(rig, shaft, interference, support_stiffness, rate, library, span[1])
-    return motion, round(span[0] * rate)
+    timing: Timing,
+    rate: float | None = None,
+) -> Plan:
+    """Plan a run at a rate [Hz]; a swinging shaft settles for a quarter of its cycle instead."""
+    rate = rate or timing.least_rate
+    n_settling, n_kept = round(timing.settling * rate), round(_JUDGED * rate)
+    if isinstance(shaft, Oscillation):
+        n_settling = round(0.25 / shaft.frequency * rate)
+        n_kept = round(1.25 / shaft.frequency * rate) - n_settling
+    return Plan(
+        rig=replace(rig, friction=at_temperature(rig.friction, temperature)),
+        shaft=shaft if isinstance(shaft, Oscillation) else ConstantSpeed(float(shaft)),
+        interference=interference,
+        support_stiffness=support_stiffness,
+        effects=activated(rig.effects, library),
+        rate=rate,
+        n_settling=n_settling,
+        n_kept=n_kept,
+        temperature=temperature,
+    )
 
 
-def _swing_span(shaft: Oscillation) -> tuple[float, float]:
-    return 0.25 / shaft.frequency, 1.25 / shaft.frequency
+def _settled(plan: Plan) -> tuple[Plan, Motion]:
+    """Motion that has settled where it is judged, and the plan of it."""
+    motion = run_motion(plan, tolerance=_TOLERANCE)
+    if isinstance(plan.shaft, Oscillation) or _is_settled(motion.since(plan.n_settling)):
+        return plan, motion
+    plan = replace(plan, n_settling=round(SCREENING_SLOW.settling * plan.rate))
+    return plan, run_motion(plan, tolerance=_TOLERANCE)
 
 
 def _is_settled(motion: Motion) -> bool:
@@ -215,50 +228,19 @@ def _is_settled(motion: Motion) -> bool:
     return _SETTLED * first <= last <= first / _SETTLED
 
 
-def _motion(
-    rig: Rig,
-    shaft: float | Oscillation,
-    interference: float,
-    support_stiffness: float,
-    rate: float,
-    library: Mapping[str, Effect],
-    seconds: float,
-) -> Motion:
-    turning: ShaftMotion = shaft if isinstance(shaft, Oscillation) else ConstantSpeed(float(shaft))
-    return simulate_motion(
-        rig,
-        turning,
-        interference=interference,
-        support_stiffness=support_stiffness,
-        seconds=seconds,
-        rate=rate,
-        effects=activated(rig.effects, library),
-        tolerance=_TOLERANCE,
-    )
-
-
 def _swing(motion: Motion) -> float:
     mean = abs(float(np.mean(motion.torque)))
     return float(np.std(motion.torque)) / (LEAST_OSCILLATION * mean) if mean > 0.0 else math.inf
 
 
-def _sound(
-    rig: Rig,
-    motion: Motion,
-    start: int,
-    paths: ImpulseResponses,
-    library: Mapping[str, Effect],
-) -> Sound:
-    force = np.zeros_like(motion.torque)
-    for active in activated(rig.effects, library):
-        if active.effect.force is not None:
-            force += active.effect.force(motion, active.form, active.values)
-    _, pressure = radiate(paths, motion.torque)
-    pulses = np.zeros_like(pressure)
-    if np.any(force):
-        _, pulses = radiate(paths, np.zeros_like(force), force)
-    pressure += pulses
-    return Sound(motion.since(start), pressure[start:], pulses[start:], pressure[:start])
+def _sound(plan: Plan, motion: Motion, paths: ImpulseResponses) -> Sound:
+    sound, start = radiate_motion(motion, paths, plan.effects), plan.n_settling
+    return Sound(
+        motion.since(start),
+        sound.pressure[start:],
+        sound.pulse_pressure[start:],
+        sound.pressure[:start],
+    )
 
 
 def _loudest(sound: Sound) -> float:
@@ -280,7 +262,7 @@ def _paths(
     return response(rig, interference, support_stiffness, rate)
 
 
-def _evidence(sound: Sound, stretches: list[Motion]) -> Evidence:
-    """Evidence of the liveliest stretch, with the sound of all."""
-    found = [evidence_of(stretch, sound.pressure, sound.pulse_pressure) for stretch in stretches]
-    return max(found, key=lambda evidence: evidence.audible)
+def _criteria(sound: Sound, stretches: list[Motion]) -> NoiseCriteria:
+    """Criteria of the liveliest stretch, with the sound of all."""
+    found = [noise_criteria(stretch, sound.pressure, sound.pulse_pressure) for stretch in stretches]
+    return max(found, key=lambda criteria: criteria.audible)

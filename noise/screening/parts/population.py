@@ -1,4 +1,4 @@
-"""Many bushings of one design, each with its own deviations: what noise each makes, and its margin.
+"""Simulation of many bushings of one design: the noise that each makes, and its margin.
 
 A label is simulated. Critical speeds are by stability where the friction has a slope, which costs
 a fiftieth of simulating them and, for the calibrated fluorocarbon, differs by less than a step of

@@ -1,4 +1,4 @@
-"""The smallest change of each of several parameters that does what is wanted.
+"""Search for the smallest change of each of several parameters that does what is wanted.
 
 Whether a change does it may go to and fro, as stick does with the phase of the clamp. So all of
 each range is tried first, coarsely; then the innermost bracket of a value that does it and one

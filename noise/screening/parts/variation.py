@@ -1,4 +1,4 @@
-"""A design with its parameters changed by factors: what a population and an advice are made of."""
+"""Variation of a design: rig and condition with parameters changed by factors."""
 
 from __future__ import annotations
 

@@ -48,7 +48,8 @@ class CriticalPoint:
     v_crit2_stability : float
         By stability; likewise.
     margin_v_crit1, margin_v_crit2, margin_stability : float
-        Of the use to what sticks, to what vibrates, and to where sliding is unstable.
+        Of the use to what sticks, to what vibrates, and to where sliding is unstable; positive
+        where no speed of use does.
     """
 
     design: str

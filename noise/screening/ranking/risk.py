@@ -1,4 +1,4 @@
-"""A risk number of a design on the scale of one to ten that the field knows, and the ranking.
+"""Risk number of a design, from 1 to 10 as the field grades stick-slip, and the ranking by it.
 
 Taken from the field: stick-slip of a pair of materials is graded from 1 to 10, 10 being worst
 (VDA 230-206), and specifications read the grade in three bands: 1 to 3 no risk, 4 and 5 at risk
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from noise.screening.parts.estimate import Estimate
 
-__all__ = ["Candidate", "Place", "design_risk", "ranked", "risk_band", "risk_grades"]
+__all__ = ["Candidate", "Ranked", "design_risk", "ranked", "risk_band", "risk_grades"]
 
 _ACCELERATION = 1.0, 1000.0
 """Peaks graded 1 and 10, at the accelerometer [m/s2]; decades between count alike."""
@@ -59,12 +59,12 @@ def risk_grades(
     impulse_rate : array_like
         Slips, or periods of a vibration without stick, on the way of the shaft [1/rad].
     friction_ratio : array_like
-        Static over kinetic friction, 1 or more. They are broadcast against each other.
+        Static over kinetic friction, 1 or more [-]. They are broadcast against each other.
 
     Returns
     -------
     ndarray
-        Not rounded.
+        From 1 to 10 [-], not rounded.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def design_risk(
     weights : array_like, optional
         How much each counts, shaped as `grades`; by default alike.
     beyond : float
-        Share of the use that may be graded worse; the very worst is often a single condition
+        Share of the use that may be graded worse [-]; the very worst is often a single condition
         between others that are quiet.
 
     Returns
@@ -171,9 +171,9 @@ class Candidate:
     risk : int
         From 1 to 10.
     noise : Estimate
-        Probability of any noise among parts.
+        Probability of any noise among parts [-].
     margin : float
-        Of the use to what vibrates; NaN if it is not known.
+        Of the use to what vibrates [rad/s]; NaN if it is not known.
     """
 
     name: str
@@ -183,14 +183,14 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Place:
-    """A candidate and its place, 1 being the quietest; who cannot be told apart share one."""
+class Ranked:
+    """A candidate and its rank, 1 being the quietest; who cannot be told apart share one."""
 
-    place: int
+    rank: int
     candidate: Candidate
 
 
-def ranked(candidates: Sequence[Candidate]) -> tuple[Place, ...]:
+def ranked(candidates: Sequence[Candidate]) -> tuple[Ranked, ...]:
     """Rank designs by risk, then by probability of noise, then by margin.
 
     Probabilities are tied with the least of their group if they exceed it by no more than the
@@ -203,15 +203,15 @@ def ranked(candidates: Sequence[Candidate]) -> tuple[Place, ...]:
 
     Returns
     -------
-    tuple of Place
-        Quietest first; those of one place by their names.
+    tuple of Ranked
+        Quietest first; those of one rank by their names.
 
     Examples
     --------
     >>> from noise.screening.parts.estimate import Estimate
     >>> some, few = Estimate(0.4, 0.35, 0.45), Estimate(0.38, 0.33, 0.43)
     >>> found = ranked([Candidate("soft", 4, few, -2.0), Candidate("stiff", 4, some, 1.0)])
-    >>> [(one.place, one.candidate.name) for one in found]
+    >>> [(one.rank, one.candidate.name) for one in found]
     [(1, 'stiff'), (2, 'soft')]
     """
     keys: list[tuple[tuple[int, float], Candidate]] = []
@@ -223,7 +223,7 @@ def ranked(candidates: Sequence[Candidate]) -> tuple[Place, ...]:
         keys.append(((group, -margin), candidate))
     keys.sort(key=lambda one: (one[0], one[1].name))
     order = [key for key, _ in keys]
-    return tuple(Place(1 + order.index(key), candidate) for key, candidate in keys)
+    return tuple(Ranked(1 + order.index(key), candidate) for key, candidate in keys)
 
 
 def _noisier(one: Candidate, other: Candidate) -> bool:

@@ -1,4 +1,4 @@
-"""What tolerances and changes do, as tables and in words."""
+"""Tables and sentences about what tolerances and changes do."""
 
 from __future__ import annotations
 
@@ -105,8 +105,8 @@ def advice_rows(screening: Screening) -> Iterator[dict[str, object]]:
         if one.robustness is None:
             continue
         for aim, advised in (
-            ("margin", one.robustness.widening),
-            ("noise", one.robustness.ending),
+            ("margin", one.robustness.margin_advice),
+            ("noise", one.robustness.noise_advice),
         ):
             for found in advised:
                 yield _advice_row(one, aim, found)
@@ -180,7 +180,7 @@ def advice_words(one: Statistics) -> str:
     if stands is None:
         return ""
     said = []
-    for aim, advised in (("margin", stands.widening), ("noise", stands.ending)):
+    for aim, advised in (("margin", stands.margin_advice), ("noise", stands.noise_advice)):
         enough = [found for found in advised if found.enough]
         # What stands on an island is the worse advice, however small the change.
         best = next((found for found in enough if found.steady), next(iter(enough), None))

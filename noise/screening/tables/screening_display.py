@@ -1,4 +1,4 @@
-"""How designs, screens and robustness show themselves in a notebook."""
+"""Display of designs, screenings and robustness in a notebook."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def robustness_html(found: Robustness) -> str:
     tables.append(html_table("Sobol' indices of the margin", sensitivities, header=header))
     advice = [
         [one.name, f"{one.change:+.1%}", "yes" if one.enough else "no", brings]
-        for advised in (found.widening, found.ending)
+        for advised in (found.margin_advice, found.noise_advice)
         for one in advised
         for brings in [one.label or f"{one.gain:+.2g} rad/s of margin"]
     ]

@@ -1,4 +1,4 @@
-"""What a screen found as tables: the map, the critical speeds, the designs; and as a few lines."""
+"""Tables of a screening: map, critical speeds and designs; and its summary in a few lines."""
 
 from __future__ import annotations
 

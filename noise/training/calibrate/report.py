@@ -1,4 +1,4 @@
-"""What a calibration comes to, as a page of text, and the material file that it makes."""
+"""Report of a calibration as text, and the material file that it makes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
-from noise.noise_definition import noise_of
+from noise.noise_definition import label_by_physics
 from noise.training.calibrate.cells import CELLS, NOISES, THIN_CELLS, Cell
 from noise.training.calibrate.unknowns import UNKNOWNS
 from sim.analysis.critical_speeds import critical_speeds
@@ -71,7 +71,7 @@ def noises_page(rig: Rig) -> str:
         )  # fmt: skip
         lines.append(
             f"  {1e3 * cell.interference:.3f} mm, {cell.support_stiffness:.0f} Nm/rad, "
-            f"{cell.speed:g} rad/s  named {cell.noise:<7} simulated {noise_of(run)}"
+            f"{cell.speed:g} rad/s  named {cell.noise:<7} simulated {label_by_physics(run)}"
         )
     return "\n".join(lines)
 

@@ -1,4 +1,4 @@
-"""The search: evolution of a Gaussian cloud of candidates (CMA-ES) on logarithmic scales.
+"""Search for the unknowns: evolution of a Gaussian cloud of candidates (CMA-ES), on log scales.
 
 The cost has many valleys and no gradient, since a regime changes at a stroke. N. Hansen and A.
 Ostermeier (2001), *Evolutionary Computation* 9(2), through the package ``cma``.

@@ -14,17 +14,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from noise.classifier.trees import as_arrays
 from noise.diagnosis.causes.location import null_maxima
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.evidence import evidence, scale_of
+from noise.training.trees import boosted_trees
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from noise.classifier.trees import Trees
+    from noise.base.trees import BoostedTrees
     from noise.diagnosis.cases.truth import Truth
     from noise.diagnosis.evidence.summary import CaseTable
 
@@ -133,13 +133,15 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
     return np.sort(most).astype(np.int64)
 
 
-def _boosted(x: NDArray[np.float32], y: NDArray[np.int64], n_rounds: int, seed: int) -> Trees:
+def _boosted(
+    x: NDArray[np.float32], y: NDArray[np.int64], n_rounds: int, seed: int
+) -> BoostedTrees:
     """Trees of each cause against all that is not it."""
     from joblib import Parallel, delayed
 
     # A cause that no case has, or all have, needs no trees.
     met = [k for k in range(y.shape[1]) if 0 < y[:, k].sum() < len(y)]
-    trees = as_arrays(
+    trees = boosted_trees(
         Parallel(n_jobs=-1, prefer="threads")(
             delayed(_grown)(x, y[:, k], n_rounds, seed) for k in met
         )

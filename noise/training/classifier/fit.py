@@ -21,16 +21,16 @@ from joblib import Parallel, delayed
 
 from features.windows.table import HOP, LENGTH
 from models.errors import ParameterError
-from noise.classifier.calibration import means_of_groups
-from noise.classifier.model import LABELS, Classifier, has_more_than_sound
-from noise.classifier.trees import grow_trees
+from noise.base.label_names import LABELS
+from noise.classifier.model import Classifier, has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings.blocks import RecordingBlocks
-from noise.training.classifier.operating_point import fit_calibration
+from noise.training.classifier.operating_point import fit_calibration, means_of_groups
 from noise.training.classifier.own_samples import OWN_WEIGHT, own_card, split_files
 from noise.training.classifier.samples import draw
 from noise.training.classifier.scores import scores
 from noise.training.classifier.swells import swelling
+from noise.training.trees import grow_boosted_trees
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -215,7 +215,7 @@ def _grown(
     x, y, weight = _shown(training, own)
     known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
     names = tuple(name for name, k in zip(FEATURE_NAMES, known, strict=True) if k)
-    trees = grow_trees(x[:, known], y, weight=weight, n_rounds=N_ROUNDS, seed=seed)
+    trees = grow_boosted_trees(x[:, known], y, weight=weight, n_rounds=N_ROUNDS, seed=seed)
     calibrations = []
     for kinds in _SUBSETS[:2]:
         heard = _masked(calibration, kinds)

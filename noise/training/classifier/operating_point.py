@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import minimize
 
-from noise.classifier.calibration import Calibration, means_of_groups
-from noise.labels.viterbi import named_course
+from noise.classifier.model import Calibration
+from noise.labels.segmentation import labelled_stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["FALSE_NAMES", "file_name", "fit_calibration"]
+__all__ = ["FALSE_NAMES", "file_name", "fit_calibration", "means_of_groups"]
 
 FALSE_NAMES = 0.03
 """Of the strangers in the calibration set may be called a noise at most."""
@@ -93,6 +93,19 @@ def file_name(p: NDArray[np.float64], none: int) -> int:
     >>> file_name(np.array([[0.9, 0.0, 0.1]] * 4 + [[0.0, 0.9, 0.1]] * 8), none=1)
     0
     """
-    edges, names = named_course(p)
+    edges, names = labelled_stretches(p)
     length = np.where(names == none, 0, np.diff(edges))
     return int(names[length.argmax()])
+
+
+def means_of_groups(p: NDArray[np.float64], group: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Mean of the rows of each group 0, 1, 2 ..., none of which is empty.
+
+    Examples
+    --------
+    >>> means_of_groups(np.array([[1.0], [3.0], [5.0]]), np.array([0, 0, 1])).tolist()
+    [[2.0], [5.0]]
+    """
+    sums = np.zeros((int(group.max()) + 1, p.shape[1]))
+    np.add.at(sums, group, p)
+    return np.asarray(sums / np.bincount(group)[:, None])

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, RecordingError
+from noise.base.label_names import LABELS
 from noise.base.tables import TABLE_ENDINGS
-from noise.classifier.model import LABELS
 from noise.labels.audacity import read_label_track
 from noise.labels.reading import read_label_table
 from noise.recordings import find_recordings, read_recording

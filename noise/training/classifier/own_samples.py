@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.registry import KINDS
-from noise.classifier.model import LABELS
+from noise.base.label_names import LABELS
 from noise.labels.windows import describe
 from noise.recordings.blocks import RecordingBlocks
 

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.inference.described import KINDS, described, of_subset
-from noise.inference.quantities import QUANTITIES
+from noise.inference.inputs import KINDS, QUANTITIES, of_channels, segment_features
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -127,8 +126,8 @@ def _distribution(
     for bit, column in enumerate(left):
         if others >> bit & 1:
             known[:, column] = runs.places[:, column]
-    table = of_subset(runs.tables[calibrated], model.names, subset)
-    return model.distribution(index, described(table, model.names, known))
+    table = of_channels(runs.tables[calibrated], model.names, subset)
+    return model.distribution(index, segment_features(table, model.names, known))
 
 
 def _intervals(

@@ -16,12 +16,11 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from features.registry import recording_feature_names, recording_features
-from noise.inference.described import KINDS, described, of_subset
+from noise.inference.inputs import KINDS, QUANTITIES, of_channels, scaled, segment_features
 from noise.inference.model import Inference
-from noise.inference.quantile_forest import PER_LEAF, grow_quantile_forest
-from noise.inference.quantities import QUANTITIES, places
 from noise.training.inference.conformal import Runs, counted, cut_tails, placed
 from noise.training.inference.population import draw_heard
+from noise.training.trees import PER_LEAF, grow_quantile_forest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -126,7 +125,7 @@ def draw_heard_sample(seed: np.random.SeedSequence) -> HeardSample:
     """Draw one audible run and take its features."""
     heard = draw_heard(np.random.default_rng(seed))
     features = recording_features(heard.field), recording_features(heard.rig)
-    return HeardSample(heard.label, places(heard.condition), features)
+    return HeardSample(heard.label, scaled(heard.condition), features)
 
 
 def coverage(model: Inference, samples: Iterable[HeardSample]) -> dict[str, dict[str, float | int]]:
@@ -168,8 +167,8 @@ def _grown(runs: Runs, names: tuple[str, ...], seed: int) -> Inference:
                 )
                 known = np.where(rng.random((n, 3)) < 0.5, runs.places, np.nan)
                 known[:, index] = np.nan
-                view = of_subset(table, names, subsets)
-                rows.append(described(view, names, known))
+                view = of_channels(table, names, subsets)
+                rows.append(segment_features(view, names, known))
         forests.append(
             grow_quantile_forest(
                 np.concatenate(rows),

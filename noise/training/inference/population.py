@@ -24,39 +24,24 @@ from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec, Rig
 from models.rig_files.rig_file import load_material_rig
-from noise.inference.hearing import RATES, as_recorded
-from noise.noise_definition import noise_of
+from noise.inference.inputs import (
+    INTERFERENCE_RANGE,
+    LONGEST,
+    MATERIAL,
+    RATES,
+    SHORTEST,
+    SPEED_RANGE,
+    SUPPORT_RANGE,
+)
+from noise.noise_definition import label_by_physics
 from noise.training.classifier.augmentation import resampled
+from noise.training.inference.recording_chain import recorded
 from sim.run import simulate
 
 if TYPE_CHECKING:
     from sim.run import Run
 
-__all__ = [
-    "INTERFERENCE_RANGE",
-    "LONGEST_LOOK",
-    "MATERIAL",
-    "SHORTEST_LOOK",
-    "SPEED_RANGE",
-    "SUPPORT_RANGE",
-    "Heard",
-    "draw_heard",
-]
-
-MATERIAL = "fluorocarbon"
-"""Of all bushings."""
-
-SPEED_RANGE = (0.1, 15.0)
-"""[rad/s]"""
-
-INTERFERENCE_RANGE = (0.15e-3, 0.42e-3)
-"""[m]"""
-
-SUPPORT_RANGE = (1e3, 1e4)
-"""Of the clamp on beams [Nm/rad]."""
-
-SHORTEST_LOOK, LONGEST_LOOK = 0.25, 1.0
-"""Lengths of what is looked at [s]."""
+__all__ = ["Heard", "draw_heard"]
 
 _FIXED_SHARE = 0.25
 _SCATTER = 0.03
@@ -98,12 +83,12 @@ def draw_heard(rng: np.random.Generator) -> Heard:
     """
     while True:
         run = _draw_run(rng)
-        label = noise_of(run)
+        label = label_by_physics(run)
         if label != "none":
             break
     whole = rng.random() < 0.5
-    seconds = LONGEST_LOOK if whole else float(rng.uniform(SHORTEST_LOOK, LONGEST_LOOK))
-    start = float(rng.uniform(0.0, LONGEST_LOOK - seconds))
+    seconds = LONGEST if whole else float(rng.uniform(SHORTEST, LONGEST))
+    start = float(rng.uniform(0.0, LONGEST - seconds))
     rig = _on_the_rig(run, rng)
     field = _in_the_field(run, rng)
     condition = run.recording.condition
@@ -124,7 +109,7 @@ def _draw_run(rng: np.random.Generator) -> Run:
         float(speed),
         interference=float(rng.uniform(*INTERFERENCE_RANGE)),
         support_stiffness=support,
-        seconds=LONGEST_LOOK,
+        seconds=LONGEST,
         rng=rng,
     )
 
@@ -187,7 +172,7 @@ def _in_the_field(run: Run, rng: np.random.Generator) -> Recording:
     rows = (
         resampled(torque, recording.rate, rate),
         resampled(acceleration, recording.rate, rate),
-        resampled(as_recorded(run.pressure, computed, rng), computed, rate),
+        resampled(recorded(run.pressure, computed, rng), computed, rate),
     )
     n = min(row.size for row in rows)
     channels = (Channel("torque"), Channel("acceleration"), Channel("pressure"))

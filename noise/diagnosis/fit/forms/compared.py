@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import shaft_speed
 from noise.diagnosis.simulated.transfer_functions import predict
 
@@ -77,9 +78,7 @@ def compared(bench: Bench, chosen: Sequence[int]) -> list[Compared]:
 
 def _one(bench: Bench, i: int) -> Compared:
     recording = bench.recordings[i]
-    c, rate = recording.condition, recording.rate
-    assert c.interference is not None
-    assert c.support_stiffness is not None
+    c, rate = known_condition(recording.condition), recording.rate
     measured = {
         kind: recording.samples[row].astype(np.float64)
         for kind in ("torque", "acceleration", "pressure", "angle")
