@@ -68,9 +68,9 @@ class Interval:
     Parameters
     ----------
     value : float
-        As likely too high as too low.
+        As likely too high as too low [rad/s], [m] or [Nm/rad].
     low, high : float
-        Bounds of 90 %; the bolted clamp is ``math.inf``.
+        Bounds of 90 %, in the same unit; the bolted clamp is ``math.inf``.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What storage takes from a sound: lossy codecs and few bits.
+"""Losses of storage: lossy codecs and few bits.
 
 Vorbis and MP3 are the real ones, through memory, where libsndfile has them; elsewhere their steep
 low-pass stands in.
