@@ -31,6 +31,7 @@ from noise.inference.inputs import (
     SHORTEST,
     n_segment_features,
     of_channels,
+    others_of,
     scaled,
     segment_features,
     subset_of,
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from noise.recordings.blocks import RecordingBlocks
 
-__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference", "others_of"]
+__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference"]
 
 _NARROWER = 0.8
 """An interval as wide as this share of the one known beforehand, or wider, is none [-]."""
@@ -237,18 +238,6 @@ class Inference:
         for quantity, forest in zip(QUANTITIES, self.forests, strict=True):
             arrays |= {f"{quantity}_{name}": array for name, array in forest.arrays().items()}
         save_model(path, _KIND, {"names": self.names, "card": dict(self.card)}, arrays)
-
-
-def others_of(known: NDArray[np.float64], index: int) -> int:
-    """Return which of the other two quantities are logged, as a number from 0 to 3.
-
-    Examples
-    --------
-    >>> others_of(np.array([np.nan, 0.279, np.nan]), 0)
-    1
-    """
-    others = np.delete(known, index)
-    return sum(1 << bit for bit, place in enumerate(others) if not np.isnan(place))
 
 
 def load_inference(path: str | Path | None = None) -> Inference:
