@@ -1,4 +1,4 @@
-"""Training the cause posterior on simulated cases.
+"""Training of the cause posterior on simulated cases.
 
 The cases of four rigs of five grow the trees, those of the fifth calibrate the probabilities and
 set the alarm; what is scored shares no draw with either. Each case is learned again from some of

@@ -1,4 +1,4 @@
-"""What lies between a source and its recording: room, noise, microphone, recorder, codec, cut."""
+"""Augmentation: the room, noise, microphone, recorder, codec and cut of a recording."""
 
 from noise.training.classifier.augmentation.backgrounds import background, coloured_noise
 from noise.training.classifier.augmentation.codecs import coded, quantised
@@ -9,25 +9,25 @@ from noise.training.classifier.augmentation.microphones import (
 )
 from noise.training.classifier.augmentation.recorder import (
     RATES,
-    Heard,
-    as_recorded,
-    hear,
+    RecordedSound,
+    augmented,
+    recorded,
     resampled,
 )
 from noise.training.classifier.augmentation.rooms import in_a_room
 
 __all__ = [
     "RATES",
-    "Heard",
-    "as_recorded",
+    "RecordedSound",
+    "augmented",
     "background",
     "clipped",
     "coded",
     "coloured_noise",
-    "hear",
     "in_a_room",
     "levelled",
     "quantised",
+    "recorded",
     "resampled",
     "through_a_microphone",
 ]
