@@ -41,7 +41,17 @@ class WindowFeature(NamedTuple):
     definition: str
 
     def hertz(self, octaves: float) -> float:
-        """Frequency of a value in octaves [Hz].
+        """Frequency of a value that counts in octaves.
+
+        Parameters
+        ----------
+        octaves : float
+            In the unit of the feature [octave].
+
+        Returns
+        -------
+        float
+            [Hz]
 
         Examples
         --------
