@@ -17,8 +17,6 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from sim.analysis.regime import Regime, friction_regime
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 from sim.timing import REGIME_RATE
@@ -145,7 +143,6 @@ def regime_at(
             support_stiffness=support_stiffness,
             seconds=seconds,
             rate=REGIME_RATE,
-            effects=activated(rig.effects, EFFECTS),
         )
     )
 

@@ -20,8 +20,6 @@ from noise.screening.map.grid import grid_of
 from noise.screening.ranking.risk import design_risk, risk_grades
 from sim.analysis.regime import Regime, friction_regime
 from sim.analysis.sweep_features import FEATURES, motion_features
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.friction import at_temperature
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
@@ -112,7 +110,6 @@ def _measured(
         support_stiffness=support_stiffness,
         seconds=_SECONDS,
         rate=REGIME_RATE,
-        effects=activated(rig.effects, EFFECTS),
     )
     regime = friction_regime(motion)
     if regime is Regime.STEADY_SLIDING:

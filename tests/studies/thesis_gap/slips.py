@@ -20,8 +20,6 @@ from features.kernels.harmonics import analyse_harmonics
 from features.kernels.slip_drops import torque_slips
 from models.errors import ParameterError
 from sim.analysis.regime import LEAST_OSCILLATION
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -112,7 +110,6 @@ def _slip_rate(rig: Rig, interference: float, support: float, speed: float) -> f
             support_stiffness=support,
             seconds=_SECONDS,
             rate=_RATE,
-            effects=activated(rig.effects, EFFECTS),
         )
     except ParameterError:
         return None

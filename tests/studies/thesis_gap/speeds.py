@@ -20,8 +20,6 @@ from models.errors import ParameterError
 from noise.training.calibrate.cells import CELLS, SUPPORTS, THIN_CELLS
 from sim.analysis.critical_speeds import CriticalSpeeds, critical_speeds, regime_at
 from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK, Regime
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -162,7 +160,6 @@ def _stick_and_oscillation(rig: Rig, speed: float, support: float) -> tuple[floa
         support_stiffness=support,
         seconds=_COARSE_SECONDS,
         rate=_COARSE_RATE,
-        effects=activated(rig.effects, EFFECTS),
     )
     last = motion.since(motion.torque.size // 2)
     oscillation = float(np.std(last.torque)) / abs(float(np.mean(last.torque)))
