@@ -152,8 +152,8 @@ def judge(
     stretches = stretches_of(motion.since(plan.n_settling), swings=swings)
     if all(_swing(stretch) <= 1.0 for stretch in stretches):
         return Judged(Regime.STEADY_SLIDING, "none", math.nan)
-    heard_by, support = structure or (plan.rig, support_stiffness)
-    paths = _paths(heard_by, interference, support, plan.rate)
+    made_of, support = structure or (plan.rig, support_stiffness)
+    paths = _paths(made_of, interference, support, plan.rate)
     sound = _sound(plan, motion, paths)
     found = _criteria(sound, stretches)
     regime = Regime.STICK_SLIP if found.stick > 1.0 else Regime.QUASI_HARMONIC
@@ -246,8 +246,8 @@ def _sound(plan: Plan, motion: Motion, paths: ImpulseResponses) -> Sound:
 def _loudest(sound: Sound) -> float:
     """L_AFmax [dB re 20 uPa]."""
     rate = sound.motion.rate
-    heard = fast_levels(a_weighted(np.concatenate([sound.before, sound.pressure]), rate), rate)
-    return float(heard[sound.before.size :].max())
+    levels = fast_levels(a_weighted(np.concatenate([sound.before, sound.pressure]), rate), rate)
+    return float(levels[sound.before.size :].max())
 
 
 def _paths(
