@@ -28,7 +28,7 @@ def test_a_response_is_read_as_it_was_written(tmp_path, ending, coherence):
     path = tmp_path / f"beam{ending}"
     write_transfer_function(path, TransferFunction(F, H, coherence, "N m", "m/s^2"))
     back = read(path)
-    np.testing.assert_allclose(back.frequency, F, rtol=1e-12)
+    np.testing.assert_allclose(back.frequencies, F, rtol=1e-12)
     np.testing.assert_allclose(back.response, H, atol=1e-10 * np.abs(H).max())
     assert (back.input_unit, back.output_unit) == ("N m", "m/s^2")
     if coherence is None:
