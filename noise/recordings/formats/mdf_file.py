@@ -48,7 +48,8 @@ def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, obj
 
     _check_head(path)
     logging.getLogger("asammdf").addFilter(_refuse_what_is_cut)
-    with MDF(path) as file:
+    # Given a name, the library maps the file, and fails over parts of large ones.
+    with path.open("rb") as stream, MDF(stream) as file:
         groups = range(len(file.groups))
         logged = [channel for group in groups for channel in _group(path, file, group)]
         comment = ET.fromstring(file.header.comment)
