@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.windows.courses import COURSE_NAMES, courses_of
 from features.windows.frames import FRAME_COLUMNS, describe_frames, frame_count
 from features.windows.rhythm import ENVELOPE_RATE, RHYTHM_NAMES, envelope, rhythms_of
-from features.windows.tones import SEGMENT_HOP, TONE_NAMES, long_spectra, tones_of
+from features.windows.spectra import SEGMENT_HOP, long_spectra
+from features.windows.tones import TONE_NAMES, tone_features
+from features.windows.trajectories import TRAJECTORY_NAMES, trajectory_features
 from features.windows.working import FRAME_RATE, RATE
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ _FRAMES_OF = round(LENGTH * FRAME_RATE) - 3
 """Frames that lie in a window as a whole."""
 
 WINDOW_NAMES = (
-    *COURSE_NAMES,
+    *TRAJECTORY_NAMES,
     *TONE_NAMES,
     *RHYTHM_NAMES,
     *(f"high_{name}" for name in RHYTHM_NAMES),
@@ -127,8 +128,8 @@ def describe_page(
     end = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
     features = np.concatenate(
         [
-            courses_of(frames, first, last),
-            tones_of(long_spectra(sound, spectra), of_spectra, until, limit),
+            trajectory_features(frames, first, last),
+            tone_features(long_spectra(sound, spectra), of_spectra, until, limit),
             rhythms_of(power, begin, end),
             rhythms_of(blows, begin, end),
             _tops(top, power, blows, windows),
