@@ -74,15 +74,15 @@ class NoiseCriteria:
     blows : float
         Level of the blows' sound re all the rest, re the least of a creak [dB].
     swing : float
-        Standard deviation of the torque over its mean, re the least of an oscillation.
+        Standard deviation of the torque over its mean, re the least of an oscillation [-].
     audible : float
-        The same of its part from 20 Hz to 5 kHz.
+        The same of its part from 20 Hz to 5 kHz [-].
     stick : float
-        Share of the time that the contact sticks, re the least of stick-slip.
+        Share of the time that the contact sticks, re the least of stick-slip [-].
     second : float
         Level of the second line of the torque re the first, re the least that counts [dB].
     share : float
-        Of that part's power in the strongest line, re the least of a predominant one.
+        Of that part's power in the strongest line, re the least of a predominant one [-].
     """
 
     level: float
@@ -124,6 +124,15 @@ class NoiseCriteria:
 def run_criteria(run: Run) -> NoiseCriteria:
     """Measure what the label of a run at constant speed follows from.
 
+    Parameters
+    ----------
+    run : Run
+
+    Returns
+    -------
+    NoiseCriteria
+        Of the motion's second half, and of all the sound.
+
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
@@ -146,6 +155,10 @@ def noise_criteria(
         At constant speed, or so nearly that its lines stay lines.
     pressure, pulse_pressure : ndarray, shape (n,)
         At the motion's rate [Pa]: the sound, and the part of it that slip pulses make.
+
+    Returns
+    -------
+    NoiseCriteria
 
     Examples
     --------

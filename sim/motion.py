@@ -10,6 +10,8 @@ import numpy as np
 
 from models.errors import ParameterError
 from sim.bushing import lumped_bushing
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion_limits import refuse_fast, refuse_overflow
 from sim.parameters import resolve
@@ -98,7 +100,7 @@ def simulate_motion(
     support_stiffness: float,
     seconds: float,
     rate: float,
-    effects: Sequence[ActiveEffect] = (),
+    effects: Sequence[ActiveEffect] | None = None,
     rng: np.random.Generator | None = None,
     tolerance: float | None = None,
 ) -> Motion:
@@ -118,8 +120,9 @@ def simulate_motion(
         Of the output [Hz]. At constant and ramped speed the solution does not depend on it; other
         motions of the shaft are linear between its samples, which moves events by some 5e-9 s at
         30 kHz, and by the square of the step.
-    effects : sequence of ActiveEffect
-        Those of drive and friction act, in this order; the others are left to others.
+    effects : sequence of ActiveEffect, optional
+        Those of drive and friction act, in this order; the others are left to others. By default
+        the rig's, among those of `sim.effects`.
     rng : numpy.random.Generator, optional
         Of effects that scatter; by default seeded with 0.
     tolerance : float, optional
@@ -150,6 +153,7 @@ def simulate_motion(
     if not n >= 2:
         raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
     drive = _drive(shaft, 0, n, rate)
+    effects = activated(rig.effects, EFFECTS) if effects is None else effects
     for active in effects:
         if active.effect.drive is not None:
             drive = active.effect.drive(drive, rate, active.form, active.values, rng)

@@ -158,10 +158,12 @@ def radiate_motion(
     """
     acceleration, pressure = radiate(paths, motion.torque)
     force = pulse_force(motion, effects)
-    if not np.any(force):
-        return Sound(acceleration, pressure, np.zeros_like(pressure))
-    struck, pulse_pressure = radiate_pulses(paths, force)
-    return Sound(acceleration + struck, pressure + pulse_pressure, pulse_pressure)
+    pulse_pressure = np.zeros_like(pressure)
+    if np.any(force):
+        struck, pulse_pressure = radiate_pulses(paths, force)
+        acceleration += struck
+        pressure += pulse_pressure
+    return Sound(acceleration, pressure, pulse_pressure)
 
 
 def sensor_signals(motion: Motion, sound: Sound, n_settling: int) -> Signals:

@@ -36,13 +36,13 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
     from sim.motion import Motion
 
-__all__ = ["Run", "plan_run", "sensor_channels", "simulate"]
+__all__ = ["LONGEST_RUN", "Run", "plan_run", "sensor_channels", "simulate"]
 
 _ABSOLUTE_ZERO = 273.15
 """Below 0 degree Celsius [K]."""
 
-_LONGEST_RUN = 600.0
-"""[s]; the whole run is held in memory."""
+LONGEST_RUN = 600.0
+"""[s]; the whole run is held in memory. `sim.long_run` has no such limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,10 +285,10 @@ def sensor_channels(rig: Rig) -> tuple[Channel, ...]:
 def _check(
     seconds: float, settling: float, rate: float, interference: float, temperature: float
 ) -> None:
-    if not (0.0 < seconds <= _LONGEST_RUN and 0.0 <= settling <= _LONGEST_RUN):
+    if not (0.0 < seconds <= LONGEST_RUN and 0.0 <= settling <= LONGEST_RUN):
         raise ParameterError(
             f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "
-            f"most {_LONGEST_RUN:g}"
+            f"most {LONGEST_RUN:g}"
         )
     if not 1e3 <= rate <= 400e3:
         raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")

@@ -69,7 +69,16 @@ class SoundLevels:
     third_octaves: dict[str, float]
 
     def raised(self, gain_db: float) -> SoundLevels:
-        """Return the levels of the same sound, this much louder [dB].
+        """Return the levels of the same sound, this much louder.
+
+        Parameters
+        ----------
+        gain_db : float
+            [dB]
+
+        Returns
+        -------
+        SoundLevels
 
         Examples
         --------

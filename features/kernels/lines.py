@@ -90,10 +90,20 @@ class Lines:
 
 
 def line_resolution(duration: float) -> float:
-    """Spacing of bins [Hz] at which to look for lines in so many seconds.
+    """Spacing of the bins at which to look for lines.
 
     A quarter of a second a segment, less where fewer than three segments would be averaged: in a
     single one noise itself rises 13 dB above its mean.
+
+    Parameters
+    ----------
+    duration : float
+        Of the signal [s].
+
+    Returns
+    -------
+    float
+        [Hz]
 
     Examples
     --------
@@ -104,7 +114,16 @@ def line_resolution(duration: float) -> float:
 
 
 def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
-    """Density of the noise between the lines [unit^2/Hz], shape (n_bins,).
+    """Density of the noise between the lines.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+
+    Returns
+    -------
+    ndarray, shape (n_bins,)
+        [unit^2/Hz]
 
     Notes
     -----
@@ -193,10 +212,25 @@ def line_powers(
     *,
     spacing: NDArray[np.float64] | float,
 ) -> NDArray[np.float64]:
-    """Power above the floor about given frequencies [unit^2], shape (n_lines,).
+    """Power above the floor about given frequencies.
 
     A line reaches as far as the window's main lobe and its wander, but not beyond half of
-    `spacing`, the distance to the next one [Hz].
+    `spacing`.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+    floor : ndarray, shape (n_bins,)
+        `noise_floor` of it [unit^2/Hz].
+    frequency : ndarray, shape (n_lines,)
+        [Hz]
+    spacing : float or ndarray, shape (n_lines,)
+        Distance to the next line [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n_lines,)
+        [unit^2]
 
     Examples
     --------
@@ -220,6 +254,18 @@ def line_powers(
 
 def interpolated(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.float64]:
     """Position of local maxima between samples, from the parabola through three of them.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        In any unit.
+    peaks : ndarray of int, shape (n_peaks,)
+        Samples at which they are highest.
+
+    Returns
+    -------
+    ndarray, shape (n_peaks,)
+        [sample]
 
     Examples
     --------

@@ -138,7 +138,17 @@ def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
 
 
 def pulse_band_from(limit: float) -> float:
-    """Lower limit of the band in which pulses are sought, for its upper limit [Hz].
+    """Lower limit of the band in which pulses are sought.
+
+    Parameters
+    ----------
+    limit : float
+        Upper limit [Hz].
+
+    Returns
+    -------
+    float
+        [Hz]
 
     Examples
     --------
@@ -165,6 +175,10 @@ def pulses_of(
         Sampling rate of the latter [Hz].
     start : float
         Time of their first sample [s].
+
+    Returns
+    -------
+    Pulses
 
     Examples
     --------
@@ -203,6 +217,16 @@ def envelope_kurtosis(power: NDArray[np.float64]) -> float:
     Half as much again as that of the envelope's square: for any signal whose phase is evenly
     spread the same as of its samples, but sampled at the band's own rate.
 
+    Parameters
+    ----------
+    power : ndarray, shape (n,)
+        Squared envelope [unit^2].
+
+    Returns
+    -------
+    float
+        [-]
+
     Examples
     --------
     >>> import numpy as np
@@ -216,6 +240,16 @@ def envelope_kurtosis(power: NDArray[np.float64]) -> float:
 
 def squared(analytic: NDArray[np.complex128]) -> NDArray[np.float64]:
     """Squared envelope of an analytic signal.
+
+    Parameters
+    ----------
+    analytic : ndarray of complex, shape (n,)
+        In any unit.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit^2]
 
     Examples
     --------

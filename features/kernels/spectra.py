@@ -160,6 +160,19 @@ def autospectrum(
 def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     """`autospectrum` of samples that have been checked already.
 
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        In any unit.
+    rate : float
+        Sampling rate [Hz].
+    resolution : float
+        Spacing of the bins wanted [Hz].
+
+    Returns
+    -------
+    Spectrum
+
     Examples
     --------
     >>> import numpy as np
@@ -175,6 +188,14 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
 
 def whole_spectrum(transform: Transform) -> Spectrum:
     """Spectrum with the finest bins that a signal's length allows; fades count by their energy.
+
+    Parameters
+    ----------
+    transform : Transform
+
+    Returns
+    -------
+    Spectrum
 
     Examples
     --------

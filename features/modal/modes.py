@@ -61,7 +61,18 @@ class Modes:
         return _poles(self.frequency, self.damping_ratio)
 
     def response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
-        """Response functions at frequencies [Hz], shape (n_responses, n)."""
+        """Response functions at frequencies.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (n,)
+            [Hz]
+
+        Returns
+        -------
+        ndarray, shape (n_responses, n), complex
+            In the unit of the responses.
+        """
         basis = modal_basis(self.poles, np.asarray(frequency, dtype=np.float64), self.highest)
         coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
         response: NDArray[np.complex128] = coefficients @ basis
@@ -120,6 +131,10 @@ def modes_of_poles(
     scale : ndarray, shape (n_responses, n)
         Weights of the lines.
 
+    Returns
+    -------
+    Modes
+
     Examples
     --------
     >>> from features.modal.lscf import Pole
@@ -149,9 +164,21 @@ def modes_of_poles(
 def modal_basis(
     poles: NDArray[np.complex128], f: NDArray[np.float64], highest: float
 ) -> NDArray[np.complex128]:
-    """Return what unit residues, real and imaginary, and unit residuals make.
+    """Responses that unit residues, real and imaginary, and unit residuals make.
 
-    Shape (2 n_modes + 4, n).
+    Parameters
+    ----------
+    poles : ndarray, shape (n_modes,), complex
+        [rad/s]
+    f : ndarray, shape (n,)
+        [Hz]
+    highest : float
+        Frequency that residuals are relative to [Hz].
+
+    Returns
+    -------
+    ndarray, shape (2 n_modes + 4, n), complex
+        [s] for residues, [-] for residuals.
 
     Examples
     --------
@@ -170,6 +197,18 @@ def least_squares(
 ) -> NDArray[np.float64]:
     """Real factors with which the rows of `basis` make up `wanted`, by normal equations.
 
+    Parameters
+    ----------
+    basis : ndarray, shape (n_rows, n), complex
+        In any unit.
+    wanted : ndarray, shape (n,) or (n_wanted, n), complex
+        In any unit.
+
+    Returns
+    -------
+    ndarray, shape (n_rows,) or (n_wanted, n_rows)
+        [unit of wanted over that of basis]
+
     Examples
     --------
     >>> least_squares(np.array([[1.0, 1j], [0.0, 1j]]), np.array([2.0, 5j])).round(6)
@@ -185,6 +224,15 @@ def least_squares(
 
 def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
     """Real and imaginary parts one after the other along the last axis.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., n), complex
+        In any unit.
+
+    Returns
+    -------
+    ndarray, shape (..., 2 n)
 
     Examples
     --------

@@ -226,7 +226,18 @@ class Prepared:
         return fine_third_octaves(self.samples, self.rate, reference=1.0)
 
     def thesis_band(self, number: int) -> float:
-        """Level of one of the thesis's bands relative to the band described [dB]; or NaN."""
+        """Level of one of the thesis's bands relative to the band described.
+
+        Parameters
+        ----------
+        number : int
+            In `features.kernels.bands.THESIS_BANDS`, from 0.
+
+        Returns
+        -------
+        float
+            [dB]; NaN where the rate does not reach it.
+        """
         low, high = THESIS_BANDS[number]
         if high > usable_limit(self.rate):
             return math.nan
@@ -234,7 +245,18 @@ class Prepared:
         return relative_db(float(part), float(whole))
 
     def share_db(self, low: float, high: float) -> float:
-        """Level of a part of the band relative to the whole of it [dB]; NaN if not reached."""
+        """Level of a part of the band relative to the whole of it.
+
+        Parameters
+        ----------
+        low, high : float
+            Limits of the part [Hz].
+
+        Returns
+        -------
+        float
+            [dB]; NaN where it is not reached.
+        """
         if high > 1.001 * self.limit:
             return math.nan
         part, whole = band_power(self.spectrum, [low, self.low], [high, self.limit])

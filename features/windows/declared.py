@@ -11,7 +11,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["WINDOW_FEATURES", "WindowFeature"]
+__all__ = [
+    "RHYTHM_FEATURES",
+    "TONE_FEATURES",
+    "TOP_FEATURES",
+    "TRAJECTORY_FEATURES",
+    "WINDOW_FEATURES",
+    "WindowFeature",
+]
 
 _RE_10, _RE_100, _RE_1000 = "octave re 10 Hz", "octave re 100 Hz", "octave re 1 kHz"
 
@@ -41,7 +48,17 @@ class WindowFeature(NamedTuple):
     definition: str
 
     def hertz(self, octaves: float) -> float:
-        """Frequency of a value in octaves [Hz].
+        """Frequency of a value that counts in octaves.
+
+        Parameters
+        ----------
+        octaves : float
+            In the unit of the feature [octave].
+
+        Returns
+        -------
+        float
+            [Hz]
 
         Examples
         --------
@@ -53,7 +70,7 @@ class WindowFeature(NamedTuple):
 
 _F = WindowFeature
 
-_FRAMES = (
+TRAJECTORY_FEATURES = (
     _F("range", "dB", "95th less 10th percentile of the level."),
     _F("peak_above_median", "dB", "95th percentile of the level less its median."),
     _F("loud_share", "1", "Share of the frames within 10 dB of the loudest."),
@@ -83,8 +100,9 @@ _FRAMES = (
     *(_F(f"band_{i}", "dB", f"Power of half octave {i} of 11 from 156 Hz to 7 kHz re all.")
       for i in range(1, 12)),
 )  # fmt: skip
+"""Of the frames of a window: strength, tone and pitch, and how they wander."""
 
-_LINES = (
+TONE_FEATURES = (
     _F("line_count", "1", "Lines within 30 dB of the strongest."),
     _F("strong_line_count", "1", "Lines within 18 dB of the strongest."),
     _F("line_frequency", _RE_1000, "Frequency of the strongest maximum."),
@@ -109,8 +127,9 @@ _LINES = (
       for i in (1, 2, 4)),
     _F("weighted_lines", "dB", "A-weighted power in lines re all."),
 )  # fmt: skip
+"""Of the lines of its averaged spectrum."""
 
-_RHYTHM = (
+RHYTHM_FEATURES = (
     _F("blow_rate", _RE_10, "Blows in a second."),
     _F("blow_irregularity", "octave", "Median change from one interval to the next."),
     _F("blow_glide", "octave/s", "Trend of the rate."),
@@ -127,15 +146,21 @@ _RHYTHM = (
       for i in range(1, 8)),
     _F("modulation_depth", "1", "Standard deviation of the amplitude's envelope over its mean."),
 )  # fmt: skip
+"""Of the envelope of its power: blows and their rhythm."""
 
-WINDOW_FEATURES = (
-    *_FRAMES,
-    *_LINES,
-    *_RHYTHM,
-    *(_F(f"high_{f.name}", f.unit, f"Above 2 kHz: {f.definition}") for f in _RHYTHM),
+TOP_FEATURES = (
     _F("top_1", "dB", "Power from 7 to 13 kHz re that below 7 kHz."),
     _F("top_2", "dB", "Power from 13 to 19 kHz re that below 7 kHz."),
     _F("top_together", "1", "Correlation of the amplitudes from 7 to 13 kHz and above 2 kHz."),
     _F("high_share", "dB", "Power above 2 kHz re that below 7 kHz."),
+)
+"""Of what lies above 7 kHz, and above 2 kHz."""
+
+WINDOW_FEATURES = (
+    *TRAJECTORY_FEATURES,
+    *TONE_FEATURES,
+    *RHYTHM_FEATURES,
+    *(_F(f"high_{f.name}", f.unit, f"Above 2 kHz: {f.definition}") for f in RHYTHM_FEATURES),
+    *TOP_FEATURES,
 )
 """Of a window of sound or acceleration, in the order of the classifier's features."""

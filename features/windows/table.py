@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.windows.courses import courses_of
-from features.windows.declared import WINDOW_FEATURES
+from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
 from features.windows.frames import FRAME_COLUMNS, describe_frames, frame_count
 from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythms_of
-from features.windows.tones import SEGMENT_HOP, long_spectra, tones_of
+from features.windows.spectra import SEGMENT_HOP, long_spectra
+from features.windows.tones import tone_features
+from features.windows.trajectories import trajectory_features
 from features.windows.working import FRAME_RATE, RATE
 
 if TYPE_CHECKING:
@@ -28,9 +29,6 @@ LENGTH = 0.5
 
 HOP = 0.25
 """From the beginning of a window to that of the next [s]."""
-
-_N_TOP = 4
-"""Features of what lies above 7 kHz and above 2 kHz."""
 
 _LEAST_FRAMES = 3
 
@@ -121,8 +119,8 @@ def describe_windows(
     end = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
     features = np.concatenate(
         [
-            courses_of(frames, first, last),
-            tones_of(long_spectra(sound, spectra), of_spectra, until, limit),
+            trajectory_features(frames, first, last),
+            tone_features(long_spectra(sound, spectra), of_spectra, until, limit),
             rhythms_of(power, begin, end),
             rhythms_of(blows, begin, end),
             _tops(top, power, blows, windows),
@@ -145,7 +143,7 @@ def _tops(
 ) -> NDArray[np.float32]:
     per_frame = ENVELOPE_RATE // FRAME_RATE
     n = min(len(top), power.size // per_frame)
-    out = np.full((windows, _N_TOP), np.nan, dtype=np.float32)
+    out = np.full((windows, len(TOP_FEATURES)), np.nan, dtype=np.float32)
     hop, length = round(HOP * FRAME_RATE), round(LENGTH * FRAME_RATE)
     below = power[: n * per_frame].reshape(n, per_frame).mean(axis=1)
     high = blows[: n * per_frame].reshape(n, per_frame).mean(axis=1)
@@ -162,7 +160,7 @@ def _tops(
 
 
 def _top_features(rows: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the last features from power below 7 kHz, above 2 kHz and in the two bands.
+    """Return `TOP_FEATURES` from power below 7 kHz, above 2 kHz and in the two bands.
 
     Rows are of shape (n_windows, 4, n_frames).
     """

@@ -1,4 +1,4 @@
-"""The classifier: features of windows in, probabilities of the five labels out.
+"""Classifier of noises: features of windows in, probabilities of the five labels out.
 
 Trained on simulation alone, it ships with the package (``data/classifier.npz``); how it is
 trained is the business of `noise.training.classifier.fit`.
@@ -38,9 +38,9 @@ class Calibration:
     Parameters
     ----------
     sharpness : float
-        Exponent: above 1 it makes them more certain.
+        Exponent [-]: above 1 it makes them more certain.
     weights : tuple of float
-        Of the labels.
+        Of the labels [-].
 
     Examples
     --------

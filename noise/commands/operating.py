@@ -52,17 +52,15 @@ def is_long(arguments: Mapping[str, Any]) -> bool:
     """Whether a run is better written in blocks than held in memory."""
     from sim.effects.effect import activated
     from sim.long_run import whole_run_effects
+    from sim.run import LONGEST_RUN
 
     effects = activated(arguments["rig"].effects, arguments["library"])
     seconds = arguments["seconds"]
-    return bool(seconds > _MOST_SECONDS or (seconds > _LONG and not whole_run_effects(effects)))
+    return bool(seconds > LONGEST_RUN or (seconds > _LONG and not whole_run_effects(effects)))
 
 
 _LONG = 60.0
 """Longer runs are written in blocks, unless an effect needs them whole [s]."""
-
-_MOST_SECONDS = 600.0
-"""What can be held in memory at all."""
 
 
 def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:

@@ -37,6 +37,7 @@ __all__ = [
     "SUPPORT_RANGE",
     "n_segment_features",
     "of_channels",
+    "others_of",
     "scaled",
     "segment_features",
     "subset_of",
@@ -225,3 +226,22 @@ def subset_of(kinds: Sequence[str]) -> int:
     (1, 7)
     """
     return sum(1 << bit for bit, kind in enumerate(KINDS) if kind in kinds)
+
+
+def others_of(known: NDArray[np.float64], index: int) -> int:
+    """Return which of the other two quantities are logged, as a number from 0 to 3.
+
+    Parameters
+    ----------
+    known : ndarray, shape (3,)
+        A condition as `scaled` gives it.
+    index : int
+        Of the quantity that is asked for.
+
+    Examples
+    --------
+    >>> others_of(np.array([np.nan, 0.279, np.nan]), 0)
+    1
+    """
+    others = np.delete(known, index)
+    return sum(1 << bit for bit, point in enumerate(others) if not np.isnan(point))

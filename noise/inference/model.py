@@ -1,12 +1,12 @@
 """Inference of conditions from a segment, with intervals that cover 90 %, or nothing.
 
-A quantile forest gives what is asked for as a distribution. Where to cut its tails is read off
-recordings that no tree has seen, one cut for each set of channels, of calibration and of other
-conditions that are logged (split conformal prediction on the levels of the distribution: V.
-Chernozhukov, K. Wuethrich, Y. Zhu, *Distributional conformal prediction*, PNAS 118, 2021); so the
-bolted clamp, which is a place by itself, needs no treatment of its own. Where some of the channels
-tell more by themselves than all together, as the torque does of the interference, those are asked.
-An interval hardly narrower than what is known beforehand tells nothing, and is none.
+A quantile forest gives what is asked for as a distribution. How much of it lies outside of the
+interval is calibrated on recordings that no tree has seen, for each set of channels, of calibration
+and of other conditions that are logged (split conformal prediction on the levels of the
+distribution: V. Chernozhukov, K. Wuethrich, Y. Zhu, *Distributional conformal prediction*, PNAS
+118, 2021); so the bolted clamp, which is a point by itself, needs no treatment of its own. Where
+some of the channels give a narrower interval than all together, as the torque does for the
+interference, only those count. An interval hardly narrower than what is known beforehand is none.
 
 The population that the intervals hold for is that of `noise.training.inference.population`.
 """
@@ -31,6 +31,7 @@ from noise.inference.inputs import (
     SHORTEST,
     n_segment_features,
     of_channels,
+    others_of,
     scaled,
     segment_features,
     subset_of,
@@ -47,10 +48,10 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from noise.recordings.blocks import RecordingBlocks
 
-__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference", "others_of"]
+__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference"]
 
 _NARROWER = 0.8
-"""An interval as wide as this share of the one known beforehand, or wider, tells nothing."""
+"""An interval as wide as this share of the one known beforehand, or wider, is none [-]."""
 
 _UNITS = {
     "speed": (1.0, "rad/s"), "interference": (1e3, "mm"), "support_stiffness": (1.0, "Nm/rad"),
@@ -68,9 +69,9 @@ class Interval:
     Parameters
     ----------
     value : float
-        As likely too high as too low.
+        As likely too high as too low [rad/s], [m] or [Nm/rad].
     low, high : float
-        Bounds of 90 %; the bolted clamp is ``math.inf``.
+        Bounds of 90 %, in the same unit; the bolted clamp is ``math.inf``.
 
     Examples
     --------
@@ -106,7 +107,7 @@ class Inferred(dict[str, Interval]):
 
 @dataclass(frozen=True, eq=False)
 class Inference:
-    """Quantile forests for the three conditions, and where to cut their tails.
+    """Quantile forests for the three conditions, with calibrated intervals.
 
     Parameters
     ----------
@@ -116,10 +117,10 @@ class Inference:
         One for each of `QUANTITIES`.
     prior : ndarray of float32, shape (3, n)
         Values of the population, which join those of the leaves: nothing in it is ruled out.
-    asked : ndarray of int16, shape (3, 8, 2, 4)
+    used : ndarray of int16, shape (3, 8, 2, 4)
         By quantity, subset of channels, calibrated or not, and others that are logged: the part
-        of the subset that is looked at.
-    cuts : ndarray of int16, shape (3, 8, 2, 4, 4)
+        of the subset that counts, as `noise.inference.inputs.subset_of` numbers it.
+    outside : ndarray of int16, shape (3, 8, 2, 4, 4)
         Likewise, how many of the lowest and highest values lie outside, first over all
         recordings, by which it is decided whether there is an interval, then over those for which
         there is. -1 where there is never one.
@@ -135,8 +136,8 @@ class Inference:
     names: tuple[str, ...]
     forests: tuple[QuantileForest, ...]
     prior: NDArray[np.float32]
-    asked: NDArray[np.int16]
-    cuts: NDArray[np.int16]
+    used: NDArray[np.int16]
+    outside: NDArray[np.int16]
     card: Mapping[str, object]
 
     def infer(
@@ -179,16 +180,16 @@ class Inference:
             if not np.isnan(known[index]):
                 continue
             case = (index, subset_of(kinds), int(calibrated), others_of(known, index))
-            cuts = self.cuts[case]
-            if cuts[0] < 0:
+            outside = self.outside[case]
+            if outside[0] < 0:
                 continue
-            looked_at = of_channels(table, self.names, int(self.asked[case]))
+            table_of_used = of_channels(table, self.names, int(self.used[case]))
             values = self.distribution(
-                index, segment_features(looked_at, self.names, known[None, :])
+                index, segment_features(table_of_used, self.names, known[None, :])
             )
-            if not self.telling(index, values, cuts)[0]:
+            if not self.is_narrow(index, values, outside)[0]:
                 continue
-            low, high = values[0, cuts[2]], values[0, -1 - cuts[3]]
+            low, high = values[0, outside[2]], values[0, -1 - outside[3]]
             middle = min(max(values[0, values.shape[1] // 2], low), high)
             found[name] = Interval(*(unscaled(name, float(at)) for at in (middle, low, high)))
         return found
@@ -210,12 +211,12 @@ class Inference:
         prior = np.broadcast_to(self.prior[index], (len(x), self.prior.shape[1]))
         return np.sort(np.concatenate([pooled, prior], axis=1), axis=1)
 
-    def telling(
-        self, index: int, values: NDArray[np.float32], cuts: NDArray[np.int16]
+    def is_narrow(
+        self, index: int, values: NDArray[np.float32], outside: NDArray[np.int16]
     ) -> NDArray[np.bool_]:
         """Whether distributions, shape (n, n_values), are narrower than the population's."""
         low, high = np.quantile(self.prior[index], [0.05, 0.95])
-        width = values[:, -1 - cuts[1]] - values[:, cuts[0]]
+        width = values[:, -1 - outside[1]] - values[:, outside[0]]
         return np.asarray(width < _NARROWER * (high - low))
 
     def _repr_html_(self) -> str:
@@ -232,23 +233,11 @@ class Inference:
             The file cannot be written.
         """
         arrays: dict[str, NDArray[Any]] = {
-            "prior": self.prior, "asked": self.asked, "cuts": self.cuts
+            "prior": self.prior, "asked": self.used, "cuts": self.outside
         }  # fmt: skip
         for quantity, forest in zip(QUANTITIES, self.forests, strict=True):
             arrays |= {f"{quantity}_{name}": array for name, array in forest.arrays().items()}
         save_model(path, _KIND, {"names": self.names, "card": dict(self.card)}, arrays)
-
-
-def others_of(known: NDArray[np.float64], index: int) -> int:
-    """Return which of the other two quantities are logged, as a number from 0 to 3.
-
-    Examples
-    --------
-    >>> others_of(np.array([np.nan, 0.279, np.nan]), 0)
-    1
-    """
-    others = np.delete(known, index)
-    return sum(1 << bit for bit, place in enumerate(others) if not np.isnan(place))
 
 
 def load_inference(path: str | Path | None = None) -> Inference:
@@ -284,11 +273,11 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Inf
         of_one = {k.removeprefix(prefix): a for k, a in arrays.items() if k.startswith(prefix)}
         forests.append(QuantileForest.of_arrays(of_one))
         forests[-1].check(n_segment_features(names))
-    prior, asked, cuts = arrays["prior"], arrays["asked"], arrays["cuts"]
+    prior, used, outside = arrays["prior"], arrays["asked"], arrays["cuts"]
     cases = (len(QUANTITIES), 1 << len(KINDS), 2, 4)
-    if prior.shape[:1] != cases[:1] or asked.shape != cases or cuts.shape != (*cases, 4):
+    if prior.shape[:1] != cases[:1] or used.shape != cases or outside.shape != (*cases, 4):
         raise ValueError("its arrays do not fit together")
-    return Inference(names, tuple(forests), prior, asked, cuts, header["card"])
+    return Inference(names, tuple(forests), prior, used, outside, header["card"])
 
 
 def infer_stretch(

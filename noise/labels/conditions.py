@@ -1,4 +1,4 @@
-"""The conditions map: which label was found where in speed, interference and support stiffness.
+"""Conditions map: the labels found over speed, interference and support stiffness.
 
 Logged speeds differ in their last digits and ramps pass through all of them, so speeds are counted
 in steps of a round number about its multiples, whatever the sense of rotation. Fits and supports

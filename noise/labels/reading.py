@@ -1,4 +1,4 @@
-"""Label tables read back, from any of the formats that they are written in.
+"""Reading of label tables, from any of the formats that they are written in.
 
 A table of one's own making will do as well, as long as it has the columns ``file`` and ``label``;
 the others of the label table are empty where it has none.

@@ -161,6 +161,11 @@ def file_label(segments: list[Segment]) -> Segment:
     -------
     Segment
 
+    Raises
+    ------
+    ValueError
+        There are none.
+
     Examples
     --------
     >>> short = Segment("all", 0.0, 1.0, "creak", {}, None, None, None)

@@ -16,8 +16,6 @@ from models.errors import ParameterError
 from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, rig_of
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.thesis_listing import STEP
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -153,7 +151,6 @@ def _simulated(material: str, case: Case, seconds: float, name: str) -> Trace:
         support_stiffness=case.support_stiffness,
         seconds=seconds,
         rate=_RATE,
-        effects=activated(rig.effects, EFFECTS),
     )
     time = np.arange(motion.torque.size, dtype=np.float64) / _RATE
     if material == THESIS:

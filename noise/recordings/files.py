@@ -34,25 +34,23 @@ MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
 
 _SOUND = "noise.recordings.formats.sound_file:read_sound_file"
-_HDF5 = "noise.recordings.formats.hdf5_file:read_hdf5_file"
-_MDF = "noise.recordings.formats.mdf_file:read_mdf_file"
-_TDMS = "noise.recordings.formats.tdms_file:read_tdms_file"
+_LOGGER = "noise.recordings.formats.isolated:read_isolated"
 _UNIVERSAL = "noise.recordings.formats.universal_file:read_universal_file"
 
 READERS = {
     ".aif": _SOUND,
     ".aiff": _SOUND,
     ".flac": _SOUND,
-    ".h5": _HDF5,
-    ".hdf5": _HDF5,
-    ".mdf": _MDF,
-    ".mf4": _MDF,
+    ".h5": _LOGGER,
+    ".hdf5": _LOGGER,
+    ".mdf": _LOGGER,
+    ".mf4": _LOGGER,
     ".mp3": _SOUND,
     ".oga": _SOUND,
     ".ogg": _SOUND,
     ".opus": _SOUND,
     ".rf64": _SOUND,
-    ".tdms": _TDMS,
+    ".tdms": _LOGGER,
     ".uff": _UNIVERSAL,
     ".unv": _UNIVERSAL,
     ".wav": _SOUND,

@@ -22,8 +22,6 @@ from models.rig_files.rig_file import load_material_rig
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime
 from sim.analysis.thesis_listing import STEP, run_listing
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
@@ -130,7 +128,6 @@ def motion(material: str, case: Case) -> Motion:
         support_stiffness=case.support_stiffness,
         seconds=_SECONDS.get(material, _OTHER_SECONDS),
         rate=RATE,
-        effects=activated(rig.effects, EFFECTS),
     )
 
 

@@ -18,8 +18,6 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from sim.analysis.regime import Regime, friction_regime
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 from sim.timing import REGIME_RATE
@@ -177,7 +175,6 @@ def motion_from_rest(
         support_stiffness=support_stiffness,
         seconds=seconds,
         rate=REGIME_RATE,
-        effects=activated(rig.effects, EFFECTS),
     )
 
 

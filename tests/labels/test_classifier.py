@@ -79,7 +79,7 @@ def test_calibrated_probabilities_are_as_often_right_as_they_say():
     assert right.mean() == pytest.approx(p.max(axis=1).mean(), abs=0.03)
 
 
-def test_few_strangers_are_called_a_noise_after_calibration():
+def test_few_background_sounds_are_called_a_noise_after_calibration():
     rng = np.random.default_rng(3)
     y = rng.integers(0, 5, 1000)
     votes = rng.dirichlet(np.ones(5), 1000) + 0.4 * np.eye(5)[y]

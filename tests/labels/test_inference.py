@@ -25,8 +25,8 @@ from noise.labels.conditions import conditions_map
 from noise.labels.reading import read_label_table
 from noise.labels.table import COLUMNS
 from noise.recordings.blocks import RecordingBlocks
-from noise.training.inference.fit import coverage, draw_heard_sample, train_inference
-from noise.training.inference.population import draw_heard
+from noise.training.inference.fit import coverage, draw_run_sample, train_inference
+from noise.training.inference.population import draw_audible_run
 from noise.training.trees import PER_LEAF, grow_quantile_forest
 from sim.run import simulate
 
@@ -56,7 +56,7 @@ def creak():
 
 @pytest.fixture(scope="module")
 def heard():
-    return [draw_heard_sample(seed) for seed in np.random.SeedSequence(FRESH).spawn(16)]
+    return [draw_run_sample(seed) for seed in np.random.SeedSequence(FRESH).spawn(16)]
 
 
 def widths(samples, kinds, logged=lambda _: Condition(), name="interference"):
@@ -65,7 +65,7 @@ def widths(samples, kinds, logged=lambda _: Condition(), name="interference"):
     for sample in samples:
         features = {k: v for k, v in sample.features[1].items() if k.split("_")[0] in kinds}
         condition = Condition(
-            *(unscaled(q, at) for q, at in zip(QUANTITIES, sample.places, strict=True))
+            *(unscaled(q, at) for q, at in zip(QUANTITIES, sample.scaled, strict=True))
         )
         told = MODEL.infer(features, logged(condition), kinds=kinds, calibrated=True)
         ends = told.get(name, Interval(0.0, unscaled(name, -99.0), unscaled(name, 99.0)))
@@ -97,7 +97,7 @@ def test_intervals_hold_for_about_nine_of_ten(heard, name):
 @pytest.mark.slow
 def test_intervals_hold_for_88_to_92_of_100_on_fresh_recordings():
     seeds = np.random.SeedSequence(FRESH + 1).spawn(600)
-    samples = Parallel(n_jobs=-1)(delayed(draw_heard_sample)(seed) for seed in seeds)
+    samples = Parallel(n_jobs=-1)(delayed(draw_run_sample)(seed) for seed in seeds)
     counted = coverage(MODEL, samples)
     for name in QUANTITIES:
         for recording in ("rig", "field"):
@@ -197,7 +197,7 @@ def test_scales_lead_there_and_back(speed, interference, support):
 
 
 def test_drawn_runs_are_heard_and_can_be_drawn_again():
-    first, again = (draw_heard(np.random.default_rng(5)) for _ in range(2))
+    first, again = (draw_audible_run(np.random.default_rng(5)) for _ in range(2))
     assert first.label in ("creak", "squawk", "squeal")
     assert np.array_equal(first.field.samples, again.field.samples)
     assert first.rig.condition == first.field.condition == Condition()

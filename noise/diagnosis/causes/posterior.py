@@ -49,17 +49,17 @@ class Posterior:
     Parameters
     ----------
     names : tuple of str
-        Numbers of a recording that count.
+        Numbers of a recording that count, each in its own unit.
     scale : ndarray, shape (n_names,)
-        Scatter of each without a cause.
+        Scatter of each without a cause, in its unit.
     columns : ndarray of int, shape (n_columns,)
         Of the evidence that the trees look at.
     trees : BoostedTrees
         Their scores are logarithmic odds of each of `CAUSES`.
     weights : ndarray, shape (n_causes, 4)
-        Of the calibration: constant, own odds, strongest other, none.
+        Of the calibration: constant, own odds, strongest other, none [-].
     alarm : float
-        Probability of ``none`` below which there is something to explain.
+        Probability [-] of ``none`` below which there is something to explain.
     null : ndarray, shape (n_quantiles, n_stages)
         Largest differences of each stage in cases without a cause, for p-values.
     card : mapping
@@ -97,7 +97,18 @@ class Posterior:
 
 
 def odds_features(odds: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return what the calibration looks at, shape (n, n_causes, 4)."""
+    """Return what the calibration looks at.
+
+    Parameters
+    ----------
+    odds : ndarray, shape (n, n_causes)
+        Natural logarithms of odds [-].
+
+    Returns
+    -------
+    ndarray, shape (n, n_causes, 4)
+        Constant, own odds, strongest other odds, odds of ``none`` [-].
+    """
     odds = np.clip(odds, -_LARGEST, _LARGEST)
     others = np.stack(
         [np.delete(odds, k, axis=1).max(axis=1) for k in range(odds.shape[1])], axis=1
@@ -108,6 +119,17 @@ def odds_features(odds: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Probabilities of logarithmic odds.
+
+    Parameters
+    ----------
+    odds : ndarray, shape (n, n_causes)
+        Natural logarithms of odds [-].
+    weights : ndarray, shape (n_causes, 4)
+        As of `Posterior` [-].
+
+    Returns
+    -------
+    ndarray, shape (n, n_causes)
 
     Examples
     --------
@@ -121,6 +143,15 @@ def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArr
 
 def load_posterior(path: str | Path | None = None) -> Posterior:
     """Load a cause posterior, by default the one that is shipped.
+
+    Parameters
+    ----------
+    path : path-like, optional
+        NPZ file that `Posterior.save` wrote.
+
+    Returns
+    -------
+    Posterior
 
     Raises
     ------

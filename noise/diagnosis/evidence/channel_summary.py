@@ -44,6 +44,13 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     -------
     dict of str to float
         [-], but ``floor_*``: logarithms of amplitudes in the channel's unit.
+
+    Examples
+    --------
+    >>> sound = np.sin(2 * np.pi * 440 * np.arange(30_000) / 30e3)
+    >>> clipped = channel_summary(np.clip(sound, -0.5, 0.5), 30e3)
+    >>> clipped["top"] > channel_summary(sound, 30e3)["top"]
+    True
     """
     top, bottom = float(x.max()), float(x.min())
     span = top - bottom + 1e-12
@@ -83,6 +90,13 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     -------
     dict of str to float
         Logarithms of ratios of power [-]; ``hum_level`` that of an amplitude in the channel's unit.
+
+    Examples
+    --------
+    >>> hum = 0.01 * np.sin(2 * np.pi * 50 * np.arange(30_000) / 30e3)
+    >>> found = hum_summary(hum + np.random.default_rng(0).normal(size=30_000), 30e3)
+    >>> found["hum_50"] > found["hum_60"]
+    True
     """
     n = x.size
     power = np.abs(rfft(_detrended(x) * np.hanning(n))) ** 2
@@ -117,6 +131,13 @@ def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numb
     dict of str to float
         Speeds as logarithms of their ratio to `speed` [-], ``unevenness`` that of an angle in
         radian, ``speed_line_at`` that of a frequency in hertz.
+
+    Examples
+    --------
+    >>> time = np.arange(30_000) / 30e3
+    >>> shaking = 2.0 * time + 0.001 * np.sin(2 * np.pi * 10.0 * time)
+    >>> round(np.exp(angle_summary(shaking, 2.0, 30e3)["speed_line_at"]))
+    10
     """
     n = angle.size
     mean_speed, left = _about_line(angle, rate)

@@ -70,6 +70,14 @@ def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64]
     -------
     measured, nominal, scatter : ndarray, shape (n_recordings, n_names)
         Each in the unit of its number; NaN where the case has none of that name.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.evidence.summary import CaseTable
+    >>> one = np.ones((1, 1))
+    >>> table = CaseTable(("a",), one, one, one, (), 30e3)
+    >>> aligned(table, ["b", "a"])[0].tolist()
+    [[nan, 1.0]]
     """
     place = {name: i for i, name in enumerate(table.names)}
     found = [place.get(name, -1) for name in names]

@@ -66,6 +66,13 @@ def path_summary(
         in microseconds, ``*_at`` as logarithms of seconds or hertz.
     residual : ndarray, shape (n_kept,)
         Measured less predicted, without its ends, in the channel's unit.
+
+    Examples
+    --------
+    >>> sound = np.random.default_rng(0).normal(size=30_000)
+    >>> numbers, residual = path_summary(sound, 2.0 * sound, 30e3, np.empty(0))
+    >>> round(math.exp(numbers["gain"]), 3), residual.size
+    (2.0, 27300)
     """
     ends = slice(int(_LEAD * rate), predicted.size - int(_TAIL * rate))
     p, m = predicted[ends], measured[ends]
@@ -96,6 +103,12 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
     -------
     dict of str to float
         Logarithms of coherences [-].
+
+    Examples
+    --------
+    >>> one, other = np.random.default_rng(0).normal(size=(2, 30_000))
+    >>> common_residual(one, one, 30e3)["common_0"] > common_residual(one, other, 30e3)["common_0"]
+    True
     """
     size = 2048
     x, y = segment_spectra(one, size), segment_spectra(other, size)

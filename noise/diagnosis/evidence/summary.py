@@ -1,4 +1,4 @@
-"""A recording in some four hundred numbers, and a case as how they differ from the rig file's.
+"""Summary of a recording in some four hundred numbers, and of a case against its rig file.
 
 A *case* is what a user brings: recordings of one rig over several conditions, and its file. Each
 number is taken from the recording and from simulated repeats of its condition; what matters is
@@ -228,7 +228,17 @@ def _condition(recording: Recording) -> tuple[float, float, float]:
 
 
 def through_same(repeat: Recording, recording: Recording) -> Recording:
-    """Return a repeat without the channels that a recording lacks."""
+    """Return a repeat without the channels that a recording lacks.
+
+    Parameters
+    ----------
+    repeat, recording : Recording
+
+    Returns
+    -------
+    Recording
+        Of the former, with the channels of kinds that the latter has.
+    """
     rows = [i for i, c in enumerate(repeat.channels) if recording.first(c.kind) is not None]
     return replace(
         repeat, samples=repeat.samples[rows], channels=tuple(repeat.channels[i] for i in rows)

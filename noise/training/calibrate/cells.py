@@ -1,4 +1,4 @@
-"""Measurements of the fluorocarbon by which its calibration is judged.
+"""Measurements of the fluorocarbon in the thesis, by which the calibration is judged.
 
 A cell is one number of Tables 5.1 and 5.2. The six critical speeds at 0.279 mm are what is fitted,
 and what can be left out. The rest steers the search with less weight: V_crit2 at 0.178 mm, stick

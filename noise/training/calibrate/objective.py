@@ -1,4 +1,4 @@
-"""Objective of the calibration: how far a rig is from the measurements, as one smooth number.
+"""Objective of the calibration: the distance of a rig from what was measured, in one number.
 
 The measure that is reported is the root mean square of log(simulated / measured) over the critical
 speeds. It weighs most; the other terms are hinges, nil where the thesis's finding is met. Critical

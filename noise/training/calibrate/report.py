@@ -1,4 +1,4 @@
-"""Report of a calibration as text, and the material file that it makes."""
+"""Report of a calibration as a page of text, and the material file that it makes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Unknown numbers of the fluorocarbon, which no source gives, and the rig that they make.
+"""Unknowns of the fluorocarbon, which no source gives, and the rig that they make.
 
 The contact has memory (`sim.friction.contact_with_memory`). Its torque at 5 rad/s is held at the
 8 Nm of Appendix F, so the level is no unknown. Torque, stiffness and damping of the contact at

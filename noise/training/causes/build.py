@@ -1,4 +1,4 @@
-"""The library: many drawn cases, each summarised as a user's case would be."""
+"""Training cases: drawn, simulated, and each summarised as a user's case would be."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
 
 
 def _rounded(table: CaseTable) -> CaseTable:
-    """Round to single precision: a library stored in half the space is still the same one."""
+    """Round to single precision: cases stored in half the space are still the same ones."""
     return replace(
         table,
         measured=_single(table.measured),

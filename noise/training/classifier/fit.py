@@ -1,10 +1,10 @@
-"""Training the classifier, on simulation and on made-up strangers alone.
+"""Training of the classifier, on simulation and on made-up background sounds alone.
 
 Three sets that share no draw: one grows the trees, one calibrates its probabilities, and one is
 scored and written into the card. What a sample is called follows from its physics
 (`noise.training.classifier.samples`), never from its features; samples whose name hangs on a bound
 of the definition are in none of the three. The classifier has to work with whatever channels there
-are, so each recording of three channels is shown several times, with some of them masked. The
+are, so each recording of three channels is learned several times, with some of them masked. The
 user's own recordings are learned beside the simulated ones, and neither calibrate nor change the
 score.
 """
@@ -212,21 +212,21 @@ def _grown(
     seed: int,
 ) -> Classifier:
     """Grow trees and calibrate them."""
-    x, y, weight = _shown(training, own)
+    x, y, weight = _masked_rows(training, own)
     known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
     names = tuple(name for name, k in zip(FEATURE_NAMES, known, strict=True) if k)
     trees = grow_boosted_trees(x[:, known], y, weight=weight, n_rounds=N_ROUNDS, seed=seed)
     calibrations = []
     for kinds in _SUBSETS[:2]:
-        heard = _masked(calibration, kinds)
-        x, group = _windows(heard)
-        labels = np.array([LABELS.index(sample.label) for sample in heard], dtype=np.int64)
+        kept = _masked(calibration, kinds)
+        x, group = _windows(kept)
+        labels = np.array([LABELS.index(sample.label) for sample in kept], dtype=np.int64)
         votes = trees.probabilities(x[:, known])
         calibrations.append(fit_calibration(votes, group, labels, LABELS.index("unknown")))
     return Classifier(names, trees, (calibrations[0], calibrations[1]), {})
 
 
-def _shown(
+def _masked_rows(
     samples: Sequence[Sample], own: Sequence[OwnSample]
 ) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.float64]]:
     """Windows of all samples under several masks, their labels, and weights of balanced labels."""

@@ -1,9 +1,9 @@
-"""How votes become probabilities, and how sure a stranger has to be of not being one.
+"""Calibration of the votes: probabilities, and how few background sounds are called a noise.
 
 Six numbers are fitted on samples that no tree saw, for the mean over a recording's windows to have
 the smallest log loss. The weights of the noises are lowered further until no more than
-`FALSE_NAMES` of the strangers are named one as files are: by the longest segment that is not
-``none``.
+`FALSE_NAMES` of the background sounds are named one as files are: by the longest segment that is
+not ``none``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["FALSE_NAMES", "file_name", "fit_calibration", "means_of_groups"]
 
 FALSE_NAMES = 0.03
-"""Of the strangers in the calibration set may be called a noise at most."""
+"""Of the background sounds in the calibration set [-] may be called a noise at most."""
 
 _NOISES = 3
 """The first labels are the noises; what follows is none of them."""
@@ -42,12 +42,13 @@ def fit_calibration(
     Parameters
     ----------
     votes : ndarray, shape (n_windows, n_labels)
+        Without unit; each row sums to 1.
     group : ndarray of int, shape (n_windows,)
         Recording of each window.
     y : ndarray of int, shape (n_recordings,)
         Label of each recording.
     unknown : int
-        Label of the strangers.
+        Label of the background sounds.
 
     Returns
     -------
@@ -72,13 +73,13 @@ def fit_calibration(
 
     bounds = [(-2.0, 2.0)] * (labels + 1)
     x = minimize(loss, np.zeros(labels + 1), method="L-BFGS-B", bounds=bounds).x
-    strangers = np.flatnonzero(y == unknown)
-    windows = [votes[group == stranger] for stranger in strangers.tolist()]
+    others = np.flatnonzero(y == unknown)
+    windows = [votes[group == other] for other in others.tolist()]
     noises = np.arange(min(_NOISES, labels))
     noises = noises[noises != unknown]
     while windows and x[1 + noises].min() >= _LOWEST:
         found = calibration(x)
-        named = [file_name(found(stranger), _NOISES) for stranger in windows]
+        named = [file_name(found(other), _NOISES) for other in windows]
         if np.mean(np.isin(named, noises)) <= FALSE_NAMES:
             break
         x[1 + noises] -= 0.05

@@ -1,4 +1,4 @@
-r"""The user's own labelled recordings, as windows to learn from.
+r"""Own labelled recordings of the user, as windows to learn from.
 
 A label is said in one of three ways, the finest of which counts where there are several: by a label
 track as Audacity exports it (``run07.txt`` or ``run07.wav.txt`` beside ``run07.wav``), by a row of

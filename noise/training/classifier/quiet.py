@@ -1,4 +1,4 @@
-"""What is no noise at all: hiss, hum, rumble, steady sliding, digital silence."""
+"""Quiet, which is no noise at all: hiss, hum, rumble, steady sliding, digital silence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How well a classifier names recordings: accuracy, F1, calibration, false names of strangers."""
+"""Scores of a classifier: accuracy, F1, calibration error, background sounds called a noise."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[s
     p : ndarray, shape (n, n_labels)
     y : ndarray of int, shape (n,)
     unknown : int
-        The label of strangers, which follows those of all noises and ``none``.
+        The label of background sounds, which follows those of all noises and ``none``.
 
     Returns
     -------
@@ -43,8 +43,8 @@ def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[s
         np.mean(bins == b) * abs(np.mean(right[bins == b]) - np.mean(certainty[bins == b]))
         for b in np.unique(bins)
     )
-    strangers = found[y == unknown]
-    false = float(np.mean(strangers < unknown - 1)) if strangers.size else 0.0
+    others = found[y == unknown]
+    false = float(np.mean(others < unknown - 1)) if others.size else 0.0
     return {
         "n": int(y.size),
         "accuracy": round(float(np.mean(right)), 4),

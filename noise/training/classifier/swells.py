@@ -1,8 +1,8 @@
 """Sounds that swell and die away, as those of a hand, a passing car or a cutting table do.
 
 What a simulated machine does for a second it does evenly; whoever opens a door, or cuts the
-recording of it, does not. All that is heard by a microphone alone, strangers too, gets a course of
-level of its own, so that a level that changes says nothing about what is heard.
+recording of it, does not. All that a microphone alone records, background sounds too, gets a course
+of level of its own, so that a level that changes says nothing about what sounds.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def swelling(drawn: Drawn, rng: np.random.Generator) -> Drawn:
     Examples
     --------
     >>> from noise.training.classifier.samples import draw_from
-    >>> drawn = draw_from("body:chalk_squeal", np.random.default_rng(0))
+    >>> drawn = draw_from("friction:chalk_squeal", np.random.default_rng(0))
     >>> other = swelling(drawn, np.random.default_rng(1))
     >>> bool(np.abs(other.recording.samples).max() <= 2.0 * np.abs(drawn.recording.samples).max())
     True

@@ -1,4 +1,4 @@
-"""The rigs, conditions and recordings that the inferred intervals hold for.
+"""Population of rigs, conditions and recordings that the inferred intervals hold for.
 
 An interval of 90 % is a statement about a population, so the population is written down in one
 place: fluorocarbon bushings whose stiffness, torques, inertia and friction differ from the shipped
@@ -34,14 +34,14 @@ from noise.inference.inputs import (
     SUPPORT_RANGE,
 )
 from noise.noise_definition import label_by_physics
-from noise.training.classifier.augmentation import resampled
+from noise.training.classifier.augmentation.recorder import resampled
 from noise.training.inference.recording_chain import recorded
 from sim.run import simulate
 
 if TYPE_CHECKING:
     from sim.run import Run
 
-__all__ = ["Heard", "draw_heard"]
+__all__ = ["AudibleRun", "draw_audible_run"]
 
 _FIXED_SHARE = 0.25
 _SCATTER = 0.03
@@ -53,7 +53,7 @@ _GAIN_SCATTER = 0.03
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class AudibleRun:
     """One audible run, recorded twice.
 
     Parameters
@@ -72,13 +72,13 @@ class Heard:
     field: Recording
 
 
-def draw_heard(rng: np.random.Generator) -> Heard:
-    """Draw runs until one is heard.
+def draw_audible_run(rng: np.random.Generator) -> AudibleRun:
+    """Draw runs until one is audible.
 
     Examples
     --------
-    >>> heard = draw_heard(np.random.default_rng(0))
-    >>> heard.label in ("creak", "squawk", "squeal"), heard.rig.calibrated, heard.field.calibrated
+    >>> run = draw_audible_run(np.random.default_rng(0))
+    >>> run.label in ("creak", "squawk", "squeal"), run.rig.calibrated, run.field.calibrated
     (True, True, False)
     """
     while True:
@@ -92,7 +92,7 @@ def draw_heard(rng: np.random.Generator) -> Heard:
     rig = _on_the_rig(run, rng)
     field = _in_the_field(run, rng)
     condition = run.recording.condition
-    return Heard(label, condition, _cut(rig, start, seconds), _cut(field, start, seconds))
+    return AudibleRun(label, condition, _cut(rig, start, seconds), _cut(field, start, seconds))
 
 
 def _draw_run(rng: np.random.Generator) -> Run:

@@ -48,16 +48,14 @@ def recorded(
     ndarray, shape (n,)
         Of unit standard deviation [-] or, where the sound is zero, noise alone.
     """
-    heard = sound
-    if rng.random() < 0.7:
-        heard = _in_a_room(heard, rate, rng)
-    heard = _through_a_microphone(heard, rate, rng)
-    level = float(heard.std())
+    signal = _in_a_room(sound, rate, rng) if rng.random() < 0.7 else sound
+    signal = _through_a_microphone(signal, rate, rng)
+    level = float(signal.std())
     snr = rng.uniform(6.0, 50.0) if rng.random() < 0.8 else 60.0
-    noise = _coloured_noise(heard.size, rng.uniform(0.0, 2.0), rng)
+    noise = _coloured_noise(signal.size, rng.uniform(0.0, 2.0), rng)
     noise_level = level * 10.0 ** (-snr / 20.0) if level > 0.0 else 1.0
-    heard = heard + noise_level * noise
-    return np.asarray(heard / heard.std())
+    signal = signal + noise_level * noise
+    return np.asarray(signal / signal.std())
 
 
 def _in_a_room(

@@ -19,8 +19,6 @@ import numpy as np
 from features.kernels.slip_drops import repetition_rate
 from models.errors import ParameterError
 from sim.analysis.regime import LEAST_OSCILLATION
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -111,7 +109,6 @@ def _slip_rate(rig: Rig, interference: float, support: float, speed: float) -> f
             support_stiffness=support,
             seconds=_SECONDS,
             rate=_RATE,
-            effects=activated(rig.effects, EFFECTS),
         )
     except ParameterError:
         return None

@@ -1,4 +1,4 @@
-"""Noise that is there anyway: hiss of a room, a cabin, a road, wind on the microphone."""
+"""Background noise: hiss of a room, a cabin, a road, wind on the microphone."""
 
 from __future__ import annotations
 

@@ -60,8 +60,8 @@ def levelled(
     Examples
     --------
     >>> quiet_then_loud = np.repeat([0.01, 1.0], 48_000) * np.sin(np.arange(96_000))
-    >>> heard = levelled(quiet_then_loud, 48e3, np.random.default_rng(0))
-    >>> bool(np.std(heard[60_000:]) < 60.0 * np.std(heard[:40_000]))
+    >>> even = levelled(quiet_then_loud, 48e3, np.random.default_rng(0))
+    >>> bool(np.std(even[60_000:]) < 60.0 * np.std(even[:40_000]))
     True
     """
     time = rng.uniform(0.02, 0.4)

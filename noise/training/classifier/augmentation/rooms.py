@@ -2,7 +2,7 @@
 
 Reflections come at random within the first 40 ms, weaker the later; the tail decays exponentially,
 its high frequencies first, as air and furniture have it. Nothing of it is any room's geometry: the
-classifier should hear through all rooms, not know one.
+classifier should know all rooms, not know one.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ def in_a_room(
     --------
     >>> click = np.zeros(4800)
     >>> click[0] = 1.0
-    >>> heard = in_a_room(click, 48e3, np.random.default_rng(0))
-    >>> heard.shape, round(float(heard[0]), 6)
+    >>> echoing = in_a_room(click, 48e3, np.random.default_rng(0))
+    >>> echoing.shape, round(float(echoing[0]), 6)
     ((4800,), 1.0)
     """
     t60 = math.exp(rng.uniform(math.log(0.1), math.log(1.2)))

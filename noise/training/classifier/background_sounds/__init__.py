@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["RECIPES", "WEIGHTS", "stranger"]
+__all__ = ["RECIPES", "WEIGHTS", "background_sound"]
 
 Recipe = Callable[[int, float, np.random.Generator], "NDArray[np.float64]"]
 
@@ -68,7 +68,7 @@ WEIGHTS: Mapping[str, float] = {
 """How often a recipe is drawn, relative to the others."""
 
 
-def stranger(
+def background_sound(
     n: int, rate: float, rng: np.random.Generator, name: str | None = None
 ) -> NDArray[np.float64]:
     """Return `n` samples of a sound of unit peak; now and then a second one sounds besides.
@@ -84,7 +84,7 @@ def stranger(
 
     Examples
     --------
-    >>> sound = stranger(4800, 48e3, np.random.default_rng(2))
+    >>> sound = background_sound(4800, 48e3, np.random.default_rng(2))
     >>> sound.shape, round(float(np.abs(sound).max()), 6)
     ((4800,), 1.0)
     """

@@ -1,4 +1,4 @@
-"""What strangers are built of: pulses, voices, resonances, blows, envelopes."""
+"""Building blocks of background sounds: pulses, voices, resonances, blows, envelopes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""A body as its modes: what a blow sounds like.
+r"""A body as its modes, which a blow lets ring.
 
 .. math::
     h(t) = \sum_i w_i \, e^{-\zeta_i \omega_i t} \sin(\omega_i \sqrt{1 - \zeta_i^2} \, t)
