@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.motion import motion_blocks
@@ -143,7 +143,7 @@ def simulate_blocks(
         effects=plan.effects,
         rng=effect_rng,
     )
-    paths = response(plan.rig, interference, support_stiffness, plan.rate)
+    paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
     signals = _signals(
         _with_force(motions, plan),
         changed_chain(paths, plan.effects, effect_rng.spawn(1)[0]),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
@@ -184,7 +184,7 @@ def simulate(
         library=library,
     )
     motion = run_motion(plan, effect_rng)
-    paths = response(plan.rig, interference, support_stiffness, plan.rate)
+    paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
     paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
     sound = radiate_motion(motion, paths, plan.effects)
     signals = sensor_signals(motion, sound, plan.n_settling)

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from models.structure.plate import PlateModes
 
-__all__ = ["anchor_drives", "first_mode_damping", "response"]
+__all__ = ["anchor_drives", "first_mode_damping", "impulse_responses"]
 
 HIGHEST_BEAM_FREQUENCY = 40e3
 """Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""
@@ -60,7 +60,7 @@ FADE = 0.1
 """Last part of the responses, over which modes that still ring are faded out."""
 
 
-def response(
+def impulse_responses(
     rig: Rig,
     interference: float,
     support_stiffness: float,
@@ -109,7 +109,7 @@ def response(
     ...     plate=Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.08, 0.05)),
     ...     microphone=Microphone((0.1, 0.05, 0.7)),
     ... )
-    >>> chain = response(rig, 2.79e-4, 2214.0, 48e3, seconds=0.2)
+    >>> chain = impulse_responses(rig, 2.79e-4, 2214.0, 48e3, seconds=0.2)
     >>> chain.torque_to_pressure.shape
     (9600,)
     """

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig_files.rig_file import load_material_rig
 from sim.chain import resonance
 from tests.helpers.chain_paths import RATE, changed, spectra
@@ -18,7 +18,7 @@ RIG = load_material_rig("fluorocarbon")
 
 @pytest.fixture(scope="module")
 def plain():
-    return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
+    return impulse_responses(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
 
 
 def test_a_lonely_resonance_adds_6_db_where_it_is_and_nothing_far_away(plain):
@@ -50,5 +50,5 @@ def test_a_resonance_is_exact_where_it_rings(frequency):
 
 
 def test_resonances_beyond_the_band_are_left_out():
-    paths = response(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
+    paths = impulse_responses(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
     assert changed(paths, "plate_modes", frequency=14e3) is paths

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig_files.rig_file import load_material_rig
 from tests.helpers.chain_paths import RATE, changed, spectra
 from tests.helpers.spectra import path_spectra
@@ -16,7 +16,7 @@ RIG = load_material_rig("fluorocarbon")
 
 @pytest.fixture(scope="module")
 def plain():
-    return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
+    return impulse_responses(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
 
 
 def test_a_further_mode_stands_out_in_acceleration_and_sound(plain):
@@ -44,10 +44,10 @@ def test_forms_of_beam_modes_have_their_frequencies(plain, form, expected):
 
 
 def test_with_the_clamp_bolted_down_there_are_no_beams_to_have_modes():
-    bolted = response(RIG, 0.381e-3, FIXED, RATE, seconds=0.1)
+    bolted = impulse_responses(RIG, 0.381e-3, FIXED, RATE, seconds=0.1)
     assert changed(bolted, "beam_modes", amount=50.0) is bolted
 
 
 def test_modes_beyond_the_band_are_left_out():
-    paths = response(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
+    paths = impulse_responses(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
     assert changed(paths, "beam_modes", frequency=14e3) is paths

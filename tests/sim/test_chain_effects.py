@@ -9,7 +9,7 @@ import pytest
 
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses, radiate
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from sim.acquisition import Acquisition
@@ -31,7 +31,7 @@ QUIET = Acquisition(noise={})
 
 @pytest.fixture(scope="module")
 def plain():
-    return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
+    return impulse_responses(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
 
 
 def padded(signal, size):

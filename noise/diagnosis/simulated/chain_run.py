@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.radiation.impulse_responses import ImpulseResponses
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from models.transfer_functions.impulse_response import impulse_response
 from noise.diagnosis.gap.scatter import Scatter, perturb_run
@@ -54,7 +54,7 @@ def chain_of(
     torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
     struck = sounding = np.zeros(1)
     if blows:
-        modelled = response(rig, interference, support_stiffness, rate)
+        modelled = impulse_responses(rig, interference, support_stiffness, rate)
         struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
     return ImpulseResponses(
         rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import rfft
 
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.transfer_functions.filtering import filter_period
 from models.transfer_functions.impulse_response import FINER, fill_between_lines
 from models.transfer_functions.measured import measured_with
@@ -71,7 +71,7 @@ def torque_transfer_functions(
         if entry.torque_to_pressure is not None:
             found["pressure"] = fill_between_lines(entry.torque_to_pressure)
     if len(found) < 2:
-        modelled = response(rig, interference, support_stiffness, _MODEL_RATE)
+        modelled = impulse_responses(rig, interference, support_stiffness, _MODEL_RATE)
         for name, unit, impulse in (
             ("acceleration", "m/s^2", modelled.torque_to_acceleration),
             ("pressure", "Pa", modelled.torque_to_pressure),

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.levels import a_weighted, fast_levels
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig import damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
 from noise.screening.map.stretches import stretches_of
@@ -259,7 +259,7 @@ def _paths(
     if of_beams > 0.0 and math.isfinite(support_stiffness):
         rounded = math.exp(round(math.log(of_beams) / _DAMPING_STEP) * _DAMPING_STEP)
         rig = replace(rig, elastomer_damping_share=1.0 - rounded / damping)
-    return response(rig, interference, support_stiffness, rate)
+    return impulse_responses(rig, interference, support_stiffness, rate)
 
 
 def _criteria(sound: Sound, stretches: list[Motion]) -> NoiseCriteria:
