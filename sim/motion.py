@@ -307,15 +307,9 @@ def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> 
     if len(acting) > MOST_HOOKS:
         names = ", ".join(active.effect.name for active in acting)
         raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
-    return tuple(_hook(active, rng) for active in acting)
-
-
-def _hook(active: ActiveEffect, rng: np.random.Generator) -> Hook:
-    effect = active.effect
-    values = np.array(list(active.values.values()))
-    if effect.pack is not None:
-        values = effect.pack(active.form, active.values, rng)
-    return Hook(effect.contact, values, effect.n_states)
+    return tuple(
+        Hook(active.effect.contact, active.packed(rng), active.effect.n_states) for active in acting
+    )
 
 
 def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:

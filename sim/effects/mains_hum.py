@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.channel_level import channel_level
+from sim.channels import channel_level
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 

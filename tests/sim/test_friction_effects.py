@@ -49,7 +49,7 @@ RATE = 90e3
 
 def hook(name, seed=0, **given):
     active = EFFECTS[name].active(given)
-    values = active.effect.pack(active.form, active.values, np.random.default_rng(seed))
+    values = active.packed(np.random.default_rng(seed))
     return Hook(active.effect.contact, values, active.effect.n_states)
 
 
