@@ -156,15 +156,15 @@ def thinned(
     Parameters
     ----------
     x, y : ndarray, shape (n,)
-        A curve; `x` rises.
+        A curve, each in its own [unit]; `x` rises.
     position : ndarray, shape (n,), optional
-        Where on the axis each point is drawn, if not in proportion to `x`.
+        Where on the axis each point is drawn, if not in proportion to `x` [-].
     columns : int
 
     Returns
     -------
     x, y : ndarray, shape (m,)
-        Of no more than ``2 * columns + 2`` points.
+        In the same [unit], of no more than ``2 * columns + 2`` points.
 
     Examples
     --------
@@ -188,6 +188,8 @@ def thinned(
 def padded(low: float, high: float, least: float) -> tuple[float, float]:
     """Return limits of an axis somewhat wider than from `low` to `high`, and wider than `least`.
 
+    All in the [unit] of the axis.
+
     Examples
     --------
     >>> padded(0.0, 100.0, 1.0), padded(5.0, 5.0, 1.0)
@@ -198,7 +200,7 @@ def padded(low: float, high: float, least: float) -> tuple[float, float]:
 
 
 def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64]:
-    """Levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz.
+    """Levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz, in its shape.
 
     Examples
     --------

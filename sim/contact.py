@@ -1,4 +1,4 @@
-"""What solver, friction laws and effects share while the motion is solved: two small arrays.
+"""The two small arrays that solver, friction laws and effects share while a motion is solved.
 
 Effects read the *context*, what goes on at this instant, and change the *contact*, what bushing
 and elastomer are at this instant. Friction laws read the contact. Compiled functions with these

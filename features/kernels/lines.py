@@ -161,7 +161,7 @@ def find_lines(
     low, high : float
         Limits of the search [Hz].
     floor : ndarray, shape (n_bins,), optional
-        `noise_floor` of the spectrum, if it is at hand.
+        `noise_floor` of the spectrum, if it is at hand [unit^2/Hz].
 
     Returns
     -------

@@ -72,8 +72,9 @@ def lasting_poles(
     f : ndarray, shape (n,)
         [Hz], rising, above 0.
     h : ndarray, shape (n_responses, n), complex
+        In any [unit].
     weight : ndarray, shape (n_responses, n)
-        Trust in each line, from 0 to 1.
+        Trust in each line, from 0 to 1 [-].
 
     Returns
     -------

@@ -35,7 +35,7 @@ class Modes:
         Real factors of 1/(i omega)^2, 1, i omega and (i omega)^2, relative to the highest omega:
         what modes outside the band leave in it.
     orders : ndarray, shape (n_modes,)
-        Through how many orders each pole stayed.
+        Through how many orders each pole stayed [-].
     highest : float
         Upper end of the band [Hz].
 
@@ -228,11 +228,12 @@ def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
     Parameters
     ----------
     values : ndarray, shape (..., n), complex
-        In any unit.
+        In any [unit].
 
     Returns
     -------
     ndarray, shape (..., 2 n)
+        In the unit of the values [unit].
 
     Examples
     --------

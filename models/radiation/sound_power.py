@@ -73,7 +73,7 @@ class PowerFlow:
     def radiation_efficiency(self) -> NDArray[np.float64]:
         """Radiated power over that of a rigid piston of equal mean square velocity in plane waves.
 
-        Shape (n,).
+        [-], shape (n,).
         """
         plane = AIR_DENSITY * SOUND_SPEED * self.area * self.mean_square_velocity
         efficiency: NDArray[np.float64] = self.radiated / plane
@@ -168,6 +168,7 @@ def radiation_efficiency(modes: PlateModes, frequency: ArrayLike) -> NDArray[np.
     Returns
     -------
     ndarray, shape (n_modes, n)
+        [-]
 
     Notes
     -----
@@ -201,7 +202,7 @@ def radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n_modes,)
-        rho_0 c sigma / (omega rho h).
+        rho_0 c sigma / (omega rho h) [-].
 
     Examples
     --------

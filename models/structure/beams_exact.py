@@ -128,7 +128,7 @@ def mode_shape(
     Returns
     -------
     ndarray, shape (n,)
-        Scaled such that the largest magnitude is 1 and the first value is not negative.
+        [-], scaled such that the largest magnitude is 1 and the first value is not negative.
 
     Examples
     --------

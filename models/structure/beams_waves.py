@@ -81,7 +81,7 @@ def boundary_conditions(
         [Hz]
     motion : RootMotion
     loss_factor : float
-        Of the beams.
+        Of the beams [-].
     scaled : bool, optional
         Whether the largest coefficient of each condition is made 1.
 
@@ -174,6 +174,7 @@ def wavenumber(
     frequency : array_like, shape (...)
         [Hz]
     loss_factor : float, optional
+        Of the beams [-].
 
     Returns
     -------

@@ -89,6 +89,7 @@ class PlateModes:
         Returns
         -------
         ndarray, shape (..., n_modes)
+            [1/sqrt(kg)]
         """
         return self._at(x, y, 0, 0)
 
@@ -176,8 +177,8 @@ def acceleration_model(
     ----------
     modes : PlateModes
     drives : ndarray, shape (n_modes, n_drives)
-        Work of a unit of each drive on the modes: `PlateModes.shape` at the point of a force,
-        `PlateModes.slope` at that of a moment, and sums of such.
+        Work of a unit of each drive on the modes [1/sqrt(kg) for a force]: `PlateModes.shape` at
+        the point of a force, `PlateModes.slope` at that of a moment, and sums of such.
     x, y : array_like, shape (n_points,)
         [m]
 

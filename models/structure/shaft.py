@@ -59,7 +59,7 @@ def fixed_free_frequencies(
     transit_time : float
         l sqrt(rho / G) [s].
     ratio : float
-        Inertia of the shaft over that at its end.
+        Inertia of the shaft over that at its end [-].
     n_modes : int
 
     Returns

@@ -58,9 +58,9 @@ class Stability:
 
     Parameters
     ----------
-    growth : ndarray
+    growth : ndarray, shape (...)
         Largest real part of an eigenvalue [1/s]; positive where the vibration grows.
-    frequency : ndarray
+    frequency : ndarray, shape (...)
         Of that vibration [Hz].
     """
 

@@ -1,4 +1,4 @@
-"""Channels that do not share one clock.
+"""Delay of channels that do not share one clock.
 
 A channel reads x(t - d(t)), with D the delay times the channel's share:
 

@@ -1,4 +1,4 @@
-"""An amplifier that runs out of voltage before the signal has reached its peak.
+"""Clipping: an amplifier runs out of voltage before the signal has reached its peak.
 
 With the largest magnitude M of a channel and the magnitude m of its mean, the peak is read as
 M - a (M - m), in every form, so that one amount means one overload whatever the form, the level

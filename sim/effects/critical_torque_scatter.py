@@ -1,4 +1,4 @@
-r"""No two sticks break at the same torque.
+r"""Scatter of the critical torque: no two sticks break at the same torque.
 
 .. math::
     T_{crit} = T_{kin} + (T_{crit,0} - T_{kin}) \max(0, 1 + s z_i)

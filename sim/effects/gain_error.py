@@ -1,4 +1,4 @@
-"""A channel whose sensitivity is not what it is taken for.
+"""Gain error: a channel whose sensitivity is not what it is taken for.
 
 With e the error times the channel's share:
 

@@ -1,4 +1,4 @@
-"""A sensor on a soft mount moves by itself.
+"""Resonance of a sensor on a soft mount, which moves by itself.
 
 With G(s) = s**2 / (s**2 + 2 zeta omega s + omega**2), the reading is H(s) times the true signal:
 

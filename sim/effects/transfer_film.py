@@ -1,4 +1,4 @@
-r"""Rubber comes off onto the shaft: more torque, less of a drop, and random friction.
+r"""Film of rubber on the shaft: more torque, less of a drop, and random friction.
 
 .. math::
     \chi &= \chi_0 + (1 - \chi_0) f(x), \quad x = \int |v| \, dt / \varphi_f, \qquad

@@ -40,7 +40,7 @@ class FrictionLaw:
         ``initial_state(coefficients)``: the contact's inner state after a long rest; by default
         there is none.
     tolerance : float
-        Error of a step of the solver, over twist, speed and inner state. The default serves the
+        Error of a step of the solver, over twist, speed and inner state [-]. The default serves the
         most chaotic; where neighbouring motions part slowly, a larger one is as good and faster.
     """
 
@@ -52,13 +52,13 @@ class FrictionLaw:
     tolerance: float = 2e-9
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
-        """Numbers that `torque` reads, from resolved parameters."""
+        """Numbers that `torque` reads, from resolved parameters, shape (n,), units by the law."""
         import numpy as np
 
         return np.array(list(values.values()) or [0.0]) if self.pack is None else self.pack(values)
 
     def state(self, coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Inner state after a long rest."""
+        """Inner state after a long rest, shape (n_states,), for coefficients of shape (n,)."""
         import numpy as np
 
         return np.zeros(0) if self.initial_state is None else self.initial_state(coefficients)

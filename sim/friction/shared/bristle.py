@@ -41,7 +41,7 @@ BRISTLE_PARAMETERS = {
 
 
 def unbent(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    """Return the state of a contact at rest: no shear.
+    """Return the state of a contact at rest: no shear [rad], shape (1,).
 
     Examples
     --------
