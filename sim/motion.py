@@ -260,7 +260,7 @@ class _Solver:
             coefficients = law.coefficients(values)
             self._contact = ContactRun(
                 self._packed, *self._torques, start_speed, self._step, law=law.torque,
-                coefficients=coefficients, law_state=law.state(coefficients), hooks=hooks,
+                coefficients=coefficients, law_state=law.state(), hooks=hooks,
                 name=_friction(law.name, effects), tolerance=tolerance or law.tolerance,
             )  # fmt: skip
 

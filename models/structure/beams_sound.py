@@ -184,5 +184,4 @@ def strip_section(
 
 def _middles(low: float, high: float) -> NDArray[np.float64]:
     n = math.ceil((high - low) / ELEMENT)
-    middles: NDArray[np.float64] = low + (np.arange(n) + 0.5) * (high - low) / n
-    return middles
+    return np.asarray(low + (np.arange(n) + 0.5) * (high - low) / n)

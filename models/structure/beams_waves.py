@@ -127,8 +127,7 @@ def boundary_conditions(
     rows = np.stack([*at_clamp, *at_anchor], axis=-2)
     if scaled:
         rows = rows / np.abs(rows).max(axis=-1, keepdims=True)
-    conditions: NDArray[np.complex128] = rows
-    return conditions
+    return np.asarray(rows)
 
 
 def waves_at(
@@ -159,8 +158,7 @@ def waves_at(
     turned = forth + 0.5 * np.pi * derivative
     decay = (-1) ** derivative * np.exp(-forth)
     shapes = np.stack([np.cos(turned), np.sin(turned), decay, np.exp(-back)], axis=-1)
-    result: NDArray[np.complex128] = wave[..., None] ** derivative * shapes
-    return result
+    return np.asarray(wave[..., None] ** derivative * shapes)
 
 
 def wavenumber(

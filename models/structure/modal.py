@@ -83,14 +83,13 @@ class ModalModel:
         omega = 2 * np.pi * np.asarray(frequency, dtype=np.float64)
         natural = 2 * np.pi * self.frequencies[:, None]
         q = 1 / (natural**2 - omega**2 + 2j * self.damping_ratios[:, None] * natural * omega)
-        response: NDArray[np.complex128] = (
+        return np.asarray(
             np.einsum("om,mi,mf->oif", self.displacements, self.inputs, q, optimize=True)
             - np.einsum(
                 "om,mi,mf->oif", self.accelerations, self.inputs, omega**2 * q, optimize=True
             )
             + self.feedthrough[:, :, None]
         )
-        return response
 
     def impulse_response(self, rate: float, n_samples: int) -> NDArray[np.float64]:
         """Give the outputs for a unit sample of each input, for convolution with samples.

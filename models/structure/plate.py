@@ -164,8 +164,7 @@ def _damping_ratios(plate: Plate, frequencies: NDArray[np.float64]) -> NDArray[n
     if len(plate.loss_table) == 1:
         return np.full(frequencies.size, plate.loss_table[0][1] / 2)
     given, loss = np.log(plate.loss_table).T
-    ratios: NDArray[np.float64] = np.exp(np.interp(np.log(frequencies), given, loss)) / 2
-    return ratios
+    return np.asarray(np.exp(np.interp(np.log(frequencies), given, loss)) / 2)
 
 
 def acceleration_model(

@@ -91,10 +91,7 @@ class SineBasis:
         sign = np.where(m % 4 < 2, 1.0, -1.0)  # sin(m pi/2) of even ones, cos(m pi/2) of odd ones
         half = wavenumber[..., None] * (self.length / (2 * np.pi))
         near, far = np.sinc(m / 2 - half), np.sinc(m / 2 + half)
-        transforms: NDArray[np.float64] = (
-            sign * self.length / 2 * np.where(even, near + far, near - far)
-        )
-        return transforms
+        return np.asarray(sign * self.length / 2 * np.where(even, near + far, near - far))
 
 
 @dataclass(frozen=True)
@@ -119,7 +116,10 @@ class LegendreBasis:
         return np.asarray(values, dtype=np.float64)
 
     def transform(self, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Cosine or sine transforms [m], shape (..., n): spherical Bessel functions, integrated."""
+        """Cosine or sine transforms [m], shape (..., n).
+
+        They are spherical Bessel functions, by quadrature.
+        """
         argument = wavenumber * (self.length / 2)
         nodes = int(self.degree + np.max(argument, initial=0.0)) + 2 * SPARE_NODES
         position, weighted = _weighted_legendre(16 * (nodes // 16 + 1), self.degree)
@@ -168,10 +168,8 @@ class SumsOfProducts:
     ) -> NDArray[np.float64]:
         """Values of some modes [-], shape (n, m, n_some)."""
         lines = np.tensordot(along, self.coefficients[some], axes=(1, 1))
-        values: NDArray[np.float64] = across @ lines.swapaxes(1, 2)
-        return values
+        return np.asarray(across @ lines.swapaxes(1, 2))
 
     def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
         """Amplitude of each product."""
-        products: NDArray[np.complex128] = np.tensordot(amplitudes, self.coefficients, axes=1)
-        return products
+        return np.asarray(np.tensordot(amplitudes, self.coefficients, axes=1))

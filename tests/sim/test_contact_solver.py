@@ -49,7 +49,7 @@ def arguments(condition, name, given=None, hooks=(), stiffness=3745.0):
     options = {
         "law": law.torque,
         "coefficients": coefficients,
-        "law_state": law.state(coefficients),
+        "law_state": law.state(),
         "hooks": hooks,
         "tolerance": law.tolerance,
     }

@@ -66,7 +66,7 @@ def solve(*hooks, rig=TRUE_STICK, speed=1.0, interference=0.279e-3, samples=3000
         1.0 / RATE,
         law=law.torque,
         coefficients=coefficients,
-        law_state=law.state(coefficients),
+        law_state=law.state(),
         hooks=hooks,
         refined=refined,
     )
