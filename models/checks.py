@@ -78,6 +78,8 @@ def a_number(
 ) -> float:
     """Return a finite number above `low`, up to `high`; `closed` admits `low` itself.
 
+    All are in the unit that the file's key has [unit of the key].
+
     Raises
     ------
     ParameterError

@@ -116,12 +116,14 @@ def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     Parameters
     ----------
     signal : ndarray, shape (n,)
+        In any [unit].
     factor : int
         Of the rates; 1 leaves the signal as it is.
 
     Returns
     -------
     ndarray, shape (ceil(n / factor),)
+        In the signal's own [unit].
 
     Examples
     --------

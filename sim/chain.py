@@ -75,17 +75,18 @@ def resonance(
     Parameters
     ----------
     numerator : sequence of 3 floats
-        In falling powers of s / omega, over s^2 / omega^2 + 2 zeta s / omega + 1.
+        In falling powers of s / omega [-], over s^2 / omega^2 + 2 zeta s / omega + 1.
     frequency : float
         Undamped natural frequency, below half of `rate` [Hz].
     damping_ratio : float
+        [-]
     rate : float
         Sampling rate [Hz].
 
     Returns
     -------
     ndarray, shape (n,)
-        Exact at the natural frequency (bilinear transform).
+        [-], exact at the natural frequency (bilinear transform).
 
     Examples
     --------
@@ -103,7 +104,7 @@ def resonance(
 
 
 def padded_sum(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Sum of responses of different lengths.
+    """Sum of responses of different lengths, each of shape (n,) and in one [unit].
 
     Examples
     --------
@@ -124,7 +125,7 @@ def filter_pressure(paths: ImpulseResponses, taps: NDArray[np.float64]) -> Impul
     ----------
     paths : ImpulseResponses
     taps : ndarray, shape (n,)
-        Impulse response of the filter, at the rate of the paths.
+        Impulse response of the filter, at the rate of the paths [-].
 
     Returns
     -------

@@ -58,7 +58,7 @@ class BlockRun:
     n_samples : int
         Of all blocks together.
     blocks : iterator of ndarray, shape (n_channels, n)
-        In the units of the channels; can be run through once.
+        In the units of the channels [unit]; can be run through once.
     """
 
     rate: float

@@ -35,22 +35,22 @@ STICK_SPEED_SHARE = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Motion and torques over time, sampled at `rate`; all arrays have shape (n,).
+    """Motion and torques over time, sampled at `rate`.
 
     Parameters
     ----------
     rate : float
         [Hz]
-    torque : ndarray
+    torque : ndarray, shape (n,)
         Torque that the bushing puts into the clamp, T_E [Nm]; what the thesis plots and the
         torque cell is taken to read.
-    friction_torque : ndarray
+    friction_torque : ndarray, shape (n,)
         Torque in the contact [Nm]; differs from `torque` by the inertia of the elastomer.
-    shaft_angle, shaft_speed : ndarray
+    shaft_angle, shaft_speed : ndarray, shape (n,)
         [rad], [rad/s]
-    interface_angle, interface_speed : ndarray
+    interface_angle, interface_speed : ndarray, shape (n,)
         Of the bushing's surface: how far it has been carried along [rad], [rad/s].
-    clamp_angle, clamp_speed : ndarray
+    clamp_angle, clamp_speed : ndarray, shape (n,)
         [rad], [rad/s]
     """
 
@@ -66,7 +66,7 @@ class Motion:
 
     @property
     def sliding_speed(self) -> NDArray[np.float64]:
-        """Speed of the shaft over the bushing's surface [rad/s]."""
+        """Speed of the shaft over the bushing's surface [rad/s], shape (n,)."""
         return self.shaft_speed - self.interface_speed
 
     def part(self, start: int, stop: int | None = None) -> Motion:
@@ -126,8 +126,8 @@ def simulate_motion(
     rng : numpy.random.Generator, optional
         Of effects that scatter; by default seeded with 0.
     tolerance : float, optional
-        Error of a step where the motion has no exact solution; by default that of the friction law,
-        which is less than regimes and spectra need.
+        Error of a step where the motion has no exact solution [-]; by default that of the friction
+        law, which is less than regimes and spectra need.
 
     Returns
     -------
@@ -260,7 +260,7 @@ class _Solver:
             coefficients = law.coefficients(values)
             self._contact = ContactRun(
                 self._packed, *self._torques, start_speed, self._step, law=law.torque,
-                coefficients=coefficients, law_state=law.state(coefficients), hooks=hooks,
+                coefficients=coefficients, law_state=law.state(), hooks=hooks,
                 name=_friction(law.name, effects), tolerance=tolerance or law.tolerance,
             )  # fmt: skip
 
@@ -302,20 +302,20 @@ def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
 
 
 def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
-    """List what acts on the contact, in the order of the effects."""
+    """List what acts on the contact, in the order of the effects.
+
+    Raises
+    ------
+    ParameterError
+        More effects act on the contact than the solver takes.
+    """
     acting = [active for active in effects if active.effect.contact is not None]
     if len(acting) > MOST_HOOKS:
         names = ", ".join(active.effect.name for active in acting)
         raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
-    return tuple(_hook(active, rng) for active in acting)
-
-
-def _hook(active: ActiveEffect, rng: np.random.Generator) -> Hook:
-    effect = active.effect
-    values = np.array(list(active.values.values()))
-    if effect.pack is not None:
-        values = effect.pack(active.form, active.values, rng)
-    return Hook(effect.contact, values, effect.n_states)
+    return tuple(
+        Hook(active.effect.contact, active.packed(rng), active.effect.n_states) for active in acting
+    )
 
 
 def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:

@@ -33,7 +33,24 @@ def refuse_fast(
     law: Mapping[str, float],
     top_speed: float,
 ) -> None:
-    """Refuse what no bearable number of steps follows, by an estimate of the fastest rate."""
+    """Refuse what no bearable number of steps follows, by an estimate of the fastest rate.
+
+    Parameters
+    ----------
+    system : LumpedBushing
+    rig : Rig
+    kinetic_torque : float
+        [Nm]
+    law : mapping of str to float
+        Parameters of the friction law, as `sim.parameters.Parameter` declares their units.
+    top_speed : float
+        Of the shaft [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        Some part of the motion is faster than the solver follows.
+    """
     contact = law.get("contact_stiffness_per_torque", 0.0)
     damping = system.elastomer_damping
     damping += law.get("contact_damping_per_torque", 0.0) * kinetic_torque
@@ -62,7 +79,22 @@ def refuse_fast(
 def refuse_overflow(
     states: NDArray[np.float64], system: LumpedBushing, rig: Rig, top_speed: float
 ) -> None:
-    """Refuse a motion whose end is not finite."""
+    """Refuse a motion whose end is not finite.
+
+    Parameters
+    ----------
+    states : ndarray, shape (n, n_states)
+        Angles [rad] and speeds [rad/s].
+    system : LumpedBushing
+    rig : Rig
+    top_speed : float
+        Of the shaft [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        The last of the states is not finite.
+    """
     if not np.isfinite(states[-1]).all():
         raise ParameterError(f"{_what(system, rig, top_speed)}: the motion grows without bound")
 

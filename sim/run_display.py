@@ -1,4 +1,4 @@
-"""How a run shows itself: a table of what moved and sounded, and its torques over time."""
+"""Display of a run: a table of what moved and sounded, and its torques over time."""
 
 from __future__ import annotations
 

@@ -28,6 +28,7 @@ class Convolution:
     Parameters
     ----------
     responses : sequence of ndarray, shape (m,)
+        [unit of each output over that of the signal]
 
     Examples
     --------

@@ -283,7 +283,4 @@ def overall_level(spectrum: Spectrum, *, reference: float, weighting: str = "Z")
 def _a_response(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
     f2 = frequency**2
     p1, p2, p3, p4 = (pole**2 for pole in _A_POLES)
-    response: NDArray[np.float64] = (p4 * f2**2) / (
-        (f2 + p1) * np.sqrt((f2 + p2) * (f2 + p3)) * (f2 + p4)
-    )
-    return response
+    return np.asarray((p4 * f2**2) / ((f2 + p1) * np.sqrt((f2 + p2) * (f2 + p3)) * (f2 + p4)))

@@ -127,7 +127,7 @@ def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n_samples,)
-        In the signal's unit.
+        In the signal's own [unit].
 
     Raises
     ------
@@ -162,7 +162,7 @@ def forward(signal: NDArray[np.float64], rate: float) -> Transform:
     Parameters
     ----------
     signal : ndarray, shape (n_samples,)
-        Mean removed, in any unit.
+        Mean removed, in any [unit].
     rate : float
         Sampling rate [Hz].
 
@@ -200,7 +200,7 @@ def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[
     Returns
     -------
     samples : ndarray, shape (n,)
-        In the signal's unit.
+        In the signal's own [unit].
     rate : float
         [Hz]; `high` divided by `USABLE_SHARE` to within the rounding of whole samples, at most the
         rate of the signal.

@@ -74,7 +74,7 @@ class Harmonics:
     fundamental : float
         [Hz]; NaN where the signal has no period.
     strength : float
-        Normalised autocorrelation at the period, 0 to 1.
+        Normalised autocorrelation at the period, 0 to 1 [-].
     amplitudes : ndarray, shape (n_harmonics,)
         Peak amplitude of each harmonic up to the upper limit, the fundamental first [unit]; empty
         without a fundamental.

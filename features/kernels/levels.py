@@ -141,13 +141,14 @@ def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
     ----------
     signal : array_like, shape (n_samples,)
     rate : float
+        In any [unit].
         Sampling rate [Hz].
 
     Returns
     -------
     ndarray, shape (n_samples,)
-        Magnitudes are those of IEC 61672-1:2013, Annex E, up to half the sampling rate; phases are
-        left as they are.
+        In the sound's own [unit]. Magnitudes are those of IEC 61672-1:2013, Annex E, up to half
+        the sampling rate; phases are left as they are.
 
     Raises
     ------

@@ -161,7 +161,7 @@ def find_lines(
     low, high : float
         Limits of the search [Hz].
     floor : ndarray, shape (n_bins,), optional
-        `noise_floor` of the spectrum, if it is at hand.
+        `noise_floor` of the spectrum, if it is at hand [unit^2/Hz].
 
     Returns
     -------
@@ -246,10 +246,9 @@ def line_powers(
     excess = np.append(0.0, np.cumsum(spectrum.density - floor)) * spectrum.spacing
     edges = np.append(spectrum.frequency, spectrum.frequency[-1] + spectrum.spacing)
     edges = edges - 0.5 * spectrum.spacing
-    power: NDArray[np.float64] = np.interp(frequency + reach, edges, excess) - np.interp(
-        frequency - reach, edges, excess
+    return np.asarray(
+        np.interp(frequency + reach, edges, excess) - np.interp(frequency - reach, edges, excess)
     )
-    return power
 
 
 def interpolated(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -52,7 +52,7 @@ class Period(NamedTuple):
     frequency : float
         Repetitions in a second [Hz]; NaN if there are none.
     strength : float
-        Normalised autocorrelation at the period: 1 where every period is like the one before, 0
+        Normalised autocorrelation at the period [-]: 1 where every period is like the one before, 0
         where there is none.
     """
 
@@ -71,7 +71,7 @@ def strongest_period(
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        Mean removed.
+        Mean removed, in any [unit].
     rate : float
         Sampling rate [Hz].
     lowest, highest : float
@@ -139,7 +139,7 @@ def track_periods(
     Parameters
     ----------
     power : ndarray, shape (n_segments, n_bins)
-        Of Hann-windowed segments, from 0 Hz; bins that shall not count are 0.
+        In any [unit^2], of Hann-windowed segments, from 0 Hz; bins that shall not count are 0.
     spacing : float
         Distance between the bins [Hz].
     lowest : float
@@ -150,7 +150,7 @@ def track_periods(
     frequency : ndarray, shape (n_segments,)
         [Hz]; NaN where a segment has no period.
     strength : ndarray, shape (n_segments,)
-        Autocorrelation at the period over that of the window (P. Boersma, Proc. Inst. Phonetic
+        Autocorrelation at the period over that of the window [-] (P. Boersma, Proc. Inst. Phonetic
         Sci. 17 (1993) 97-110).
 
     Examples

@@ -31,7 +31,7 @@ def segment_powers(
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        In any unit.
+        In any [unit].
     length : int
         Samples of a segment, at most `n_samples`.
     transform_length : int, optional
@@ -66,7 +66,7 @@ def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex12
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        In any unit.
+        In any [unit].
     length : int
         Samples of a segment, an even number and at most `n_samples`.
 

@@ -70,7 +70,7 @@ class ShortTime:
     second_tone : float
         Mean level of a segment's second line relative to its strongest [dB], at least -20.
     periodicity : float
-        Mean autocorrelation of a segment at its fundamental's period, 0 to 1.
+        Mean autocorrelation of a segment at its fundamental's period, 0 to 1 [-].
     fundamental_wander : float
         Robust standard deviation of the fundamental [octave]; NaN unless four segments have one.
     continuity : float
@@ -99,7 +99,7 @@ def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) 
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        Mean removed, not silent.
+        In any [unit], mean removed, not silent.
     rate : float
         Sampling rate [Hz].
     low, high : float

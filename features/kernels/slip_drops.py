@@ -58,15 +58,15 @@ class TorqueSlips:
     times : ndarray, shape (n_slips,)
         When each drop begins, from the start of the signal [s].
     rate : float
-        Slips in a second, 0 for fewer than two.
+        Slips in a second [1/s], 0 for fewer than two.
     mean_drop : float
         Mean fall [N m].
     drop_variation : float
-        Coefficient of variation of the falls.
+        Coefficient of variation of the falls [-].
     mean_interval : float
         [s]
     interval_variation : float
-        Coefficient of variation of the intervals.
+        Coefficient of variation of the intervals [-].
     glide : float
         Trend of the slip rate [octave/s]: 1 doubles it in a second. Median slope of its logarithm,
         which a slip missed or made up does not move; NaN for fewer than five slips.
@@ -74,13 +74,13 @@ class TorqueSlips:
         Median slope of the torque in the middle of the rises [N m/s]. Its quotient with k_EFF times
         the shaft's speed tells true stick from mere oscillation (thesis, (5.1)).
     stick_curvature : float
-        Slope in the later over that in the earlier half of a rise, median: below 1 where the torque
-        rises ever more slowly (thesis, 5.1.1).
+        Slope in the later over that in the earlier half of a rise, median [-]: below 1 where the
+        torque rises ever more slowly (thesis, 5.1.1).
     stick_fraction : float
         Share of the time between slips in which the torque is on its way up.
     asymmetry : float
-        Skewness of the torque's slope away from zero: strongly negative where it rises slowly and
-        drops, 0 for a harmonic oscillation. Given for any torque that is not constant.
+        Skewness of the torque's slope away from zero [-]: strongly negative where it rises slowly
+        and drops, 0 for a harmonic oscillation. Given for any torque that is not constant.
     """
 
     times: NDArray[np.float64]

@@ -84,9 +84,10 @@ class Spectrum:
 
     @property
     def degrees_of_freedom(self) -> float:
-        """Of the chi-square law that a bin of Gaussian noise follows, segments overlapping by half.
+        """Degrees of freedom of a bin of Gaussian noise, segments overlapping by half [-].
 
-        Welch (1967): the powers of neighbouring Hann segments correlate by 1/36.
+        Those of the chi-square law that the bin follows; Welch (1967): the powers of neighbouring
+        Hann segments correlate by 1/36.
         """
         k = self.n_segments
         return 2.0 * k / (1.0 + (k - 1) / (18.0 * k))
@@ -103,7 +104,7 @@ class SpectralShape:
     spread : float
         Standard deviation about it [Hz].
     flatness : float
-        Geometric over arithmetic mean of the density: near 1 for noise, 0 for a line.
+        Geometric over arithmetic mean of the density [-]: near 1 for noise, 0 for a line.
     roll_off : float
         Frequency below which 85 % of the band's power lies [Hz].
     """

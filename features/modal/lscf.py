@@ -72,8 +72,9 @@ def lasting_poles(
     f : ndarray, shape (n,)
         [Hz], rising, above 0.
     h : ndarray, shape (n_responses, n), complex
+        In any [unit].
     weight : ndarray, shape (n_responses, n)
-        Trust in each line, from 0 to 1.
+        Trust in each line, from 0 to 1 [-].
 
     Returns
     -------
@@ -143,8 +144,7 @@ def line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDAr
     """
     level = np.abs(h)
     largest = level.max(axis=-1, keepdims=True)
-    weights: NDArray[np.float64] = weight / np.sqrt(np.maximum(level, _TINY * largest))
-    return weights
+    return np.asarray(weight / np.sqrt(np.maximum(level, _TINY * largest)))
 
 
 def _bands(f: NDArray[np.float64], size: int) -> list[tuple[slice, float, float]]:

@@ -35,7 +35,7 @@ class Modes:
         Real factors of 1/(i omega)^2, 1, i omega and (i omega)^2, relative to the highest omega:
         what modes outside the band leave in it.
     orders : ndarray, shape (n_modes,)
-        Through how many orders each pole stayed.
+        Through how many orders each pole stayed [-].
     highest : float
         Upper end of the band [Hz].
 
@@ -75,8 +75,7 @@ class Modes:
         """
         basis = modal_basis(self.poles, np.asarray(frequency, dtype=np.float64), self.highest)
         coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
-        response: NDArray[np.complex128] = coefficients @ basis
-        return response
+        return np.asarray(coefficients @ basis)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitudes of the responses that the modes make up, and where the modes are.
@@ -218,8 +217,7 @@ def least_squares(
     scale = np.sqrt(np.maximum(np.sum(parts**2, axis=1), np.finfo(float).tiny))
     parts /= scale[:, None]
     factors = np.linalg.lstsq(parts @ parts.T, parts @ real_and_imaginary(wanted).T, rcond=1e-13)[0]
-    result: NDArray[np.float64] = factors.T / scale
-    return result
+    return np.asarray(factors.T / scale)
 
 
 def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
@@ -228,11 +226,12 @@ def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
     Parameters
     ----------
     values : ndarray, shape (..., n), complex
-        In any unit.
+        In any [unit].
 
     Returns
     -------
     ndarray, shape (..., 2 n)
+        In the unit of the values [unit].
 
     Examples
     --------
@@ -245,7 +244,4 @@ def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
 def _poles(
     frequency: NDArray[np.float64], damping_ratio: NDArray[np.float64]
 ) -> NDArray[np.complex128]:
-    poles: NDArray[np.complex128] = (
-        2 * np.pi * frequency * (-damping_ratio + 1j * np.sqrt(1 - damping_ratio**2))
-    )
-    return poles
+    return np.asarray(2 * np.pi * frequency * (-damping_ratio + 1j * np.sqrt(1 - damping_ratio**2)))

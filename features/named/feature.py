@@ -39,7 +39,7 @@ class Feature:
     compute : callable
         Of a `Prepared` signal.
     silent : float, optional
-        Value for a signal without content; None where `compute` knows itself.
+        Value for a signal without content [unit]; None where `compute` knows itself.
     calibrated : bool
         Whether it needs a calibrated signal; all others do not depend on the gain.
     kinds : tuple of str

@@ -83,7 +83,7 @@ class Prepared:
     Parameters
     ----------
     samples : ndarray, shape (n_samples,)
-        In the channel's unit.
+        In the channel's own [unit].
     rate : float
         Sampling rate [Hz].
     kind : str
@@ -129,17 +129,17 @@ class Prepared:
 
     @cached_property
     def below(self) -> tuple[NDArray[np.float64], float]:
-        """All below the limit, at the working rate, and that rate [Hz]."""
+        """All below the limit, at the working rate, and that rate [Hz]; shape (n,)."""
         return band_signal(self.transform, 0.0, self.limit)
 
     @cached_property
     def in_band(self) -> tuple[NDArray[np.float64], float]:
-        """Part within the band that is described, at the working rate, and that rate [Hz]."""
+        """Part within the band described, at the working rate, and that rate [Hz]; shape (n,)."""
         return band_signal(self.transform, self.low, self.limit)
 
     @cached_property
     def in_band_power(self) -> float:
-        """Mean square of that part."""
+        """Mean square of that part, over that of the signal [-]."""
         return float(np.mean(self.in_band[0] ** 2))
 
     @cached_property
@@ -156,7 +156,7 @@ class Prepared:
 
     @cached_property
     def floor(self) -> NDArray[np.float64]:
-        """Noise floor of the spectrum [1/Hz]."""
+        """Noise floor of the spectrum [1/Hz], shape (n_bins,)."""
         return noise_floor(self.spectrum)
 
     @cached_property

@@ -131,5 +131,4 @@ def _along(paths: ImpulseResponses, path: Path, signal: NDArray[np.float64]) -> 
 
 @lru_cache(maxsize=16)
 def _spectrum(paths: ImpulseResponses, path: Path, size: int) -> NDArray[np.complex128]:
-    spectrum: NDArray[np.complex128] = rfft(getattr(paths, path), size)
-    return spectrum
+    return np.asarray(rfft(getattr(paths, path), size))

@@ -159,6 +159,7 @@ def anchor_drives(modes: PlateModes, arm: float) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n_modes, 2)
+        Modal force for a unit of each [1/sqrt(kg)] and [1/(m sqrt(kg))].
     """
     x, y = modes.plate.clamp_position
     return np.stack(

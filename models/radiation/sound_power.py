@@ -73,11 +73,10 @@ class PowerFlow:
     def radiation_efficiency(self) -> NDArray[np.float64]:
         """Radiated power over that of a rigid piston of equal mean square velocity in plane waves.
 
-        Shape (n,).
+        [-], shape (n,).
         """
         plane = AIR_DENSITY * SOUND_SPEED * self.area * self.mean_square_velocity
-        efficiency: NDArray[np.float64] = self.radiated / plane
-        return efficiency
+        return np.asarray(self.radiated / plane)
 
 
 def power_flow(
@@ -168,6 +167,7 @@ def radiation_efficiency(modes: PlateModes, frequency: ArrayLike) -> NDArray[np.
     Returns
     -------
     ndarray, shape (n_modes, n)
+        [-]
 
     Notes
     -----
@@ -191,6 +191,7 @@ def radiation_efficiency(modes: PlateModes, frequency: ArrayLike) -> NDArray[np.
     return efficiencies
 
 
+@lru_cache(maxsize=4)
 def radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     """Loss factor of each mode by the sound of the upper side, at the mode's own frequency.
 
@@ -201,7 +202,7 @@ def radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n_modes,)
-        rho_0 c sigma / (omega rho h).
+        rho_0 c sigma / (omega rho h) [-].
 
     Examples
     --------
@@ -211,22 +212,19 @@ def radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     >>> float(radiation_loss(plate_modes(steel, 2e3)).max().round(5))  # beside 0.03
     0.00151
     """
-    return _radiation_loss(modes).copy()
-
-
-@lru_cache(maxsize=4)
-def _radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     omega = 2 * np.pi * modes.frequencies
     efficiencies = [
         _efficiencies(modes, slice(r, r + 1), float(omega[r])) for r in range(omega.size)
     ]
     plane = AIR_DENSITY * SOUND_SPEED / (omega * modes.plate.mass_per_area)
-    return plane * np.concatenate(efficiencies)
+    loss = plane * np.concatenate(efficiencies)
+    loss.flags.writeable = False  # shared by all that ask for it
+    return loss
 
 
 def with_radiation_damping(modes: PlateModes) -> PlateModes:
     """Modes that also lose what they radiate, for all that is computed from them."""
-    return replace(modes, damping_ratios=modes.damping_ratios + _radiation_loss(modes) / 2)
+    return replace(modes, damping_ratios=modes.damping_ratios + radiation_loss(modes) / 2)
 
 
 def radiated_power(modes: PlateModes, velocity: NDArray[np.complex128], frequency: float) -> float:
@@ -283,8 +281,7 @@ def _efficiencies(modes: PlateModes, some: slice, omega: float) -> NDArray[np.fl
             field = modes.products.combine(one_along, one_across, some)
             total += np.einsum("st,str->r", weights, field**2)
     area = modes.plate.length * modes.plate.width
-    efficiencies: NDArray[np.float64] = (k / np.pi) ** 2 * total / (area / 4)
-    return efficiencies
+    return np.asarray((k / np.pi) ** 2 * total / (area / 4))
 
 
 def _parities() -> Iterator[tuple[int, int]]:

@@ -127,8 +127,7 @@ def third_octave_power(
     width = np.diff(edges, axis=1)
 
     def in_bands(spectrum: NDArray[np.float64]) -> NDArray[np.float64]:
-        total: NDArray[np.float64] = np.sum(spectrum.reshape(width.shape) * width, axis=1)
-        return total
+        return np.asarray(np.sum(spectrum.reshape(width.shape) * width, axis=1))
 
     radiated = in_bands(flow.radiated)
     plane = AIR_DENSITY * SOUND_SPEED * flow.area * in_bands(flow.mean_square_velocity)

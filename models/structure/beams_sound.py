@@ -160,9 +160,10 @@ def strip_section(
     Returns
     -------
     far, near : ndarray, shape (3,)
-        Numerators: of the sound that falls as 1 / r, and of that which falls as 1 / r^2 and is to
-        be weighted with c / r.
+        Numerators: of the sound that falls as 1 / r [-], and of that which falls as 1 / r^2 and is
+        to be weighted with c / r [s].
     denominator : ndarray, shape (3,)
+        [-]
 
     Examples
     --------
@@ -183,5 +184,4 @@ def strip_section(
 
 def _middles(low: float, high: float) -> NDArray[np.float64]:
     n = math.ceil((high - low) / ELEMENT)
-    middles: NDArray[np.float64] = low + (np.arange(n) + 0.5) * (high - low) / n
-    return middles
+    return np.asarray(low + (np.arange(n) + 0.5) * (high - low) / n)

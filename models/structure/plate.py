@@ -89,6 +89,7 @@ class PlateModes:
         Returns
         -------
         ndarray, shape (..., n_modes)
+            [1/sqrt(kg)]
         """
         return self._at(x, y, 0, 0)
 
@@ -163,8 +164,7 @@ def _damping_ratios(plate: Plate, frequencies: NDArray[np.float64]) -> NDArray[n
     if len(plate.loss_table) == 1:
         return np.full(frequencies.size, plate.loss_table[0][1] / 2)
     given, loss = np.log(plate.loss_table).T
-    ratios: NDArray[np.float64] = np.exp(np.interp(np.log(frequencies), given, loss)) / 2
-    return ratios
+    return np.asarray(np.exp(np.interp(np.log(frequencies), given, loss)) / 2)
 
 
 def acceleration_model(
@@ -176,8 +176,8 @@ def acceleration_model(
     ----------
     modes : PlateModes
     drives : ndarray, shape (n_modes, n_drives)
-        Work of a unit of each drive on the modes: `PlateModes.shape` at the point of a force,
-        `PlateModes.slope` at that of a moment, and sums of such.
+        Work of a unit of each drive on the modes [1/sqrt(kg) for a force]: `PlateModes.shape` at
+        the point of a force, `PlateModes.slope` at that of a moment, and sums of such.
     x, y : array_like, shape (n_points,)
         [m]
 

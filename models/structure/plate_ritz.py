@@ -44,7 +44,7 @@ class RitzModes:
     frequencies : ndarray, shape (n_modes,)
         [Hz], 0 for rigid-body motions.
     coefficients : ndarray, shape (n_modes, n_along, n_across)
-        Of Legendre polynomials in 2 x / length and 2 y / width.
+        [-], of Legendre polynomials in 2 x / length and 2 y / width.
     """
 
     frequencies: NDArray[np.float64]

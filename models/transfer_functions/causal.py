@@ -170,8 +170,7 @@ def _minimum_phase(magnitude: NDArray[np.float64], n_grid: int) -> NDArray[np.co
     cepstrum = irfft(np.log(magnitude), n_grid)
     cepstrum[1 : (n_grid + 1) // 2] *= 2.0
     cepstrum[n_grid // 2 + 1 :] = 0.0
-    spectrum: NDArray[np.complex128] = np.exp(rfft(cepstrum))
-    return spectrum
+    return np.asarray(np.exp(rfft(cepstrum)))
 
 
 def _onset(

@@ -28,7 +28,7 @@ def convolve(
     Parameters
     ----------
     signal : ndarray, shape (n,)
-        In any unit.
+        In any [unit].
     impulse_response : ndarray, shape (m,)
         [unit of the output / unit of the signal]
     spectrum : ndarray, shape (`transform_size` // 2 + 1,), complex, optional
@@ -37,7 +37,7 @@ def convolve(
     Returns
     -------
     ndarray, shape (n,)
-        As long as the signal; what rings on after its end is dropped.
+        In the output's own [unit], as long as the signal; what rings on after its end is dropped.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def filter_period(
     Parameters
     ----------
     period : ndarray, shape (n,)
-        One period, in the transfer function's input unit. A signal that does not repeat is to be
+        One period, in the transfer function's input [unit]. A signal that does not repeat is to be
         led back to its start, else it has a step there.
     rate : float
         Sampling rate [Hz].
@@ -92,7 +92,7 @@ def filter_period(
     Returns
     -------
     ndarray, shape (n,)
-        One period of the output, in the output unit.
+        One period of the output, in the output [unit].
 
     Examples
     --------
@@ -115,7 +115,7 @@ def filter_signal(
     Parameters
     ----------
     signal : ndarray, shape (n,)
-        In the transfer function's input unit.
+        In the transfer function's input [unit].
     rate : float
         Sampling rate [Hz].
     transfer : TransferFunction
@@ -123,7 +123,7 @@ def filter_signal(
     Returns
     -------
     ndarray, shape (n,)
-        In the output unit.
+        In the output [unit].
 
     Examples
     --------

@@ -111,7 +111,7 @@ def largest_sticking(sticks: Callable[[float], bool], highest: float, tolerance:
     Returns
     -------
     float
-        0 if `sticks` is nowhere true, ``inf`` if it is at `highest`.
+        [Nm s/rad]; 0 if `sticks` is nowhere true, ``inf`` if it is at `highest`.
 
     Raises
     ------

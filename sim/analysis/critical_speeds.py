@@ -155,7 +155,7 @@ def motion_from_rest(
 ) -> Motion:
     """Run a rig from rest at constant speed, as regimes are judged by.
 
-    Parameters and errors are those of `regime_at`.
+    Parameters, with their units, and errors are as for `regime_at`.
 
     Returns
     -------

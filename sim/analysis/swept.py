@@ -44,7 +44,7 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
 
     Parameters
     ----------
-    features : mapping of str to ndarray
+    features : mapping of str to ndarray, shape (...)
         By `sim.analysis.sweep.FEATURES`.
     conditions : mapping of str to ndarray
         Of the same shape: ``rig``, ``speed`` [rad/s] or how the shaft turned, ``interference`` [m]

@@ -43,19 +43,19 @@ _CLAMP_INERTIA, _ELASTOMER_INERTIA = 1 / 1200, 1 / 65000
 
 @dataclass(frozen=True, eq=False)
 class ListingRun:
-    """What the program writes, one row a step; all arrays have shape (n,).
+    """What the program writes, one row a step.
 
     Parameters
     ----------
-    time : ndarray
+    time : ndarray, shape (n,)
         [s]
-    torque : ndarray
+    torque : ndarray, shape (n,)
         In the elastomer, of the row before (lines 320 and 650) [Nm].
-    interface_angle, interface_speed : ndarray
+    interface_angle, interface_speed : ndarray, shape (n,)
         Of the bushing's surface [rad], [rad/s].
-    relative_speed : ndarray
+    relative_speed : ndarray, shape (n,)
         Of the bushing's surface less the shaft's [rad/s]; negative while it slips.
-    stuck : ndarray of bool
+    stuck : ndarray of bool, shape (n,)
         Which of the two loops wrote the row.
     """
 

@@ -69,7 +69,8 @@ class Effect:
     contact : compiled function, optional
         Changes the contact while the motion is solved, by `sim.contact.HOOK_SIGNATURE`.
     pack : callable, optional
-        ``pack(form, values, rng)``: the numbers that `contact` reads.
+        ``pack(form, values, rng)``: the numbers that `contact` reads. By default the values of all
+        parameters in their order, and after them the place of the form among `forms`.
     n_states : int
         Inner states of `contact`, zero at the start.
     force : callable, optional
@@ -123,6 +124,15 @@ class ActiveEffect:
     def is_off(self) -> bool:
         """Whether its strength is zero."""
         return self.values[self.effect.strength] == 0.0
+
+    def packed(self, rng: np.random.Generator) -> NDArray[np.float64]:
+        """Return the numbers that its compiled function reads, shape (n,), units by the effect."""
+        effect = self.effect
+        if effect.pack is not None:
+            return effect.pack(self.form, self.values, rng)
+        import numpy as np
+
+        return np.array([*self.values.values(), effect.forms.index(self.form)])
 
 
 def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list[ActiveEffect]:
