@@ -65,6 +65,16 @@ def number(
 ) -> Callable[[str], float]:
     """Return a parser of finite numbers larger than `above`, from `least` up to `most`.
 
+    Parameters
+    ----------
+    above, least, most : float
+        In the unit of the option, such as [mm].
+
+    Returns
+    -------
+    callable
+        Of the text of an option; raises ArgumentTypeError where it is no such number.
+
     Examples
     --------
     >>> number(above=0.0)("0.279")

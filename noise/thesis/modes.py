@@ -75,6 +75,17 @@ def clamp_on_beams(beams: Beams, length: float) -> ClampOnBeams:
 def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
     """Modes of beams of one length [m] with the clamp on the bushing, rigidly anchored [Hz].
 
+    Parameters
+    ----------
+    beams : Beams
+    length : float
+        [m]
+
+    Returns
+    -------
+    ndarray, shape (n_modes,)
+        Rising [Hz].
+
     Examples
     --------
     >>> clamp_modes(rig_of(THESIS).beams, 0.123)[:4].round()

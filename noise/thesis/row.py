@@ -45,7 +45,7 @@ class Published:
     ----------
     text : str
     low, high : float
-        Equal for a number.
+        In the unit of the row [-]; equal for a number.
     """
 
     text: str
@@ -68,22 +68,22 @@ class Published:
 
 
 def number(value: float, text: str | None = None) -> Published:
-    """Return a published number."""
+    """Return a published number, in the unit of its row [-]."""
     return Published(f"{value:g}" if text is None else text, value, value)
 
 
 def below(limit: float) -> Published:
-    """Return a published upper limit."""
+    """Return a published upper limit, in the unit of its row [-]."""
     return Published(f"< {limit:g}", -math.inf, limit)
 
 
 def above(limit: float) -> Published:
-    """Return a published lower limit."""
+    """Return a published lower limit, in the unit of its row [-]."""
     return Published(f"> {limit:g}", limit, math.inf)
 
 
 def between(low: float, high: float, text: str | None = None) -> Published:
-    """Return a published range."""
+    """Return a published range, in the unit of its row [-]."""
     return Published(f"{low:g} to {high:g}" if text is None else text, low, high)
 
 
@@ -96,7 +96,7 @@ class Row:
     item, condition, unit : str
     published : Published
     listing, exact, calibrated : float, optional
-        Computed values; infinite is beyond `limit`.
+        Computed values, in the unit `unit` [-]; infinite is beyond `limit`.
     judged : Column
         Which of them the verdict is on.
     tolerance : float
@@ -107,11 +107,12 @@ class Row:
     meant : Published, optional
         What must have been meant, if the print is wrong.
     as_printed : float, optional
-        What a formula gives as it is printed, where `exact` is what it gives put right.
+        What a formula gives as it is printed, where `exact` is what it gives put right; in the
+        unit `unit` [-].
     scale : float, optional
         What deviations are relative to, where the published value is zero.
     limit : float, optional
-        The last value tried, where a search may end without a result.
+        The last value tried, where a search may end without a result; in the unit `unit` [-].
     digits : int
         Significant digits that are shown.
     """

@@ -68,6 +68,7 @@ class Case:
     speed : float
         [rad/s]
     interference_mm : float
+        [mm]
     support_stiffness : float
         [Nm/rad]
     damping : float, optional
@@ -90,7 +91,7 @@ class Case:
         return self.support_stiffness == FIXED
 
     def at(self, speed: float) -> Case:
-        """Return the case at another speed."""
+        """Return the case at another speed [rad/s]."""
         return replace(self, speed=speed)
 
     def place(self) -> str:
@@ -136,7 +137,7 @@ def _settled(run: Motion) -> Motion:
 
 
 def oscillation(material: str, case: Case) -> float:
-    """Return the standard deviation of the torque over its mean, once the run has settled."""
+    """Return the standard deviation of the torque over its mean [-], once the run has settled."""
     torque = _settled(motion(material, case)).torque
     return float(torque.std() / abs(torque.mean()))
 
@@ -199,7 +200,7 @@ def repetition_rate(material: str, case: Case) -> float | None:
 
 
 def third_over_second(material: str, case: Case) -> float | None:
-    """Amplitude of the third harmonic of the slip frequency over that of the second."""
+    """Amplitude of the third harmonic of the slip frequency over that of the second [-]."""
     slips = slip_frequency(material, case)
     if slips is None:
         return None
@@ -211,7 +212,14 @@ def third_over_second(material: str, case: Case) -> float | None:
 
 
 def listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
-    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute."""
+    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute.
+
+    Parameters
+    ----------
+    case : Case
+    seconds : float
+        Length of the run [s].
+    """
     fit = rig_of(THESIS).fit(case.interference)
     damping = fit.damping[case.support_stiffness] if case.damping is None else case.damping
     return run_listing(
