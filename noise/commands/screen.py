@@ -126,7 +126,7 @@ def run(options: Namespace) -> int:
     import numpy as np
 
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
-    from noise.screening.tables.tables import summary_lines
+    from noise.screening.tables.summary import summary_lines
 
     simulations = options.simulations or DEFAULT_SIMULATIONS
     found = screen(
@@ -193,17 +193,9 @@ def _write(folder: Path, found: Screening) -> None:
     from noise.pictures.files import write_picture
     from noise.pictures.screening import plot_screen
     from noise.screening.design.design_files import copy_design_file
-    from noise.screening.tables import parts_tables as parts, tables
+    from noise.screening.tables.tables import screening_tables
 
-    contents = {
-        "map.csv": (tables.MAP_COLUMNS, tables.map_rows(found)),
-        "critical_speeds.csv": (tables.CRITICAL_COLUMNS, tables.critical_rows(found)),
-        "designs.csv": (tables.DESIGN_COLUMNS, tables.design_rows(found)),
-    }
-    if any(one.robustness is not None for one in found.statistics):
-        contents["sensitivities.csv"] = (parts.SENSITIVITY_COLUMNS, parts.sensitivity_rows(found))
-        contents["advice.csv"] = (parts.ADVICE_COLUMNS, parts.advice_rows(found))
-    for name, (columns, rows) in contents.items():
+    for name, (columns, rows) in screening_tables(found).items():
         write_table(folder / name, columns, rows)
         print(folder / name)
     for name, path in found.files:
