@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import signal
 import threading
-from argparse import ArgumentTypeError
 from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING
 from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, write_table
+from noise.commands.options import refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -56,7 +56,7 @@ def add_batch(parser: ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
-        type=_count,
+        type=whole_number(1),
         default=1,
         metavar="N",
         help="processes that share the work (default: 1); the table is the same",
@@ -117,7 +117,7 @@ def run_batch(
             for job, done in _progress(options, work, jobs, journal):
                 outcomes[job.index] = done
                 if done.error is not None:
-                    say(f"bushing-noise: refused: {_naming(job.path, done.error)}")
+                    refuse(done.error, job.path)
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
         there = [done for done in outcomes if done is not None]
@@ -200,13 +200,3 @@ def _termination_as_interrupt() -> Iterator[None]:
 
 def _exit_code(interrupt: KeyboardInterrupt) -> int:
     return _TERMINATED if isinstance(interrupt, _Terminated) else _INTERRUPTED
-
-
-def _count(text: str) -> int:
-    if not text.strip().isdecimal() or int(text) == 0:
-        raise ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
-    return int(text)
-
-
-def _naming(path: Path, message: str) -> str:
-    return message if path.name in message else f"{path}: {message}"

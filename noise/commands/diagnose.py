@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
-from noise.base.atomic import check_target
 from noise.base.progress import say
 from noise.commands import options as opt
 
@@ -52,9 +50,7 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Diagnose and write."""
     if options.out is not None:
-        if options.out.is_file():
-            raise ParameterError(f"--out {options.out}: is a file; name a folder")
-        check_target(options.out / "report.html")
+        opt.check_folder(options.out, file="report.html")
     say("preparing")
     from models.rig_files.rig_file import load_rig
     from noise.base.user_effects import effect_library

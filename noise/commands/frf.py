@@ -181,7 +181,7 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
                     f"{path}: its response is in {unit}, that of {hits[0].name} in {units[0]}"
                 )
         except RecordingError as error:
-            say(f"bushing-noise: refused: {error}")
+            opt.refuse(error)
             refused += 1
             continue
         hits.append(hit)

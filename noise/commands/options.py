@@ -14,6 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
+from models.errors import ParameterError
+from noise.base.atomic import check_target
+from noise.base.progress import say
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser
@@ -32,7 +35,10 @@ __all__ = [
     "add_condition",
     "add_full_scale",
     "add_seed",
+    "check_folder",
     "number",
+    "refuse",
+    "whole_number",
 ]
 
 DEFAULT_INTERFERENCE_MM = 0.279
@@ -65,6 +71,16 @@ def number(
 ) -> Callable[[str], float]:
     """Return a parser of finite numbers larger than `above`, from `least` up to `most`.
 
+    Parameters
+    ----------
+    above, least, most : float
+        In the unit of the option, such as [mm].
+
+    Returns
+    -------
+    callable
+        Of the text of an option; raises ArgumentTypeError where it is no such number.
+
     Examples
     --------
     >>> number(above=0.0)("0.279")
@@ -83,11 +99,49 @@ def number(
     return parse
 
 
+def whole_number(least: int, *, more: str = "") -> Callable[[str], int]:
+    """Return a parser of whole numbers from `least` on; `more` ends what it says it expected.
+
+    Examples
+    --------
+    >>> whole_number(1)("2")
+    2
+    """
+
+    def parse(text: str) -> int:
+        if not text.strip().isdecimal() or int(text) < least:
+            raise ArgumentTypeError(
+                f"is {text!r}, expected a whole number of {least} or more{more}"
+            )
+        return int(text)
+
+    return parse
+
+
+def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
+    """Refuse a folder of results that cannot be made, or `file` not in it, before the work.
+
+    Raises
+    ------
+    ParameterError
+        It is a file, or cannot be written to.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ParameterError(f"{option} {folder}: is a file; name a folder")
+    check_target(folder / file, option)
+
+
+def refuse(error: object, name: str | Path = "") -> None:
+    """Say that an input is refused, and why; `name` stands before what does not name it."""
+    named = f"{name}: " if Path(name).name not in str(error) else ""
+    say(f"bushing-noise: refused: {named}{error}")
+
+
 def add_seed(parser: ArgumentParser, use: str) -> None:
     """Add ``--seed``, which all commands take; `use` says what it is for."""
     parser.add_argument(
         "--seed",
-        type=_whole_number,
+        type=whole_number(0),
         default=0,
         metavar="N",
         help=f"{use} (a whole number; default: 0)",
@@ -200,12 +254,6 @@ def _number_or_none(text: str) -> float | None:
         return None
 
 
-def _whole_number(text: str) -> int:
-    if not text.strip().isdecimal():
-        raise ArgumentTypeError(f"is {text!r}, expected a whole number of 0 or more")
-    return int(text)
-
-
 def _speed(text: str) -> float | Ramp | Path:
     start, dots, end = text.partition("..")
     if dots and _number_or_none(start) is not None and _number_or_none(end) is not None:
@@ -243,7 +291,6 @@ def _support_stiffness(text: str) -> float:
 
 
 def _effect(text: str) -> LawSpec:
-    from models.errors import ParameterError
     from models.rig_files.rig_file import parse_spec
 
     try:

@@ -104,7 +104,7 @@ def run(options: Namespace) -> int:
         seed=options.seed,
     )
     for refusal in made.refused:
-        say(f"bushing-noise: refused: {refusal.name}: {refusal.reason}")
+        opt.refuse(f"{refusal.name}: {refusal.reason}")
     if made.shortened is not None:
         note(
             f"sounds are cut to {made.shortened:.3g} s to keep to {options.megabytes:g} MB; "

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.atomic import check_target
 from noise.base.progress import say
 from noise.commands import options as opt
 
@@ -108,7 +106,11 @@ def configure(parser: ArgumentParser) -> None:
     )
     shared = parser.add_mutually_exclusive_group()
     shared.add_argument(
-        "--workers", type=_count, default=-1, metavar="N", help="threads (default: one a core)"
+        "--workers",
+        type=opt.whole_number(1),
+        default=-1,
+        metavar="N",
+        help="threads (default: one a core)",
     )
     shared.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
@@ -119,14 +121,12 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
-        if options.out.is_file():
-            raise ParameterError(f"--out {options.out}: is a file; name a folder")
-        check_target(options.out / "map.csv")
+        opt.check_folder(options.out, file="map.csv")
     say("preparing")
     import numpy as np
 
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
-    from noise.screening.tables.tables import summary_lines
+    from noise.screening.tables.summary import summary_lines
 
     simulations = options.simulations or DEFAULT_SIMULATIONS
     found = screen(
@@ -193,17 +193,9 @@ def _write(folder: Path, found: Screening) -> None:
     from noise.pictures.files import write_picture
     from noise.pictures.screening import plot_screen
     from noise.screening.design.design_files import copy_design_file
-    from noise.screening.tables import parts_tables as parts, tables
+    from noise.screening.tables.tables import screening_tables
 
-    contents = {
-        "map.csv": (tables.MAP_COLUMNS, tables.map_rows(found)),
-        "critical_speeds.csv": (tables.CRITICAL_COLUMNS, tables.critical_rows(found)),
-        "designs.csv": (tables.DESIGN_COLUMNS, tables.design_rows(found)),
-    }
-    if any(one.robustness is not None for one in found.statistics):
-        contents["sensitivities.csv"] = (parts.SENSITIVITY_COLUMNS, parts.sensitivity_rows(found))
-        contents["advice.csv"] = (parts.ADVICE_COLUMNS, parts.advice_rows(found))
-    for name, (columns, rows) in contents.items():
+    for name, (columns, rows) in screening_tables(found).items():
         write_table(folder / name, columns, rows)
         print(folder / name)
     for name, path in found.files:
@@ -219,10 +211,6 @@ def _write(folder: Path, found: Screening) -> None:
 
 
 def _simulations(text: str) -> float:
-    return math.inf if text.strip().lower() == "all" else _count(text, ", or all")
-
-
-def _count(text: str, more: str = "") -> int:
-    if not text.strip().isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more{more}")
-    return int(text)
+    if text.strip().lower() == "all":
+        return math.inf
+    return opt.whole_number(1, more=", or all")(text)

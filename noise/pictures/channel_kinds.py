@@ -21,11 +21,11 @@ class Kind:
         As it is written on an axis.
     colour : str
     reference : float
-        Of levels, in the channel's unit; that of ISO 1683 where there is one.
+        Of levels, in the channel's unit, such as [Pa]; that of ISO 1683 where there is one.
     density : str
         The reference of the autospectral density in words.
     least_swing : float
-        Taken for the swing of a signal that swings less, in the channel's unit.
+        Taken for the swing of a signal that swings less, in the channel's unit, such as [Pa].
     quiet : float
         A spectrum's axis ends no lower [dB].
     """

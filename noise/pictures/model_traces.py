@@ -38,11 +38,11 @@ class Trace:
     Parameters
     ----------
     name : str
-    time : ndarray
+    time : ndarray, shape (n,)
         [s]
-    torque, displacement, sliding_speed : ndarray
+    torque, displacement, sliding_speed : ndarray, shape (n,)
         In the elastomer [Nm], of its surface [rad], of the shaft over it [rad/s].
-    clamp_speed : ndarray or None
+    clamp_speed : ndarray or None, shape (n,)
         [rad/s]; the listing does not write it.
     slips : ndarray, shape (n_slips,)
         When slips begin [s].
@@ -70,13 +70,18 @@ class Trace:
         )
 
     def middle(self, seconds: float) -> Trace:
-        """Return so many seconds of the settled run, from its middle on."""
+        """Return so many seconds of the settled run [s], from its middle on."""
         start = 0.5 * float(self.time[-1])
         return self.during(start, start + seconds)
 
     @property
     def clamp_acceleration(self) -> NDArray[np.float64]:
         """Acceleration of the clamp [rad/s^2].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [rad/s^2]
 
         Raises
         ------
@@ -109,6 +114,12 @@ def model_traces(case: Case, seconds: float = 0.5) -> tuple[Trace, ...]:
 def listing_trace(case: Case, seconds: float = 0.5) -> Trace:
     """Run the thesis's program.
 
+    Parameters
+    ----------
+    case : Case
+    seconds : float
+        Length of the run [s].
+
     Examples
     --------
     >>> trace = listing_trace(Case(1.0, 0.279, 3745.0), 0.05)
@@ -130,6 +141,12 @@ def listing_trace(case: Case, seconds: float = 0.5) -> Trace:
 
 def exact_trace(case: Case, seconds: float = 0.5) -> Trace:
     """Run the thesis's equations, solved exactly.
+
+    Parameters
+    ----------
+    case : Case
+    seconds : float
+        Length of the run [s].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One run in one picture: what moved, how it slipped, and what could be heard of it.
+"""Picture of one run: what moved, how it slipped, and what could be heard of it.
 
 Time histories and phase planes show the motion as it was computed, which no sensor sees;
 autospectra show what the sensors recorded, up to half the sampling rate. A linear axis would hide

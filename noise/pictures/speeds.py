@@ -41,7 +41,7 @@ def plot_sweep(
         By the name of the model, all over the same supports.
     title : str
     interference_mm : float, optional
-        Fit whose measurements of the fluorocarbon are drawn as well; none by default.
+        Fit whose measurements of the fluorocarbon are drawn as well [mm]; none by default.
 
     Returns
     -------

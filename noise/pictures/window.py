@@ -91,7 +91,7 @@ def repetition_rate(torque: NDArray[np.floating], rate: float) -> float | None:
     Returns
     -------
     float or None
-        None where the torque does not oscillate, or not regularly.
+        [Hz]; None where the torque does not oscillate, or not regularly.
 
     Examples
     --------

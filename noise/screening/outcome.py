@@ -75,7 +75,13 @@ class Screening:
         return tuple((one.design, why) for one in self.statistics for why in one.failed)
 
     def statistics_of(self, design: str, environment: str = DRY) -> Statistics:
-        """Risk and robustness of a design in an environment."""
+        """Risk and robustness of a design in an environment.
+
+        Raises
+        ------
+        ParameterError
+            There is no such design, or not in this environment.
+        """
         for one in self.statistics:
             if (one.design, one.environment) == (design, environment):
                 return one

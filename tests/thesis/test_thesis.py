@@ -142,7 +142,7 @@ def given(published, exact, **about):
 
 def test_a_verdict_follows_from_the_distance_alone():
     ten = row.number(10.0)
-    assert [given(ten, v) for v in (10.05, 10.3, 12.4, 13.0, None)] == [
+    assert [given(ten, v) for v in (10.05, 10.3, 12.4, 13.0, np.nan)] == [
         "holds", "off by 3.0 %", "off by 24 %", "fails", "not checkable",
     ]  # fmt: skip
     assert given(row.above(13.0), np.inf, limit=13.0) == "holds"

@@ -101,10 +101,11 @@ def sixth_octaves(
     Parameters
     ----------
     signal : ndarray, shape (n_samples,)
+        In any unit, such as [Pa].
     rate : float
         [Hz]
     reference : float
-        Of the levels, in the signal's unit.
+        Of the levels, in the signal's unit, such as [Pa].
 
     Returns
     -------
@@ -234,6 +235,16 @@ def draw(
     axes: Axes, role: str, x: NDArray[np.float64], y: NDArray[np.float64], marker: str = ""
 ) -> None:
     """Draw a curve as all of its role are drawn.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    role : str
+        A key of `CURVES`.
+    x, y : ndarray, shape (n,)
+        In the units of the axes [-].
+    marker : str
+        Of matplotlib; none by default.
 
     Examples
     --------

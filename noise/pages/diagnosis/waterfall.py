@@ -54,10 +54,11 @@ class Waterfall:
     ----------
     bars : tuple of Bar
     floor : float
-        What repeats differ by.
+        What repeats differ by, a gap [-].
     top : float
-        End of the axis.
+        End of the axis, a gap [-].
     ticks : tuple of float
+        Gaps along it [-].
     words : str
         How much is closed, with its interval.
     """

@@ -64,7 +64,7 @@ class Gain:
     stated: bool = False
 
     def of(self, entry: Entry) -> float:
-        """Full scale of an entry's sound, in its unit."""
+        """Full scale of an entry's sound, in its unit, such as [Pa]."""
         return (self.calibrated if entry.calibrated else self.uncalibrated) or 1.0
 
     @property
@@ -98,11 +98,11 @@ class Clip:
     ----------
     flac : bytes
     samples : ndarray of float32, shape (n,)
-        What is in it, in the unit of the entry.
+        What is in it, in the unit of the entry, such as [Pa].
     start, end : float
         Which stretch of the recording it is [s].
     full_scale : float
-        What full scale of it is worth, in the unit of the entry.
+        What full scale of it is worth, in the unit of the entry, such as [Pa].
     """
 
     flac: bytes

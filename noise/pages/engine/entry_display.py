@@ -72,7 +72,7 @@ class EntryDisplay:
     tracks : tuple of (str, tuple of Band)
         Labels in time, by the track that they belong to.
     ticks : tuple of (float, str)
-        Of the time axis: per cent of the clip, and seconds of the recording.
+        Of the time axis: share of the clip [%], and seconds of the recording.
     alt : str
         What the spectrogram shows.
     """

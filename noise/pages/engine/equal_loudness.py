@@ -34,13 +34,13 @@ def equal_factors(sounds: Mapping[str, NDArray[np.float64]]) -> tuple[dict[str, 
 
     Parameters
     ----------
-    sounds : mapping of str to ndarray
-        In fractions of full scale, at the rate of the page.
+    sounds : mapping of str to ndarray, shape (n_samples,)
+        In fractions of full scale [-], at the rate of the page.
 
     Returns
     -------
     factors : dict of str to float
-        Of those that have a loudness and can be raised to that of the others.
+        For those that have a loudness and can be raised to that of the others [-].
     target : float
         The loudness that they then have [LUFS].
 

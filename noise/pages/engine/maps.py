@@ -46,8 +46,9 @@ class Axis:
     Parameters
     ----------
     low, high : float
+        Its ends, in the unit of the axis, such as [rad/s].
     ticks : tuple of (float, str)
-        Where along it, from 0 to 1, and what stands there.
+        Where along it, from 0 to 1 [-], and what stands there.
     """
 
     low: float
@@ -55,7 +56,7 @@ class Axis:
     ticks: tuple[tuple[float, str], ...]
 
     def share(self, value: float) -> float:
-        """Where a value lies, from 0 to 1."""
+        """Where a value, in the unit of the axis, lies from 0 to 1 [-]."""
         return (value - self.low) / (self.high - self.low)
 
 
@@ -77,7 +78,7 @@ class Spot:
     Parameters
     ----------
     x, y : float
-        Along the axes, from 0 to 1.
+        Along the axes, from 0 to 1 [-].
     label : str
     words : str
         What is there.
@@ -111,6 +112,7 @@ def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
     Parameters
     ----------
     values : iterable of float
+        In any unit, such as [rad/s].
     edges : bool
         Whether it ends with the outermost values, because areas do, or leaves room for spots.
 

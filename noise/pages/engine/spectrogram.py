@@ -43,8 +43,9 @@ def line_levels(samples: NDArray[np.float32], reference: float) -> NDArray[np.fl
     Parameters
     ----------
     samples : ndarray, shape (n,)
+        In any unit, such as [Pa].
     reference : float
-        In their unit.
+        Of the levels, in the unit of the samples, such as [Pa].
 
     Returns
     -------
@@ -84,13 +85,32 @@ def line_levels(samples: NDArray[np.float32], reference: float) -> NDArray[np.fl
 
 
 def top(levels: Sequence[NDArray[np.float64]]) -> float:
-    """Return the level of the darkest colour: the highest of all, rounded up to 5 dB."""
+    """Return the level of the darkest colour: the highest of all, rounded up to 5 dB.
+
+    Parameters
+    ----------
+    levels : sequence of ndarray, shape (n_rows, n_columns)
+        Of `line_levels` [dB].
+
+    Returns
+    -------
+    float
+        [dB]
+    """
     highest = max((float(one.max()) for one in levels), default=0.0)
     return 5.0 * math.ceil(highest / 5.0)
 
 
 def picture(levels: NDArray[np.float64], highest: float) -> bytes:
-    """Return levels as a PNG file, `highest` the darkest and `RANGE` below it white."""
+    """Return levels as a PNG file, `highest` the darkest and `RANGE` below it white.
+
+    Parameters
+    ----------
+    levels : ndarray, shape (n_rows, n_columns)
+        Of `line_levels` [dB].
+    highest : float
+        [dB]
+    """
     share = np.clip((levels - highest + RANGE) / RANGE, 0.0, 1.0)
     return _png(np.round(share * (_COLOURS - 1)).astype(np.uint8))
 

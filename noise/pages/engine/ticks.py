@@ -13,7 +13,7 @@ def round_ticks(low: float, high: float, most: int) -> list[float]:
     Parameters
     ----------
     low, high : float
-        Ends of the axis, in its unit.
+        Ends of the axis, in its unit, such as [Hz].
     most : int
         How many steps the axis is divided into at most.
 

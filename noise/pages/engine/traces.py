@@ -51,7 +51,7 @@ class Trace:
     rate : float
         Sampling rate [Hz].
     samples : ndarray, shape (n_shown,)
-        The time history.
+        The time history, in the unit of the channel or in fractions of full scale [-].
     spectrum : Spectrum
         Of the labelled segment, in the square of the samples' unit by Hz.
     analysed : tuple of 2 floats
@@ -68,7 +68,13 @@ class Trace:
 
     @property
     def levels(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Frequencies [Hz] and density levels [dB] between `LOWEST` and `HIGHEST`."""
+        """Frequencies [Hz] and density levels [dB] between `LOWEST` and `HIGHEST`.
+
+        Returns
+        -------
+        frequency, level : ndarray, shape (n_lines,)
+            [Hz] and [dB]
+        """
         frequency = self.spectrum.frequency
         shown = (frequency >= LOWEST) & (frequency <= HIGHEST)
         reference = KINDS[self.kind].reference if self.calibrated else 1.0

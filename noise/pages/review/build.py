@@ -103,7 +103,8 @@ def review(
     seconds : float
         Longest stretch of a recording that is played [s].
     megabytes : float
-        Size of the page; where it does not hold all, sounds are shortened, and the page says so.
+        Size of the page [MB]; where it does not hold all, sounds are shortened, and the page says
+        so.
     simulated : int
         How many sounds are simulated for the maps of screens, of all maps together.
     classify : bool

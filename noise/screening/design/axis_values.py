@@ -25,6 +25,13 @@ MOST_POINTS = 2000
 def spread(low: float, high: float, points: int) -> tuple[float, ...]:
     """Return evenly spaced values, written as short as they are distinct.
 
+    Parameters
+    ----------
+    low, high : float
+        Ends, in the unit of the axis, such as [rad/s].
+    points : int
+        2 or more.
+
     Examples
     --------
     >>> spread(0.25, 1.0, 4)
@@ -58,7 +65,7 @@ def text_values(
     points : int
         Of a range without one, where there is no step.
     low : float
-        Least value, in the unit of the axis.
+        Least value, in the unit of the axis, such as [rad/s].
     open_low : bool
         Whether `low` itself is refused.
     fixed : bool
@@ -67,7 +74,7 @@ def text_values(
     Returns
     -------
     tuple of float
-        Rising, each once.
+        Rising, each once, in the unit of the axis, such as [rad/s].
 
     Raises
     ------

@@ -77,7 +77,7 @@ class Tolerance:
         Parameters
         ----------
         nominal : float
-            In the unit of `PARAMETERS`.
+            In the unit of `PARAMETERS`, such as [Nm].
 
         Returns
         -------

@@ -51,14 +51,14 @@ class DesignMap:
         ``steady`` or ``swinging``.
     grid : Grid
         Shape (n_temperatures, n_supports, n_fits, n_speeds).
-    regime, label : ndarray of str
-    level : ndarray
+    regime, label : ndarray of str, shape of the grid
+    level : ndarray, shape of the grid
         L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
-    loudness : ndarray
+    loudness : ndarray, shape of the grid
         N10 [sone]; NaN where it was not asked for.
-    how : ndarray of str
+    how : ndarray of str, shape of the grid
         ``simulated``, ``stability``, ``refined`` or ``unchanged``.
-    growth : ndarray
+    growth : ndarray, shape of the grid
         Of a small vibration about steady sliding [1/s]; NaN where the shaft swings.
     open : int
         Points beside a boundary that were left to their nearest neighbour.

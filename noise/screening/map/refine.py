@@ -89,7 +89,7 @@ def refined_map(
         Codes that mean steady sliding.
     stable : ndarray of bool, `shape`, optional
         Where steady sliding is linearly stable; without it stability has no say.
-    label_of : ndarray of int, optional
+    label_of : ndarray of int, shape (n_codes,), optional
         Of each code what it is foremost; boundaries of that are simulated first.
     stride : int or tuple of int
         Points from corner to corner of the coarse cells; of rows and of columns.

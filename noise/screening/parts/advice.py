@@ -38,17 +38,18 @@ class Advice:
     name : str
         Of the parameter.
     value : float
-        To set it to, in the unit of the design variable.
+        To set it to, in the unit of the design variable, such as [-] of a factor.
     change : float
         From the nominal value, as a share of it [-].
     cost : float
-        In the unit of the design variable's cost.
+        In the unit of the design variable's cost, any that all share [-].
     enough : bool
         Whether it brings what was asked for; otherwise it is what serves best within the range.
     steady : bool
         Whether a somewhat larger change brings it as well; otherwise it stands on an island.
     gain : float
-        Margin gained by it, in the margin's unit; NaN where no margin was asked for.
+        Margin gained by it, in the margin's unit, such as [rad/s]; NaN where no margin was asked
+        for.
     slope : float
         Margin gained by small changes, over the change as a share of the nominal value; NaN where
         no margin was asked for, or where it is infinite close by.
@@ -82,9 +83,9 @@ def increase_margin(
         Of parameters, shape (n, d), a row a design; returns n margins, which may be infinite.
     variables : sequence of DesignVariable, length d
     gain : float
-        By which the margin shall grow, above 0.
+        By which the margin shall grow, above 0, in its unit, such as [rad/s].
     budget : float
-        That no change may cost more than.
+        That no change may cost more than, in the unit of the costs [-].
 
     Returns
     -------
@@ -146,7 +147,7 @@ def remove_noise(
     noises : collection of str
         The labels that shall not be.
     budget : float
-        That no change may cost more than.
+        That no change may cost more than, in the unit of the costs [-].
 
     Returns
     -------

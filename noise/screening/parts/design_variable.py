@@ -18,7 +18,8 @@ class DesignVariable:
     ----------
     name : str
     low, high : float
-        The least and the most that can be had, in the unit of the parameter.
+        The least and the most that can be had, in the unit of the parameter, such as [-] of a
+        factor.
     nominal : float
         As it is; the default suits parameters that are given as factors [-].
     cost : float
@@ -55,7 +56,7 @@ class DesignVariable:
         Parameters
         ----------
         budget : float
-            In the unit of the cost.
+            In the unit of the cost [-].
 
         Examples
         --------
@@ -67,6 +68,16 @@ class DesignVariable:
 
     def price(self, value: float) -> float:
         """Cost of a change to a value of the parameter.
+
+        Parameters
+        ----------
+        value : float
+            In the unit of the parameter, such as [-] of a factor.
+
+        Returns
+        -------
+        float
+            In the unit of `cost` [-].
 
         Examples
         --------

@@ -30,5 +30,5 @@ class Estimate:
 
     @property
     def half_width(self) -> float:
-        """Half the length of the interval."""
+        """Half the length of the interval, in the unit of the value [-]."""
         return 0.5 * (self.high - self.low)

@@ -56,12 +56,12 @@ class Outcomes:
 
     Parameters
     ----------
-    labels : ndarray of str
+    labels : ndarray of str, shape (n,)
         Noise at the point of use; empty texts where it was not asked for.
-    v_crit1, v_crit2 : ndarray
+    v_crit1, v_crit2 : ndarray, shape (n,)
         [rad/s], as of `noise.screening.ranking.margins`; NaN where they were not asked for, v_crit1
         also where stability, which does not know it, tells v_crit2.
-    margin : ndarray
+    margin : ndarray, shape (n,)
         Of the use to what vibrates [rad/s], positive where nothing does; ``inf`` where nothing
         vibrates at any speed tried, and NaN where it was not asked for.
     """

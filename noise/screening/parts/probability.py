@@ -65,7 +65,7 @@ class Probabilities:
 
     @property
     def half_width(self) -> float:
-        """Of the widest interval."""
+        """Of the widest interval [-]."""
         return max(estimate.half_width for estimate in self.by_label.values())
 
     def any_but(self, label: str = "none") -> Estimate:

@@ -155,7 +155,7 @@ def robustness(
         What may be changed, as factors by the names of
         `noise.screening.design.tolerances.PARAMETERS`.
     budget : float
-        That no change may cost more than, in the unit of the variables' costs.
+        That no change may cost more than, in the unit of the variables' costs [-].
     risk : int, optional
         The design's risk number, where it is known already.
     workers : int

@@ -27,7 +27,18 @@ class Distribution(Protocol):
     """How one parameter varies: a frozen distribution of `scipy.stats`."""
 
     def ppf(self, probability: NDArray[np.float64], /) -> NDArray[np.float64]:
-        """Value that the parameter stays below with a probability [-]."""
+        """Value that the parameter stays below with a probability.
+
+        Parameters
+        ----------
+        probability : ndarray, shape (n,)
+            [-]
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            In the unit of the parameter, such as [-] of a factor.
+        """
 
 
 def parts(
@@ -45,7 +56,8 @@ def parts(
     Returns
     -------
     ndarray, shape (n, d)
-        A row a part, a column a parameter, in the units of the distributions.
+        A row a part, a column a parameter, in the units of the distributions, such as [-] of
+        factors.
 
     Examples
     --------

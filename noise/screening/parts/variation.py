@@ -102,8 +102,8 @@ def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig
     rig : Rig
     point : UsePoint
     factors : mapping of str to float
-        By the names of `noise.screening.design.tolerances.PARAMETERS`. That of the temperature is
-        one of absolute temperature; a critical torque is at least the kinetic one.
+        By the names of `noise.screening.design.tolerances.PARAMETERS` [-]. That of the temperature
+        is one of absolute temperature; a critical torque is at least the kinetic one.
 
     Raises
     ------

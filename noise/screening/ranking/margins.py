@@ -44,12 +44,12 @@ class CriticalPoint:
     support_stiffness : float
         [Nm/rad]
     v_crit1, v_crit2 : float
-        By simulation; 0 if there is none, ``inf`` if it is the fastest of the map.
+        By simulation [rad/s]; 0 if there is none, ``inf`` if it is the fastest of the map.
     v_crit2_stability : float
-        By stability; likewise.
+        By stability [rad/s]; likewise.
     margin_v_crit1, margin_v_crit2, margin_stability : float
-        Of the use to what sticks, to what vibrates, and to where sliding is unstable; positive
-        where no speed of use does.
+        Of the use to what sticks, to what vibrates, and to where sliding is unstable [rad/s];
+        positive where no speed of use does.
     """
 
     design: str
@@ -110,7 +110,7 @@ def range_of(
         Rising [rad/s].
     happens : ndarray of bool, shape (n,)
     crossing : ndarray, shape (n,), optional
-        What is above zero where it happens; the speeds are then those at which it is zero.
+        Any measure above zero where it happens [-]; the speeds are then those at which it is zero.
 
     Returns
     -------

@@ -55,7 +55,7 @@ class Standing:
     v_crit1, v_crit2 : float
         Largest of all fits, supports and temperatures [rad/s]; NaN where the shaft swings.
     margin_v_crit1, margin_v_crit2, margin_stability : float
-        Smallest likewise.
+        Smallest likewise [rad/s].
     """
 
     rank: int
@@ -79,7 +79,7 @@ def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    level : ndarray
+    level : ndarray, any shape
         [dB(A)]
 
     Returns

@@ -63,7 +63,7 @@ def risk_grades(
 
     Returns
     -------
-    ndarray
+    ndarray, shape of the arguments
         From 1 to 10 [-], not rounded.
 
     Raises

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.html_table import html_table
 from noise.screening.design.tolerances import PARAMETERS
-from noise.screening.ranking.risk import risk_band
-from noise.screening.tables.parts_tables import probability_words, sensitivity_words
+from noise.screening.tables.summary import probability_words, risk_words, sensitivity_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,18 +17,7 @@ if TYPE_CHECKING:
     from noise.screening.outcome import Screening
     from noise.screening.parts.robustness import Robustness
 
-__all__ = ["design_html", "risk_words", "robustness_html", "screening_html"]
-
-
-def risk_words(risk: int | None) -> str:
-    """Tell a risk number with its band.
-
-    Examples
-    --------
-    >>> risk_words(4), risk_words(None)
-    ('4 (conditional)', 'not known')
-    """
-    return "not known" if risk is None else f"{risk} ({risk_band(risk)})"
+__all__ = ["design_html", "robustness_html", "screening_html"]
 
 
 def screening_html(found: Screening) -> str:
