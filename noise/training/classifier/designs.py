@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from models.rig import Fit, LawSpec, Microphone, Plate, Rig
 from models.rig_files.rig_file import load_material_rig
+from noise.training.draws import log_uniform
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 
@@ -103,11 +104,9 @@ def random_design(rng: np.random.Generator) -> Design:
     if near and math.isfinite(support):
         support *= math.exp(rng.normal(0.0, 0.02))
     elif rng.random() < 0.4:
-        support = math.exp(rng.uniform(math.log(1700.0), math.log(10000.0)))
-    if tight:  # slow creaks have few slips a second
-        speed = math.exp(rng.uniform(math.log(0.1), math.log(15.0)))
-    else:
-        speed = float(rng.uniform(0.5, 13.0))
+        support = log_uniform(1700.0, 10000.0, rng)
+    # Slow creaks have few slips a second.
+    speed = log_uniform(0.1, 15.0, rng) if tight else float(rng.uniform(0.5, 13.0))
     return Design(rig, speed, interference, support)
 
 

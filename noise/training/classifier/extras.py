@@ -6,10 +6,10 @@ The strengths go from hardly there to well beyond what repeats differ by. `frict
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from models.rig import LawSpec
+from noise.training.draws import log_uniform
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -76,5 +76,5 @@ def _drawn(name: str, ranges: dict[str, tuple[float, float]], rng: np.random.Gen
     forms = EFFECTS[name].forms
     values: dict[str, float | str] = {"form": forms[int(rng.integers(len(forms)))]}
     for key, (low, high) in ranges.items():
-        values[key] = math.exp(rng.uniform(math.log(low), math.log(high)))
+        values[key] = log_uniform(low, high, rng)
     return LawSpec(name, values)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import background, coloured_noise
+from noise.training.classifier.augmentation.backgrounds import background
+from noise.training.draws import coloured_noise
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,13 +7,12 @@ of level of its own, so that a level that changes says nothing about what sounds
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import log_uniform, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -56,12 +55,8 @@ def _course(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64
     level = depth * wandering(n, rate, speed, rng)
     if rng.random() < _FADES_OUT:
         start = rng.uniform(0.1, 1.0) * time[-1]
-        level -= _rate(15.0, 250.0, rng) * np.maximum(time - start, 0.0)
+        level -= log_uniform(15.0, 250.0, rng) * np.maximum(time - start, 0.0)
     if rng.random() < _FADES_IN:
         end = rng.uniform(0.0, 0.5) * time[-1]
-        level -= _rate(30.0, 600.0, rng) * np.maximum(end - time, 0.0)
+        level -= log_uniform(30.0, 600.0, rng) * np.maximum(end - time, 0.0)
     return np.asarray(np.maximum(level - level.max(), _LOWEST))
-
-
-def _rate(low: float, high: float, rng: np.random.Generator) -> float:
-    return math.exp(rng.uniform(math.log(low), math.log(high)))

@@ -35,6 +35,7 @@ from noise.inference.inputs import (
 )
 from noise.noise_definition import label_by_physics
 from noise.training.classifier.augmentation.recorder import resampled
+from noise.training.draws import log_uniform
 from noise.training.inference.recording_chain import recorded
 from sim.run import simulate
 
@@ -99,9 +100,9 @@ def _draw_run(rng: np.random.Generator) -> Run:
     low, high = SPEED_RANGE
     # Evenly by logarithm, for the slow creaks, and evenly, where squawk and squeal part.
     even = rng.random() < 0.5
-    speed = rng.uniform(low, high) if even else math.exp(rng.uniform(math.log(low), math.log(high)))
+    speed = rng.uniform(low, high) if even else log_uniform(low, high, rng)
     softest, stiffest = SUPPORT_RANGE
-    support = math.exp(rng.uniform(math.log(softest), math.log(stiffest)))
+    support = log_uniform(softest, stiffest, rng)
     if rng.random() < _FIXED_SHARE:
         support = FIXED
     return simulate(

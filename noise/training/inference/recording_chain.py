@@ -15,6 +15,8 @@ import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import fftconvolve
 
+from noise.training.draws import log_uniform
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -77,8 +79,8 @@ def _through_a_microphone(
 ) -> NDArray[np.float64]:
     """Colour by first-order slopes at both ends of the band and a gentle ripple between."""
     frequency = rfftfreq(sound.size, 1.0 / rate)
-    low = math.exp(rng.uniform(math.log(15.0), math.log(250.0)))
-    high = math.exp(rng.uniform(math.log(5e3), math.log(20e3)))
+    low = log_uniform(15.0, 250.0, rng)
+    high = log_uniform(5e3, 20e3, rng)
     gain = 1.0 / np.sqrt(
         (1.0 + (low / np.maximum(frequency, 1.0)) ** 2) * (1.0 + (frequency / high) ** 2)
     )

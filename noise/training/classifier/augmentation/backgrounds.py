@@ -2,33 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
+from noise.training.draws import coloured_noise, log_uniform
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["background", "coloured_noise"]
-
-
-def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``.
-
-    Examples
-    --------
-    >>> noise = coloured_noise(1000, 1.0, np.random.default_rng(0))
-    >>> round(float(noise.std()), 6)
-    1.0
-    """
-    m = next_fast_len(n, real=True)
-    spectrum = rfft(rng.standard_normal(m))
-    frequency = np.arange(spectrum.size, dtype=float)
-    frequency[0] = 1.0
-    noise = irfft(spectrum * frequency ** (-0.5 * slope), m)[:n]
-    return np.asarray(noise / noise.std())
+__all__ = ["background"]
 
 
 def background(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -74,7 +58,7 @@ def _hump(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     m = next_fast_len(n, real=True)
     spectrum = rfft(rng.standard_normal(m))
     frequency = np.maximum(np.arange(spectrum.size) * rate / m, 1.0)
-    centre = math.exp(rng.uniform(math.log(150.0), math.log(1000.0)))
+    centre = log_uniform(150.0, 1000.0, rng)
     octaves = np.log2(frequency / centre) / rng.uniform(0.5, 1.5)
     noise = irfft(spectrum * np.exp(-0.5 * octaves**2), m)[:n]
     return np.asarray(noise / noise.std())
