@@ -21,8 +21,7 @@ from features.kernels.spectra import autospectrum
 from models.errors import ParameterError
 from noise.noise_definition import is_ambiguous, label_by_physics, run_criteria
 from noise.training.classifier.augmentation.recorder import RATES
-from noise.training.classifier.designs import random_design
-from noise.training.classifier.extras import random_extras
+from noise.training.classifier.designs import random_design, random_extras
 from noise.training.draws import log_uniform
 from sim.acquisition import Acquisition
 from sim.analysis.regime import Regime, friction_regime

@@ -15,21 +15,12 @@ import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import fftconvolve
 
-from noise.training.draws import log_uniform
+from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["recorded"]
-
-
-def _coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``."""
-    spectrum = rfft(rng.standard_normal(n))
-    frequency = np.arange(spectrum.size, dtype=float)
-    frequency[0] = 1.0
-    noise = irfft(spectrum * frequency ** (-0.5 * slope), n)
-    return np.asarray(noise / noise.std())
 
 
 def recorded(
@@ -54,7 +45,7 @@ def recorded(
     signal = _through_a_microphone(signal, rate, rng)
     level = float(signal.std())
     snr = rng.uniform(6.0, 50.0) if rng.random() < 0.8 else 60.0
-    noise = _coloured_noise(signal.size, rng.uniform(0.0, 2.0), rng)
+    noise = coloured_noise(signal.size, rng.uniform(0.0, 2.0), rng)
     noise_level = level * 10.0 ** (-snr / 20.0) if level > 0.0 else 1.0
     signal = signal + noise_level * noise
     return np.asarray(signal / signal.std())
