@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from features.kernels.stick_rate import stick_rate_of
 from features.named.band_features import BAND_FEATURES
 from features.named.prepared import ACOUSTIC_KINDS, prepare
 from features.named.spectral_features import SPECTRAL_FEATURES
@@ -194,6 +193,8 @@ def recording_features(
     >>> found["pressure_line_count"], found["torque_slip_rate"]
     (0.0, nan)
     """
+    from features.kernels.stick_rate import stick_rate_of
+
     found: dict[str, float] = {}
     for kind in KINDS:
         wanted = {f"{kind}_{feature.name}": feature for feature in features_of(kind)}

@@ -17,8 +17,8 @@ from noise.audio import QUIETEST_FULL_SCALE, audible, common_full_scale, write_a
 from noise.base.progress import say, track
 from noise.base.tables import write_table
 from noise.classifier import load_classifier
+from noise.labels.labelling import COLUMNS, label_rows
 from noise.labels.segments import file_label, label_recording
-from noise.labels.table import COLUMNS, label_rows
 from noise.pages import ReportEntry, write_report
 from noise.recordings import read_recording, write_recording
 from sim.run import simulate

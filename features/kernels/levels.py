@@ -9,12 +9,11 @@ segments are long enough for four bins in the lowest band; a band of fewer bins 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import fft, signal as sig
+from scipy import fft
 
 from features.kernels.bands import a_weighting, band_levels, fine_third_octaves
 from features.kernels.conditioning import checked_signal
@@ -25,11 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FAST",
-    "LEAST_SHARE_DB",
     "SoundLevels",
     "a_weighted",
     "fast_levels",
-    "relative_db",
     "sound_levels",
 ]
 
@@ -39,9 +36,6 @@ FAST = 0.125
 _MARGIN = 0.25
 """By which a sound is continued on either side, turned about its last sample [s]: cut off, a hum
 would click louder than it hums. The lowest pole of the A-weighting has died away by then."""
-
-LEAST_SHARE_DB = -80.0
-"""Lowest relative level that is told from nothing [dB]."""
 
 _BLOCK = 30.0
 """Transformed at once [s], so that a long recording takes little memory."""
@@ -206,28 +200,9 @@ def fast_levels(
     >>> round(float(fast_levels(burst, 48e3, reference=1.0).max()), 1)
     -1.0
     """
+    from scipy.signal import lfilter
+
     x = checked_signal(signal, rate)
     kept = float(np.exp(-1.0 / (FAST * rate)))
-    smoothed = sig.lfilter([1.0 - kept], [1.0, -kept], x**2)
+    smoothed = lfilter([1.0 - kept], [1.0, -kept], x**2)
     return band_levels(smoothed, reference)
-
-
-def relative_db(part: float, whole: float) -> float:
-    """Level of a part relative to a whole, at least -80 dB.
-
-    Parameters
-    ----------
-    part, whole : float
-        Mean squares [unit^2]; the latter is positive.
-
-    Returns
-    -------
-    float
-        [dB]
-
-    Examples
-    --------
-    >>> relative_db(0.5, 5.0), relative_db(0.0, 1.0)
-    (-10.0, -80.0)
-    """
-    return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))

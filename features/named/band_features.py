@@ -14,8 +14,7 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
-from features.kernels.bands import NOMINAL_THIRD_OCTAVES, REFERENCES
-from features.kernels.levels import LEAST_SHARE_DB
+from features.kernels.bands import LEAST_SHARE_DB, NOMINAL_THIRD_OCTAVES, REFERENCES
 from features.named.feature import THESIS_NOISES, THIS, Feature
 
 if TYPE_CHECKING:

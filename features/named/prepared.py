@@ -15,7 +15,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from features.kernels.bands import THESIS_BANDS, band_power, fine_third_octaves
+from features.kernels.bands import (
+    LEAST_SHARE_DB,
+    THESIS_BANDS,
+    band_power,
+    fine_third_octaves,
+    relative_db,
+)
 from features.kernels.conditioning import (
     ACOUSTIC_FROM,
     NOTHING,
@@ -27,24 +33,17 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
-from features.kernels.levels import LEAST_SHARE_DB, relative_db
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
-from features.kernels.modulation import Modulation, modulation
-from features.kernels.short_time import ShortTime, short_time
 from features.kernels.slip_drops import TorqueSlips, torque_slips
-from features.kernels.slip_pulses import (
-    Pulses,
-    envelope_kurtosis,
-    pulse_band_from,
-    pulses_of,
-    squared,
-)
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from features.kernels.conditioning import Transform
+    from features.kernels.modulation import Modulation
+    from features.kernels.short_time import ShortTime
+    from features.kernels.slip_pulses import Pulses
 
 __all__ = ["ACOUSTIC_KINDS", "TOP_BANDS", "Prepared", "prepare"]
 
@@ -184,6 +183,8 @@ class Prepared:
     @cached_property
     def short_time(self) -> ShortTime:
         """Tones and levels of its short segments, and how they change from one to the next."""
+        from features.kernels.short_time import short_time
+
         x, rate = self.in_band
         return short_time(x, rate, low=self.low, high=self.limit)
 
@@ -195,6 +196,8 @@ class Prepared:
     @cached_property
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
+        from features.kernels.slip_pulses import pulse_band_from, pulses_of
+
         high, rate = band_analytic(self.transform, pulse_band_from(self.limit), self.limit)
         start = self.transform.lead / self.rate
         return pulses_of(self.analytic[0], high, rate, start=start)
@@ -202,6 +205,9 @@ class Prepared:
     @cached_property
     def modulation(self) -> Modulation:
         """Modulation of the envelope."""
+        from features.kernels.modulation import modulation
+        from features.kernels.slip_pulses import squared
+
         analytic, rate = self.analytic
         return modulation(np.sqrt(squared(analytic)), rate)
 
@@ -270,6 +276,8 @@ class Prepared:
     def _top_band(self, low: float, high: float) -> TopBand:
         if high > usable_limit(self.rate):
             return TopBand(math.nan, math.nan)
+        from features.kernels.slip_pulses import envelope_kurtosis, squared
+
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)
         level = relative_db(0.5 * float(power.mean()), self.in_band_power)

@@ -12,8 +12,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from features.kernels.bands import REFERENCES, overall_level
-from features.kernels.levels import relative_db
+from features.kernels.bands import REFERENCES, overall_level, relative_db
 from features.named.feature import PEETERS, PITCH, THESIS_NOISES, THESIS_SPECTRA, THIS, Feature
 from features.named.prepared import ACOUSTIC_KINDS
 

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.bands import band_power
+from features.kernels.bands import band_power, relative_db
 from features.kernels.conditioning import usable_limit
-from features.kernels.levels import relative_db
 from features.named.feature import THESIS_STICK_SLIP, THIS, Feature
 from features.named.spectral_features import HARMONIC_FEATURES, LINE_FEATURES
 

@@ -105,8 +105,8 @@ def _check_exports(options: Namespace) -> None:
 
 def _from_tables(options: Namespace) -> int:
     """Join label tables, and write what was asked for."""
-    from noise.labels.reading import read_label_table
-    from noise.labels.table import COLUMNS
+    from noise.labels.labelling import COLUMNS
+    from noise.labels.table import read_label_table
 
     if options.out is None and options.map is None and options.audacity is None:
         raise ParameterError(

@@ -54,7 +54,7 @@ def label(
     Returns
     -------
     LabelTable
-        A list of one dict a segment, by `noise.labels.COLUMNS`, in the order of the files.
+        A list of one dict a segment, by `noise.labels.labelling.COLUMNS`, in the files' order.
 
     Raises
     ------

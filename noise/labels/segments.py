@@ -12,10 +12,15 @@ import numpy as np
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
 from noise.base.label_names import LABELS
-from noise.labels.frequencies import segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
 from noise.labels.segmentation import change_points, labelled_stretches
-from noise.labels.windows import FEATURE_NAMES, can_be_described, describe, tracks
+from noise.labels.windows import (
+    FEATURE_NAMES,
+    can_be_described,
+    describe,
+    segment_frequency,
+    tracks,
+)
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:

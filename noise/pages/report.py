@@ -56,7 +56,7 @@ class ReportEntry:
     --------
     >>> import numpy as np
     >>> from models.recording import Channel, Recording
-    >>> from noise.labels import Segment
+    >>> from noise.labels.segments import Segment
     >>> hum = Recording(np.zeros((1, 48000)), 48e3, (Channel("pressure"),))
     >>> ReportEntry("run07", hum, Segment("all", 0.0, 1.0, "none", {}, None, 30.0, -90.0)).title
     'run07'

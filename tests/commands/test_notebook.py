@@ -22,7 +22,8 @@ from models.html_table import MOST_ROWS, html_table
 from models.recording import Channel, Recording
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.inference import Inferred, Interval
-from noise.labels import LabelTable, Segment, Segments
+from noise.labels.segments import Segment, Segments
+from noise.labels.table import LabelTable
 from noise.pictures.conditions import LABEL_COLOURS
 from sim.shaft import SpeedRamp
 from tests.helpers.made_diagnoses import one_effect

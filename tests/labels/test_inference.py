@@ -20,10 +20,10 @@ from noise.base.tables import write_table
 from noise.classifier import LABELS
 from noise.inference import Interval, infer_stretch, load_inference
 from noise.inference.inputs import LONGEST, QUANTITIES, scaled, unscaled
-from noise.labels import Segment, label_rows
 from noise.labels.conditions import conditions_map
-from noise.labels.reading import read_label_table
-from noise.labels.table import COLUMNS
+from noise.labels.labelling import COLUMNS, label_rows
+from noise.labels.segments import Segment
+from noise.labels.table import read_label_table
 from noise.recordings.blocks import RecordingBlocks
 from noise.training.inference.fit import coverage, draw_run_sample, train_inference
 from noise.training.inference.population import draw_audible_run

@@ -15,7 +15,7 @@ from noise.labels.segmentation import change_points, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import blocks as blocks_module
 from noise.recordings.blocks import RecordingBlocks, open_blocks
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
+from noise.training.draws import coloured_noise
 
 
 def recording(*rows, rate=48_000.0, names=("pressure", "acceleration", "torque")):

@@ -12,7 +12,7 @@ from features.kernels.spectra import autospectrum
 from models.rig_files.rig_file import load_material_rig
 from noise.classifier import load_classifier
 from noise.demo import CASES
-from noise.labels import file_label, label_recording
+from noise.labels.segments import file_label, label_recording
 from noise.noise_definition import label_by_physics
 from sim.effects.slip_pulse import torque_drops
 from sim.run import simulate

@@ -5,10 +5,10 @@ import pytest
 from scipy.signal import hilbert
 
 from features.kernels.harmonics import analyse_harmonics
+from noise.training.classifier.augmentation.backgrounds import quiet
 from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, background_sound
+from noise.training.classifier.background_sounds.animals import chirping
 from noise.training.classifier.background_sounds.building import harmonics, repeated, voiced
-from noise.training.classifier.background_sounds.insects import chirping
-from noise.training.classifier.quiet import quiet
 
 RATE = 48e3
 

@@ -10,7 +10,7 @@ from noise.classifier import LABELS
 from noise.noise_definition import label_by_physics
 from noise.training.classifier.bushing_recordings import bushing_recording
 from noise.training.classifier.bushings import random_run, stretch
-from noise.training.classifier.extras import random_extras
+from noise.training.classifier.designs import random_extras
 from noise.training.classifier.samples import SHARES, SOURCES, draw, draw_from
 from sim.effects import EFFECTS
 

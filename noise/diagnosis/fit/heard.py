@@ -10,7 +10,7 @@ from features.kernels.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
 from noise.classifier import load_classifier
 from noise.diagnosis.outcome import Heard
-from noise.labels import file_label, label_recording
+from noise.labels.segments import file_label, label_recording
 
 if TYPE_CHECKING:
     from models.recording import Recording

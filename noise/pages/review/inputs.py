@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.tables import TABLE_ENDINGS
-from noise.labels.reading import read_label_table
+from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
 from noise.recordings.files import READERS
 

@@ -13,8 +13,8 @@ from models.errors import BushingNoiseError, RecordingError
 from noise.audio.sound import audible
 from noise.base.progress import track
 from noise.classifier import load_classifier
+from noise.labels.labelling import label_rows
 from noise.labels.segments import label_recording
-from noise.labels.table import label_rows
 from noise.pages.engine.clips import BYTES_A_SECOND, SHORTEST
 from noise.pages.engine.entry import RATE, Entry, stretch_start
 from noise.pages.review.inputs import Refusal

@@ -20,7 +20,7 @@ from noise.diagnosis.evidence.evidence import evidence, scale_of
 from noise.training.trees import boosted_trees, boosting
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -179,13 +179,7 @@ def with_channels(case: Known, channels: Sequence[str]) -> Known:
     def without(rows: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(kept, rows, np.nan)
 
-    changed = replace(
-        table,
-        measured=without(table.measured),
-        nominal=without(table.nominal),
-        scatter=without(table.scatter),
-    )
-    return replace(case, table=changed)
+    return replace(case, table=with_rows(table, without))
 
 
 def with_fewer(case: Known, rng: np.random.Generator) -> Known:
@@ -195,14 +189,21 @@ def with_fewer(case: Known, rng: np.random.Generator) -> Known:
     if n <= _FEWEST_RECORDINGS:
         return case
     chosen = np.sort(rng.choice(n, int(rng.integers(_FEWEST_RECORDINGS, n)), replace=False))
-    changed = replace(
+    conditions = tuple(table.conditions[i] for i in chosen)
+    changed = with_rows(table, lambda rows: rows[chosen])
+    return replace(case, table=replace(changed, conditions=conditions))
+
+
+def with_rows(
+    table: CaseTable, change: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+) -> CaseTable:
+    """Return a table with the same change of measured, nominal and scattered numbers."""
+    return replace(
         table,
-        measured=table.measured[chosen],
-        nominal=table.nominal[chosen],
-        scatter=table.scatter[chosen],
-        conditions=tuple(table.conditions[i] for i in chosen),
+        measured=change(table.measured),
+        nominal=change(table.nominal),
+        scatter=change(table.scatter),
     )
-    return replace(case, table=changed)
 
 
 _OWN = (

@@ -21,8 +21,8 @@ from features.kernels.spectra import autospectrum
 from models.errors import ParameterError
 from noise.noise_definition import is_ambiguous, label_by_physics, run_criteria
 from noise.training.classifier.augmentation.recorder import RATES
-from noise.training.classifier.designs import random_design
-from noise.training.classifier.extras import random_extras
+from noise.training.classifier.designs import random_design, random_extras
+from noise.training.draws import log_uniform
 from sim.acquisition import Acquisition
 from sim.analysis.regime import Regime, friction_regime
 from sim.effects import EFFECTS
@@ -179,7 +179,7 @@ def _random_shaft(speed: float, seconds: float, rng: np.random.Generator) -> Sha
     if chance < 0.85:
         share = math.exp(rng.uniform(-0.4, 0.4))
         return SpeedRamp(speed, speed * share, 0.2 + seconds)
-    frequency = math.exp(rng.uniform(math.log(0.15), math.log(1.5)))
+    frequency = log_uniform(0.15, 1.5, rng)
     amplitude = speed / (2.0 * math.pi * frequency)
     return Oscillation(amplitude, frequency)
 

@@ -25,11 +25,9 @@ from noise.base.label_names import LABELS
 from noise.classifier.model import Classifier, has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings.blocks import RecordingBlocks
-from noise.training.classifier.operating_point import fit_calibration, means_of_groups
+from noise.training.classifier.operating_point import fit_calibration, means_of_groups, scores
 from noise.training.classifier.own_samples import OWN_WEIGHT, own_card, split_files
-from noise.training.classifier.samples import draw
-from noise.training.classifier.scores import scores
-from noise.training.classifier.swells import swelling
+from noise.training.classifier.samples import draw, swelling
 from noise.training.trees import grow_boosted_trees
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from models.errors import BushingNoiseError, RecordingError
 from noise.base.label_names import LABELS
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.audacity import read_label_track
-from noise.labels.reading import read_label_table
+from noise.labels.table import read_label_table
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 

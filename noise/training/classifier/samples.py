@@ -8,13 +8,14 @@ through rooms, microphones, recorders and codecs (`noise.training.classifier.aug
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
+from noise.training.classifier.augmentation.backgrounds import quiet
 from noise.training.classifier.augmentation.recorder import augmented
 from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, background_sound
 from noise.training.classifier.bushing_recordings import bushing_recording
@@ -22,7 +23,7 @@ from noise.training.classifier.bushings import random_run
 from noise.training.classifier.friction_sources.creaks import CREAKS, creak
 from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
 from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
-from noise.training.classifier.quiet import quiet
+from noise.training.draws import log_uniform, wandering
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     from models.condition import Condition
 
-__all__ = ["SHARES", "SOURCES", "Drawn", "draw", "draw_from"]
+__all__ = ["SHARES", "SOURCES", "Drawn", "draw", "draw_from", "swelling"]
 
 _RATE = 48_000.0
 """Sampling rate of friction sources and background sounds [Hz]."""
@@ -51,6 +52,14 @@ _LABEL_SHARES = {"creak": 0.42, "squeal": 0.42, "squawk": 0.16}
 
 SOURCES = ("bushing", *_FRICTION, *(f"background:{name}" for name in RECIPES), "quiet")
 """All that is drawn from."""
+
+
+_EVEN = 0.35
+"""Share of the samples that stay as they are."""
+
+_FADES_OUT, _FADES_IN = 0.5, 0.35
+_LOWEST = -80.0
+"""Where a fade ends [dB]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,3 +177,39 @@ def _augmented(
 def _picked(shares: Mapping[str, float], rng: np.random.Generator) -> str:
     weights = np.array(list(shares.values()))
     return list(shares)[int(rng.choice(weights.size, p=weights / weights.sum()))]
+
+
+def swelling(drawn: Drawn, rng: np.random.Generator) -> Drawn:
+    """Return a sample with a course of level; one of several channels stays as it is.
+
+    What a simulated machine does for a second it does evenly; whoever opens a door, or cuts the
+    recording of it, does not. All that a microphone alone records, background sounds too, gets a
+    course of level of its own, so that a level that changes says nothing about what sounds.
+
+    Examples
+    --------
+    >>> drawn = draw_from("friction:chalk_squeal", np.random.default_rng(0))
+    >>> other = swelling(drawn, np.random.default_rng(1))
+    >>> bool(np.abs(other.recording.samples).max() <= 2.0 * np.abs(drawn.recording.samples).max())
+    True
+    """
+    recording = drawn.recording
+    if len(recording.channels) > 1 or rng.random() < _EVEN:
+        return drawn
+    n, rate = recording.samples.shape[1], recording.rate
+    gain = 10.0 ** (_course(n, rate, rng) / 20.0)
+    return replace(drawn, recording=replace(recording, samples=recording.samples * gain))
+
+
+def _course(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Level over time [dB], 0 at most."""
+    time = np.arange(n) / rate
+    depth, speed = rng.uniform(0.0, 8.0), rng.uniform(0.3, 4.0)
+    level = depth * wandering(n, rate, speed, rng)
+    if rng.random() < _FADES_OUT:
+        start = rng.uniform(0.1, 1.0) * time[-1]
+        level -= log_uniform(15.0, 250.0, rng) * np.maximum(time - start, 0.0)
+    if rng.random() < _FADES_IN:
+        end = rng.uniform(0.0, 0.5) * time[-1]
+        level -= log_uniform(30.0, 600.0, rng) * np.maximum(end - time, 0.0)
+    return np.asarray(np.maximum(level - level.max(), _LOWEST))

@@ -22,7 +22,7 @@ import numpy as np
 
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
-from models.rig import Fit, LawSpec, Rig
+from models.rig import LawSpec, Rig
 from models.rig_files.rig_file import load_material_rig
 from noise.inference.inputs import (
     INTERFERENCE_RANGE,
@@ -35,6 +35,8 @@ from noise.inference.inputs import (
 )
 from noise.noise_definition import label_by_physics
 from noise.training.classifier.augmentation.recorder import resampled
+from noise.training.classifier.designs import SHAPES, scaled
+from noise.training.draws import log_uniform
 from noise.training.inference.recording_chain import recorded
 from sim.run import simulate
 
@@ -45,9 +47,6 @@ __all__ = ["AudibleRun", "draw_audible_run"]
 
 _FIXED_SHARE = 0.25
 _SCATTER = 0.03
-_SHAPES = {"weakening_exponent"}
-"""Parameters that make the friction law what it is, and so do not scatter."""
-
 _GAIN_SCATTER = 0.03
 """Of calibrations [1]."""
 
@@ -99,9 +98,9 @@ def _draw_run(rng: np.random.Generator) -> Run:
     low, high = SPEED_RANGE
     # Evenly by logarithm, for the slow creaks, and evenly, where squawk and squeal part.
     even = rng.random() < 0.5
-    speed = rng.uniform(low, high) if even else math.exp(rng.uniform(math.log(low), math.log(high)))
+    speed = rng.uniform(low, high) if even else log_uniform(low, high, rng)
     softest, stiffest = SUPPORT_RANGE
-    support = math.exp(rng.uniform(math.log(softest), math.log(stiffest)))
+    support = log_uniform(softest, stiffest, rng)
     if rng.random() < _FIXED_SHARE:
         support = FIXED
     return simulate(
@@ -124,7 +123,7 @@ def _specimen(rng: np.random.Generator) -> Rig:
         return LawSpec(
             spec.name,
             {
-                name: about(value) if isinstance(value, float) and name not in _SHAPES else value
+                name: about(value) if isinstance(value, float) and name not in SHAPES else value
                 for name, value in spec.parameters.items()
             },
         )
@@ -135,19 +134,9 @@ def _specimen(rng: np.random.Generator) -> Rig:
         elastomer_inertia=about(rig.elastomer_inertia),
         clamp_inertia=about(rig.clamp_inertia),
         elastomer_damping_share=about(rig.elastomer_damping_share),
-        fits=tuple(_scaled(fit, stiffness, torque, damping) for fit in rig.fits),
+        fits=tuple(scaled(fit, stiffness, torque, damping) for fit in rig.fits),
         friction=jittered(rig.friction),
         effects=tuple(jittered(spec) for spec in rig.effects),
-    )
-
-
-def _scaled(fit: Fit, stiffness: float, torque: float, damping: float) -> Fit:
-    return replace(
-        fit,
-        elastomer_stiffness=fit.elastomer_stiffness * stiffness,
-        critical_torque=fit.critical_torque * torque,
-        kinetic_torque=fit.kinetic_torque * torque,
-        damping={support: c * damping for support, c in fit.damping.items()},
     )
 
 

@@ -15,19 +15,12 @@ import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import fftconvolve
 
+from noise.training.draws import coloured_noise, log_uniform
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["recorded"]
-
-
-def _coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``."""
-    spectrum = rfft(rng.standard_normal(n))
-    frequency = np.arange(spectrum.size, dtype=float)
-    frequency[0] = 1.0
-    noise = irfft(spectrum * frequency ** (-0.5 * slope), n)
-    return np.asarray(noise / noise.std())
 
 
 def recorded(
@@ -52,7 +45,7 @@ def recorded(
     signal = _through_a_microphone(signal, rate, rng)
     level = float(signal.std())
     snr = rng.uniform(6.0, 50.0) if rng.random() < 0.8 else 60.0
-    noise = _coloured_noise(signal.size, rng.uniform(0.0, 2.0), rng)
+    noise = coloured_noise(signal.size, rng.uniform(0.0, 2.0), rng)
     noise_level = level * 10.0 ** (-snr / 20.0) if level > 0.0 else 1.0
     signal = signal + noise_level * noise
     return np.asarray(signal / signal.std())
@@ -77,8 +70,8 @@ def _through_a_microphone(
 ) -> NDArray[np.float64]:
     """Colour by first-order slopes at both ends of the band and a gentle ripple between."""
     frequency = rfftfreq(sound.size, 1.0 / rate)
-    low = math.exp(rng.uniform(math.log(15.0), math.log(250.0)))
-    high = math.exp(rng.uniform(math.log(5e3), math.log(20e3)))
+    low = log_uniform(15.0, 250.0, rng)
+    high = log_uniform(5e3, 20e3, rng)
     gain = 1.0 / np.sqrt(
         (1.0 + (low / np.maximum(frequency, 1.0)) ** 2) * (1.0 + (frequency / high) ** 2)
     )

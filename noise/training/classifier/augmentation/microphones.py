@@ -9,6 +9,8 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import lfilter
 
+from noise.training.draws import log_uniform
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -38,8 +40,8 @@ def through_a_microphone(
         low, high = rng.uniform(80.0, 250.0), rng.uniform(6.5e3, 12e3)
         order, most = 4, 7.0
     else:
-        low = math.exp(rng.uniform(math.log(15.0), math.log(250.0)))
-        high = math.exp(rng.uniform(math.log(5e3), math.log(20e3)))
+        low = log_uniform(15.0, 250.0, rng)
+        high = log_uniform(5e3, 20e3, rng)
         order, most = 2, 4.0
     gain = 1.0 / np.sqrt(
         (1.0 + (low / np.maximum(frequency, 1.0)) ** order) * (1.0 + (frequency / high) ** order)

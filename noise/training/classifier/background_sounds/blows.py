@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
-from noise.training.classifier.background_sounds.building import blow, log_uniform, resonance
+from noise.training.classifier.background_sounds.building import (
+    blow,
+    resonance,
+)
+from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from collections.abc import Callable

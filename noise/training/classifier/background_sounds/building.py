@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import coloured_noise, log_uniform, wandering
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,24 +19,12 @@ __all__ = [
     "arch",
     "blow",
     "harmonics",
-    "log_uniform",
     "placed",
     "repeated",
     "resonance",
     "through_formants",
     "voiced",
 ]
-
-
-def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
-    """Draw evenly in the logarithm.
-
-    Examples
-    --------
-    >>> 1.0 <= log_uniform(1.0, 100.0, np.random.default_rng(0)) <= 100.0
-    True
-    """
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 def harmonics(

@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import fftconvolve, lfilter
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.background_sounds.building import (
     blow,
-    log_uniform,
     placed,
     repeated,
     resonance,
 )
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import coloured_noise, log_uniform, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

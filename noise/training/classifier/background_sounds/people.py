@@ -6,18 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.background_sounds.building import (
     arch,
     harmonics,
-    log_uniform,
     placed,
     repeated,
     resonance,
     through_formants,
     voiced,
 )
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import coloured_noise, log_uniform, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

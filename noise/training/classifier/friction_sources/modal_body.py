@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
+from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -112,7 +112,7 @@ def overlapping_modes(rate: float, rng: np.random.Generator) -> NDArray[np.float
     >>> bool(np.abs(sound[:100]).max() > np.abs(sound[-100:]).max())
     True
     """
-    lasting = math.exp(rng.uniform(math.log(0.001), math.log(0.025)))
+    lasting = log_uniform(0.001, 0.025, rng)
     n = int(7.0 * lasting * rate)
     sound = coloured_noise(n, rng.uniform(-0.6, 1.2), rng)
     sound *= np.exp(-np.arange(n) / (lasting * rate))

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.friction_sources.limit_cycle import (
     ENVELOPE_RATE,
     amplitudes,
     carried,
 )
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import coloured_noise, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
