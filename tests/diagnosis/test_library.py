@@ -13,7 +13,7 @@ from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.truth import KINDS
 from noise.diagnosis.cases.unknown_effects import STRANGERS, draw_stranger
-from noise.diagnosis.simulated.chain_run import CHANNELS
+from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.build import known_cases_of_a_rig
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, SECONDS, at, run

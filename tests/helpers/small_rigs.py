@@ -10,8 +10,8 @@ import numpy as np
 from models.condition import KnownCondition
 from models.rig import Fit, LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.diagnosis.simulated.chain_run import chain_of, record, run_signals
-from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
+from noise.diagnosis.simulated.repeats import record, run_signals
+from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transfer_functions
 from noise.recordings import write_recording
 from sim.effects import EFFECTS
 from sim.effects.effect import activated

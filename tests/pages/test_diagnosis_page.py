@@ -22,9 +22,9 @@ from noise.diagnosis.outcome import (
     from_json,
 )
 from noise.diagnosis.text.sentences import verdict_sentence
-from noise.pages import write_diagnosis
 from noise.pages.diagnosis.answer_display import cause_rows, parameter_rows, stage_boxes
 from noise.pages.diagnosis.figures import cycle_window, illustration_panels, sixth_octaves
+from noise.pages.diagnosis.page import write_diagnosis
 from noise.pages.diagnosis.sounds import LONGEST, illustration_entries, reported_entries
 from noise.pages.diagnosis.waterfall import waterfall
 from noise.pages.engine.clips import common_gain, make_clips

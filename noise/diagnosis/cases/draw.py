@@ -21,8 +21,7 @@ from noise.diagnosis.cases.structures import draw_structure
 from noise.diagnosis.cases.truth import KINDS, Truth
 from noise.diagnosis.cases.unknown_effects import STRANGERS, draw_stranger
 from noise.diagnosis.cases.variants import draw_variant
-from noise.diagnosis.gap.scatter import Scatter
-from noise.diagnosis.simulated.chain_run import CHANNELS, run_signals
+from noise.diagnosis.simulated.repeats import CHANNELS, Scatter, run_signals
 from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS

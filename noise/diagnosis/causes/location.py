@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.evidence.bands import BAND_EDGES
+from noise.diagnosis.evidence.channel_summary import BAND_EDGES
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.outcome import Location, StageFinding
 from sim.effects.effect import Stage

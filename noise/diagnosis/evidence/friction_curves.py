@@ -16,7 +16,7 @@ import numpy as np
 from noise.diagnosis.evidence.channel_summary import shaft_speed
 from noise.diagnosis.evidence.contact_summary import slip_starts
 from noise.diagnosis.evidence.reconstruction import reconstruct
-from noise.diagnosis.gap.scatter import Scatter
+from noise.diagnosis.simulated.repeats import Scatter
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:

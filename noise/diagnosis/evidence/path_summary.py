@@ -14,7 +14,7 @@ import numpy as np
 from scipy.fft import irfft, rfft
 
 from features.kernels.segments import segment_spectra
-from noise.diagnosis.evidence.bands import USABLE, band_bins, segment_frequency
+from noise.diagnosis.evidence.channel_summary import USABLE, band_bins, segment_frequency
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -17,11 +17,12 @@ import numpy as np
 
 from features.kernels.segments import segment_spectra
 from models.condition import known_condition
-from noise.diagnosis.evidence.bands import band_bins, segment_frequency
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
+    band_bins,
     channel_summary,
     hum_summary,
+    segment_frequency,
     shaft_speed,
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts

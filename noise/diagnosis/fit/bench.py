@@ -19,9 +19,9 @@ from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import summary, through_same
 from noise.diagnosis.gap.distance import group_costs
 from noise.diagnosis.gap.floor import condition_key, references_of
-from noise.diagnosis.gap.scatter import Scatter
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.repeats import Scatter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

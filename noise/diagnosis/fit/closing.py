@@ -10,16 +10,16 @@ interval is for what the effect closes, of which the fit has shown a part.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from noise.diagnosis.gap.distance import closed_fraction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scores", "closed_fraction", "closed_interval", "closed_share", "root"]
-
-_Gap = TypeVar("_Gap", float, "NDArray[np.float64]")
+__all__ = ["Scores", "closed_interval", "closed_share", "root"]
 
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor."""
@@ -49,22 +49,6 @@ class Scores:
 def root(squared: NDArray[np.float64]) -> float:
     """Distance of recordings together, of their squared ones."""
     return float(np.sqrt(np.mean(squared)))
-
-
-def closed_fraction(before: _Gap, after: _Gap, floor: _Gap | float = 1.0) -> _Gap:
-    """Share of what lies above the floor that is closed; negative where the gap grew [-].
-
-    Parameters
-    ----------
-    before, after, floor : float or ndarray
-        Gaps without and with a change, and that of repeats, all in the same unit.
-
-    Examples
-    --------
-    >>> closed_fraction(3.0, 1.5)
-    0.75
-    """
-    return (before - after) / (before - floor)
 
 
 def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> float | None:

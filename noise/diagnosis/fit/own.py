@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.fit.closing import closed_fraction
+from noise.diagnosis.gap.distance import closed_fraction
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

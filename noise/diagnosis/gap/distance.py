@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -29,8 +29,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "LEAST_SCALE", "Gap", "Reference", "gap_of", "group_costs", "reference", "scattered_enough",
-]  # fmt: skip
+    "LEAST_SCALE",
+    "Gap",
+    "Reference",
+    "closed_fraction",
+    "gap_of",
+    "group_costs",
+    "reference",
+    "scattered_enough",
+]
+
+_Distance = TypeVar("_Distance", float, "NDArray[np.float64]")
 
 _BEND = 3.0
 """Deviations beyond so many standard deviations count linearly."""
@@ -271,6 +280,24 @@ def _moments(s: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.fl
 
 def _squared(deviation: NDArray[np.float64]) -> float:
     return float(np.nanmean(group_costs(deviation)))
+
+
+def closed_fraction(
+    before: _Distance, after: _Distance, floor: _Distance | float = 1.0
+) -> _Distance:
+    """Share of what lies above the floor that is closed; negative where the gap grew [-].
+
+    Parameters
+    ----------
+    before, after, floor : float or ndarray
+        Gaps without and with a change, and that of repeats, all in the same unit.
+
+    Examples
+    --------
+    >>> closed_fraction(3.0, 1.5)
+    0.75
+    """
+    return (before - after) / (before - floor)
 
 
 _GROUP_OF = group_of()

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
-from noise.diagnosis.gap.blocks import block_signatures
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
     gap_of,
@@ -24,7 +23,7 @@ from noise.diagnosis.gap.distance import (
     reference,
     scattered_enough,
 )
-from noise.diagnosis.gap.signature import GROUPS, group_of, signature
+from noise.diagnosis.gap.signature import GROUPS, block_signatures, group_of, signature
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
     from noise.diagnosis.gap.distance import Gap, Reference
-    from noise.diagnosis.gap.scatter import Scatter
+    from noise.diagnosis.simulated.repeats import Scatter
     from sim.effects.effect import Effect
 
 __all__ = ["case_gap", "condition_key", "references_of", "repeat_gap", "widening"]

@@ -17,10 +17,13 @@ import numpy as np
 from models.condition import known_condition
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.floor import condition_key
-from noise.diagnosis.gap.scatter import Scatter, perturb_run
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
-from noise.diagnosis.simulated.chain_run import chain_of, plan_repeat, record
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, shift_clamp_mode
+from noise.diagnosis.simulated.repeats import Scatter, perturb_run, plan_repeat, record
+from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
+    chain_of,
+    shift_clamp_mode,
+)
 from sim.acquisition import decimate
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
