@@ -92,10 +92,10 @@ def diagnose_case(
     )
     if not quick:
         from noise.diagnosis.fit.fits import (
-            with_fits,  # loads the classifier; no part of a quick answer
+            add_fits,  # loads the classifier; no part of a quick answer
         )
 
-        diagnosis = with_fits(case, diagnosis, table, posterior, library, known, seed, tell)
+        diagnosis = add_fits(case, diagnosis, table, posterior, library, known, seed, tell)
     return replace(diagnosis, seconds=time.perf_counter() - started)
 
 

@@ -18,8 +18,8 @@ __all__ = [
     "ROLES",
     "Diagnosis",
     "EffectFinding",
-    "Heard",
     "Illustration",
+    "LabelsAndLevels",
     "Location",
     "StageFinding",
     "as_json",
@@ -116,7 +116,7 @@ class EffectFinding:
 
 
 @dataclass(frozen=True)
-class Heard:
+class LabelsAndLevels:
     """What the user hears of it, of one held-out recording: label and level [dB(A)]."""
 
     recording: str
@@ -174,7 +174,7 @@ class Diagnosis:
         That it took.
     notes : tuple of str
         What is missing and what that costs; channels in bad health.
-    heard : tuple of Heard
+    labels_and_levels : tuple of LabelsAndLevels
     illustrations : tuple of Illustration
     differences : tuple of Location
         Every stage, channel, band and phase with its p-value, corrected for the number of looks;
@@ -202,7 +202,7 @@ class Diagnosis:
     p_value: float
     seconds: float
     notes: tuple[str, ...] = ()
-    heard: tuple[Heard, ...] = ()
+    labels_and_levels: tuple[LabelsAndLevels, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
 
@@ -265,7 +265,7 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
                 "label": {role: heard.of(role)[0] for role in ROLES},
                 "level_dba": {role: _rounded(heard.of(role)[1], 1) for role in ROLES},
             }
-            for heard in diagnosis.heard
+            for heard in diagnosis.labels_and_levels
         ],
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
@@ -316,8 +316,8 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
         p_value=_number(data.get("p_value")),
         seconds=_number(data.get("seconds")),
         notes=tuple(map(str, data.get("notes") or ())),
-        heard=tuple(
-            Heard(
+        labels_and_levels=tuple(
+            LabelsAndLevels(
                 one["recording"],
                 *(one["label"].get(role) for role in ROLES),
                 *(one["level_dba"].get(role) for role in ROLES),

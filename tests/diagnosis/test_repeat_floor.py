@@ -12,7 +12,7 @@ from models.condition import Condition
 from models.rig_files.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.distance import gap_of, reference
-from noise.diagnosis.gap.floor import case_gap, condition_key, repeat_gap, widening
+from noise.diagnosis.gap.floor import case_gap, condition_key, floor_widening, repeat_gap
 from noise.diagnosis.gap.signature import GROUPS, NAMES, block_signatures, signature
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.repeats import Scatter
@@ -138,8 +138,8 @@ def test_repeats_that_differ_more_than_simulated_ones_widen_the_floor(transfers)
     simulated = [_signatures(transfers, range(100, 112), at=at) for at in AT]
     usual = [_signatures(transfers, range(4), at=at) for at in AT]
     loose = [_signatures(transfers, range(4), at=at, scatter=Scatter(0.08)) for at in AT]
-    assert widening(list(zip(usual, simulated, strict=True))).tolist() == [1.0] * len(GROUPS)
-    assert (widening(list(zip(loose, simulated, strict=True)))[:3] > 1.5).all()
+    assert floor_widening(list(zip(usual, simulated, strict=True))).tolist() == [1.0] * len(GROUPS)
+    assert (floor_widening(list(zip(loose, simulated, strict=True)))[:3] > 1.5).all()
 
 
 def test_a_wider_floor_is_a_shorter_gap(transfers):

@@ -57,9 +57,11 @@ def run(condition, *effects, seed=0, seconds=SECONDS, rate=RATE, rig=RIG, librar
     if support not in _TRANSFERS:
         _TRANSFERS[support] = torque_transfer_functions(RIG, condition.interference, support)
     active = activated([LawSpec(name, values) for name, values in effects], library)
-    blows = any(e.effect.force is not None or e.effect.chain is not None for e in active)
+    impacts = any(e.effect.force is not None or e.effect.chain is not None for e in active)
     fine = DIAGNOSIS.rate(rate)
-    chain = chain_of(rig, condition.interference, support, _TRANSFERS[support], fine, blows=blows)
+    chain = chain_of(
+        rig, condition.interference, support, _TRANSFERS[support], fine, impacts=impacts
+    )
     rng = np.random.default_rng(seed)
     signals = run_signals(rig, condition, active, chain, seconds, rng)
     return record(signals, rate, condition, rng, decimation=DIAGNOSIS.decimation(rate))

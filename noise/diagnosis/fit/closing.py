@@ -19,7 +19,7 @@ from noise.diagnosis.gap.distance import closed_fraction
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scores", "closed_interval", "closed_share", "root"]
+__all__ = ["Scores", "closed_interval", "closed_share", "rms"]
 
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor."""
@@ -46,7 +46,7 @@ class Scores:
     after: NDArray[np.float64]
 
 
-def root(squared: NDArray[np.float64]) -> float:
+def rms(squared: NDArray[np.float64]) -> float:
     """Distance of recordings together, of their squared ones."""
     return float(np.sqrt(np.mean(squared)))
 
@@ -59,7 +59,7 @@ def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> flo
     >>> closed_share(np.array([9.0]), np.array([4.0])), closed_share(np.array([2.0]), np.ones(1))
     (0.5, None)
     """
-    gap, left = root(before), max(root(after), 1.0)
+    gap, left = rms(before), max(rms(after), 1.0)
     return None if gap - 1.0 < CLOSABLE else closed_fraction(gap, left)
 
 
@@ -86,12 +86,12 @@ def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None
     found = []
     for _ in range(_DRAWS):
         place = rng.integers(n, size=n)
-        gap = root(scores.before[place])
+        gap = rms(scores.before[place])
         if gap - 1.0 < CLOSABLE:
-            gap = root(scores.before)
-        left = root(scores.after[place]) + _FLOOR_SPREAD / np.sqrt(n) * rng.standard_normal()
+            gap = rms(scores.before)
+        left = rms(scores.after[place]) + _FLOOR_SPREAD / np.sqrt(n) * rng.standard_normal()
         found.append(closed_fraction(gap, max(left, 1.0)))
     low = float(np.percentile(found, _LEVEL[0]))
-    gap = root(scores.before)
+    gap = rms(scores.before)
     lowest = 1.0 - 1.645 * _FLOOR_SPREAD / float(np.sqrt(n))
     return min(low, 1.0), closed_fraction(gap, lowest)

@@ -57,14 +57,14 @@ def pattern_search(
     for factor in shrink:
         for i in np.flatnonzero(steps):
             for sign in (1.0, -1.0):
-                moved = False
+                improved = False
                 for _ in range(_FARTHEST):
                     candidate = x.copy()
                     candidate[i] += sign * factor * steps[i]
                     tried = cost(candidate)
                     if tried >= best:
                         break
-                    x, best, moved = candidate, tried, True
-                if moved:
+                    x, best, improved = candidate, tried, True
+                if improved:
                     break
     return x, best

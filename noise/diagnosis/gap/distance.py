@@ -36,7 +36,7 @@ __all__ = [
     "gap_of",
     "group_costs",
     "reference",
-    "scattered_enough",
+    "with_least_scatter",
 ]
 
 _Distance = TypeVar("_Distance", float, "NDArray[np.float64]")
@@ -137,8 +137,8 @@ def reference(
     >>> repeats.null.shape, 0.5 < repeats.squared(rng.normal(size=len(NAMES))) < 2.0
     ((8,), True)
     """
-    exchanged = scattered_enough(np.array(signatures), least, seed)
-    s = scattered_enough(np.array(signatures), LEAST_SCALE, seed)
+    exchanged = with_least_scatter(np.array(signatures), least, seed)
+    s = with_least_scatter(np.array(signatures), LEAST_SCALE, seed)
     null = np.empty(len(s))
     for i in range(len(s)):
         mean, scale = _moments(np.delete(s, i, axis=0))
@@ -191,7 +191,7 @@ def gap_of(
     return Gap(float(np.sqrt(np.mean(squared))), p_value, np.sqrt(squared))
 
 
-def scattered_enough(
+def with_least_scatter(
     signatures: NDArray[np.float64], least: float = LEAST_SCALE, seed: int = 0
 ) -> NDArray[np.float64]:
     """Shift whole spectra of repeats so that none scatters by less than repeats always do.
@@ -210,7 +210,7 @@ def scattered_enough(
     Examples
     --------
     >>> same = np.zeros((40, len(_GROUP_OF)))
-    >>> 0.02 < float(scattered_enough(same)[:, 0].std()) < 0.04
+    >>> 0.02 < float(with_least_scatter(same)[:, 0].std()) < 0.04
     True
     """
     rng = np.random.default_rng(seed)

@@ -21,7 +21,7 @@ from noise.diagnosis.gap.distance import (
     gap_of,
     group_costs,
     reference,
-    scattered_enough,
+    with_least_scatter,
 )
 from noise.diagnosis.gap.signature import GROUPS, block_signatures, group_of, signature
 from noise.diagnosis.simulated.nominal import nominal_recordings
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.simulated.repeats import Scatter
     from sim.effects.effect import Effect
 
-__all__ = ["case_gap", "condition_key", "references_of", "repeat_gap", "widening"]
+__all__ = ["case_gap", "condition_key", "floor_widening", "references_of", "repeat_gap"]
 
 N_REPEATS = 12
 """Simulated repeats a condition."""
@@ -162,10 +162,10 @@ def references_of(
         own.setdefault(condition_key(recording), []).append(values)
     pairs = [(own[key], repeats[key]) for key in own if len(own[key]) > 1]
     if pairs:
-        wider = widening(pairs)
+        wider = floor_widening(pairs)
     else:
         first = {condition_key(r): r for r in reversed(recordings)}
-        wider = _widening_of_blocks([(r, repeats[key]) for key, r in first.items()])
+        wider = _block_widening([(r, repeats[key]) for key, r in first.items()])
     each = wider[_GROUP_OF]
     references = {}
     for key in own:
@@ -175,7 +175,7 @@ def references_of(
     return [references[condition_key(r)] for r in recordings], float(np.sqrt(np.mean(wider**2)))
 
 
-def widening(
+def floor_widening(
     repeated: Sequence[tuple[Sequence[NDArray[np.float64]], Sequence[NDArray[np.float64]]]],
 ) -> NDArray[np.float64]:
     """By how much the floor is wider than simulated repeats have it.
@@ -193,20 +193,20 @@ def widening(
         repeats differ by no more than simulated ones do 99 times out of 100.
     """
     rng = np.random.default_rng(0)
-    sets = [_sets(np.array(own), scattered_enough(np.array(s)), rng) for own, s in repeated]
+    sets = [_sets(np.array(own), with_least_scatter(np.array(s)), rng) for own, s in repeated]
     return _beyond(np.array([one[0] for one in sets]), np.array([one[1:] for one in sets]))
 
 
-def _widening_of_blocks(
+def _block_widening(
     alone: Sequence[tuple[Recording, Sequence[NDArray[np.float64]]]],
 ) -> NDArray[np.float64]:
-    """As `widening`, were the recordings as unsteady from run to run as from block to block."""
+    """As `floor_widening`, were runs as unsteady as the blocks of a recording are."""
     recorded, simulated = [], []
     for recording, others in alone:
         blocks = block_signatures(recording)
         if blocks is None:
             continue
-        s = scattered_enough(np.array(others))
+        s = with_least_scatter(np.array(others))
         spread = np.sqrt(s.var(axis=0, ddof=1) + LEAST_SCALE**2)
         error = np.sqrt(blocks.var(axis=0, ddof=1) / len(blocks))
         recorded.append(group_costs(error / spread))

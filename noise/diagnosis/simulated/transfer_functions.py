@@ -182,13 +182,13 @@ def chain_of(
     transfer_functions: Mapping[str, TransferFunction],
     rate: float,
     *,
-    blows: bool,
+    impacts: bool,
 ) -> ImpulseResponses:
     """Return the impulse responses of a rig; those of pulses in the anchors only if asked for."""
     n = int(_LONGEST * rate)
     torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
     struck = sounding = np.zeros(1)
-    if blows:
+    if impacts:
         modelled = response(rig, interference, support_stiffness, rate)
         struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
     return ImpulseResponses(

@@ -56,7 +56,7 @@ def draw_comparisons(
     entries: dict[str, Entry] = {}
     comparisons = []
     for illustration in diagnosis.illustrations:
-        found = illustration_entries(illustration, diagnosis.heard)
+        found = illustration_entries(illustration, diagnosis.labels_and_levels)
         keys = {role: f"s{len(entries) + i}" for i, role in enumerate(found, 1)}
         entries |= {keys[role]: entry for role, entry in found.items()}
         known = facts_of(Entry(illustration.name, condition=illustration.measured.condition))

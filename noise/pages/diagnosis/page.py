@@ -25,7 +25,7 @@ from noise.pages.engine.page import page_html, write_page
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from noise.diagnosis.outcome import Diagnosis, Heard
+    from noise.diagnosis.outcome import Diagnosis, LabelsAndLevels
     from noise.pages.engine.clips import Clip
     from noise.pages.engine.entry import Entry
 
@@ -69,7 +69,7 @@ def _html(diagnosis: Diagnosis) -> str:
     entries: dict[str, Entry] = {}
     clips: dict[str, Clip] = {}
     contents: dict[str, Any] = {"comparisons": (), "curves": {}, "gain": ()}
-    if diagnosis.illustrations or diagnosis.heard:
+    if diagnosis.illustrations or diagnosis.labels_and_levels:
         # Figures and sounds load much that a quick answer, which has none, need not wait for.
         from noise.pages.diagnosis.comparisons import draw_comparisons
 
@@ -90,7 +90,7 @@ def _html(diagnosis: Diagnosis) -> str:
         places=place_rows(diagnosis.differences),
         parameters=parameter_rows(diagnosis.parameters),
         held_out=diagnosis.held_out,
-        heard=[_heard_row(heard) for heard in diagnosis.heard],
+        heard=[_heard_row(heard) for heard in diagnosis.labels_and_levels],
         gap=number(diagnosis.gap),
         floor=number(diagnosis.floor),
         p_value=p_number(diagnosis.p_value),
@@ -101,7 +101,7 @@ def _html(diagnosis: Diagnosis) -> str:
     )
 
 
-def _heard_row(heard: Heard) -> list[str]:
+def _heard_row(heard: LabelsAndLevels) -> list[str]:
     """Name of a recording, and for each role label and level in words."""
     row = [heard.recording]
     for role in ROLES:

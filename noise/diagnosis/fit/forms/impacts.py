@@ -75,8 +75,10 @@ def _form(compared: Sequence[Compared], power: float) -> Form:
         def chain(
             paths: ImpulseResponses, _form: str, _values: object, _rng: np.random.Generator
         ) -> ImpulseResponses:
-            struck, heard = (_kernel(found[k], paths.rate, rate) for k in found)
-            return replace(paths, pulse_to_acceleration=struck, pulse_to_pressure=heard)
+            to_acceleration, to_pressure = (_kernel(found[k], paths.rate, rate) for k in found)
+            return replace(
+                paths, pulse_to_acceleration=to_acceleration, pulse_to_pressure=to_pressure
+            )
 
         return made_effect("slip_pulse", amount, force=force, chain=chain)
 

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     from noise.diagnosis.outcome import Diagnosis, EffectFinding
 
-__all__ = ["with_own"]
+__all__ = ["prefer_user_effects"]
 
 _CLEARLY = 0.8
 """Of two gaps the smaller one counts as smaller if it is at most this share of the other."""
 
 
-def with_own(
+def prefer_user_effects(
     diagnosis: Diagnosis, findings: Mapping[str, EffectFinding], own: Sequence[str]
 ) -> Diagnosis:
     """Let a fitted effect of the user's own take over the verdict, if it closes the gap best.
