@@ -44,9 +44,9 @@ class StageFinding:
     Parameters
     ----------
     gap : float
-        In units of what repeats differ by.
+        In units of what repeats differ by [-].
     share : float
-        Of the whole gap.
+        Of the whole gap [-].
     p_value : float
         Of so large a difference between repeats, corrected for the number of looks.
     """
@@ -71,6 +71,7 @@ class Location:
     conditions : str
         In which it shows, such as ``speed_rad_s >= 2.5``, or ``all``.
     p_value : float
+        [-]
     """
 
     stage: str
@@ -89,13 +90,13 @@ class EffectFinding:
     ----------
     name, stage : str
     probability : float
-        That it is at work, alone or with others.
+        That it is at work, alone or with others [-].
     parameters : mapping of str to float or str
-        As fitted; empty where it was not.
+        As fitted; empty where it was not [unit of the parameter].
     strength : (float, float), optional
         90 % interval of the parameter that switches it off.
     gap_before, gap_recalibrated, gap_after, gap_floor : float, optional
-        On recordings that no fit has seen; None where it was not fitted.
+        On recordings that no fit has seen; None where it was not fitted, in floors [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional
         Shares of the closable gap, with a 90 % interval; None where there is nothing to close.
     """
@@ -162,16 +163,16 @@ class Diagnosis:
     effects : tuple of EffectFinding
         The most probable first; ``parameters`` and ``unknown`` are not among them.
     probabilities : mapping of str to float
-        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work.
+        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work [-].
     parameters : mapping of str to (float, float)
         90 % interval of each rig parameter, relative to the rig file.
     next_measurement : str
     held_out : tuple of str
         Recordings that no fit has seen.
     gap, floor, p_value : float
-        Of the case as a whole, before anything was fitted.
+        Of the case as a whole, before anything was fitted [-].
     seconds : float
-        That it took.
+        That it took [s].
     notes : tuple of str
         What is missing and what that costs; channels in bad health.
     labels_and_levels : tuple of LabelsAndLevels

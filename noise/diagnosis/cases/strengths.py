@@ -34,7 +34,7 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
     name : str
         Of `sim.effects.EFFECTS`.
     strength : float
-        From 0 to 1.
+        From 0 to 1 [-].
     rng : numpy.random.Generator
 
     Returns

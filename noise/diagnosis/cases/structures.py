@@ -58,7 +58,18 @@ class Structure:
     def from_torque(
         self, frequency: NDArray[np.float64]
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Responses of acceleration and pressure to the torque."""
+        """Responses of acceleration and pressure to the torque.
+
+        Parameters
+        ----------
+        frequency : ndarray, shape (n,)
+            [Hz]
+
+        Returns
+        -------
+        acceleration, pressure : ndarray of complex, shape (n,)
+            [m/s2 per Nm], [Pa per Nm]
+        """
         late = np.exp(-2j * np.pi * frequency * self.distance / _SOUND_SPEED)
         acceleration = _modes(frequency, self.beams)
         pressure = late * _modes(frequency, self.plate)
@@ -78,7 +89,7 @@ class Structure:
         return acceleration, pressure
 
     def measured(self, support_stiffness: float, rng: np.random.Generator) -> MeasuredResponse:
-        """Return the responses to the torque as a hammer test finds them."""
+        """Return the responses to the torque as a hammer test of a support [Nm/rad] finds them."""
         acceleration, pressure = (_as_measured(h, rng) for h in self.from_torque(_LINES))
         return MeasuredResponse(
             support_stiffness,

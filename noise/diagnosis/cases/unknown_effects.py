@@ -54,7 +54,7 @@ def draw_unknown_effect(
     name : str
         Of `UNKNOWN_EFFECTS`.
     strength : float
-        From 0 to 1.
+        From 0 to 1 [-].
     kinetic_torque, stiffness : float
         Of the rig [Nm], [Nm/rad].
     rng : numpy.random.Generator

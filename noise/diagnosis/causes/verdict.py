@@ -33,7 +33,7 @@ def verdict_of(
     Parameters
     ----------
     probabilities : mapping of str to float
-        Of every cause being at work.
+        Of every cause being at work [-].
     alarm : float
         Probability of ``none`` below which there is something to explain.
     gap : Gap, optional
@@ -119,6 +119,7 @@ def equivalent_pairs(
     ranked : sequence of str
         Effects, the most probable first.
     probabilities : mapping of str to float
+        [-]
     kinds : collection of str
         Of the channels that were recorded.
 

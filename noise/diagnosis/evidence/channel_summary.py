@@ -56,7 +56,7 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     Parameters
     ----------
     x : ndarray, shape (n,)
-        In the channel's unit.
+        [unit of the channel]
     rate : float
         Sampling rate [Hz].
 
@@ -102,7 +102,7 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     Parameters
     ----------
     x : ndarray, shape (n,)
-        In the channel's unit.
+        [unit of the channel]
     rate : float
         Sampling rate [Hz].
 

@@ -45,13 +45,13 @@ _SURE = 1.645
 
 @dataclass(frozen=True, eq=False)
 class TorqueCurve:
-    """A mean torque and its 90 % interval; all arrays have shape (n_bins,).
+    """A mean torque and its 90 % interval.
 
     Parameters
     ----------
-    x : ndarray
-        What it is drawn over, in the unit of its field in `FrictionCurves`.
-    torque, low, high : ndarray
+    x : ndarray, shape (n_bins,)
+        What it is drawn over [unit of its field in `FrictionCurves`].
+    torque, low, high : ndarray, shape (n_bins,)
         Mean and limits of its interval [Nm].
     """
 

@@ -62,7 +62,8 @@ class CaseTable:
     names : tuple of str
         Of the columns.
     measured, nominal, scatter : ndarray, shape (n_recordings, n_numbers)
-        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined.
+        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined
+        [unit of the number].
     conditions : tuple of Condition
     rate : float
         Sampling rate of the recordings [Hz].
@@ -92,7 +93,7 @@ def summary(
     Returns
     -------
     dict of str to float
-        What a missing channel would tell is missing.
+        What a missing channel would tell is missing [unit of the number].
     """
     condition, rate = known_condition(recording.condition), recording.rate
     signal = {

@@ -72,7 +72,7 @@ class CaseComparison:
     names : tuple of str
         Numbers that `residuals` has.
     scale : ndarray, shape (n_names,)
-        Their scatter without a cause.
+        Their scatter without a cause [unit of the number].
     forms : dict of (str, str) to Form
         Further forms of effects, by the name of the effect and their own.
     """
@@ -107,6 +107,16 @@ class CaseComparison:
 
         Where the model's own repeats differ by more than those of the rig file, as with an effect
         that is chance itself, they tell what repeats of it differ by.
+
+        Parameters
+        ----------
+        model : Model
+        chosen : sequence of int
+
+        Returns
+        -------
+        list of ndarray, shape (n_values,)
+            In standard deviations of repeats [-].
         """
         found = []
         for i in chosen:
@@ -121,7 +131,18 @@ class CaseComparison:
         return found
 
     def squared(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
-        """Squared distance of each chosen recording from a model; 1 is the floor."""
+        """Squared distance of each chosen recording from a model; 1 is the floor.
+
+        Parameters
+        ----------
+        model : Model
+        chosen : sequence of int
+
+        Returns
+        -------
+        ndarray, shape (n_chosen,)
+            In squared floors [-].
+        """
         return np.array(
             [
                 self.references[i].squared_of(deviation)
@@ -147,7 +168,7 @@ class CaseComparison:
         Returns
         -------
         ndarray, shape (n_chosen,)
-            In standard deviations of repeats; infinite where the model cannot be simulated.
+            In standard deviations of repeats [-]; infinite where the model cannot be simulated.
         """
         found = np.full(len(chosen), np.inf)
         for k, i in enumerate(chosen):
@@ -180,7 +201,7 @@ class CaseComparison:
         Returns
         -------
         ndarray, shape (n_chosen, n_names)
-            Their mean square is 1 where all numbers are hopelessly off.
+            [-]; their mean square is 1 where all numbers are hopelessly off.
         """
         measured, _, scatter = aligned(self.table, self.names)
         rows = []

@@ -1,4 +1,4 @@
-"""How much of a gap closes, and how sure that is.
+"""Share of a gap that a fit closes, with its interval.
 
 A share is that of what can be closed: a gap of one floor is none. Beside the recordings, of which
 there are few, three things make it unsure. What is left after the fit is as unsure as the floor is;
@@ -38,7 +38,8 @@ class Scores:
     Parameters
     ----------
     before, recalibrated, after : ndarray, shape (n,)
-        From the rig file's, from that with other parameters, from that with effects.
+        From the rig file's, from that with other parameters, from that with effects In squared
+        floors [-].
     """
 
     before: NDArray[np.float64]
@@ -47,12 +48,38 @@ class Scores:
 
 
 def rms(squared: NDArray[np.float64]) -> float:
-    """Distance of recordings together, of their squared ones."""
+    """Root mean square distance of recordings.
+
+    Parameters
+    ----------
+    squared : ndarray, shape (n,)
+        Distances in squared floors [-].
+
+    Returns
+    -------
+    float
+        In floors [-].
+
+    Examples
+    --------
+    >>> rms(np.array([1.0, 7.0]))
+    2.0
+    """
     return float(np.sqrt(np.mean(squared)))
 
 
 def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> float | None:
     """Share of the closable gap; None where there is less than `CLOSABLE` to close.
+
+    Parameters
+    ----------
+    before, after : ndarray, shape (n,)
+        Distances of recordings in squared floors [-].
+
+    Returns
+    -------
+    float or None
+        [-]
 
     Examples
     --------

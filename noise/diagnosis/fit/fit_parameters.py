@@ -58,7 +58,7 @@ class Fitted:
     ----------
     model : Model
     cost : float
-        Mean distance of the recordings, and the prior.
+        Mean distance of the recordings, and the prior, in floors [-].
     spread : tuple of float
         Standard deviation of the logarithm of each offset, and then of the effect's strength.
     """
@@ -102,7 +102,7 @@ def different(comparison: CaseComparison, chosen: Sequence[int], most: int = _MO
 def offset_cost(
     comparison: CaseComparison, few: Sequence[int], model: Model, *, single_run: bool = False
 ) -> float:
-    """Mean distance of recordings from a model, and what its offsets cost."""
+    """Mean distance of recordings from a model in floors [-], and what its offsets cost."""
     held = _HOLD * float(np.sum((np.array(model.offsets) / PRIOR) ** 2)) / len(few)
     if any(spec.name in _BY_NUMBERS for spec in model.effects):
         held += _NUMBERS * float(np.mean(comparison.residuals(model, few) ** 2))
@@ -152,11 +152,12 @@ def spreads(
     ----------
     cost : callable
     x : ndarray, shape (n,)
-        Where it is least.
+        Where it is least [any unit].
     look : ndarray, shape (n,)
-        So far off it is looked at; it is taken to rise as the square from there inwards.
+        So far off it is looked at; it is taken to rise as the square from there inwards In the
+        unit of `x` [any unit].
     most : float
-        Where it does not rise.
+        Standard deviation where it does not rise [unit of `x`].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What the user hears of a gap: label and level of a recording and of its simulations."""
+"""Label and level of a recording and of its simulations, as the user hears them."""
 
 from __future__ import annotations
 

@@ -35,16 +35,16 @@ def pattern_search(
     cost : callable
         Of an ndarray as `start`; may be infinite.
     start, steps : ndarray, shape (n,)
-        Steps of 0 leave a number as it is.
+        Steps of 0 leave a number as it is [any unit].
     shrink : sequence of float
         Factors on the steps, one a round.
 
     Returns
     -------
     ndarray, shape (n,)
-        The best that was tried.
+        The best that was tried [unit of `start`].
     float
-        Its cost.
+        Its cost [unit of the cost].
 
     Examples
     --------

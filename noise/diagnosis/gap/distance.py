@@ -1,4 +1,4 @@
-"""How far a recording lies from repeats, in units of what repeats differ by.
+"""Distance of a recording from repeats, in units of what repeats differ by.
 
 Each value of a signature is compared with its mean over the repeats and divided by its standard
 deviation; a group's share is the mean over its values, and all groups weigh alike. Large
@@ -65,11 +65,11 @@ class Reference:
     Parameters
     ----------
     mean, scale : ndarray, shape (n_values,)
-        Of their signatures.
+        Of their signatures [Np], or [-] of the cycle.
     null : ndarray, shape (n_repeats,)
-        Squared distance of each repeat from the others.
+        Squared distance of each repeat from the others [-].
     repeats : ndarray, shape (n_repeats, n_values)
-        Their signatures, as they are exchanged.
+        Their signatures, as they are exchanged [Np], or [-] of the cycle.
     """
 
     mean: NDArray[np.float64]
@@ -78,15 +78,48 @@ class Reference:
     repeats: NDArray[np.float64]
 
     def deviation(self, signature: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How many standard deviations each value lies from the mean."""
+        """How many standard deviations each value lies from the mean.
+
+        Parameters
+        ----------
+        signature : ndarray, shape (n_values,)
+            As of `noise.diagnosis.gap.signature.signature`.
+
+        Returns
+        -------
+        ndarray, shape (n_values,)
+            [-]
+        """
         return np.asarray((signature - self.mean) / self.scale)
 
     def squared(self, signature: NDArray[np.float64]) -> float:
-        """Squared distance of a signature, 1 on average for a repeat."""
+        """Squared distance of a signature, 1 on average for a repeat.
+
+        Parameters
+        ----------
+        signature : ndarray, shape (n_values,)
+            As of `noise.diagnosis.gap.signature.signature`.
+
+        Returns
+        -------
+        float
+            In squared floors [-].
+        """
         return self.squared_of(self.deviation(signature))
 
     def squared_of(self, deviation: NDArray[np.float64]) -> float:
-        """Squared distance of deviations, 1 on average for those of a repeat."""
+        """Squared distance of deviations, 1 on average for those of a repeat.
+
+        Parameters
+        ----------
+        deviation : ndarray, shape (n_values,)
+            In standard deviations [-].
+
+        Returns
+        -------
+        float
+            In squared floors [-].
+        """
         # one repeat in a hundred falls into another regime, and must not set the unit
         usual = np.minimum(self.null, _UNUSUAL * np.median(self.null))
         return _squared(deviation) / float(np.mean(usual))
@@ -99,13 +132,13 @@ class Gap:
     Parameters
     ----------
     distance : float
-        In units of the floor.
+        In units of the floor [-].
     p_value : float
         Probability of so large a gap between repeats.
     of_recordings : ndarray, shape (n_recordings,)
-        Distance of each recording.
+        Distance of each recording, in floors [-].
     widened : float
-        By how much the floor is larger than the repeats alone had it.
+        By how much the floor is larger than the repeats alone had it [-].
     """
 
     distance: float
@@ -121,8 +154,8 @@ def reference(
 
     Parameters
     ----------
-    signatures : sequence of ndarray
-        One a repeat.
+    signatures : sequence of ndarray, shape (n_values,)
+        One a repeat As of `noise.diagnosis.gap.signature.signature`.
     least : float
         Relative scatter of whole spectra that is known to be there whatever these repeats say; 0
         where they scatter as they should. It is for p-values: in a distance, 3 % is the least.
@@ -158,8 +191,8 @@ def gap_of(
 
     Parameters
     ----------
-    signatures : sequence of ndarray
-        One a recording.
+    signatures : sequence of ndarray, shape (n_values,)
+        One a recording As of `noise.diagnosis.gap.signature.signature`.
     references : sequence of Reference
         One a recording; recordings of one condition share one.
     seed, n_draws : int
@@ -199,6 +232,7 @@ def with_least_scatter(
     Parameters
     ----------
     signatures : ndarray, shape (n_repeats, n_values)
+        As of `noise.diagnosis.gap.signature.signature`.
     least : float
         Relative standard deviation.
     seed : int
@@ -206,6 +240,7 @@ def with_least_scatter(
     Returns
     -------
     ndarray, shape (n_repeats, n_values)
+        As `signatures`.
 
     Examples
     --------
@@ -226,6 +261,16 @@ def with_least_scatter(
 
 def group_costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     """Mean square of the deviations in each of `GROUPS`, large ones bent; NaN where unknown.
+
+    Parameters
+    ----------
+    deviation : ndarray, shape (n_values,)
+        In standard deviations [-].
+
+    Returns
+    -------
+    ndarray, shape (n_groups,)
+        [-]
 
     Examples
     --------
@@ -289,8 +334,8 @@ def closed_fraction(
 
     Parameters
     ----------
-    before, after, floor : float or ndarray
-        Gaps without and with a change, and that of repeats, all in the same unit.
+    before, after, floor : float or ndarray, shape (n,)
+        Gaps without and with a change, and that of repeats, all in floors [-].
 
     Examples
     --------

@@ -117,7 +117,7 @@ def repeat_gap(
     ----------
     recordings : sequence of Recording
     repeats : mapping of (float, float, float, float, float) to sequence of ndarray
-        Signatures of at least three repeats, by speed [rad/s], interference [m], support stiffness
+        Signatures, shape (n_values,), of at least three repeats, by speed [rad/s], interference [m], support stiffness
         [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives them.
     least : float
         As in `noise.diagnosis.gap.distance.reference`.
@@ -145,8 +145,8 @@ def references_of(
     Parameters
     ----------
     recordings : sequence of Recording
-    signatures : sequence of ndarray
-        Of the recordings.
+    signatures : sequence of ndarray, shape (n_values,)
+        Of the recordings As of `noise.diagnosis.gap.signature.signature`.
     repeats, least, seed
         As of `repeat_gap`.
 
@@ -155,7 +155,7 @@ def references_of(
     references : list of Reference
         One a recording; recordings of one condition share one.
     widened : float
-        By how much the floor is wider than the repeats alone have it.
+        By how much the floor is wider than the repeats alone have it [-].
     """
     own: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
     for recording, values in zip(recordings, signatures, strict=True):
@@ -183,8 +183,8 @@ def floor_widening(
     Parameters
     ----------
     repeated : sequence of (sequence of ndarray, sequence of ndarray)
-        For each condition, signatures of its recordings, at least two, and of its simulated
-        repeats, at least four.
+        For each condition, signatures, shape (n_values,), of its recordings, at least two, and of
+        its simulated repeats, at least four; as of `repeat_gap`.
 
     Returns
     -------
@@ -264,7 +264,8 @@ def condition_key(recording: Recording) -> tuple[float, ...]:
     Returns
     -------
     tuple of float
-        Speed, interference, support stiffness, sampling rate and length.
+        Speed [rad/s], interference [m], support stiffness [Nm/rad], sampling rate [Hz] and length
+        [s].
     """
     c = known_condition(recording.condition)
     return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)

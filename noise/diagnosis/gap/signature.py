@@ -1,4 +1,4 @@
-"""What two recordings of one condition have in common, whatever their phases do.
+"""Signature of a recording: what it shares with others of its condition, whatever the phases.
 
 Stick-slip is chaotic: two runs of one rig agree in no waveform, but in what they are made of.
 A signature is the levels of each channel in sixth octaves and the statistics of the torque's
@@ -119,6 +119,7 @@ def channel_signature(signal: NDArray[np.float64], rate: float, kind: str) -> ND
     Parameters
     ----------
     signal : ndarray, shape (n,)
+        [unit of the channel]
     rate : float
         [Hz]
     kind : str
@@ -126,7 +127,8 @@ def channel_signature(signal: NDArray[np.float64], rate: float, kind: str) -> ND
 
     Returns
     -------
-    ndarray
+    ndarray, shape (n,)
+        Levels [Np], and of a torque ratios of its cycle [-].
     """
     levels = _levels(signal, rate, kind)
     return np.concatenate([levels, _cycle(signal, rate)]) if kind == "torque" else levels
@@ -190,7 +192,7 @@ def block_signatures(recording: Recording) -> NDArray[np.float64] | None:
     Returns
     -------
     ndarray, shape (n_blocks, n_values), or None
-        None where the recording is too short for three.
+        None where the recording is too short for three As of `signature`.
     """
     count = min(int(recording.duration / _BLOCK + 1e-6), _MOST_BLOCKS)
     if count < _FEWEST_BLOCKS:

@@ -134,6 +134,11 @@ class ModelRuns:
         seed : int
             Of effects that are chance.
 
+        Returns
+        -------
+        ndarray, shape (n_values,)
+            As of `noise.diagnosis.gap.signature.signature`.
+
         Raises
         ------
         ParameterError

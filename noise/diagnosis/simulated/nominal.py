@@ -1,4 +1,4 @@
-"""What the rig file says would have been recorded: quick simulated repeats of a condition.
+"""Nominal repeats: a condition simulated quickly and often, with the rig as its file has it.
 
 The transfer functions are those of the structure, applied to the simulated
 torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and

@@ -1,4 +1,4 @@
-"""What repeats of a run differ by: a rig that is never quite the same twice.
+"""Repeats of a run: a rig that is never quite the same twice, its motion and its recording.
 
 A bushing is pressed in again, warms by a few kelvin, wears: between two runs of one condition its
 stiffness, torques and damping come out a few per cent apart, and nobody's fault. A simulation that
@@ -50,11 +50,11 @@ class Scatter:
     ----------
     bushing : float
         Of the elastomer's stiffness, damping and inertia, the kinetic torque, and what the
-        critical torque exceeds it by, each on its own; assumed.
+        critical torque exceeds it by, each on its own; assumed [-].
     structure : float
-        Of the clamp's inertia, the support's stiffness and the speed; assumed.
+        Of the clamp's inertia, the support's stiffness and the speed; assumed [-].
     gain : float
-        Of the sensors' sensitivities; assumed.
+        Of the sensors' sensitivities; assumed [-].
     """
 
     bushing: float = 0.02
@@ -227,8 +227,8 @@ def run_signals(
 
     Returns
     -------
-    dict of str to ndarray
-        By `CHANNELS`, without noise.
+    dict of str to ndarray, shape (n,)
+        By `CHANNELS`, without noise [unit of the channel].
 
     Raises
     ------

@@ -133,7 +133,7 @@ def predict(
     Returns
     -------
     ndarray, shape (n,)
-        In its output unit; what rings on from before the recording is missing at its start.
+        [output unit of `transfer`]; what rings on from before the recording is missing.
 
     Examples
     --------
@@ -184,7 +184,26 @@ def chain_of(
     *,
     impacts: bool,
 ) -> ImpulseResponses:
-    """Return the impulse responses of a rig; those of pulses in the anchors only if asked for."""
+    """Return the impulse responses of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad] or `models.condition.FIXED`.
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
+    rate : float
+        Sampling rate [Hz].
+    impacts : bool
+        Whether those of pulses in the anchors are asked for; otherwise they are 0.
+
+    Returns
+    -------
+    ImpulseResponses
+    """
     n = int(_LONGEST * rate)
     torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
     struck = sounding = np.zeros(1)

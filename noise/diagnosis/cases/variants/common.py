@@ -1,4 +1,4 @@
-"""What the variants have in common: how they are made, and the shapes that many are drawn from.
+"""Parts of the variants: constructors of effects, and random curves and signals.
 
 A monotone shape with random increments stands for the forms that nobody foresees: whoever has
 learnt a hundred such shapes has learnt the effect rather than a formula of it.

@@ -42,13 +42,15 @@ def waveguide(rate: float, first: float, reflection: float, dullness: float) -> 
     rate, first : float
         Sampling rate; how often a second it returns [Hz].
     reflection : float
-        Signed, below 1 in magnitude.
+        Signed, below 1 in magnitude [-].
     dullness : float
-        From 0 to 0.5: of what is reflected, how much is smoothed away at the highest frequencies.
+        From 0 to 0.5: of what is reflected, how much is smoothed away at the highest frequencies
+        [-].
 
     Returns
     -------
-    ndarray
+    ndarray, shape (n,)
+        Over the impulse [-].
 
     Examples
     --------

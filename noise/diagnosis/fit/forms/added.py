@@ -1,4 +1,4 @@
-"""What is added to channels, estimated: noise by its bands, hum by its lines."""
+"""Noise and hum added to channels, estimated: noise by its bands, hum by its lines."""
 
 from __future__ import annotations
 

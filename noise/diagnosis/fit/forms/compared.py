@@ -37,16 +37,17 @@ class Compared:
         [Hz]
     free : bool
         Whether the clamp stands on beams, rather than on the baseplate itself.
-    measured : dict of str to ndarray
-        By kind of channel; those that were recorded.
-    expected : dict of str to ndarray
-        Of acceleration and pressure, by the measured torque.
+    measured : dict of str to ndarray, shape (n,)
+        By kind of channel; those that were recorded [unit of the channel].
+    expected : dict of str to ndarray, shape (n,)
+        Of acceleration and pressure, by the measured torque [unit of the channel].
     transfer_functions : mapping of str to TransferFunction
         That it was sent through.
-    modulation : ndarray, optional
-        Shaft speed over its mean, less 1.
-    signature, nominal, scale : ndarray
-        Of the recording; middle of the simulated repeats, and what they scatter by.
+    modulation : ndarray, shape (n,), optional
+        Shaft speed over its mean, less 1 [-].
+    signature, nominal, scale : ndarray, shape (n_values,)
+        Of the recording; middle of the simulated repeats, and what they scatter by As of
+        `noise.diagnosis.gap.signature`.
     """
 
     rate: float

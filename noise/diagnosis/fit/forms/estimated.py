@@ -1,4 +1,4 @@
-"""Which forms are estimated of which effect.
+"""Estimated forms of effects, by the name of the effect.
 
 What is linear, added or a curve is there to be seen in the recordings themselves, more exactly than
 any search over formulas finds it. What the contact does is not, as it changes its own input.

@@ -29,13 +29,14 @@ class Form:
     effect, name : str
         Of the effect; its own, which no other form of the effect may have.
     start : mapping of str to float
-        What it is made of, as a fit begins with it.
+        What it is made of, as a fit begins with it [unit of the number].
     highest : mapping of str to float
-        How far each may rise.
+        How far each may rise [unit of the number].
     make : callable
         ``make(values)``: the effect with these numbers.
     tried : tuple of float
-        Of the first of these numbers, what a fit looks at; by default where it begins.
+        Of the first of these numbers, what a fit looks at; by default where it begins [unit of the
+        number].
     """
 
     effect: str
