@@ -117,8 +117,9 @@ def repeat_gap(
     ----------
     recordings : sequence of Recording
     repeats : mapping of (float, float, float, float, float) to sequence of ndarray
-        Signatures, shape (n_values,), of at least three repeats, by speed [rad/s], interference [m], support stiffness
-        [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives them.
+        Signatures, shape (n_values,), of at least three repeats, by speed [rad/s], interference
+        [m], support stiffness [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives
+        them.
     least : float
         As in `noise.diagnosis.gap.distance.reference`.
     seed : int
