@@ -62,7 +62,7 @@ _EXPORTS = {
     "noise.screening.parts.robustness": ("Robustness", "robustness"),
     "noise.screening.outcome": ("Screening",),
     "noise.screening.screen": ("screen",),
-    "noise.pages": ("ReportEntry", "write_report"),
+    "noise.pages.report": ("ReportEntry", "write_report"),
     "noise.pages.review.build": ("Review", "review"),
     "sim.acquisition": ("Acquisition",),
     "sim.analysis.critical_damping": ("critical_damping",),

@@ -13,13 +13,15 @@ import numpy as np
 
 from features.registry import recording_feature_names, recording_features
 from models.rig_files.rig_file import load_material_rig
-from noise.audio import QUIETEST_FULL_SCALE, audible, common_full_scale, write_audio
+from noise.audio.files import write_audio
+from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
+from noise.audio.sound import audible
 from noise.base.progress import say, track
 from noise.base.tables import write_table
 from noise.classifier import load_classifier
 from noise.labels.labelling import COLUMNS, label_rows
 from noise.labels.segments import file_label, label_recording
-from noise.pages import ReportEntry, write_report
+from noise.pages.report import ReportEntry, write_report
 from noise.recordings import read_recording, write_recording
 from sim.run import simulate
 

@@ -18,8 +18,8 @@ __all__ = [
     "ROLES",
     "Diagnosis",
     "EffectFinding",
-    "Heard",
     "Illustration",
+    "LabelsAndLevels",
     "Location",
     "StageFinding",
     "as_json",
@@ -44,9 +44,9 @@ class StageFinding:
     Parameters
     ----------
     gap : float
-        In units of what repeats differ by.
+        In units of what repeats differ by [-].
     share : float
-        Of the whole gap.
+        Of the whole gap [-].
     p_value : float
         Of so large a difference between repeats, corrected for the number of looks.
     """
@@ -71,6 +71,7 @@ class Location:
     conditions : str
         In which it shows, such as ``speed_rad_s >= 2.5``, or ``all``.
     p_value : float
+        [-]
     """
 
     stage: str
@@ -89,13 +90,13 @@ class EffectFinding:
     ----------
     name, stage : str
     probability : float
-        That it is at work, alone or with others.
+        That it is at work, alone or with others [-].
     parameters : mapping of str to float or str
-        As fitted; empty where it was not.
+        As fitted; empty where it was not [unit of the parameter].
     strength : (float, float), optional
         90 % interval of the parameter that switches it off.
     gap_before, gap_recalibrated, gap_after, gap_floor : float, optional
-        On recordings that no fit has seen; None where it was not fitted.
+        On recordings that no fit has seen; None where it was not fitted, in floors [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional
         Shares of the closable gap, with a 90 % interval; None where there is nothing to close.
     """
@@ -116,7 +117,7 @@ class EffectFinding:
 
 
 @dataclass(frozen=True)
-class Heard:
+class LabelsAndLevels:
     """What the user hears of it, of one held-out recording: label and level [dB(A)]."""
 
     recording: str
@@ -162,19 +163,19 @@ class Diagnosis:
     effects : tuple of EffectFinding
         The most probable first; ``parameters`` and ``unknown`` are not among them.
     probabilities : mapping of str to float
-        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work.
+        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work [-].
     parameters : mapping of str to (float, float)
         90 % interval of each rig parameter, relative to the rig file.
     next_measurement : str
     held_out : tuple of str
         Recordings that no fit has seen.
     gap, floor, p_value : float
-        Of the case as a whole, before anything was fitted.
+        Of the case as a whole, before anything was fitted [-].
     seconds : float
-        That it took.
+        That it took [s].
     notes : tuple of str
         What is missing and what that costs; channels in bad health.
-    heard : tuple of Heard
+    labels_and_levels : tuple of LabelsAndLevels
     illustrations : tuple of Illustration
     differences : tuple of Location
         Every stage, channel, band and phase with its p-value, corrected for the number of looks;
@@ -202,7 +203,7 @@ class Diagnosis:
     p_value: float
     seconds: float
     notes: tuple[str, ...] = ()
-    heard: tuple[Heard, ...] = ()
+    labels_and_levels: tuple[LabelsAndLevels, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
 
@@ -265,7 +266,7 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
                 "label": {role: heard.of(role)[0] for role in ROLES},
                 "level_dba": {role: _rounded(heard.of(role)[1], 1) for role in ROLES},
             }
-            for heard in diagnosis.heard
+            for heard in diagnosis.labels_and_levels
         ],
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
@@ -316,8 +317,8 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
         p_value=_number(data.get("p_value")),
         seconds=_number(data.get("seconds")),
         notes=tuple(map(str, data.get("notes") or ())),
-        heard=tuple(
-            Heard(
+        labels_and_levels=tuple(
+            LabelsAndLevels(
                 one["recording"],
                 *(one["label"].get(role) for role in ROLES),
                 *(one["level_dba"].get(role) for role in ROLES),

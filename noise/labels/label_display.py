@@ -1,17 +1,13 @@
-"""Display of labels: colours and marks, bars over time, tables in HTML.
-
-A label is shown by a colour that no eye takes for another's, by a pattern and by two letters: a
-projector washes colours out, a printer drops them, and one man in twelve does not see them.
-"""
+"""Display of labels: bars over time, tables in HTML."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from models.drawing import axes_or_new
 from models.errors import ParameterError
 from models.html_table import html_table
-from noise.base.label_names import LABELS
+from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,52 +17,12 @@ if TYPE_CHECKING:
     from noise.labels.segments import Segment
 
 __all__ = [
-    "DARK_LABELS",
-    "LABEL_COLOURS",
-    "LABEL_LOOKS",
     "MOST_TRACKS",
-    "Look",
     "draw_tracks",
     "segments_html",
     "table_html",
 ]
 
-
-class Look(NamedTuple):
-    """How one label is shown.
-
-    Parameters
-    ----------
-    colour : str
-        Of an area.
-    line : str
-        Of its pattern and of its outline.
-    pattern : str
-        ``stripes``, ``dots``, ``lines``, ``plain`` or ``crosses``.
-    mark : str
-        Where there is no room for the label itself.
-    """
-
-    colour: str
-    line: str
-    pattern: str
-    mark: str
-
-
-LABEL_LOOKS = {
-    "creak": Look("#d55e00", "#7a3600", "stripes", "Cr"),
-    "squawk": Look("#e69f00", "#7d5600", "dots", "Sk"),
-    "squeal": Look("#b5478a", "#6b1f4e", "lines", "Sl"),
-    "none": Look("#c3d4df", "#6f8596", "plain", "\N{EN DASH}"),
-    "unknown": Look("#f6f6f6", "#55606b", "crosses", "?"),
-}
-"""By label; vermilion and orange are those of Okabe and Ito (Color universal design, 2008)."""
-
-DARK_LABELS = ("creak", "squeal")
-"""On whose colours text is white."""
-
-LABEL_COLOURS = {label: LABEL_LOOKS[label].colour for label in LABELS}
-"""Of areas."""
 
 MOST_TRACKS = 40
 """Rows that a picture has room for."""

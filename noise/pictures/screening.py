@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from models.drawing import axes_or_new, styled
-from noise.labels.label_display import LABEL_COLOURS
+from noise.base.label_looks import LABEL_COLOURS
 from noise.pictures.axes import new_figure
 from noise.pictures.titles import support_words
 from sim.analysis.regime import Regime

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from noise.diagnosis.evidence.bands import BAND_EDGES, band_bins
 from noise.diagnosis.evidence.channel_summary import (
+    BAND_EDGES,
     angle_summary,
+    band_bins,
     channel_summary,
     hum_summary,
     shaft_speed,

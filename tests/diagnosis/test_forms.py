@@ -12,7 +12,7 @@ from models.rig import LawSpec
 from models.transfer_functions.filtering import filter_signal
 from models.transfer_functions.impulse_response import impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.fit.bench import Bench, Model
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.forms.drawn import drawn_forms
 from noise.diagnosis.fit.forms.estimated import estimated_forms
 from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
@@ -36,35 +36,35 @@ CASES = {
 
 
 @cache
-def _bench(name):
+def _comparison(name):
     values, support = CASES[name]
     runs = tuple(run(at(v, support), (name, values), seed=40 + i) for i, v in enumerate(SPEEDS))
-    return Bench(RIG, runs, EFFECTS, None, (), np.empty(0))
+    return CaseComparison(RIG, runs, EFFECTS, None, (), np.empty(0))
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_form_that_was_estimated_closes_much_of_what_the_true_one_does_where_it_is_not_from(name):
-    bench = _bench(name)
+    comparison = _comparison(name)
     left = []
-    for form in estimated_forms(bench, [0, 2], name):
-        bench.forms[name, form.name] = form
-        left += [float(bench.misfits(Model(effects=(spec,)), [1])[0]) for spec in form.specs()]
+    for form in estimated_forms(comparison, [0, 2], name):
+        comparison.forms[name, form.name] = form
+        left += [float(comparison.misfits(Model(effects=(spec,)), [1])[0]) for spec in form.specs()]
     truth = Model(effects=(LawSpec(name, CASES[name][0]),))
-    before, after = (float(bench.misfits(model, [1])[0]) for model in (Model(), truth))
+    before, after = (float(comparison.misfits(model, [1])[0]) for model in (Model(), truth))
     assert before > after
     assert before - min(left) > 0.5 * (before - after)
 
 
 def test_what_the_contact_does_is_not_estimated():
-    assert estimated_forms(_bench("gain_error"), [0, 2], "velocity_weakening") == []
+    assert estimated_forms(_comparison("gain_error"), [0, 2], "velocity_weakening") == []
 
 
 def test_a_drawn_form_is_the_same_each_time_and_nothing_at_strength_0():
-    bench = _bench("gain_error")
+    comparison = _comparison("gain_error")
     for form in drawn_forms("plate_modes", 2, 0):
-        bench.forms["plate_modes", form.name] = form
+        comparison.forms["plate_modes", form.name] = form
         off = Model(effects=(form.spec(strength=0.0),))
-        assert bench.misfits(off, [1]) == pytest.approx(bench.misfits(Model(), [1]))
+        assert comparison.misfits(off, [1]) == pytest.approx(comparison.misfits(Model(), [1]))
     form = drawn_forms("clipping", 1, 3)[0]
     assert form.active({}).values == form.active({"form": form.name}).values
 

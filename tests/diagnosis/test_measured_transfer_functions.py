@@ -11,8 +11,8 @@ from models.condition import Condition
 from models.rig_files.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.gap.scatter import Scatter, perturb_rig
 from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.repeats import Scatter, perturb_rig
 from noise.diagnosis.simulated.transfer_functions import (
     predict,
     shift_clamp_mode,

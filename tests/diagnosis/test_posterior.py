@@ -10,9 +10,8 @@ import pytest
 
 from models.errors import ParameterError
 from noise.diagnosis.cases.truth import Truth
-from noise.diagnosis.causes.equivalence import equivalent_pairs, next_measurement
 from noise.diagnosis.causes.posterior import CAUSES, calibrated, load_posterior, odds_features
-from noise.diagnosis.causes.verdict import verdict_of
+from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
 from noise.training.causes.fit import Known, causes_of, train_posterior, with_channels, with_fewer
 from noise.training.trees import boosted_trees
 from sim.effects import EFFECTS

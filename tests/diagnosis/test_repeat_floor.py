@@ -11,12 +11,11 @@ from scipy.stats import binomtest, kstest
 from models.condition import Condition
 from models.rig_files.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
-from noise.diagnosis.gap.blocks import block_repeats
 from noise.diagnosis.gap.distance import gap_of, reference
-from noise.diagnosis.gap.floor import case_gap, condition_key, repeat_gap, widening
-from noise.diagnosis.gap.scatter import Scatter
-from noise.diagnosis.gap.signature import GROUPS, NAMES, signature
+from noise.diagnosis.gap.floor import case_gap, condition_key, floor_widening, repeat_gap
+from noise.diagnosis.gap.signature import GROUPS, NAMES, block_signatures, signature
 from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.repeats import Scatter
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case
 from tests.blind.design import draw_design
@@ -116,16 +115,6 @@ def test_of_repeats_of_one_rig_one_is_as_good_as_simulated(transfers):
     assert far.distance > 1.5 * near.distance
 
 
-def test_of_two_recordings_of_one_condition_blocks_of_the_one_hold_the_other(transfers):
-    one, other = _runs(transfers, (1, 2), seconds=1.0, scatter=EXACT)
-    (changed,) = _runs(transfers, (3,), seconds=1.0, scatter=EXACT, rig=_stiffer(1.16))
-    repeats = reference(block_repeats(one, 12))
-    near = gap_of([signature(other)], [repeats])
-    assert near.distance < 1.2
-    assert near.p_value > 0.05
-    assert gap_of([signature(changed)], [repeats]).distance > 2.0
-
-
 def test_blocks_tell_how_far_a_noise_scatters(transfers):
     (run,) = _runs(transfers, (1,), seconds=4.0)
     rng = np.random.default_rng(2)
@@ -134,23 +123,23 @@ def test_blocks_tell_how_far_a_noise_scatters(transfers):
         return signature(replace(run, samples=rng.standard_normal(run.samples.shape)))
 
     from_repeats = np.std([noise() for _ in range(12)], axis=0, ddof=1)
-    blocks = block_repeats(replace(run, samples=rng.standard_normal(run.samples.shape)), 40)
+    blocks = block_signatures(replace(run, samples=rng.standard_normal(run.samples.shape)))
     spectra = [i for i, name in enumerate(NAMES) if not name.startswith("cycle")]
-    ratio = np.median(np.std(blocks, axis=0, ddof=1)[spectra] / from_repeats[spectra])
+    error = np.std(blocks, axis=0, ddof=1) / np.sqrt(len(blocks))
+    ratio = np.median(error[spectra] / from_repeats[spectra])
     assert ratio == pytest.approx(1.0, abs=0.3)
 
 
-def test_a_recording_of_too_few_blocks_is_refused(transfers):
-    with pytest.raises(ValueError, match=r"recording of 0\.4 s: 0\.75 s at least"):
-        block_repeats(_runs(transfers, (1,))[0], 4)
+def test_a_recording_of_too_few_blocks_tells_nothing(transfers):
+    assert block_signatures(_runs(transfers, (1,))[0]) is None
 
 
 def test_repeats_that_differ_more_than_simulated_ones_widen_the_floor(transfers):
     simulated = [_signatures(transfers, range(100, 112), at=at) for at in AT]
     usual = [_signatures(transfers, range(4), at=at) for at in AT]
     loose = [_signatures(transfers, range(4), at=at, scatter=Scatter(0.08)) for at in AT]
-    assert widening(list(zip(usual, simulated, strict=True))).tolist() == [1.0] * len(GROUPS)
-    assert (widening(list(zip(loose, simulated, strict=True)))[:3] > 1.5).all()
+    assert floor_widening(list(zip(usual, simulated, strict=True))).tolist() == [1.0] * len(GROUPS)
+    assert (floor_widening(list(zip(loose, simulated, strict=True)))[:3] > 1.5).all()
 
 
 def test_a_wider_floor_is_a_shorter_gap(transfers):

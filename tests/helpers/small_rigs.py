@@ -10,8 +10,8 @@ import numpy as np
 from models.condition import KnownCondition
 from models.rig import Fit, LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.diagnosis.simulated.chain_run import chain_of, record, run_signals
-from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
+from noise.diagnosis.simulated.repeats import record, run_signals
+from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transfer_functions
 from noise.recordings import write_recording
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -57,9 +57,11 @@ def run(condition, *effects, seed=0, seconds=SECONDS, rate=RATE, rig=RIG, librar
     if support not in _TRANSFERS:
         _TRANSFERS[support] = torque_transfer_functions(RIG, condition.interference, support)
     active = activated([LawSpec(name, values) for name, values in effects], library)
-    blows = any(e.effect.force is not None or e.effect.chain is not None for e in active)
+    impacts = any(e.effect.force is not None or e.effect.chain is not None for e in active)
     fine = DIAGNOSIS.rate(rate)
-    chain = chain_of(rig, condition.interference, support, _TRANSFERS[support], fine, blows=blows)
+    chain = chain_of(
+        rig, condition.interference, support, _TRANSFERS[support], fine, impacts=impacts
+    )
     rng = np.random.default_rng(seed)
     signals = run_signals(rig, condition, active, chain, seconds, rng)
     return record(signals, rate, condition, rng, decimation=DIAGNOSIS.decimation(rate))

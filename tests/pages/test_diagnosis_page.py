@@ -22,9 +22,9 @@ from noise.diagnosis.outcome import (
     from_json,
 )
 from noise.diagnosis.text.sentences import verdict_sentence
-from noise.pages import write_diagnosis
 from noise.pages.diagnosis.answer_display import cause_rows, parameter_rows, stage_boxes
 from noise.pages.diagnosis.figures import cycle_window, illustration_panels, sixth_octaves
+from noise.pages.diagnosis.page import write_diagnosis
 from noise.pages.diagnosis.sounds import LONGEST, illustration_entries, reported_entries
 from noise.pages.diagnosis.waterfall import waterfall
 from noise.pages.engine.clips import common_gain, make_clips
@@ -209,7 +209,7 @@ def test_the_sounds_of_a_report_can_be_read_back_with_label_and_level(tmp_path):
     diagnosis = one_effect()
     write_diagnosis(tmp_path, diagnosis)
     found = reported_entries(tmp_path / "report.html", diagnosis)
-    entries = illustration_entries(diagnosis.illustrations[0], diagnosis.heard)
+    entries = illustration_entries(diagnosis.illustrations[0], diagnosis.labels_and_levels)
     for entry, back in zip(entries.values(), found, strict=False):
         assert (back.title, back.label) == (entry.title, entry.label)
         assert entry.note in back.note

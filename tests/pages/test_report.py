@@ -14,7 +14,7 @@ from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
-from noise.pages import ReportEntry, write_report
+from noise.pages.report import ReportEntry, write_report
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE

@@ -9,7 +9,7 @@ import soundfile
 from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
-from noise.pages import ReportEntry, write_report
+from noise.pages.report import ReportEntry, write_report
 from tests.helpers.browser import chromium
 
 RATE = 30_000

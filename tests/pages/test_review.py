@@ -14,8 +14,8 @@ import soundfile
 import noise
 from models.errors import ParameterError
 from noise.audio.gain import loudness
+from noise.base.label_looks import LABEL_LOOKS
 from noise.cli import main
-from noise.labels.label_display import LABEL_LOOKS
 from noise.pages.diagnosis.page import write_diagnosis
 from noise.pages.engine.equal_loudness import equal_factors
 from noise.pages.review.build import review

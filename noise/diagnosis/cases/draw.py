@@ -19,10 +19,9 @@ from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.structures import draw_structure
 from noise.diagnosis.cases.truth import KINDS, Truth
-from noise.diagnosis.cases.unknown_effects import STRANGERS, draw_stranger
+from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.diagnosis.cases.variants import draw_variant
-from noise.diagnosis.gap.scatter import Scatter
-from noise.diagnosis.simulated.chain_run import CHANNELS, run_signals
+from noise.diagnosis.simulated.repeats import CHANNELS, Scatter, run_signals
 from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
@@ -117,12 +116,12 @@ def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveE
         offsets = tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
         return Truth(kind, offsets=offsets), []
     if kind == "unknown":
-        name, strength = str(rng.choice(list(STRANGERS))), _strength(rng)
+        name, strength = str(rng.choice(list(UNKNOWN_EFFECTS))), _strength(rng)
         middle = rig.fit(0.279e-3)
-        stranger = draw_stranger(
+        unknown_effect = draw_unknown_effect(
             name, strength, middle.kinetic_torque, middle.elastomer_stiffness, rng
         )
-        return Truth(kind, (name,), ("plain",), (strength,)), [stranger.active({})]
+        return Truth(kind, (name,), ("plain",), (strength,)), [unknown_effect.active({})]
     count = {"one": 1, "pair": 2, "triple": 3}.get(kind, 0)
     names = rng.choice(sorted(EFFECTS), count, replace=False).tolist()
     strengths = tuple(_strength(rng) for _ in names)

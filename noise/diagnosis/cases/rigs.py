@@ -103,7 +103,7 @@ def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
     ----------
     rig : Rig
     offsets : mapping of str to float
-        By names of `OFFSETS`.
+        Factors [-] by names of `OFFSETS`.
     """
 
     def factor(name: str) -> float:

@@ -1,4 +1,4 @@
-"""Where the simulation goes wrong: stage by stage, each fed with what was measured before it.
+"""Location of a gap: stage by stage, each fed with what was measured before it.
 
 The contact is rebuilt from the measured torque, the structure is driven by it, the sound is
 predicted from it, the shaft's motion is read off its angle. So an error of one stage does not show
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.evidence.bands import BAND_EDGES
+from noise.diagnosis.evidence.channel_summary import BAND_EDGES
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.outcome import Location, StageFinding
 from sim.effects.effect import Stage
@@ -84,7 +84,7 @@ def null_maxima(
     Returns
     -------
     ndarray, shape (n_cases, n_stages)
-        Each column rising.
+        Each column rising, in standard errors [-].
     """
     stages = np.array([stage_of(name) for name in names])
     sizes = [np.abs(_sure(table, names, scale)) for table in tables]

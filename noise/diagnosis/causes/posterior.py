@@ -51,7 +51,7 @@ class Posterior:
     names : tuple of str
         Numbers of a recording that count, each in its own unit.
     scale : ndarray, shape (n_names,)
-        Scatter of each without a cause, in its unit.
+        Scatter of each without a cause, [unit of the number].
     columns : ndarray of int, shape (n_columns,)
         Of the evidence that the trees look at.
     trees : BoostedTrees
@@ -61,7 +61,8 @@ class Posterior:
     alarm : float
         Probability [-] of ``none`` below which there is something to explain.
     null : ndarray, shape (n_quantiles, n_stages)
-        Largest differences of each stage in cases without a cause, for p-values.
+        Largest differences of each stage in cases without a cause, for p-values In standard errors
+        [-].
     card : mapping
         How it was made: seed, counts, scores.
     """
@@ -130,6 +131,7 @@ def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArr
     Returns
     -------
     ndarray, shape (n, n_causes)
+        Probabilities [-].
 
     Examples
     --------

@@ -19,8 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.slip_speeds import in_intervals, slip_intervals
-from noise.diagnosis.evidence.cycle_shape import cycle_shape
-from noise.diagnosis.evidence.torque_by_speed import torque_by_speed
+from noise.diagnosis.evidence.slip_summary import cycle_shape, torque_by_speed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -69,7 +69,8 @@ def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64]
     Returns
     -------
     measured, nominal, scatter : ndarray, shape (n_recordings, n_names)
-        Each in the unit of its number; NaN where the case has none of that name.
+        NaN where the case has none of that name [unit of the
+        number].
 
     Examples
     --------
@@ -104,7 +105,7 @@ def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> NDArray[np.fl
     Returns
     -------
     ndarray, shape (n_names,)
-        Half of what lies between the 16th and the 84th percentile, in the unit of each number.
+        Half of what lies between the 16th and the 84th percentile [unit of the number].
     """
     away, levels = [], []
     for table in tables:
@@ -135,7 +136,7 @@ def evidence(
     Returns
     -------
     ndarray of float32, shape (n_columns,)
-        By `evidence_names`; `MISSING` where undefined.
+        By `evidence_names`; `MISSING` where undefined; differences over scatter [-].
     """
     measured, nominal, scatter = aligned(table, names)
     away = measured - nominal

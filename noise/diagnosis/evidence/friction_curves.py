@@ -16,7 +16,7 @@ import numpy as np
 from noise.diagnosis.evidence.channel_summary import shaft_speed
 from noise.diagnosis.evidence.contact_summary import slip_starts
 from noise.diagnosis.evidence.reconstruction import reconstruct
-from noise.diagnosis.gap.scatter import Scatter
+from noise.diagnosis.simulated.repeats import Scatter
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
@@ -45,13 +45,13 @@ _SURE = 1.645
 
 @dataclass(frozen=True, eq=False)
 class TorqueCurve:
-    """A mean torque and its 90 % interval; all arrays have shape (n_bins,).
+    """A mean torque and its 90 % interval.
 
     Parameters
     ----------
-    x : ndarray
-        What it is drawn over, in the unit of its field in `FrictionCurves`.
-    torque, low, high : ndarray
+    x : ndarray, shape (n_bins,)
+        What it is drawn over [unit of its field in `FrictionCurves`].
+    torque, low, high : ndarray, shape (n_bins,)
         Mean and limits of its interval [Nm].
     """
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.fft import irfft, rfft
 
 from features.kernels.segments import segment_spectra
-from noise.diagnosis.evidence.bands import USABLE, band_bins, segment_frequency
+from noise.diagnosis.evidence.channel_summary import USABLE, band_bins, segment_frequency
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +53,7 @@ def path_summary(
     Parameters
     ----------
     predicted, measured : ndarray, shape (n,)
-        In the channel's unit.
+        [unit of the channel]
     rate : float
         Sampling rate [Hz].
     slips : ndarray, shape (n_slips,)
@@ -65,7 +65,7 @@ def path_summary(
         By name, those of a band with its number; ratios and coherences as logarithms [-], ``delay``
         in microseconds, ``*_at`` as logarithms of seconds or hertz.
     residual : ndarray, shape (n_kept,)
-        Measured less predicted, without its ends, in the channel's unit.
+        Measured less predicted, without its ends [unit of the channel].
 
     Examples
     --------

@@ -17,11 +17,12 @@ import numpy as np
 
 from features.kernels.segments import segment_spectra
 from models.condition import known_condition
-from noise.diagnosis.evidence.bands import band_bins, segment_frequency
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
+    band_bins,
     channel_summary,
     hum_summary,
+    segment_frequency,
     shaft_speed,
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import Effect
 
-__all__ = ["CaseTable", "NominalNumbers", "case_table", "summary", "through_same"]
+__all__ = ["CaseTable", "NominalNumbers", "case_table", "same_channels", "summary"]
 
 Numbers = dict[str, float]
 
@@ -61,7 +62,8 @@ class CaseTable:
     names : tuple of str
         Of the columns.
     measured, nominal, scatter : ndarray, shape (n_recordings, n_numbers)
-        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined.
+        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined
+        [unit of the number].
     conditions : tuple of Condition
     rate : float
         Sampling rate of the recordings [Hz].
@@ -91,7 +93,7 @@ def summary(
     Returns
     -------
     dict of str to float
-        What a missing channel would tell is missing.
+        What a missing channel would tell is missing [unit of the number].
     """
     condition, rate = known_condition(recording.condition), recording.rate
     signal = {
@@ -153,12 +155,12 @@ class NominalNumbers:
         """The rig's, each looked up once."""
         return TransferFunctionCache(self.rig)
 
-    def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
+    def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
         c = known_condition(recording.condition)
         at = _condition(recording)
-        like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
-        if like not in self._kept:
+        key = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
+        if key not in self._kept:
             transfer_functions = self.transfer_functions.at(at[1], at[2])
             repeats = nominal_recordings(
                 self.rig,
@@ -169,11 +171,11 @@ class NominalNumbers:
                 seeds=[self.seed + i for i in range(N_REPEATS)],
                 library=self.library,
             )
-            heard = [through_same(repeat, recording) for repeat in repeats]
-            self._kept[like] = _moments(
-                [summary(repeat, self.rig, transfer_functions) for repeat in heard]
+            alike = [same_channels(repeat, recording) for repeat in repeats]
+            self._kept[key] = _moments(
+                [summary(repeat, self.rig, transfer_functions) for repeat in alike]
             )
-        return self._kept[like]
+        return self._kept[key]
 
 
 def case_table(
@@ -206,7 +208,7 @@ def case_table(
         summary(recording, rig, nominal.transfer_functions.at(*_condition(recording)[1:]))
         for recording in recordings
     ]
-    means, spreads = zip(*(nominal.like(recording) for recording in recordings), strict=True)
+    means, spreads = zip(*(nominal.moments(recording) for recording in recordings), strict=True)
     names = tuple(sorted({name for row in (*rows, *means) for name in row}))
 
     def table(numbers: Sequence[Numbers]) -> NDArray[np.float64]:
@@ -227,7 +229,7 @@ def _condition(recording: Recording) -> tuple[float, float, float]:
     return (c.speed, c.interference, c.support_stiffness)
 
 
-def through_same(repeat: Recording, recording: Recording) -> Recording:
+def same_channels(repeat: Recording, recording: Recording) -> Recording:
     """Return a repeat without the channels that a recording lacks.
 
     Parameters

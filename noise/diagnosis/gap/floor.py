@@ -16,15 +16,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
-from noise.diagnosis.gap.blocks import block_signatures
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
     gap_of,
     group_costs,
     reference,
-    scattered_enough,
+    with_least_scatter,
 )
-from noise.diagnosis.gap.signature import GROUPS, group_of, signature
+from noise.diagnosis.gap.signature import GROUPS, block_signatures, group_of, signature
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
@@ -36,10 +35,10 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
     from noise.diagnosis.gap.distance import Gap, Reference
-    from noise.diagnosis.gap.scatter import Scatter
+    from noise.diagnosis.simulated.repeats import Scatter
     from sim.effects.effect import Effect
 
-__all__ = ["case_gap", "condition_key", "references_of", "repeat_gap", "widening"]
+__all__ = ["case_gap", "condition_key", "floor_widening", "references_of", "repeat_gap"]
 
 N_REPEATS = 12
 """Simulated repeats a condition."""
@@ -118,8 +117,9 @@ def repeat_gap(
     ----------
     recordings : sequence of Recording
     repeats : mapping of (float, float, float, float, float) to sequence of ndarray
-        Signatures of at least three repeats, by speed [rad/s], interference [m], support stiffness
-        [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives them.
+        Signatures, shape (n_values,), of at least three repeats, by speed [rad/s], interference
+        [m], support stiffness [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives
+        them.
     least : float
         As in `noise.diagnosis.gap.distance.reference`.
     seed : int
@@ -146,8 +146,8 @@ def references_of(
     Parameters
     ----------
     recordings : sequence of Recording
-    signatures : sequence of ndarray
-        Of the recordings.
+    signatures : sequence of ndarray, shape (n_values,)
+        Of the recordings As of `noise.diagnosis.gap.signature.signature`.
     repeats, least, seed
         As of `repeat_gap`.
 
@@ -156,17 +156,17 @@ def references_of(
     references : list of Reference
         One a recording; recordings of one condition share one.
     widened : float
-        By how much the floor is wider than the repeats alone have it.
+        By how much the floor is wider than the repeats alone have it [-].
     """
     own: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
     for recording, values in zip(recordings, signatures, strict=True):
         own.setdefault(condition_key(recording), []).append(values)
     pairs = [(own[key], repeats[key]) for key in own if len(own[key]) > 1]
     if pairs:
-        wider = widening(pairs)
+        wider = floor_widening(pairs)
     else:
         first = {condition_key(r): r for r in reversed(recordings)}
-        wider = _widening_of_blocks([(r, repeats[key]) for key, r in first.items()])
+        wider = _block_widening([(r, repeats[key]) for key, r in first.items()])
     each = wider[_GROUP_OF]
     references = {}
     for key in own:
@@ -176,7 +176,7 @@ def references_of(
     return [references[condition_key(r)] for r in recordings], float(np.sqrt(np.mean(wider**2)))
 
 
-def widening(
+def floor_widening(
     repeated: Sequence[tuple[Sequence[NDArray[np.float64]], Sequence[NDArray[np.float64]]]],
 ) -> NDArray[np.float64]:
     """By how much the floor is wider than simulated repeats have it.
@@ -184,8 +184,8 @@ def widening(
     Parameters
     ----------
     repeated : sequence of (sequence of ndarray, sequence of ndarray)
-        For each condition, signatures of its recordings, at least two, and of its simulated
-        repeats, at least four.
+        For each condition, signatures, shape (n_values,), of its recordings, at least two, and of
+        its simulated repeats, at least four; as of `repeat_gap`.
 
     Returns
     -------
@@ -194,20 +194,20 @@ def widening(
         repeats differ by no more than simulated ones do 99 times out of 100.
     """
     rng = np.random.default_rng(0)
-    sets = [_sets(np.array(own), scattered_enough(np.array(s)), rng) for own, s in repeated]
+    sets = [_sets(np.array(own), with_least_scatter(np.array(s)), rng) for own, s in repeated]
     return _beyond(np.array([one[0] for one in sets]), np.array([one[1:] for one in sets]))
 
 
-def _widening_of_blocks(
+def _block_widening(
     alone: Sequence[tuple[Recording, Sequence[NDArray[np.float64]]]],
 ) -> NDArray[np.float64]:
-    """As `widening`, were the recordings as unsteady from run to run as from block to block."""
+    """As `floor_widening`, were runs as unsteady as the blocks of a recording are."""
     recorded, simulated = [], []
     for recording, others in alone:
         blocks = block_signatures(recording)
         if blocks is None:
             continue
-        s = scattered_enough(np.array(others))
+        s = with_least_scatter(np.array(others))
         spread = np.sqrt(s.var(axis=0, ddof=1) + LEAST_SCALE**2)
         error = np.sqrt(blocks.var(axis=0, ddof=1) / len(blocks))
         recorded.append(group_costs(error / spread))
@@ -265,7 +265,8 @@ def condition_key(recording: Recording) -> tuple[float, ...]:
     Returns
     -------
     tuple of float
-        Speed, interference, support stiffness, sampling rate and length.
+        Speed [rad/s], interference [m], support stiffness [Nm/rad], sampling rate [Hz] and length
+        [s].
     """
     c = known_condition(recording.condition)
     return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)

@@ -17,10 +17,13 @@ import numpy as np
 from models.condition import known_condition
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.floor import condition_key
-from noise.diagnosis.gap.scatter import Scatter, perturb_run
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
-from noise.diagnosis.simulated.chain_run import chain_of, plan_repeat, record
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, shift_clamp_mode
+from noise.diagnosis.simulated.repeats import Scatter, perturb_run, plan_repeat, record
+from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
+    chain_of,
+    shift_clamp_mode,
+)
 from sim.acquisition import decimate
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
@@ -91,14 +94,14 @@ class ModelRuns:
         self.transfer_functions = TransferFunctionCache(self.rig)
 
     def simulated(
-        self, model: Model, like: Recording, seed: int, scatter: Scatter | None = None
+        self, model: Model, template: Recording, seed: int, scatter: Scatter | None = None
     ) -> Recording:
         """Simulate a recording by a model, at the condition, rate and length of another.
 
         Parameters
         ----------
         model : Model
-        like : Recording
+        template : Recording
         seed : int
             Of the scatter, of effects that scatter, and of the sensors' noise.
         scatter : Scatter, optional
@@ -110,41 +113,48 @@ class ModelRuns:
             The model cannot be simulated.
         """
         scatter = scatter or Scatter()
-        fine = DIAGNOSIS.rate(like.rate)
+        fine = DIAGNOSIS.rate(template.rate)
         effects = self._active(model)
-        signals = self._radiated(model, effects, like, fine, seed, scatter)[1]
+        signals = self._radiated(model, effects, template, fine, seed, scatter)[1]
         signals = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
         return record(
-            signals, like.rate, like.condition, np.random.default_rng([seed, 3]), scatter,
-            decimation=DIAGNOSIS.decimation(like.rate),
+            signals, template.rate, template.condition, np.random.default_rng([seed, 3]), scatter,
+            decimation=DIAGNOSIS.decimation(template.rate),
         )  # fmt: skip
 
-    def noise_free_signature(self, model: Model, like: Recording, seed: int) -> NDArray[np.float64]:
+    def noise_free_signature(
+        self, model: Model, template: Recording, seed: int
+    ) -> NDArray[np.float64]:
         """Return the signature of a run without scatter and noise.
 
         Parameters
         ----------
         model : Model
-        like : Recording
+        template : Recording
         seed : int
             Of effects that are chance.
+
+        Returns
+        -------
+        ndarray, shape (n_values,)
+            As of `noise.diagnosis.gap.signature.signature`.
 
         Raises
         ------
         ParameterError
             The model cannot be simulated.
         """
-        effects, fine = self._active(model), DIAGNOSIS.rate(like.rate)
-        key, signals = self._radiated(model, effects, like, fine, seed, _EXACT)
+        effects, fine = self._active(model), DIAGNOSIS.rate(template.rate)
+        key, signals = self._radiated(model, effects, template, fine, seed, _EXACT)
         read = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
 
         def part(kind: str) -> NDArray[np.float64]:
-            sampled = decimate(read[kind], DIAGNOSIS.decimation(like.rate))
-            return channel_signature(sampled, like.rate, kind)
+            sampled = decimate(read[kind], DIAGNOSIS.decimation(template.rate))
+            return channel_signature(sampled, template.rate, kind)
 
         parts = {}
         for kind in KINDS:
-            if like.first(kind) is None:
+            if template.first(kind) is None:
                 continue
             untouched = read[kind] is signals[kind]
             parts[kind] = (
@@ -169,7 +179,7 @@ class ModelRuns:
         self,
         model: Model,
         effects: Sequence[ActiveEffect],
-        like: Recording,
+        template: Recording,
         fine: float,
         seed: int,
         scatter: Scatter,
@@ -179,27 +189,27 @@ class ModelRuns:
         on_motion = [
             a for a in effects if a.effect.contact is not None or a.effect.drive is not None
         ]
-        of_motion = (condition_key(like), seed, scatter, model.offsets, _key(on_motion))
+        of_motion = (condition_key(template), seed, scatter, model.offsets, _key(on_motion))
         key = (*of_motion, _key(on_paths))
 
         def radiated() -> Signals:
             factors = {n: math.exp(x) for n, x in zip(OFFSETS, model.offsets, strict=True)}
             once, at = perturb_run(
-                with_offsets(self.rig, factors), known_condition(like.condition), scatter,
+                with_offsets(self.rig, factors), known_condition(template.condition), scatter,
                 np.random.default_rng([seed, 0]),
             )  # fmt: skip
-            plan = plan_repeat(once, at, on_motion, rate=fine, seconds=like.duration)
+            plan = plan_repeat(once, at, on_motion, rate=fine, seconds=template.duration)
             motion = self._motions.get(
                 of_motion, lambda: run_motion(plan, np.random.default_rng([seed, 1]))
             )
-            paths = self._paths(plan, blows=bool(on_paths))
+            paths = self._paths(plan, impacts=bool(on_paths))
             changed = changed_chain(paths, on_paths, np.random.default_rng(0))
             sound = radiate_motion(motion, changed, on_paths)
             return sensor_signals(motion, sound, plan.n_settling)
 
         return key, self._signals.get(key, radiated)
 
-    def _paths(self, plan: Plan, *, blows: bool) -> ImpulseResponses:
+    def _paths(self, plan: Plan, *, impacts: bool) -> ImpulseResponses:
         """Impulse responses of the rig, the clamp's mode where a plan's rig has it."""
         at = (plan.interference, plan.support_stiffness)
         lumped = lumped_bushing(plan.rig, *at)
@@ -207,10 +217,10 @@ class ModelRuns:
         def made() -> ImpulseResponses:
             plain = lumped_bushing(self.rig, *at)
             nominal = self.transfer_functions.at(*at)
-            moved = {name: shift_clamp_mode(h, plain, lumped) for name, h in nominal.items()}
-            return chain_of(self.rig, *at, moved, plan.rate, blows=blows)
+            shifted = {name: shift_clamp_mode(h, plain, lumped) for name, h in nominal.items()}
+            return chain_of(self.rig, *at, shifted, plan.rate, impacts=impacts)
 
-        return self._responses.get((*at, plan.rate, blows, repr(lumped)), made)
+        return self._responses.get((*at, plan.rate, impacts, repr(lumped)), made)
 
 
 class _Kept(Generic[T]):

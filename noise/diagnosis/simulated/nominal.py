@@ -1,4 +1,4 @@
-"""What the rig file says would have been recorded: quick simulated repeats of a condition.
+"""Nominal repeats: a condition simulated quickly and often, with the rig as its file has it.
 
 The transfer functions are those of the structure, applied to the simulated
 torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and
@@ -13,15 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.gap.scatter import Scatter, perturb_rig, perturb_run
-from noise.diagnosis.simulated.chain_run import plan_repeat, record
+from noise.diagnosis.simulated.repeats import Scatter, perturb_rig, perturb_run, plan_repeat, record
 from noise.diagnosis.simulated.transfer_functions import predict, shift_clamp_mode
 from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.pipeline import run_motion
-from sim.run import simulate
 from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
@@ -126,6 +124,8 @@ def _full_repeat(
     library: Mapping[str, Effect] | None,
 ) -> Recording:
     """Simulate a repeat with all effects there are, as `sim.timing.SIMULATION` has it."""
+    from sim.run import simulate  # only rig files that list such effects need it
+
     rng = np.random.default_rng(seed)
     speed = condition.speed * scatter.structure_factor(rng)
     with warnings.catch_warnings():

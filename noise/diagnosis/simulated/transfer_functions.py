@@ -13,20 +13,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import rfft
 
+from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.transfer_functions.filtering import filter_period
-from models.transfer_functions.impulse_response import FINER, fill_between_lines
+from models.transfer_functions.impulse_response import FINER, fill_between_lines, impulse_response
 from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.reconstruction import closed_loop
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from models.rig import Rig
     from sim.bushing import LumpedBushing
 
-__all__ = ["TransferFunctionCache", "predict", "shift_clamp_mode", "torque_transfer_functions"]
+__all__ = [
+    "TransferFunctionCache",
+    "chain_of",
+    "predict",
+    "shift_clamp_mode",
+    "torque_transfer_functions",
+]
+
+_LONGEST = 0.25
+"""Impulse responses are followed so long [s]."""
 
 _MODEL_RATE = 96e3
 """Sampling rate at which modelled responses are computed [Hz]."""
@@ -121,7 +133,7 @@ def predict(
     Returns
     -------
     ndarray, shape (n,)
-        In its output unit; what rings on from before the recording is missing at its start.
+        [output unit of `transfer`]; what rings on from before the recording is missing.
 
     Examples
     --------
@@ -161,3 +173,43 @@ def shift_clamp_mode(
         for b in (nominal, scattered)
     )
     return replace(transfer, response=transfer.response * of_nominal / of_scattered)
+
+
+def chain_of(
+    rig: Rig,
+    interference: float,
+    support_stiffness: float,
+    transfer_functions: Mapping[str, TransferFunction],
+    rate: float,
+    *,
+    impacts: bool,
+) -> ImpulseResponses:
+    """Return the impulse responses of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad] or `models.condition.FIXED`.
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
+    rate : float
+        Sampling rate [Hz].
+    impacts : bool
+        Whether those of pulses in the anchors are asked for; otherwise they are 0.
+
+    Returns
+    -------
+    ImpulseResponses
+    """
+    n = int(_LONGEST * rate)
+    torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
+    struck = sounding = np.zeros(1)
+    if impacts:
+        modelled = impulse_responses(rig, interference, support_stiffness, rate)
+        struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
+    return ImpulseResponses(
+        rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding
+    )

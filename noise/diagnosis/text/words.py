@@ -199,7 +199,7 @@ def percent(share: float | None) -> str:
 
 
 def number(value: float | None, form: str = ".2f") -> str:
-    """Return a number as it is printed.
+    """Return a number [any unit] as it is printed.
 
     Examples
     --------
@@ -212,7 +212,7 @@ def number(value: float | None, form: str = ".2f") -> str:
 
 
 def frequency(hertz: float) -> str:
-    """Return a frequency as it is read.
+    """Return a frequency [Hz] as it is read.
 
     Examples
     --------

@@ -52,12 +52,16 @@ def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
     title, across, scale = _OVER[over]
     figure, axes = new_panel(title, across, "Torque [Nm]")
     words = []
-    for name, courses in contacts.items():
-        course, curve = getattr(courses, over), CURVES[name]
-        if not course.x.size:
+    for name, friction_curves in contacts.items():
+        torque_curve, curve = getattr(friction_curves, over), CURVES[name]
+        if not torque_curve.x.size:
             continue
-        x = scale * course.x
-        axes.fill_between(x, course.low, course.high, color=curve.colour, alpha=0.18, linewidth=0)
-        draw(axes, name, x, course.torque, marker="o")
-        words.append(f"{curve.label} {course.torque.min():.3g} to {course.torque.max():.3g} Nm")
+        x = scale * torque_curve.x
+        axes.fill_between(
+            x, torque_curve.low, torque_curve.high, color=curve.colour, alpha=0.18, linewidth=0
+        )
+        draw(axes, name, x, torque_curve.torque, marker="o")
+        words.append(
+            f"{curve.label} {torque_curve.torque.min():.3g} to {torque_curve.torque.max():.3g} Nm"
+        )
     return Panel(as_svg(figure), f"{title}, over {across.lower()}: {'; '.join(words)}.")

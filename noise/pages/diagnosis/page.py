@@ -7,7 +7,7 @@ to measure next; then the evidence for eye and ear; figures for whoever doubts c
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from noise.base.atomic import atomic
 from noise.diagnosis.outcome import ROLES, as_json
@@ -19,32 +19,17 @@ from noise.pages.diagnosis.answer_display import (
     place_rows,
     stage_boxes,
 )
-from noise.pages.diagnosis.contact_figures import contact_panels
-from noise.pages.diagnosis.figures import CURVES, illustration_panels
-from noise.pages.diagnosis.sounds import illustration_entries
 from noise.pages.diagnosis.waterfall import waterfall
-from noise.pages.engine.clips import common_gain, make_clips
-from noise.pages.engine.entry import Entry
-from noise.pages.engine.entry_display import facts_of
 from noise.pages.engine.page import page_html, write_page
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from noise.diagnosis.outcome import Diagnosis, Heard
-    from noise.pages.engine.panels import Panel
+    from noise.diagnosis.outcome import Diagnosis, LabelsAndLevels
+    from noise.pages.engine.clips import Clip
+    from noise.pages.engine.entry import Entry
 
 __all__ = ["write_diagnosis"]
-
-
-class _Comparison(NamedTuple):
-    """One recording beside its simulations; `sounds` are ids by role."""
-
-    name: str
-    condition: str
-    roles: tuple[str, ...]
-    sounds: dict[str, str]
-    panels: tuple[Panel, ...]
 
 
 def write_diagnosis(folder: Path, diagnosis: Diagnosis) -> None:
@@ -82,23 +67,13 @@ def write_diagnosis(folder: Path, diagnosis: Diagnosis) -> None:
 
 def _html(diagnosis: Diagnosis) -> str:
     entries: dict[str, Entry] = {}
-    comparisons = []
-    for illustration in diagnosis.illustrations:
-        found = illustration_entries(illustration, diagnosis.heard)
-        keys = {role: f"s{len(entries) + i}" for i, role in enumerate(found, 1)}
-        entries |= {keys[role]: entry for role, entry in found.items()}
-        known = facts_of(Entry(illustration.name, condition=illustration.measured.condition))
-        comparisons.append(
-            _Comparison(
-                illustration.name,
-                ", ".join(fact.words for name, fact in known.items() if name != "material"),
-                ROLES if illustration.after is not None else ROLES[:2],
-                keys,
-                (*illustration_panels(illustration), *contact_panels(illustration.contacts)),
-            )
-        )
-    gain = common_gain(entries.values())
-    clips, _ = make_clips(entries, gain)
+    clips: dict[str, Clip] = {}
+    contents: dict[str, Any] = {"comparisons": (), "curves": {}, "gain": ()}
+    if diagnosis.illustrations or diagnosis.labels_and_levels:
+        # Figures and sounds load much that a quick answer, which has none, need not wait for.
+        from noise.pages.diagnosis.comparisons import draw_comparisons
+
+        entries, clips, contents = draw_comparisons(diagnosis)
     likely, unlikely = cause_rows(diagnosis)
     return page_html(
         "diagnosis.html.j2",
@@ -112,23 +87,21 @@ def _html(diagnosis: Diagnosis) -> str:
         unlikely=unlikely,
         next_measurement=diagnosis.next_measurement,
         notes=diagnosis.notes,
-        comparisons=comparisons,
-        curves=CURVES,
-        gain=gain.sentences if clips else (),
         places=place_rows(diagnosis.differences),
         parameters=parameter_rows(diagnosis.parameters),
         held_out=diagnosis.held_out,
-        heard=[_heard_row(heard) for heard in diagnosis.heard],
+        heard=[_heard_row(heard) for heard in diagnosis.labels_and_levels],
         gap=number(diagnosis.gap),
         floor=number(diagnosis.floor),
         p_value=p_number(diagnosis.p_value),
         seconds=number(diagnosis.seconds, ".1f"),
         not_determined=NOT_DETERMINED,
         judged=bool(diagnosis.verdict),
+        **contents,
     )
 
 
-def _heard_row(heard: Heard) -> list[str]:
+def _heard_row(heard: LabelsAndLevels) -> list[str]:
     """Name of a recording, and for each role label and level in words."""
     row = [heard.recording]
     for role in ROLES:

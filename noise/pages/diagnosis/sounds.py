@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.diagnosis.outcome import Diagnosis, Heard, Illustration
+    from noise.diagnosis.outcome import Diagnosis, Illustration, LabelsAndLevels
 
 __all__ = ["LONGEST", "illustration_entries", "reported_entries"]
 
@@ -39,14 +39,14 @@ _NEEDED = {"data-recording", "data-role", "data-full-scale"}
 
 
 def illustration_entries(
-    illustration: Illustration, heard: Sequence[Heard] = ()
+    illustration: Illustration, heard: Sequence[LabelsAndLevels] = ()
 ) -> dict[str, Entry]:
     """Return what is heard of an illustration, by role.
 
     Parameters
     ----------
     illustration : Illustration
-    heard : sequence of Heard
+    heard : sequence of LabelsAndLevels
         Labels and levels, of any recordings.
 
     Returns
@@ -104,7 +104,7 @@ def reported_entries(report: Path, diagnosis: Diagnosis) -> list[Entry]:
         except (ValueError, soundfile.LibsndfileError) as error:
             raise RecordingError(f"sound {name} of the report is damaged ({error})") from None
         note = "from the report of the diagnosis"
-        entries.append(_entry(name, role, sound, diagnosis.heard, note))
+        entries.append(_entry(name, role, sound, diagnosis.labels_and_levels, note))
     return entries
 
 
@@ -129,7 +129,11 @@ class _Sounds(HTMLParser):
 
 
 def _entry(
-    name: str, role: str, sound: NDArray[np.float32], heard: Sequence[Heard], note: str = ""
+    name: str,
+    role: str,
+    sound: NDArray[np.float32],
+    heard: Sequence[LabelsAndLevels],
+    note: str = "",
 ) -> Entry:
     known = next((one for one in heard if one.recording == name), None)
     label, level = (None, None) if known is None else known.of(role)

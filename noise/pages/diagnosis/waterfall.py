@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.fit.closing import closed_fraction
+from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.text.sentences import closed_sentence, finding_of
 from noise.diagnosis.text.words import cause_of, joined, percent
 from noise.pages.engine.ticks import round_ticks

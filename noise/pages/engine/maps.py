@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.labels.conditions import conditions_map
+from noise.pages.engine.page import MAP_SIZE
 from noise.pages.engine.ticks import round_ticks
 from noise.pictures.titles import place_title
 
@@ -26,12 +27,11 @@ if TYPE_CHECKING:
     from noise.labels.conditions import Place, Range
 
 __all__ = [
-    "HEIGHT", "WIDTH", "Area", "Axis", "ConditionMap", "Spot", "areas_of", "axis_of",
+    "Area", "Axis", "ConditionMap", "Spot", "areas_of", "axis_of",
     "recorded_maps",
 ]  # fmt: skip
 
-WIDTH, HEIGHT = 500.0, 300.0
-"""Of the drawing."""
+_WIDTH, _HEIGHT = MAP_SIZE
 
 _MARGIN = 0.12  # of an axis, beyond its outermost spots
 _MOST_TICKS = 7
@@ -186,10 +186,10 @@ def areas_of(
             right = across.share(float(x_edges[last]))
             areas.append(
                 Area(
-                    round(WIDTH * left, 2),
-                    round(HEIGHT * (1.0 - top), 2),
-                    round(WIDTH * (right - left), 2),
-                    round(HEIGHT * (top - bottom), 2),
+                    round(_WIDTH * left, 2),
+                    round(_HEIGHT * (1.0 - top), 2),
+                    round(_WIDTH * (right - left), 2),
+                    round(_HEIGHT * (top - bottom), 2),
                     label,
                 )
             )

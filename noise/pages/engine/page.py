@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from noise.base.atomic import atomic
-from noise.labels.label_display import LABEL_LOOKS
+from noise.base.label_looks import LABEL_LOOKS
 from noise.pages.engine.entry_display import draw_entries, frequency_ticks
 from noise.pages.engine.equal_loudness import MOST_RAISED, equal_factors
-from noise.pages.engine.maps import HEIGHT, WIDTH
 from noise.pages.engine.spectrogram import scale_picture
 
 if TYPE_CHECKING:
@@ -28,7 +27,10 @@ if TYPE_CHECKING:
     from noise.pages.engine.entry import Entry
     from noise.pages.engine.entry_display import EntryDisplay
 
-__all__ = ["as_base64", "page_html", "write_page"]
+__all__ = ["MAP_SIZE", "as_base64", "page_html", "write_page"]
+
+MAP_SIZE = (500.0, 300.0)
+"""Width and height of the drawing of a condition map [px]."""
 
 
 def page_html(
@@ -157,7 +159,7 @@ def _environment() -> Environment:
     environment.globals |= {
         "label_display": LABEL_LOOKS,
         "frequencies": frequency_ticks(),
-        "map_size": (round(WIDTH), round(HEIGHT)),
+        "map_size": tuple(round(length) for length in MAP_SIZE),
         "scale": scale_picture,
     }
     environment.filters |= {

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from noise.diagnosis.fit.closing import closed_fraction
+from noise.diagnosis.gap.distance import closed_fraction
 from tests.studies.oscillator_terms.blocks import BlockErrors, block_errors, cut, drawn_blocks
 from tests.studies.oscillator_terms.finding import Gap, OscillatorDiagnosis, TermFinding
 from tests.studies.oscillator_terms.fit import Model, fit_model, linear_guess

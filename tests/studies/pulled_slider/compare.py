@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from models.errors import ParameterError
-from noise.diagnosis.fit.closing import closed_fraction
+from noise.diagnosis.gap.distance import closed_fraction
 from tests.studies.pulled_slider.cycles import (
     FEATURES,
     block_features,

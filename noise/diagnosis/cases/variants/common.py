@@ -1,4 +1,4 @@
-"""What the variants have in common: how they are made, and the shapes that many are drawn from.
+"""Parts of the variants: constructors of effects, and random curves and signals.
 
 A monotone shape with random increments stands for the forms that nobody foresees: whoever has
 learnt a hundred such shapes has learnt the effect rather than a formula of it.
@@ -63,12 +63,12 @@ def on_drive(
     name: str,
     form: str,
     strength: float,
-    course: Callable[[Array, float, np.random.Generator], Array],
+    change: Callable[[Array, float, np.random.Generator], Array],
 ) -> Effect:
-    """Make an effect on the speed, the relative change of which is `course`."""
+    """Make an effect on the speed, the relative change of which is `change`."""
     return _made(
         name, form, strength,
-        drive=lambda speed, rate, _form, _values, rng: speed * (1.0 + course(speed, rate, rng)),
+        drive=lambda speed, rate, _form, _values, rng: speed * (1.0 + change(speed, rate, rng)),
     )  # fmt: skip
 
 
@@ -151,18 +151,18 @@ def noise(rng: np.random.Generator, n: int, rate: float, low: float, high: float
     inside = (frequency >= low) & (frequency <= high)
     inside[1] |= not inside[1:].any()
     spectrum = inside * np.exp(2j * np.pi * rng.random(frequency.size))
-    course = np.fft.irfft(spectrum, n)
-    return np.asarray(course / course.std())
+    time_series = np.fft.irfft(spectrum, n)
+    return np.asarray(time_series / time_series.std())
 
 
 def wander(rng: np.random.Generator, n: int, rate: float, corner: float) -> Array:
-    """Draw a slow random course of about unit variance."""
+    """Draw a slow random time series of about unit variance."""
     b, a = butter(2, min(2.0 * corner / rate, 0.9))
     settling = round(min(2.0 * rate / corner, 4.0 * n))
-    course = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
-    return np.asarray(course * math.sqrt(0.5 * rate / (1.11 * corner)))
+    time_series = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
+    return np.asarray(time_series * math.sqrt(0.5 * rate / (1.11 * corner)))
 
 
 def telegraph(rng: np.random.Generator, n: int, rate: float, often: float) -> Array:
-    """Draw a course that switches between -1 and 1, so often a second [Hz]."""
+    """Draw a time series that switches between -1 and 1, so often a second [Hz]."""
     return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)

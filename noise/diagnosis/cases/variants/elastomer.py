@@ -14,7 +14,7 @@ from noise.diagnosis.cases.variants.common import (
     log_uniform,
     on_contact,
 )
-from noise.diagnosis.cases.variants.hooks import bristled, flowed, softened
+from noise.diagnosis.cases.variants.hooks import bristle_hook, dashpot_hook, softening_hook
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ _SHORTEST = 2e-5
 def _softens(form: str, a: float, rng: Rng, shape: Array, held: float = 0.0) -> Effect:
     header = [0.6 * a, log_uniform(rng, 4e-4, 6e-3), log_uniform(rng, 0.02, 0.2), held]
     return on_contact(
-        "amplitude_softening", form, a, softened,
+        "amplitude_softening", form, a, softening_hook,
         lambda _rng: np.concatenate([header, shape]), n_states=2,
     )  # fmt: skip
 
@@ -62,7 +62,7 @@ def _soft_bristles(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 7))
     twists = np.exp(rng.uniform(np.log(4e-4), np.log(8e-3), n))
     return on_contact(
-        "amplitude_softening", "bristles", a, bristled,
+        "amplitude_softening", "bristles", a, bristle_hook,
         lambda _rng: np.concatenate([[0.6 * a, n], twists]), n_states=n,
     )  # fmt: skip
 
@@ -97,7 +97,7 @@ def _flows(form: str, a: float, rng: Rng, thinning: float, twist: float) -> Effe
     rates = 1.0 / np.exp(rng.uniform(np.log(2e-4), np.log(1e-2), n))
     shares = 0.9 * a * rng.dirichlet(np.ones(n))
     return on_contact(
-        "viscoelastic_stiffness", form, a, flowed,
+        "viscoelastic_stiffness", form, a, dashpot_hook,
         lambda _rng: np.concatenate([[n, thinning, twist], shares, rates]), n_states=n,
     )  # fmt: skip
 

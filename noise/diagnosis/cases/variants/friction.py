@@ -17,7 +17,12 @@ from noise.diagnosis.cases.variants.common import (
     noise,
     on_contact,
 )
-from noise.diagnosis.cases.variants.hooks import aged, crept, patched, sped
+from noise.diagnosis.cases.variants.hooks import (
+    ageing_hook,
+    creep_hook,
+    patch_hook,
+    rate_dependence_hook,
+)
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -37,7 +42,7 @@ def _over_speed(
     name: str, form: str, a: float, gain: float, speed: float, shape: Array, lag: float = 0.0
 ) -> Effect:
     return on_contact(
-        name, form, a, sped,
+        name, form, a, rate_dependence_hook,
         lambda _rng: np.concatenate([[gain, speed, lag], shape]), n_states=1,
     )  # fmt: skip
 
@@ -109,71 +114,71 @@ def _strong_softplus(a: float, rng: Rng) -> Effect:
 def _ages(form: str, a: float, rng: Rng, shape: Array) -> Effect:
     time = log_uniform(rng, 5e-4, 2e-2)
     return on_contact(
-        "static_ageing", form, a, aged,
+        "static_ageing", form, a, ageing_hook,
         lambda _rng: np.concatenate([[0.97 * a, time, _RENEWAL], shape]), n_states=1,
     )  # fmt: skip
 
 
-def _aged_power(a: float, rng: Rng) -> Effect:
+def _ageing_power(a: float, rng: Rng) -> Effect:
     p = log_uniform(rng, 0.2, 2.0)
     return _ages("any_power", a, rng, far_curve(lambda x: 1.0 - (1.0 + x) ** -p))
 
 
-def _aged_hill(a: float, rng: Rng) -> Effect:
+def _ageing_hill(a: float, rng: Rng) -> Effect:
     n = float(rng.uniform(1.4, 4.0))
     return _ages("hill", a, rng, far_curve(lambda x: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** n)))
 
 
-def _aged_delayed(a: float, rng: Rng) -> Effect:
+def _ageing_delayed(a: float, rng: Rng) -> Effect:
     at, steep = float(rng.uniform(0.2, 1.0)), float(rng.uniform(1.0, 4.0))
     return _ages(
         "delayed", a, rng, far_curve(lambda x: -np.expm1(-steep * np.maximum(x - at, 0.0) ** 1.5))
     )
 
 
-def _aged_stretched(a: float, rng: Rng) -> Effect:
+def _ageing_stretched(a: float, rng: Rng) -> Effect:
     p = float(rng.uniform(0.35, 0.75))
     return _ages("stretched", a, rng, far_curve(lambda x: -np.expm1(-(x**p))))
 
 
-def _aged_table(a: float, rng: Rng) -> Effect:
+def _ageing_table(a: float, rng: Rng) -> Effect:
     return _ages("table", a, rng, drawn_curve(rng))
 
 
 def _creeps(form: str, a: float, shape: Array, lag: float = 0.0) -> Effect:
     return on_contact(
-        "partial_slip", form, a, crept,
+        "partial_slip", form, a, creep_hook,
         lambda _rng: np.concatenate([[0.92 * a, lag], shape]), n_states=1,
     )  # fmt: skip
 
 
-def _crept_table(a: float, rng: Rng) -> Effect:
+def _creep_table(a: float, rng: Rng) -> Effect:
     return _creeps("table", a, drawn_curve(rng))
 
 
-def _crept_threshold(a: float, rng: Rng) -> Effect:
+def _creep_threshold(a: float, rng: Rng) -> Effect:
     at, n = float(rng.uniform(0.2, 0.85)), float(rng.uniform(1.0, 2.5))
     return _creeps("threshold", a, curve(lambda r: np.maximum((r - at) / (1.0 - at), 0.0) ** n))
 
 
-def _crept_logarithm(a: float, rng: Rng) -> Effect:
+def _creep_logarithm(a: float, rng: Rng) -> Effect:
     k = 1.0 - log_uniform(rng, 1e-3, 0.1)
     return _creeps("logarithmic", a, curve(lambda r: np.log1p(-k * r) / np.log1p(-k)))
 
 
-def _crept_bristles(a: float, rng: Rng) -> Effect:
+def _creep_bristles(a: float, rng: Rng) -> Effect:
     k = log_uniform(rng, 1.0, 20.0)
     return _creeps("bristles", a, curve(lambda r: r / (1.0 + k * (1.0 - r))))
 
 
-def _crept_lagging(a: float, rng: Rng) -> Effect:
+def _creep_lagging(a: float, rng: Rng) -> Effect:
     n, lag = log_uniform(rng, 1.0, 6.0), log_uniform(rng, 1e-4, 3e-3)
     return _creeps("lagging", a, curve(lambda r: r**n), lag)
 
 
-def _scatters(form: str, a: float, course: Callable[[Rng], Array]) -> Effect:
+def _scatters(form: str, a: float, time_series: Callable[[Rng], Array]) -> Effect:
     def numbers(rng: Rng) -> Array:
-        z = course(rng)
+        z = time_series(rng)
         share = np.maximum(0.0, 1.0 + 0.5 * a * (z - z.mean()) / z.std())
         return np.concatenate([[5e-3], share])
 
@@ -191,17 +196,17 @@ def _scatter_heavy(a: float, rng: Rng) -> Effect:
 def _scatter_long(a: float, rng: Rng) -> Effect:
     power = float(rng.uniform(0.25, 0.7))
 
-    def course(rng: Rng) -> Array:
+    def time_series(rng: Rng) -> Array:
         size = np.maximum(np.arange(_N_DRAWS // 2 + 1), 8.0) ** -power
         return np.fft.irfft(size * np.exp(2j * np.pi * rng.random(size.size)), _N_DRAWS)
 
-    return _scatters("long_memory", a, course)
+    return _scatters("long_memory", a, time_series)
 
 
 def _scatter_states(a: float, rng: Rng) -> Effect:
     down, up = rng.uniform(0.05, 0.6, 2)
 
-    def course(rng: Rng) -> Array:
+    def time_series(rng: Rng) -> Array:
         chance, state, states = rng.random(_N_DRAWS), 0, np.zeros(_N_DRAWS)
         for i in range(_N_DRAWS):
             if chance[i] < (down if state else up):
@@ -209,7 +214,7 @@ def _scatter_states(a: float, rng: Rng) -> Effect:
             states[i] = state
         return np.asarray(states + 0.1 * rng.standard_normal(_N_DRAWS))
 
-    return _scatters("two_states", a, course)
+    return _scatters("two_states", a, time_series)
 
 
 def _scatter_skewed(a: float, rng: Rng) -> Effect:
@@ -231,10 +236,10 @@ def _scatter_surface(a: float, rng: Rng) -> Effect:
     finest = log_uniform(rng, 5.0, 80.0)  # periods a radian
 
     def numbers(rng: Rng) -> Array:
-        course = noise(rng, _N_DRAWS, 8.0 * finest, 0.05 * finest, finest)
-        return np.concatenate([[8.0 * finest, _N_DRAWS], 1.0 + 0.5 * a * course])
+        time_series = noise(rng, _N_DRAWS, 8.0 * finest, 0.05 * finest, finest)
+        return np.concatenate([[8.0 * finest, _N_DRAWS], 1.0 + 0.5 * a * time_series])
 
-    return on_contact("critical_torque_scatter", "surface", a, patched, numbers)
+    return on_contact("critical_torque_scatter", "surface", a, patch_hook, numbers)
 
 
 WEAKENING: tuple[Recipe, ...] = (
@@ -244,10 +249,10 @@ STRENGTHENING: tuple[Recipe, ...] = (
     _strong_table, _strong_table, _strong_power, _strong_late, _strong_softplus,
 )  # fmt: skip
 AGEING: tuple[Recipe, ...] = (
-    _aged_power, _aged_hill, _aged_delayed, _aged_stretched, _aged_table,
+    _ageing_power, _ageing_hill, _ageing_delayed, _ageing_stretched, _ageing_table,
 )  # fmt: skip
 CREEP: tuple[Recipe, ...] = (
-    _crept_table, _crept_threshold, _crept_logarithm, _crept_bristles, _crept_lagging,
+    _creep_table, _creep_threshold, _creep_logarithm, _creep_bristles, _creep_lagging,
 )  # fmt: skip
 SCATTER: tuple[Recipe, ...] = (
     _scatter_heavy, _scatter_long, _scatter_states, _scatter_skewed, _scatter_alternating,

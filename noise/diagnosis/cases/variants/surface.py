@@ -16,7 +16,7 @@ from noise.diagnosis.cases.variants.common import (
     noise,
     on_contact,
 )
-from noise.diagnosis.cases.variants.hooks import filmed, heated
+from noise.diagnosis.cases.variants.hooks import film_hook, heating_hook
 
 if TYPE_CHECKING:
     from sim.effects.effect import Effect
@@ -41,10 +41,10 @@ def _films(
 
     def numbers(rng: Rng) -> Array:
         header = [a, ratio, left, rough, float(patches > 0.0), scale, float(fixed), per]
-        course = noise(rng, _N_NOISE, points, low, high)
-        return np.concatenate([header, shape, [_N_NOISE], course])
+        time_series = noise(rng, _N_NOISE, points, low, high)
+        return np.concatenate([header, shape, [_N_NOISE], time_series])
 
-    return on_contact("transfer_film", form, a, filmed, numbers, n_states=1)
+    return on_contact("transfer_film", form, a, film_hook, numbers, n_states=1)
 
 
 def _film_table(a: float, rng: Rng) -> Effect:
@@ -85,7 +85,7 @@ def _heats(
 ) -> Effect:  # fmt: skip
     header = [lost, rise, float(passed_on), float(rates.size)]
     return on_contact(
-        "frictional_heating", form, a, heated,
+        "frictional_heating", form, a, heating_hook,
         lambda _rng: np.concatenate([header, weights, rates, shape]), n_states=rates.size,
     )  # fmt: skip
 

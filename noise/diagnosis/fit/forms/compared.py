@@ -1,7 +1,7 @@
 """Recordings beside what their own torque should have made of them: what forms are estimated from.
 
 A torque that was measured is sent through the transfer functions of the rig file, so that nothing
-that the contact does stands between; the shaft's own course is taken from its angle.
+that the contact does stands between; the shaft's own modulation is taken from its angle.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.transfer_functions.transfer_function import TransferFunction
-    from noise.diagnosis.fit.bench import Bench
+    from noise.diagnosis.fit.case_comparison import CaseComparison
 
 __all__ = ["Compared", "compared"]
 
@@ -37,16 +37,17 @@ class Compared:
         [Hz]
     free : bool
         Whether the clamp stands on beams, rather than on the baseplate itself.
-    measured : dict of str to ndarray
-        By kind of channel; those that were recorded.
-    expected : dict of str to ndarray
-        Of acceleration and pressure, by the measured torque.
+    measured : dict of str to ndarray, shape (n,)
+        By kind of channel; those that were recorded [unit of the channel].
+    expected : dict of str to ndarray, shape (n,)
+        Of acceleration and pressure, by the measured torque [unit of the channel].
     transfer_functions : mapping of str to TransferFunction
         That it was sent through.
-    course : ndarray, optional
-        Shaft speed over its mean, less 1.
-    signature, nominal, scale : ndarray
-        Of the recording; middle of the simulated repeats, and what they scatter by.
+    modulation : ndarray, shape (n,), optional
+        Shaft speed over its mean, less 1 [-].
+    signature, nominal, scale : ndarray, shape (n_values,)
+        Of the recording; middle of the simulated repeats, and what they scatter by As of
+        `noise.diagnosis.gap.signature`.
     """
 
     rate: float
@@ -54,18 +55,18 @@ class Compared:
     measured: dict[str, NDArray[np.float64]]
     expected: dict[str, NDArray[np.float64]]
     transfer_functions: Mapping[str, TransferFunction]
-    course: NDArray[np.float64] | None
+    modulation: NDArray[np.float64] | None
     signature: NDArray[np.float64]
     nominal: NDArray[np.float64]
     scale: NDArray[np.float64]
 
 
-def compared(bench: Bench, chosen: Sequence[int]) -> list[Compared]:
-    """Compare recordings of a bench.
+def compared(comparison: CaseComparison, chosen: Sequence[int]) -> list[Compared]:
+    """Compare recordings of a comparison.
 
     Parameters
     ----------
-    bench : Bench
+    comparison : CaseComparison
     chosen : sequence of int
 
     Returns
@@ -73,11 +74,11 @@ def compared(bench: Bench, chosen: Sequence[int]) -> list[Compared]:
     list of Compared
         One a recording.
     """
-    return [_one(bench, i) for i in chosen]
+    return [_one(comparison, i) for i in chosen]
 
 
-def _one(bench: Bench, i: int) -> Compared:
-    recording = bench.recordings[i]
+def _one(comparison: CaseComparison, i: int) -> Compared:
+    recording = comparison.recordings[i]
     c, rate = known_condition(recording.condition), recording.rate
     measured = {
         kind: recording.samples[row].astype(np.float64)
@@ -87,18 +88,18 @@ def _one(bench: Bench, i: int) -> Compared:
     expected: dict[str, NDArray[np.float64]] = {}
     transfers: Mapping[str, TransferFunction] = {}
     if "torque" in measured:
-        transfers = bench.runs.transfer_functions.at(c.interference, c.support_stiffness)
+        transfers = comparison.runs.transfer_functions.at(c.interference, c.support_stiffness)
         expected = {
             kind: predict(measured["torque"], rate, transfers[kind])
             for kind in ("acceleration", "pressure")
             if kind in measured
         }
-    course = None
+    modulation = None
     if "angle" in measured:
         speed = shaft_speed(measured.pop("angle"), rate)
-        course = np.asarray(speed / (speed.mean() or 1.0) - 1.0)
-    reference = bench.references[i]
+        modulation = np.asarray(speed / (speed.mean() or 1.0) - 1.0)
+    reference = comparison.references[i]
     return Compared(
-        rate, not math.isinf(c.support_stiffness), measured, expected, transfers, course,
-        bench.signatures[i], reference.mean, reference.scale,
+        rate, not math.isinf(c.support_stiffness), measured, expected, transfers, modulation,
+        comparison.signatures[i], reference.mean, reference.scale,
     )  # fmt: skip

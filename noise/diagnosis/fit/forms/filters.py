@@ -10,25 +10,18 @@ import numpy as np
 from models.transfer_functions.filtering import filter_signal
 from models.transfer_functions.impulse_response import impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.fit.forms.form import Form
+from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
 from sim.chain import filter_pressure, padded_sum
-from sim.effects import EFFECTS
-from sim.effects.effect import Effect
-from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from models.radiation.impulse_responses import ImpulseResponses
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Signals
+    from sim.effects.effect import Signals, Values
 
-__all__ = ["beam_forms", "made_effect", "radiation_forms", "sensor_forms"]
-
-AMOUNT = {"amount": Parameter(1.0, "", 0.0, 4.0, "over what was estimated")}
-
-_HIGHEST = {"amount": 4.0}
+__all__ = ["beam_forms", "radiation_forms", "sensor_forms"]
 
 _NOISE = {"acceleration": 0.03, "pressure": 1e-3}
 """White noise of a channel over a change of one, rms in its unit; assumed."""
@@ -38,13 +31,6 @@ _OF_TORQUE = 0.005
 
 _FREE = 0.06
 """How long beams ring [s]."""
-
-
-def made_effect(name: str, amount: float, **acting: object) -> Effect:
-    """Make an effect whose strength is how much of the estimated one there is."""
-    plain = EFFECTS[name]
-    given = {"amount": replace(AMOUNT["amount"], default=amount)}
-    return Effect(name, plain.stage, ("estimated",), given, "amount", **acting)  # type: ignore[arg-type]
 
 
 def radiation_forms(name: str, compared: Sequence[Compared], length: float) -> list[Form]:
@@ -62,19 +48,14 @@ def radiation_forms(name: str, compared: Sequence[Compared], length: float) -> l
     if found is None:
         return []
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def chain(
+        paths: ImpulseResponses, _form: str, values: Values, _rng: np.random.Generator
+    ) -> ImpulseResponses:
+        taps = values["amount"] * impulse_response(found, paths.rate, round(length * paths.rate))
+        taps[0] += 1.0
+        return filter_pressure(paths, taps)
 
-        def chain(
-            paths: ImpulseResponses, _form: str, _values: object, _rng: np.random.Generator
-        ) -> ImpulseResponses:
-            taps = amount * impulse_response(found, paths.rate, round(length * paths.rate))
-            taps[0] += 1.0
-            return filter_pressure(paths, taps)
-
-        return made_effect(name, amount, chain=chain)
-
-    return [Form(name, f"estimated {1e3 * length:.0f} ms", {"amount": 1.0}, _HIGHEST, make)]
+    return [amount_form(name, f"estimated {1e3 * length:.0f} ms", chain=chain)]
 
 
 def sensor_forms(
@@ -108,19 +89,14 @@ def sensor_forms(
 
 
 def _sensor_form(name: str, transfers: Mapping[str, TransferFunction]) -> Form:
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
-
-        def sensors(
-            signals: Signals, rate: float, _form: str, _values: object, _rng: np.random.Generator
-        ) -> Signals:
-            more = {k: filter_signal(signals[k], rate, t) for k, t in transfers.items()}
-            return signals | {k: signals[k] + amount * x for k, x in more.items()}
-
-        return made_effect(name, amount, sensors=sensors)
+    def sensors(
+        signals: Signals, rate: float, _form: str, values: Values, _rng: np.random.Generator
+    ) -> Signals:
+        more = {k: filter_signal(signals[k], rate, t) for k, t in transfers.items()}
+        return signals | {k: signals[k] + values["amount"] * x for k, x in more.items()}
 
     of = " and ".join(transfers)
-    return Form(name, f"estimated of {of}", {"amount": 1.0}, _HIGHEST, make)
+    return amount_form(name, f"estimated of {of}", sensors=sensors)
 
 
 def beam_forms(compared: Sequence[Compared]) -> list[Form]:
@@ -144,30 +120,25 @@ def _beam_form(having: Sequence[Compared], where: str) -> Form:
         for kind in kinds
     }  # fmt: skip
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def chain(
+        paths: ImpulseResponses, _form: str, values: Values, _rng: np.random.Generator
+    ) -> ImpulseResponses:
+        if only_free and not np.any(paths.pulse_to_acceleration):
+            return paths  # the clamp is bolted down
+        n = round(_FREE * paths.rate)
+        more = {k: values["amount"] * impulse_response(t, paths.rate, n) for k, t in found.items()}
+        nothing = np.zeros(1)
+        return replace(
+            paths,
+            torque_to_acceleration=padded_sum(
+                [paths.torque_to_acceleration, more.get("acceleration", nothing)]
+            ),
+            torque_to_pressure=padded_sum(
+                [paths.torque_to_pressure, more.get("pressure", nothing)]
+            ),
+        )
 
-        def chain(
-            paths: ImpulseResponses, _form: str, _values: object, _rng: np.random.Generator
-        ) -> ImpulseResponses:
-            if only_free and not np.any(paths.pulse_to_acceleration):
-                return paths  # the clamp is bolted down
-            n = round(_FREE * paths.rate)
-            more = {k: amount * impulse_response(t, paths.rate, n) for k, t in found.items()}
-            nothing = np.zeros(1)
-            return replace(
-                paths,
-                torque_to_acceleration=padded_sum(
-                    [paths.torque_to_acceleration, more.get("acceleration", nothing)]
-                ),
-                torque_to_pressure=padded_sum(
-                    [paths.torque_to_pressure, more.get("pressure", nothing)]
-                ),
-            )
-
-        return made_effect("beam_modes", amount, chain=chain)
-
-    return Form("beam_modes", f"estimated {where}", {"amount": 1.0}, _HIGHEST, make)
+    return amount_form("beam_modes", f"estimated {where}", chain=chain)
 
 
 def _relative(

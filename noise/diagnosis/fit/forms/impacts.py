@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.transfer_functions.impulse_response import impulse_response
-from noise.diagnosis.fit.forms.filters import made_effect
-from noise.diagnosis.fit.forms.form import Form
+from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.fit.forms.wiener import wiener_estimate
 from sim.effects.slip_pulse import torque_drops
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from models.radiation.impulse_responses import ImpulseResponses
     from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Effect
+    from sim.effects.effect import Values
     from sim.motion import Motion
 
 __all__ = ["impact_forms"]
@@ -66,21 +65,16 @@ def _form(compared: Sequence[Compared], power: float) -> Form:
         for kind in ("acceleration", "pressure")
     }  # fmt: skip
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def force(motion: Motion, _form: str, values: Values) -> NDArray[np.float64]:
+        return np.asarray(values["amount"] * _train(motion.torque, power))
 
-        def force(motion: Motion, _form: str, _values: object) -> NDArray[np.float64]:
-            return amount * _train(motion.torque, power)
+    def chain(
+        paths: ImpulseResponses, _form: str, _values: Values, _rng: np.random.Generator
+    ) -> ImpulseResponses:
+        to_acceleration, to_pressure = (_kernel(found[k], paths.rate, rate) for k in found)
+        return replace(paths, pulse_to_acceleration=to_acceleration, pulse_to_pressure=to_pressure)
 
-        def chain(
-            paths: ImpulseResponses, _form: str, _values: object, _rng: np.random.Generator
-        ) -> ImpulseResponses:
-            struck, heard = (_kernel(found[k], paths.rate, rate) for k in found)
-            return replace(paths, pulse_to_acceleration=struck, pulse_to_pressure=heard)
-
-        return made_effect("slip_pulse", amount, force=force, chain=chain)
-
-    return Form("slip_pulse", f"estimated, power {power:g}", {"amount": 1.0}, {"amount": 4.0}, make)
+    return amount_form("slip_pulse", f"estimated, power {power:g}", force=force, chain=chain)
 
 
 def _train(torque: NDArray[np.float64], power: float) -> NDArray[np.float64]:

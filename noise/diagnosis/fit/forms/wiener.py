@@ -56,7 +56,8 @@ class Noise:
     Parameters
     ----------
     level : float
-        White noise of the output over the transfer function looked for, rms, in the input's unit.
+        White noise of the output over the transfer function looked for, rms, in the input's unit
+        [unit of the input].
     transfer : TransferFunction, optional
         Through which a torque was sent, with its noise, to make the input.
     """
@@ -65,7 +66,18 @@ class Noise:
     transfer: TransferFunction | None = None
 
     def power(self, frequency: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Mean square at each frequency, for a window of unit energy."""
+        """Mean square at each frequency, for a window of unit energy.
+
+        Parameters
+        ----------
+        frequency : ndarray, shape (n,)
+            [Hz]
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [squared unit of the input]
+        """
         power = np.full(frequency.size, self.level**2)
         if self.transfer is not None:
             power += np.abs(_TORQUE_NOISE * self.transfer.at(frequency, falls_below=True)) ** 2
@@ -86,7 +98,7 @@ def wiener_estimate(
     Parameters
     ----------
     pairs : sequence of (ndarray of shape (n,), ndarray of shape (n,))
-        What went in and what came out, of one recording each, all at one rate; in any units.
+        What went in and what came out, of one recording each, all at one rate [any units].
     rate : float
         Sampling rate [Hz].
     length, before : float

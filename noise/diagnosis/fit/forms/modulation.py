@@ -1,7 +1,7 @@
-"""Courses over time, estimated: how the shaft's speed went, and how a channel's gain did.
+"""Modulation over time, estimated: of the shaft's speed, and of a channel's gain.
 
-A course that was recorded is played again in the simulation: one of those of the recordings, from
-any moment on if it has no beginning, as a speed's, from the start if it has one, as a drift's.
+A modulation that was recorded is played again in the simulation: one of those of the recordings,
+from any moment on if it has no beginning, as a speed's, from the start if it has one, as a drift's.
 """
 
 from __future__ import annotations
@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.fit.forms.filters import made_effect
-from noise.diagnosis.fit.forms.form import Form
+from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.gap.signature import NAMES
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Effect, Signals
+    from sim.effects.effect import Signals, Values
 
 __all__ = ["gain_forms", "speed_forms"]
 
@@ -28,42 +27,37 @@ _BLOCK = 0.03
 """In which a gain is one number [s]."""
 
 _FINE = 4096
-"""Steps of a gain's course."""
+"""Steps of a gain's modulation."""
 
 _LEFT_BY_JUMP = 0.25
-"""Of a course's variance, less than which a single jump must leave to be taken for one."""
+"""Of a modulation's variance, less than which a single jump must leave to be taken for one."""
 
 _ENDS = 0.02
 """Left out of a speed at each end, where its differentiation has none to lean on [s]."""
 
 
 def speed_forms(compared: Sequence[Compared]) -> list[Form]:
-    """Play the shaft's own courses again."""
-    courses = [c.course[_inside(c)] for c in compared if c.course is not None]
-    if not courses:
+    """Play the shaft's own modulations again."""
+    modulations = [c.modulation[_inside(c)] for c in compared if c.modulation is not None]
+    if not modulations:
         return []
     rate = compared[0].rate
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def drive(
+        speed: NDArray[np.float64],
+        at: float,
+        _form: str,
+        values: Values,
+        rng: np.random.Generator,
+    ) -> NDArray[np.float64]:
+        modulation = modulations[int(rng.integers(len(modulations)))]
+        there_and_back = np.concatenate([modulation, modulation[::-1]])
+        when = rng.random() * there_and_back.size + np.arange(speed.size) * (rate / at)
+        played = np.interp(when, np.arange(there_and_back.size), there_and_back,
+                           period=there_and_back.size)  # fmt: skip
+        return np.asarray(speed * np.maximum(1.0 + values["amount"] * played, 0.0))
 
-        def drive(
-            speed: NDArray[np.float64],
-            at: float,
-            _form: str,
-            _values: object,
-            rng: np.random.Generator,
-        ) -> NDArray[np.float64]:
-            course = courses[int(rng.integers(len(courses)))]
-            there_and_back = np.concatenate([course, course[::-1]])
-            when = rng.random() * there_and_back.size + np.arange(speed.size) * (rate / at)
-            played = np.interp(when, np.arange(there_and_back.size), there_and_back,
-                               period=there_and_back.size)  # fmt: skip
-            return np.asarray(speed * np.maximum(1.0 + amount * played, 0.0))
-
-        return made_effect("speed_fluctuation", amount, drive=drive)
-
-    return [Form("speed_fluctuation", "recorded", {"amount": 1.0}, {"amount": 4.0}, make)]
+    return [amount_form("speed_fluctuation", "recorded", drive=drive)]
 
 
 def _inside(c: Compared) -> slice:
@@ -112,24 +106,19 @@ def _jumping(gain: NDArray[np.float64]) -> NDArray[np.float64]:
 def _gain_form(gains: Mapping[str, list[NDArray[np.float64]]]) -> Form:
     count = len(next(iter(gains.values())))
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
-
-        def sensors(
-            signals: Signals, _rate: float, _form: str, _values: object, rng: np.random.Generator
-        ) -> Signals:
-            which, read = int(rng.integers(count)), dict(signals)
-            for kind, courses in gains.items():
-                gain, x = courses[which], signals[kind]
-                place = np.linspace(0.0, gain.size - 1.0, x.size).round().astype(np.int64)
-                course = gain[place]
-                read[kind] = x * np.maximum(1.0 + amount * (course - 1.0), 0.02)
-            return read
-
-        return made_effect("gain_error", amount, sensors=sensors)
+    def sensors(
+        signals: Signals, _rate: float, _form: str, values: Values, rng: np.random.Generator
+    ) -> Signals:
+        which, read = int(rng.integers(count)), dict(signals)
+        for kind, modulations in gains.items():
+            gain, x = modulations[which], signals[kind]
+            place = np.linspace(0.0, gain.size - 1.0, x.size).round().astype(np.int64)
+            modulation = gain[place]
+            read[kind] = x * np.maximum(1.0 + values["amount"] * (modulation - 1.0), 0.02)
+        return read
 
     name = f"recorded of {' and '.join(gains)}"
-    return Form("gain_error", name, {"amount": 1.0}, {"amount": 2.0}, make)
+    return amount_form("gain_error", name, highest=2.0, sensors=sensors)
 
 
 def _torque_gain(c: Compared) -> NDArray[np.float64]:

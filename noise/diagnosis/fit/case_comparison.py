@@ -16,12 +16,12 @@ import numpy as np
 from models.condition import known_condition
 from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
-from noise.diagnosis.evidence.summary import summary, through_same
+from noise.diagnosis.evidence.summary import same_channels, summary
 from noise.diagnosis.gap.distance import group_costs
 from noise.diagnosis.gap.floor import condition_key, references_of
-from noise.diagnosis.gap.scatter import Scatter
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.repeats import Scatter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.gap.distance import Reference
     from sim.effects.effect import Effect
 
-__all__ = ["Bench", "Model"]
+__all__ = ["CaseComparison", "Model"]
 
 N_REPEATS = 12
 """Simulated repeats that tell what repeats differ by, and where a model lies."""
@@ -44,7 +44,7 @@ _LEAST_SEED = 100
 """Of the repeats; below are the seeds of single runs."""
 
 _SATURATION = 4.0
-"""Deviations beyond so many standard deviations hardly count in `Bench.residuals`."""
+"""Deviations beyond so many standard deviations hardly count in `CaseComparison.residuals`."""
 
 _WIDEST = 2.0
 """A model's own repeats widen the floor by so much at most."""
@@ -59,7 +59,7 @@ _BY_CHANCE = (
 
 
 @dataclass(eq=False)
-class Bench:
+class CaseComparison:
     """Recordings of a case beside the simulator.
 
     Parameters
@@ -72,7 +72,7 @@ class Bench:
     names : tuple of str
         Numbers that `residuals` has.
     scale : ndarray, shape (n_names,)
-        Their scatter without a cause.
+        Their scatter without a cause [unit of the number].
     forms : dict of (str, str) to Form
         Further forms of effects, by the name of the effect and their own.
     """
@@ -98,15 +98,25 @@ class Bench:
         }
         self.references = references_of(self.recordings, self.signatures, repeats)[0]
 
-    def simulated(self, model: Model, like: Recording, seed: int) -> Recording:
+    def simulated(self, model: Model, template: Recording, seed: int) -> Recording:
         """Simulate a repeat by a model, at the condition, rate and length of a recording."""
-        return self.runs.simulated(model, like, seed)
+        return self.runs.simulated(model, template, seed)
 
     def deviations(self, model: Model, chosen: Sequence[int]) -> list[NDArray[np.float64]]:
         """How far each chosen recording lies from a model, in units of what repeats differ by.
 
         Where the model's own repeats differ by more than those of the rig file, as with an effect
         that is chance itself, they tell what repeats of it differ by.
+
+        Parameters
+        ----------
+        model : Model
+        chosen : sequence of int
+
+        Returns
+        -------
+        list of ndarray, shape (n_values,)
+            In standard deviations of repeats [-].
         """
         found = []
         for i in chosen:
@@ -121,7 +131,18 @@ class Bench:
         return found
 
     def squared(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
-        """Squared distance of each chosen recording from a model; 1 is the floor."""
+        """Squared distance of each chosen recording from a model; 1 is the floor.
+
+        Parameters
+        ----------
+        model : Model
+        chosen : sequence of int
+
+        Returns
+        -------
+        ndarray, shape (n_chosen,)
+            In squared floors [-].
+        """
         return np.array(
             [
                 self.references[i].squared_of(deviation)
@@ -130,7 +151,7 @@ class Bench:
         )
 
     def misfits(
-        self, model: Model, chosen: Sequence[int], *, at_a_look: bool = False
+        self, model: Model, chosen: Sequence[int], *, single_run: bool = False
     ) -> NDArray[np.float64]:
         """Distance of each chosen recording from runs of a model without scatter.
 
@@ -141,20 +162,20 @@ class Bench:
         ----------
         model : Model
         chosen : sequence of int
-        at_a_look : bool
+        single_run : bool
             Whether one run is enough, whatever chance there is in the effects.
 
         Returns
         -------
         ndarray, shape (n_chosen,)
-            In standard deviations of repeats; infinite where the model cannot be simulated.
+            In standard deviations of repeats [-]; infinite where the model cannot be simulated.
         """
         found = np.full(len(chosen), np.inf)
         for k, i in enumerate(chosen):
             reference = self.references[i]
             try:
-                plain = self._middle(Model(), i, at_a_look=True)
-                middle = self._middle(model, i, at_a_look=at_a_look)
+                plain = self._middle(Model(), i, single_run=True)
+                middle = self._middle(model, i, single_run=single_run)
             except ParameterError:
                 return found
             off = np.clip(reference.mean - plain, -reference.scale, reference.scale)
@@ -162,15 +183,15 @@ class Bench:
             found[k] = math.sqrt(float(np.nanmean(group_costs(away))))
         return found
 
-    def _middle(self, model: Model, place: int, *, at_a_look: bool) -> NDArray[np.float64]:
+    def _middle(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
         """Signature of a model without scatter."""
-        like = self.recordings[place]
+        template = self.recordings[place]
         by_chance = any(spec.name in _BY_CHANCE for spec in model.effects)
-        seeds = _SEEDS if by_chance and not at_a_look else _SEEDS[:1]
-        key = (repr(model), condition_key(like), len(seeds))
+        seeds = _SEEDS if by_chance and not single_run else _SEEDS[:1]
+        key = (repr(model), condition_key(template), len(seeds))
         if key not in self._signed:
             self._signed[key] = np.mean(
-                [self.runs.noise_free_signature(model, like, seed) for seed in seeds], axis=0
+                [self.runs.noise_free_signature(model, template, seed) for seed in seeds], axis=0
             )
         return self._signed[key]
 
@@ -180,18 +201,18 @@ class Bench:
         Returns
         -------
         ndarray, shape (n_chosen, n_names)
-            Their mean square is 1 where all numbers are hopelessly off.
+            [-]; their mean square is 1 where all numbers are hopelessly off.
         """
         measured, _, scatter = aligned(self.table, self.names)
         rows = []
         for i in chosen:
-            like = self.recordings[i]
-            key = (repr(model), condition_key(like))
+            template = self.recordings[i]
+            key = (repr(model), condition_key(template))
             if key not in self._numbers:
-                run = through_same(
-                    self.runs.simulated(model, like, 0, Scatter(0.0, 0.0, 0.0)), like
+                run = same_channels(
+                    self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0)), template
                 )
-                c = known_condition(like.condition)
+                c = known_condition(template.condition)
                 transfers = self.runs.transfer_functions.at(c.interference, c.support_stiffness)
                 found = summary(run, self.rig, transfers)
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
@@ -202,11 +223,11 @@ class Bench:
             rows.append(np.tanh(z / _SATURATION))
         return np.array(rows)
 
-    def _repeats(self, model: Model, like: Recording) -> NDArray[np.float64]:
+    def _repeats(self, model: Model, template: Recording) -> NDArray[np.float64]:
         """Signatures of a model's scattered repeats, shape (n_repeats, n_values)."""
-        key = (repr(model), condition_key(like))
+        key = (repr(model), condition_key(template))
         if key not in self._signed:
             seeds = range(_LEAST_SEED, _LEAST_SEED + N_REPEATS)
-            runs = [signature(self.simulated(model, like, seed)) for seed in seeds]
+            runs = [signature(self.simulated(model, template, seed)) for seed in seeds]
             self._signed[key] = np.array(runs)
         return self._signed[key]

@@ -1,4 +1,4 @@
-"""What the user hears of a gap: label and level of a recording and of its simulations."""
+"""Label and level of a recording and of its simulations, as the user hears them."""
 
 from __future__ import annotations
 
@@ -9,18 +9,20 @@ from features.kernels.bands import overall_level
 from features.kernels.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
 from noise.classifier import load_classifier
-from noise.diagnosis.outcome import Heard
+from noise.diagnosis.outcome import LabelsAndLevels
 from noise.labels.segments import file_label, label_recording
 
 if TYPE_CHECKING:
     from models.recording import Recording
 
-__all__ = ["heard_of"]
+__all__ = ["labels_and_levels"]
 
 
-def heard_of(name: str, measured: Recording, before: Recording, after: Recording | None) -> Heard:
+def labels_and_levels(
+    name: str, measured: Recording, before: Recording, after: Recording | None
+) -> LabelsAndLevels:
     """Label three recordings of one condition, and give their A-weighted levels."""
-    return Heard(
+    return LabelsAndLevels(
         recording=name,
         label_measured=_label(measured),
         label_before=_label(before),

@@ -10,20 +10,20 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.fit.closing import closed_fraction
+from noise.diagnosis.gap.distance import closed_fraction
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from noise.diagnosis.outcome import Diagnosis, EffectFinding
 
-__all__ = ["with_own"]
+__all__ = ["prefer_user_effects"]
 
 _CLEARLY = 0.8
 """Of two gaps the smaller one counts as smaller if it is at most this share of the other."""
 
 
-def with_own(
+def prefer_user_effects(
     diagnosis: Diagnosis, findings: Mapping[str, EffectFinding], own: Sequence[str]
 ) -> Diagnosis:
     """Let a fitted effect of the user's own take over the verdict, if it closes the gap best.
