@@ -12,7 +12,8 @@ from models.errors import ParameterError
 from sim.bushing import LumpedBushing, lumped_bushing
 from sim.friction import friction_law
 from sim.parameters import resolve
-from sim.solvers.contact_solver import MOST_HOOKS, Hook, solve_contact
+from sim.solvers.contact_solver import Hook, solve_contact
+from sim.solvers.contact_state import MOST_HOOKS
 from sim.solvers.stick_slip import solve_stick_slip
 
 if TYPE_CHECKING:
