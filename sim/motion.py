@@ -15,7 +15,8 @@ from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion_limits import refuse_fast, refuse_overflow
 from sim.parameters import resolve
-from sim.solvers.contact_solver import LONGEST_STEP, MOST_HOOKS, ContactRun, Hook
+from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
+from sim.solvers.contact_state import MOST_HOOKS
 from sim.solvers.stick_slip import advance_stick_slip, rest_state
 
 if TYPE_CHECKING:

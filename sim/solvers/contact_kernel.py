@@ -1,7 +1,12 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
-# ruff: noqa: ANN001
-"""The compiled loop of the contact solver: steps, their errors, their events, the outputs."""
+# ruff: noqa: ANN001, ANN202
+"""The compiled loop of the contact solver: steps, their errors, their events, the outputs.
+
+A step is tried, and repeated until its error is small enough. Where stick or slip ends within it,
+or a law's sliding turns, its length is sought at which that happens just at its end; the next step
+begins with the new right-hand side. Outputs are read within the step that covers them.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +16,10 @@ from numba import boolean, float64, int64, njit, types
 
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE, STICKS
 from sim.solvers import contact_state as at
-from sim.solvers.compilation import UNCOUNTED
+from sim.solvers.compilation import PART, UNCOUNTED
 from sim.solvers.contact_rates import contact_rates
-from sim.solvers.contact_state import N_MOTION, N_STAGES
-from sim.solvers.dormand_prince import (
-    NODES,
-    fill_dense,
-    fill_stage,
-    step_error,
-    vertex,
-)
+from sim.solvers.contact_state import MOST_HOOKS, N_STAGES, Bushing, Drive, Hooks, Limits, Rows
+from sim.solvers.dormand_prince import NODES, fill_dense, fill_stage, step_error, vertex
 
 __all__ = ["run_contact"]
 
@@ -51,60 +50,88 @@ _HOOK = types.FunctionType(HOOK_SIGNATURE)
 _LAW = types.FunctionType(LAW_SIGNATURE)
 _VECTOR = float64[::1]
 _MATRIX = float64[:, ::1]
+_VECTORS = types.UniTuple(_VECTOR, MOST_HOOKS)
+_RECORD = types.BaseTuple.from_types
+_BUSHING = _RECORD([_VECTOR, boolean, _VECTOR, _VECTOR, _VECTOR], Bushing)
+_HOOKS = _RECORD([int64, _VECTORS, _VECTORS, _VECTORS], Hooks)
+_DRIVE = _RECORD([float64, _VECTOR, _VECTOR, _VECTOR], Drive)
+_ROWS = _RECORD([_MATRIX, _VECTOR, _VECTOR, _MATRIX, _VECTOR, _VECTOR, _VECTOR, _VECTOR], Rows)
+_LIMITS = _RECORD([float64, float64], Limits)
+
+
+@njit(**PART)
+def _stretch(drive, last, n, kink, i, end):
+    """Return the last segment of the drive that a step up to `end` reaches, and where that ends.
+
+    A step goes on across samples, but not across a kink of the drive.
+    """
+    while (i + 1) * drive.step < end:
+        if i == last:
+            # Where a block ends more of the drive is to come; where the run ends it goes on.
+            return i, (last + 1) * drive.step if drive.speed.size > n else math.inf
+        i += 1
+        if abs(drive.slope[i] - drive.slope[i - 1]) > kink:
+            return i - 1, i * drive.step
+    return i, math.inf
+
+
+@njit(**PART)
+def _bracketed(h, far, low, high, far_low, far_high, side):
+    """Return a new length of a step in which stick or slip ends, and what brackets it.
+
+    Regula falsi; the end that stays twice counts for half (the Illinois algorithm).
+    """
+    if far < 0.0:
+        if side > 0.0:
+            far_low *= 0.5
+        side = 1.0
+        high, far_high = h, far
+    else:
+        if side < 0.0:
+            far_high *= 0.5
+        side = -1.0
+        low, far_low = h, far
+    h = 0.5 * (low + high)
+    if far_low > 0.0:
+        margin = 0.4 * _TIME_TOLERANCE
+        secant = low + (high - low) * far_low / (far_low - far_high)
+        h = min(max(secant, low + margin), high - margin)
+    return h, low, high, far_low, far_high, side
 
 
 @njit(
     types.void(
-        _VECTOR, _LAW, boolean, _VECTOR,
-        _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, int64, _MATRIX, int64[::1],
-        _VECTOR, float64, float64, float64, _VECTOR, _MATRIX, _VECTOR, _VECTOR, _MATRIX, _MATRIX,
-        int64[::1],
+        _BUSHING, _LAW, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOKS, _DRIVE,
+        _LIMITS, _VECTOR, _ROWS, _MATRIX, int64[::1],
     ),
     cache=True, nogil=True, **UNCOUNTED,
 )  # fmt: skip
 def run_contact(
-    s, law, has_law, coefficients, h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, values, offsets,
-    shaft_speed, step, longest, tolerance, carried, rows, context, contact, along, out,
+    bushing, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, drive, limits, carried, rows, out,
     direction_out,
 ) -> None:  # fmt: skip
-    """Write the columns of `out`; `carried`, `rows` and `context` are carried on.
+    """Write the columns of `out`; `carried`, `rows` and the context are carried on.
 
     The drive may be known beyond the outputs, as far as steps may reach; where it is not, it goes
-    on as it did. `along` has room for its slope and angle.
+    on as it did.
     """
-    n, n_known, d = direction_out.size, shaft_speed.size, rows.shape[1]
-    k, start, end = rows[:N_STAGES], rows[N_STAGES], rows[N_STAGES + 1]
-    u, p, q = rows[N_STAGES + 2], rows[N_STAGES + 3], rows[N_STAGES + 4 :]
-    slope, angle = along[0], along[1]
-    # What each hook and the law see of the inner states and their rates.
-    o0, o1, o2 = N_MOTION + offsets[0], N_MOTION + offsets[1], N_MOTION + offsets[2]
-    o3, o4, o5 = N_MOTION + offsets[3], N_MOTION + offsets[4], N_MOTION + offsets[5]
-    o6, o7, o8 = N_MOTION + offsets[6], N_MOTION + offsets[7], N_MOTION + offsets[8]
-    inner = (
-        u[o0:o1], u[o1:o2], u[o2:o3], u[o3:o4],
-        u[o4:o5], u[o5:o6], u[o6:o7], u[o7:o8], u[N_MOTION:],
-    )  # fmt: skip
-    rates = (
-        p[o0:o1], p[o1:o2], p[o2:o3], p[o3:o4],
-        p[o4:o5], p[o5:o6], p[o6:o7], p[o7:o8], p[N_MOTION:],
-    )  # fmt: skip
-    numbers = (
-        values[0], values[1], values[2], values[3], values[4], values[5], values[6], values[7],
-    )  # fmt: skip
-    drive = shaft_speed, slope, angle
+    functions = (h0, h1, h2, h3, h4, h5, h6, h7)
+    s, has_law, context = bushing.system, bushing.has_law, bushing.context
+    k, start, end, q, u, p = rows.stages, rows.start, rows.end, rows.dense, rows.state, rows.rates
+    slope, step, tolerance = drive.slope, drive.step, limits.tolerance
+    n, d = direction_out.size, u.size
+    last = max(drive.speed.size - 2, 0)  # segment of the drive
     t_crit, t_kin = s[8], s[9]
-    contact[CRITICAL], contact[KINETIC] = t_crit, t_kin
-    angle[0] = carried[at.ANGLE]
-    for i in range(n_known - 1):
-        slope[i] = (shaft_speed[i + 1] - shaft_speed[i]) / step
-        angle[i + 1] = angle[i] + 0.5 * step * (shaft_speed[i] + shaft_speed[i + 1])
-    last = max(n_known - 2, 0)  # segment of the drive
-    for i in range(last + 1, slope.size):
-        slope[i] = slope[last]
+    bushing.contact[CRITICAL], bushing.contact[KINETIC] = t_crit, t_kin
     kink = _KINK * t_kin * s[6]
     # The twist at the critical torque, and the speed that it becomes when released.
     twist_scale = max(t_crit, t_kin) / s[2]
     speed_scale = twist_scale * math.sqrt(s[2] * s[6])
+    # How near the end of stick or slip counts as there, by whether it slides.
+    if has_law:
+        near_stick, near_slip = _TURN_TOLERANCE * speed_scale, _TURN_TOLERANCE * speed_scale
+    else:
+        near_stick, near_slip = _EVENT_TOLERANCE * t_crit, _EVENT_TOLERANCE * speed_scale
     mode, next_mode = int(carried[at.MODE]), int(carried[at.NEXT_MODE])
     slide, first = int(carried[at.SLIDE]), carried[at.FIRST]
     stick_start, stick_length = carried[at.STICK_START], carried[at.STICK_LENGTH]
@@ -117,6 +144,7 @@ def run_contact(
     if t1 <= _TIME_TOLERANCE:  # the drive may have a kink here
         fresh = True
     while True:
+        # The outputs that lie in the step just made.
         dense = False
         while sample < n and sample * step < t1:
             length = t1 - t0
@@ -130,9 +158,8 @@ def run_contact(
             i = min(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
-                (sample - i) * step, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
-                h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, numbers, inner, rates, drive, context,
-                contact,
+                (sample - i) * step, i, time, stick_time, mode, bushing, law, functions, hooks,
+                drive, rows,
             )  # fmt: skip
             out[0, sample], out[1, sample] = friction, e
             out[2, sample], out[3, sample], out[4, sample] = u[0], p[0], u[2]
@@ -142,14 +169,14 @@ def run_contact(
         if sample == n:
             break
         if n_done * at.SHORTEST_STEP > _GRACE + first * step + t1:
-            carried[at.DONE] = -1.0
+            carried[at.DONE] = -1.0  # too many steps: given up
             return
-        # The next step, on a stretch of the drive without a kink.
+        # The next step begins where that ended, in the state that follows from what ended it.
         t0 = t1
         if next_mode != mode:
-            if mode == 0:
+            if mode == 0:  # it has broken loose
                 stick_length = first * step + t0 - stick_start
-            else:
+            else:  # it has caught
                 stick_start = first * step + t0
                 context[STICKS] += 1.0
             mode, fresh = next_mode, True
@@ -160,21 +187,11 @@ def run_contact(
             i0 += 1
             if abs(slope[i0] - slope[i0 - 1]) > kink:
                 fresh = True
-        aim = min(longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
-        i_last, limit = i0, math.inf
-        while (i_last + 1) * step < t0 + aim:
-            if i_last == last:
-                if n_known > n:
-                    limit = (last + 1) * step
-                break
-            i_last += 1
-            if abs(slope[i_last] - slope[i_last - 1]) > kink:
-                limit = i_last * step
-                i_last -= 1
-                break
+        aim = min(limits.longest, step_of_stick if mode == 0 and not has_law else step_of_slip)
+        i_last, limit = _stretch(drive, last, n, kink, i0, t0 + aim)
         h = min(aim, limit - t0)
         # Whether stick or slip ends in it: brackets of that, and how far from it they are.
-        low, high, far_low, far_high, side = 0.0, -1.0, far_start, 0.0, 0
+        low, high, far_low, far_high, side = 0.0, -1.0, far_start, 0.0, 0.0
         begin = 0 if fresh else 1
         ends = False
         while True:
@@ -186,12 +203,12 @@ def run_contact(
                 time = first * step + t
                 stick_time = time - stick_start if mode == 0 else stick_length
                 friction, e, holding, critical, caught, shaft = contact_rates(
-                    t - i * step, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
-                    h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, numbers, inner, rates, drive, context,
-                    contact,
+                    t - i * step, i, time, stick_time, mode, bushing, law, functions, hooks,
+                    drive, rows,
                 )  # fmt: skip
                 for j in range(d):
                     k[stage, j] = p[j]
+                # How far it is from the end of stick or slip, or from the turn of the sliding.
                 if has_law:
                     far = slide * (shaft - u[1])
                 elif mode == 0:
@@ -217,12 +234,15 @@ def run_contact(
             if error > 0.0:
                 factor = min(max(_SAFETY * error**-0.2, _LEAST_FACTOR), _MOST_FACTOR)
             if far < 0.0 and high < 0.0 and far_low <= 0.0 and error < math.inf:
-                if has_law:  # turned already
+                # The end lies before the step: a sliding that has turned already, or a step that
+                # is too long to tell.
+                if has_law:
                     slide, far, far_low, far_start = -slide, -far, -far_low, -far_start
                 elif h > _LEAST_STEP:
                     h *= _LEAST_FACTOR
                     continue
             if high < 0.0 and not (far < 0.0 and error < math.inf):
+                # No end so far. Is the step good enough?
                 if error > 1.0 and h > _LEAST_STEP:
                     h *= min(factor, _SAFETY)
                     aim = h
@@ -237,66 +257,52 @@ def run_contact(
                     break
                 h *= x
                 continue
-            # Regula falsi; the end that stays twice counts for half (the Illinois algorithm).
-            if far < 0.0:
-                if side > 0:
-                    far_low *= 0.5
-                side = 1
-                high, far_high = h, far
-            else:
-                if side < 0:
-                    far_high *= 0.5
-                side = -1
-                low, far_low = h, far
-            if has_law:
-                near = abs(far) <= _TURN_TOLERANCE * speed_scale
-            elif mode == 0:
-                near = abs(far) <= _EVENT_TOLERANCE * t_crit
-            else:
-                near = abs(far) <= _EVENT_TOLERANCE * speed_scale
+            # It ends within the step, which is repeated until it ends just there.
+            tried = h
+            h, low, high, far_low, far_high, side = _bracketed(
+                h, far, low, high, far_low, far_high, side
+            )
+            near = abs(far) <= (near_stick if mode == 0 else near_slip)
             if near or high - low <= _TIME_TOLERANCE:
-                if error > 1.0 and h > _LEAST_STEP:
+                h = tried
+                if error > 1.0 and h > _LEAST_STEP:  # found, but by a step that was too long
                     h *= min(factor, _SAFETY)
                     aim = h
-                    low, high, far_low, side = 0.0, -1.0, far_start, 0
+                    low, high, far_low, side = 0.0, -1.0, far_start, 0.0
                     continue
                 ends = True
                 break
-            h = 0.5 * (low + high)
-            if far_low > 0.0:
-                margin = 0.4 * _TIME_TOLERANCE
-                secant = low + (high - low) * far_low / (far_low - far_high)
-                h = min(max(secant, low + margin), high - margin)
         if not math.isfinite(error):
             for i in range(sample, n):
                 for j in range(out.shape[0]):
                     out[j, i] = math.nan
                 direction_out[i] = 0
             return
+        # The step is made.
         t1 = t0 + h
         for j in range(d):
             end[j] = u[j]
         follows = h * factor if h == aim else max(aim, h * factor)
         far_start, fresh = far, False
         if has_law or mode != 0:
-            step_of_slip = min(follows, longest)
+            step_of_slip = min(follows, limits.longest)
         else:
-            step_of_stick = min(follows, longest)
-            end[1] = p[0]
+            step_of_stick = min(follows, limits.longest)
+            end[1] = p[0]  # the surface goes with the shaft
         if has_law:
-            if ends:
+            if ends:  # the sliding turns
                 slide, far_start = -slide, -far
-            elif slide == 0 and shaft != u[1]:
+            elif slide == 0 and shaft != u[1]:  # it begins
                 slide = 1 if shaft > u[1] else -1
-        elif ends and mode == 0:
+        elif ends and mode == 0:  # it breaks loose
             next_mode = 1 if holding > 0.0 else -1
-        elif ends:
+        elif ends:  # it is caught
             next_mode = 0
             end[1] = caught
     carried[at.MODE], carried[at.NEXT_MODE], carried[at.SLIDE] = mode, next_mode, slide
     carried[at.FIRST] = first + n
     carried[at.STICK_START], carried[at.STICK_LENGTH] = stick_start, stick_length
-    carried[at.ANGLE], carried[at.DONE], carried[at.FAR] = angle[n], n_done, far_start
+    carried[at.ANGLE], carried[at.DONE], carried[at.FAR] = drive.angle[n], n_done, far_start
     carried[at.STEP_START], carried[at.STEP_END] = t0 - n * step, t1 - n * step
     carried[at.STEP_OF_STICK], carried[at.STEP_OF_SLIP] = step_of_stick, step_of_slip
     carried[at.FRESH] = 1.0 if fresh else 0.0

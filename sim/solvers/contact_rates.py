@@ -45,28 +45,29 @@ _MOST_CREEP_PASSES = 30
 
 @njit(forceinline=True, **PART)
 def contact_rates(
-    since, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
-    h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, values, inner, rates, drive, context, contact,
-) -> tuple[float, float, float, float, float, float]:  # fmt: skip
-    """Fill the rates `p` of the state `u`, `since` sample `i` of the drive [s].
+    since, i, time, stick_time, mode, bushing, law, functions, hooks, drive, rows
+) -> tuple[float, float, float, float, float, float]:
+    """Fill the rates of the state, `since` sample `i` of the drive [s].
 
     Returns friction torque, elastomer torque, what holds the surfaces together, what they can
     bear [Nm], the speed of the surface in stick, and that of the shaft [rad/s].
     """
+    s, has_law, contact, context = bushing.system, bushing.has_law, bushing.contact, bushing.context
     j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
     t_crit, t_kin = s[8], s[9]
-    shaft_speed, slope, angle = drive
-    acceleration = slope[i]
-    shaft = shaft_speed[i] + acceleration * since - u[5]
+    u, p = rows.state, rows.rates
+    acceleration = drive.slope[i]
+    shaft = drive.speed[i] + acceleration * since - u[5]
     sticks = mode == 0 and not has_law
     surface = shaft if sticks else u[1]
     twist = u[0] - u[2]
     e = k_e * twist + c_e * (surface - u[3])
     critical, kinetic, creep = t_crit, t_kin, 0.0
     mobility, shaft_torque = 0.0, 0.0
-    if n_hooks > 0:
+    if hooks.count > 0:
         context[TIME], context[STICK_TIME] = time, stick_time
-        context[SHAFT_ANGLE] = angle[i] + since * (shaft_speed[i] + 0.5 * acceleration * since)
+        turned = since * (drive.speed[i] + 0.5 * acceleration * since)
+        context[SHAFT_ANGLE] = drive.angle[i] + turned
         context[SHAFT_SPEED], context[TWIST] = shaft, twist
         context[SHAFT_LAG], context[SHAFT_LAG_RATE] = u[4], u[5]
         # A creeping contact relieves the elastomer's damper, on whose torque its creep depends:
@@ -79,21 +80,23 @@ def contact_rates(
             contact[STIFFNESS], contact[ELASTOMER_TORQUE] = k_e, 0.0
             contact[CREEP], contact[SHAFT_TORQUE] = 0.0, 0.0
             contact[SHAFT_INERTIA] = math.inf
-            h0(context, values[0], inner[0], rates[0], contact)
-            if n_hooks > 1:
-                h1(context, values[1], inner[1], rates[1], contact)
-            if n_hooks > 2:
-                h2(context, values[2], inner[2], rates[2], contact)
-            if n_hooks > 3:
-                h3(context, values[3], inner[3], rates[3], contact)
-            if n_hooks > 4:
-                h4(context, values[4], inner[4], rates[4], contact)
-            if n_hooks > 5:
-                h5(context, values[5], inner[5], rates[5], contact)
-            if n_hooks > 6:
-                h6(context, values[6], inner[6], rates[6], contact)
-            if n_hooks > 7:
-                h7(context, values[7], inner[7], rates[7], contact)
+            # One after the other by fixed indices: a loop over tuples would cost as much again.
+            values, states, state_rates = hooks.values, hooks.states, hooks.rates
+            functions[0](context, values[0], states[0], state_rates[0], contact)
+            if hooks.count > 1:
+                functions[1](context, values[1], states[1], state_rates[1], contact)
+            if hooks.count > 2:
+                functions[2](context, values[2], states[2], state_rates[2], contact)
+            if hooks.count > 3:
+                functions[3](context, values[3], states[3], state_rates[3], contact)
+            if hooks.count > 4:
+                functions[4](context, values[4], states[4], state_rates[4], contact)
+            if hooks.count > 5:
+                functions[5](context, values[5], states[5], state_rates[5], contact)
+            if hooks.count > 6:
+                functions[6](context, values[6], states[6], state_rates[6], contact)
+            if hooks.count > 7:
+                functions[7](context, values[7], states[7], state_rates[7], contact)
             creep = contact[CREEP]
             gap = creep - share
             if not sticks or gap == 0.0:
@@ -122,7 +125,7 @@ def contact_rates(
         holding = (e + j_e * shaft_torque * mobility) / (1.0 + j_e * mobility)
     if has_law:
         # Laws have the first of the inner states, effects those after.
-        friction = law(shaft - surface, coefficients, contact, inner[8], rates[8])
+        friction = law(shaft - surface, bushing.coefficients, contact, rows.inner, rows.inner_rates)
     elif mode == 0:
         friction = holding
     else:

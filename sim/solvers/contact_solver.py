@@ -18,24 +18,26 @@ import numpy as np
 from models.errors import ParameterError
 from sim.contact import N_CONTACT, N_CONTEXT
 from sim.solvers.contact_state import (
+    ANGLE,
     DONE,
     FRESH,
+    MOST_HOOKS,
     N_CARRIED,
     N_MOTION,
-    N_ROWS,
-    N_STAGES,
     SHORTEST_STEP,
     STEP_OF_SLIP,
     STEP_OF_STICK,
+    Bushing,
+    Drive,
+    Hooks,
+    Limits,
+    empty_rows,
 )
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["LONGEST_STEP", "MOST_HOOKS", "ContactRun", "Hook", "solve_contact"]
-
-MOST_HOOKS = 8
-"""Effects that can act on the contact at once."""
+__all__ = ["LONGEST_STEP", "ContactRun", "Hook", "solve_contact"]
 
 LONGEST_STEP = 1e-4
 """Whatever the error says: an effect may act at any time [s]."""
@@ -114,38 +116,43 @@ class ContactRun:
         if len(hooks) > MOST_HOOKS:
             raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
         law_state = np.zeros(0) if law_state is None else law_state
-        offsets = np.zeros(MOST_HOOKS + 1, dtype=np.int64)
-        offsets[0] = law_state.size
-        for i in range(MOST_HOOKS):
-            offsets[i + 1] = offsets[i] + (hooks[i].n_states if i < len(hooks) else 0)
+        # The inner states: the law's, then those of the effects one after the other.
+        lengths = [hook.n_states for hook in hooks] + [0] * (MOST_HOOKS - len(hooks))
+        ends = N_MOTION + law_state.size + np.cumsum(lengths)
+        parts = [slice(end - length, end) for end, length in zip(ends, lengths, strict=True)]
         values = np.zeros((MOST_HOOKS, max((hook.values.size for hook in hooks), default=1)))
         for row, hook in zip(values, hooks, strict=False):
             row[: hook.values.size] = hook.values
+        self._rows = empty_rows(int(ends[-1]))
         j_e, j_c, _, k_b, _, _ = system
         mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
-        functions = [hook.function for hook in hooks] + [no_hook] * (MOST_HOOKS - len(hooks))
         self._constants = (
-            np.array([*system, *mobilities, critical_torque, kinetic_torque]),
+            Bushing(
+                np.array([*system, *mobilities, critical_torque, kinetic_torque]),
+                law is not None,
+                np.zeros(1) if coefficients is None else coefficients,
+                np.zeros(N_CONTEXT),
+                np.zeros(N_CONTACT),
+            ),
             law or no_law,
-            law is not None,
-            np.zeros(1) if coefficients is None else coefficients,
-            *functions,
-            len(hooks),
-            values,
-            offsets,
+            *[hook.function for hook in hooks],
+            *[no_hook] * (MOST_HOOKS - len(hooks)),
+            Hooks(
+                len(hooks),
+                tuple(values),
+                tuple(self._rows.state[part] for part in parts),
+                tuple(self._rows.rates[part] for part in parts),
+            ),
         )
         # The error of a step goes with the fifth power of its length.
-        self._steps = step, LONGEST_STEP / refined, tolerance / refined**5
-        self._name = name
+        self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
+        self._step, self._name = step, name
         self._carried = np.zeros(N_CARRIED)
         self._carried[[STEP_OF_STICK, STEP_OF_SLIP]] = _FIRST_STEP
         self._carried[FRESH] = 1.0
-        self._rows = np.zeros((N_ROWS, N_MOTION + int(offsets[-1])))
-        end = self._rows[N_STAGES + 1]
         if law is None:
-            end[1] = start_speed
-        end[N_MOTION : N_MOTION + law_state.size] = law_state
-        self._context = np.zeros(N_CONTEXT)
+            self._rows.end[1] = start_speed
+        self._rows.end[N_MOTION : N_MOTION + law_state.size] = law_state
 
     def advance(
         self, shaft_speed: NDArray[np.float64], n: int
@@ -175,9 +182,8 @@ class ContactRun:
 
         compiled: Any = run_contact
         compiled(
-            *self._constants, np.ascontiguousarray(shaft_speed), *self._steps, self._carried,
-            self._rows, self._context, np.zeros(N_CONTACT),
-            np.zeros((2, max(n + 1, shaft_speed.size))), states, direction,
+            *self._constants, self._drive(shaft_speed, n), self._limits, self._carried, self._rows,
+            states, direction,
         )  # fmt: skip
         if self._carried[DONE] < 0.0:
             raise ParameterError(
@@ -185,6 +191,17 @@ class ContactRun:
                 f"of {SHORTEST_STEP:g} s cannot follow; make it less steep"
             )
         return states.T, direction
+
+    def _drive(self, speed: NDArray[np.float64], n: int) -> Drive:
+        """Return the drive from the next sample on, of which `n` are solved."""
+        known, size = speed.size, max(n + 1, speed.size)
+        slope, angle = np.zeros(size), np.zeros(size)
+        np.divide(np.diff(speed), self._step, out=slope[: known - 1])
+        slope[max(known - 1, 1) :] = slope[max(known - 2, 0)]
+        angle[0] = self._carried[ANGLE]
+        angle[1:known] = 0.5 * self._step * (speed[:-1] + speed[1:])
+        np.cumsum(angle[:known], out=angle[:known])
+        return Drive(self._step, np.ascontiguousarray(speed), slope, angle)
 
 
 def solve_contact(

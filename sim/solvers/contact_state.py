@@ -1,12 +1,23 @@
-"""What the contact solver carries on from step to step and from block to block."""
+"""What the contact solver works on, and what it carries on from step to step and block to block."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 __all__ = [
-    "ANGLE", "DONE", "FAR", "FIRST", "FRESH", "MODE", "NEXT_MODE", "N_CARRIED", "N_MOTION",
-    "N_ROWS", "N_STAGES", "SHORTEST_STEP", "SLIDE", "STEP_END", "STEP_OF_SLIP", "STEP_OF_STICK",
-    "STEP_START", "STICK_LENGTH", "STICK_START",
+    "ANGLE", "DONE", "FAR", "FIRST", "FRESH", "MODE", "MOST_HOOKS", "NEXT_MODE", "N_CARRIED",
+    "N_MOTION", "N_STAGES", "SHORTEST_STEP", "SLIDE", "STEP_END", "STEP_OF_SLIP", "STEP_OF_STICK",
+    "STEP_START", "STICK_LENGTH", "STICK_START", "Bushing", "Drive", "Hooks", "Limits", "Rows",
+    "empty_rows",
 ]  # fmt: skip
+
+MOST_HOOKS = 8
+"""Effects that can act on the contact at once."""
 
 SHORTEST_STEP = 1e-7
 """Average over a run, below which it is given up [s]."""
@@ -47,6 +58,84 @@ N_STAGES = 7
 N_MOTION = 6
 """First of the variables, whose errors have scales of their own."""
 
-# Rows of an array of states: the rates at the stages of the last step, its start and its end, and
-# room for the state of a stage, its rates, and the coefficients between start and end.
-N_ROWS = N_STAGES + 8
+
+class Bushing(NamedTuple):
+    """The lumped model and its friction, as compiled code reads them."""
+
+    system: NDArray[np.float64]
+    """J_E, J_C, k_E, k_B, c_E, c_B, the inertias' reciprocals, T_crit, T_kin."""
+    has_law: bool
+    """Whether a law tells the friction; else the contact truly sticks."""
+    coefficients: NDArray[np.float64]
+    """Of the law."""
+    context: NDArray[np.float64]
+    """What effects read, by `sim.contact`."""
+    contact: NDArray[np.float64]
+    """What effects change and laws read, by `sim.contact`."""
+
+
+class Hooks(NamedTuple):
+    """What the effects' compiled functions are called with; each has `MOST_HOOKS` items."""
+
+    count: int
+    """Of effects that act."""
+    values: tuple[NDArray[np.float64], ...]
+    states: tuple[NDArray[np.float64], ...]
+    """Parts of `Rows.state`; made once, since making one costs more than the call."""
+    rates: tuple[NDArray[np.float64], ...]
+    """Parts of `Rows.rates`."""
+
+
+class Drive(NamedTuple):
+    """The shaft's drive at the samples, linear between them, as far as it is known."""
+
+    step: float
+    """From sample to sample [s]."""
+    speed: NDArray[np.float64]
+    """[rad/s]"""
+    slope: NDArray[np.float64]
+    """After each sample [rad/s2]; the last goes on beyond them."""
+    angle: NDArray[np.float64]
+    """[rad]"""
+
+
+class Rows(NamedTuple):
+    """States of all variables, or their rates, and room for them."""
+
+    stages: NDArray[np.float64]
+    """Rates at the stages of the last step."""
+    start: NDArray[np.float64]
+    """State where the last step began."""
+    end: NDArray[np.float64]
+    """State where it ended."""
+    dense: NDArray[np.float64]
+    """Coefficients of the state between start and end."""
+    state: NDArray[np.float64]
+    """At one instant."""
+    rates: NDArray[np.float64]
+    """At that instant."""
+    inner: NDArray[np.float64]
+    """Those of the state that are neither angles nor speeds: the law's, then the effects'."""
+    inner_rates: NDArray[np.float64]
+
+
+class Limits(NamedTuple):
+    """Of steps."""
+
+    longest: float
+    """[s]"""
+    tolerance: float
+    """Error of a step over its scale."""
+
+
+def empty_rows(n: int) -> Rows:
+    """Return rows of `n` variables, all zero.
+
+    Examples
+    --------
+    >>> empty_rows(7).inner.shape
+    (1,)
+    """
+    stages, dense = np.zeros((N_STAGES, n)), np.zeros((4, n))
+    start, end, state, rates = np.zeros((4, n))
+    return Rows(stages, start, end, dense, state, rates, state[N_MOTION:], rates[N_MOTION:])
