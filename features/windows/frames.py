@@ -108,7 +108,7 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
     power += spectrum.imag**2
     power += _LEAST
     correlation = fft.irfft(power, axis=1)[:, : _LAGS[1] + 2] * _TAPER
-    last = min(_EDGES[-1], int(limit / _SPACING) + 1)
+    last = max(_FIRST_BIN + 1, min(_EDGES[-1], int(limit / _SPACING) + 1))
     bands = np.add.reduceat(power[:, : _EDGES[-1]], _EDGES[:-1], axis=1)
     values = np.empty((len(power), len(FRAME_COLUMNS)), dtype=np.float32)
     logarithm = np.log2(power[:, _FIRST_BIN:last])

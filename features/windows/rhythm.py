@@ -1,3 +1,4 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 """Blows and their rhythm: what tells a creak from rain, and both from a tone.
 
 The power of the sound above 2 kHz, and of all of it, every quarter of a millisecond.
@@ -11,8 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
-from scipy import fft
+from scipy import fft, special
 
+from features.windows.arithmetic import OCTAVES, ordered_sum, padded_medians, padded_rows
+from features.windows.declared import RHYTHM_FEATURES
+from features.windows.maxima import prominent_maxima
 from features.windows.working import RATE
 
 if TYPE_CHECKING:
@@ -28,25 +32,35 @@ _LENGTH = 4096
 _LAGS = (6, 900)
 """Between them a period of blows is sought: 4.4 to 667 a second."""
 
+_LEAST_SAMPLES = 32
+"""Shorter windows are not described."""
+
+_SILENCE = 1e-20
+"""Mean power below which a window is silent."""
+
 _PROMINENCE_DB = 6.0
+"""What a blow stands out of what is around it [dB]."""
+
 _PULSE_RANGE_DB = 20.0
+"""Weaker ones than this below the strongest are none [dB]."""
+
+_DECAY = 16
+"""Samples after which the fall from a blow is read: 4 ms."""
+
+_LEAST_BLOWS = 4
+"""For a description of their intervals."""
+
+_NO_BLOWS = -4.0
+"""Rate where there are none [octave re 10 a second]."""
+
+_BETTER = 1.1
+"""How much stronger a longer period must be than the shorter ones [ratio]."""
+
 _MODULATION = (4, 12, 31, 82, 205, 410, 820, 1640)
 """Edges of the bands of modulation, in bins of about 1 Hz."""
 
-RHYTHM_NAMES = (
-    "blow_rate", "blow_irregularity", "blow_glide", "blow_spread", "blow_heights", "crest",
-    "kurtosis", "concentration", "period_strength", "period_rate", "second_period", "decay",
-    *(f"modulation_{i + 1}" for i in range(len(_MODULATION) - 1)), "modulation_depth",
-)  # fmt: skip
-"""Of a window, in the order of `rhythms_of`.
-
-Blows in a second [octave re 10]; median change from one interval to the next [octave]; the rate's
-trend [octave a second]; deviation of the intervals' logarithm [octave] and of the blows' levels
-[dB]; peak, fourth moment and loudest tenth of the envelope; the highest
-autocorrelation of its square root, the rate that belongs to it [octave re 10 Hz], and what is left
-of it at twice the lag; median fall within 4 ms after a blow [dB]; shares of the modulation from 4
-to 1600 Hz in bands of an octave or more, and its depth.
-"""
+RHYTHM_NAMES = tuple(feature.name for feature in RHYTHM_FEATURES)
+"""Of a window, in the order of `rhythms_of`."""
 
 
 def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -99,117 +113,153 @@ def rhythms_of(
     spectrum = fft.rfft(varying, n=_LENGTH, axis=1)
     modulation = spectrum.real**2 + spectrum.imag**2
     correlation = fft.irfft(modulation, axis=1)[:, : 2 * _LAGS[1] + 2]
-    out = np.full((len(first), len(RHYTHM_NAMES)), np.nan, dtype=np.float32)
     shares = np.add.reduceat(modulation, _MODULATION, axis=1)[:, :-1]
     whole = np.maximum(shares.sum(axis=1, keepdims=True), 1e-30)
-    out[:, 12:-1] = shares / whole
+    smooth, average, fourth = np.zeros_like(rows), np.empty(len(rows)), np.empty(len(rows))
+    _smooth(rows, n, smooth, average, fourth)
+    described = (n >= _LEAST_SAMPLES) & (average > _SILENCE)
+    smooth, n = smooth[described], n[described]
+    average, fourth = average[described], fourth[described]
+    peak = smooth.max(axis=1, initial=0.0)
+    level = _level(smooth, peak)
+    found = {
+        "crest": 10.0 * np.log10(peak / average),
+        "kurtosis": 10.0 * np.log10(fourth / n),
+        "concentration": _loudest_tenth(smooth, n) / (average * n),
+        **_blows(level, n),
+        **_period(correlation[described], n),
+    }
+    out = np.full((len(first), len(RHYTHM_NAMES)), np.nan, dtype=np.float32)
+    for name, values in found.items():
+        out[described, RHYTHM_NAMES.index(name)] = values
+    out[:, -len(_MODULATION) : -1] = shares / whole
     out[:, -1] = varying.std(axis=1) / np.maximum(mean, 1e-20)
-    _rhythms(rows, n, correlation, out)
     return out
 
 
-_OCTAVES = 1.0 / np.log(2.0)
-"""What makes a natural logarithm one of base two."""
-
-
 @njit(cache=True, error_model="numpy")
-def _rhythms(rows, n, correlation, out):
-    smooth = np.empty(rows.shape[1], dtype=np.float32)
-    level = np.empty(rows.shape[1], dtype=np.float32)
-    at = np.empty(rows.shape[1], dtype=np.float32)
+def _smooth(rows, n, smooth, average, fourth) -> None:
+    """Fill in the power of the last millisecond, its mean, and the sum of its squares re that."""
     for w in range(rows.shape[0]):
-        m = n[w]
-        if m < 32:
-            continue
-        e = rows[w]
-        mean = np.float32(0.0)
-        peak = np.float32(0.0)
-        sums = 0.0  # of the last millisecond; in double precision, so that it does not creep
-        for i in range(m):
-            sums += e[i]
-            if i >= 4:
-                sums -= e[i - 4]
-            smooth[i] = max(sums, np.float32(0.0))
-            mean += smooth[i]
-            peak = max(peak, smooth[i])
-        mean /= m
-        if mean <= 1e-20:
-            continue
-        fourth = np.float32(0.0)
-        for i in range(m):
-            fourth += (smooth[i] / mean) ** 2
-            level[i] = 10.0 * np.log10(max(smooth[i] / peak, 1e-8))
-        out[w, 5] = 10.0 * np.log10(peak / mean)
-        out[w, 6] = 10.0 * np.log10(fourth / m)
-        tenth = max(1, m // 10)
-        loud = np.sort(np.partition(smooth[:m], m - tenth)[m - tenth :])
-        out[w, 7] = loud.sum() / (mean * m)
-        _blows(level, m, at, out[w])
-        r = correlation[w]
-        if r[0] <= 0.0:
-            continue
-        # The first fall below zero or to a tenth ends the peak at no lag.
-        lag = 1
-        while lag < min(_LAGS[1], m // 2) and r[lag] > 0.1 * r[0]:
-            lag += 1
-        best, period = np.float32(0.0), 0
-        for k in range(max(lag, _LAGS[0]), min(_LAGS[1], m // 2)):
-            c = r[k] / r[0] * (m / (m - k))
-            if r[k] > r[k - 1] and r[k] >= r[k + 1] and c > 1.1 * best:
-                best, period = c, k
-        out[w, 8] = best
-        if period > 0:
-            out[w, 9] = _OCTAVES * np.log(ENVELOPE_RATE / (10.0 * period))
-            if 2 * period + 1 < min(m, len(r)):
-                far = max(r[2 * period - 1], r[2 * period], r[2 * period + 1])
-                out[w, 10] = far / r[0] * (m / (m - 2 * period))
+        power = 0.0  # in double precision, so that rounding does not creep
+        whole = np.float32(0.0)
+        for i in range(n[w]):
+            power += rows[w, i]
+            if i >= _STEP:
+                power -= rows[w, i - _STEP]
+            smooth[w, i] = power if power > 0.0 else 0.0
+            whole += smooth[w, i]
+        mean = whole / n[w]
+        squares = 0.0
+        for i in range(n[w]):
+            share = smooth[w, i] / mean
+            squares += share * share
+        average[w], fourth[w] = mean, squares
 
 
-@njit(cache=True, error_model="numpy")
-def _blows(level, m, at, out):
-    """Find the maxima that stand out of what surrounds them, and describe their times."""
-    count = 0
-    lowest = level[0]
-    candidate = -1
-    heights = 0.0
-    squares = 0.0
-    falls = np.empty(m, dtype=np.float32)
-    for i in range(m):
-        v = level[i]
-        if candidate < 0:
-            lowest = min(lowest, v)
-            if v >= lowest + _PROMINENCE_DB:
-                candidate = i
-        elif v > level[candidate]:
-            candidate = i
-        elif v < level[candidate] - _PROMINENCE_DB:
-            if level[candidate] >= -_PULSE_RANGE_DB:
-                at[count] = candidate
-                heights += level[candidate]
-                squares += level[candidate] ** 2
-                falls[count] = level[candidate] - level[min(candidate + 16, m - 1)]
-                count += 1
-            candidate = -1
-            lowest = v
-    if count == 0:
-        out[0] = -4.0
-        return
-    out[0] = _OCTAVES * np.log(count / m * (ENVELOPE_RATE / 10.0))
-    out[11] = np.median(falls[:count])
-    out[4] = np.sqrt(max(squares / count - (heights / count) ** 2, 0.0))
-    if count < 4:
-        return
-    interval = np.empty(count - 1, dtype=np.float32)
-    sx, sy, sxx, sxy, syy = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(count - 1):
-        interval[i] = _OCTAVES * np.log(at[i + 1] - at[i])
-        x = 0.5 * (at[i + 1] + at[i] - at[0] - at[count - 1]) / ENVELOPE_RATE
-        sx += x
-        sy += interval[i]
-        sxx += x * x
-        sxy += x * interval[i]
-        syy += interval[i] ** 2
-    k = count - 1
-    out[1] = np.median(np.abs(np.diff(interval)))
-    out[2] = -(k * sxy - sx * sy) / max(k * sxx - sx * sx, 1e-12)
-    out[3] = np.sqrt(max(syy / k - (sy / k) ** 2, 0.0))
+def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return levels re the peak, no lower than -80 dB."""
+    share = np.maximum((smooth / peak[:, None]).astype(np.float64), 1e-8)
+    return (10.0 * np.log10(share)).astype(np.float32)
+
+
+def _loudest_tenth(smooth: NDArray[np.float32], n: NDArray[np.int64]) -> NDArray[np.float32]:
+    """Return the sum over the loudest tenth, from the least of it to the most."""
+    tenth = np.maximum(1, n // 10)
+    most = int(tenth.max(initial=1))
+    kept = smooth.shape[1] - most
+    loud = np.sort(np.partition(smooth, kept, axis=1)[:, kept:], axis=1)
+    return ordered_sum(np.where(np.arange(most) >= (most - tenth)[:, None], loud, 0), axis=1)
+
+
+def _period(
+    correlation: NDArray[np.float32], n: NDArray[np.int64]
+) -> dict[str, NDArray[np.float64]]:
+    """Find the period of the envelope: the shortest lag nearly as good as any."""
+    least, most = _LAGS
+    power = correlation[:, 0]
+    # The first fall below zero or to a tenth ends the peak at no lag.
+    ended = correlation[:, 1:most] <= 0.1 * power.astype(np.float64)[:, None]
+    begin = np.where(ended.any(axis=1), ended.argmax(axis=1) + 1, most)
+    begin = np.where(power > 0.0, begin, most)
+    middle = correlation[:, least:most]
+    highest = middle > correlation[:, least - 1 : most - 1]
+    highest &= middle >= correlation[:, least + 1 : most + 1]
+    row, lag = np.nonzero(highest)
+    lag += least
+    inside = (lag >= begin[row]) & (lag < (n // 2)[row])
+    row, lag = row[inside], lag[inside]
+    # Fewer samples overlap at a longer lag.
+    strength = correlation[row, lag] / power[row] * (n[row] / (n[row] - lag))
+    count = np.bincount(row, minlength=n.size)
+    highest_yet = np.maximum.accumulate(padded_rows(strength, row, count, 0.0), axis=1)
+    lags = padded_rows(lag, row, count, 0)
+    best, period = np.zeros(n.size), np.zeros(n.size, dtype=np.int64)
+    for i, j in np.argwhere(np.diff(highest_yet, axis=1, prepend=0.0) > 0.0).tolist():
+        if highest_yet[i, j] > _BETTER * best[i]:
+            best[i], period[i] = highest_yet[i, j], lags[i, j]
+    found, twice = period > 0, 2 * period
+    again = found & (twice + 1 < np.minimum(n, correlation.shape[1]))
+    rows = np.flatnonzero(again)
+    far = np.max([correlation[rows, twice[rows] + i] for i in (-1, 0, 1)], axis=0)
+    second, rate = np.full(n.size, np.nan), np.full(n.size, np.nan)
+    second[again] = far / power[again] * (n[again] / (n[again] - twice[again]))
+    rate[found] = OCTAVES * np.log(ENVELOPE_RATE / (10.0 * period[found]))
+    return {
+        "period_strength": np.where(power > 0.0, best, np.nan),
+        "period_rate": rate,
+        "second_period": second,
+    }
+
+
+def _blows(level: NDArray[np.float32], n: NDArray[np.int64]) -> dict[str, NDArray[np.floating]]:
+    """Describe times and heights of the maxima that stand out of what surrounds them."""
+    row, at = prominent_maxima(level, 0, n, _PROMINENCE_DB)
+    kept = level[row, at] >= -_PULSE_RANGE_DB
+    row, at = row[kept], at[kept]
+    count = np.bincount(row, minlength=n.size)
+    some = np.where(count > 0, count, np.nan)
+    height = level[row, at]
+    fall = height - level[row, np.minimum(at + _DECAY, n[row] - 1)]
+    mean, square = (
+        ordered_sum(padded_rows(values.astype(np.float64), row, count, 0.0), axis=1) / some
+        for values in (height, height * height)
+    )
+    return {
+        "blow_rate": np.where(
+            count > 0, OCTAVES * np.log(some / n * (ENVELOPE_RATE / 10.0)), _NO_BLOWS
+        ),
+        "blow_heights": np.sqrt(np.maximum(square - mean**2, 0.0)),
+        "decay": padded_medians(padded_rows(fall, row, count, np.inf), count),
+        **_intervals(padded_rows(at, row, count, 0), count),
+    }
+
+
+def _intervals(at: NDArray[np.int64], count: NDArray[np.int64]) -> dict[str, NDArray[np.floating]]:
+    """Describe how the intervals between blows change, where there are at least four blows."""
+    several = count >= _LEAST_BLOWS
+    at, n = at[several], count[several] - 1
+    inside = np.arange(at.shape[1] - 1) < n[:, None]
+    gap = np.where(inside, np.diff(at, axis=1), 1).astype(np.float32)
+    # The C library's logarithm in single precision; NumPy's own differs in the last digit.
+    logarithm = special.xlogy(np.float32(1.0), gap).astype(np.float64)
+    interval = (OCTAVES * logarithm).astype(np.float32)
+    last = np.take_along_axis(at, n[:, None], axis=1)
+    x = 0.5 * (at[:, 1:] + at[:, :-1] - at[:, :1] - last) / ENVELOPE_RATE
+    x = np.where(inside, x, 0.0)
+    square = (interval * interval).astype(np.float64)
+    sum_x, sum_y, sum_xx, sum_xy, sum_yy = (
+        ordered_sum(terms, axis=1)
+        for terms in (x, interval.astype(np.float64), x * x, x * interval, square)
+    )
+    change = np.where(inside[:, 1:], np.abs(np.diff(interval, axis=1)), np.float32(np.inf))
+    slope = (n * sum_xy - sum_x * sum_y) / np.maximum(n * sum_xx - sum_x * sum_x, 1e-12)
+    found = {
+        "blow_irregularity": padded_medians(change, n - 1),
+        "blow_glide": -slope,
+        "blow_spread": np.sqrt(np.maximum(sum_yy / n - (sum_y / n) ** 2, 0.0)),
+    }
+    out = {name: np.full(count.size, np.nan) for name in found}
+    for name, values in found.items():
+        out[name][several] = values
+    return out

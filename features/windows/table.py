@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.windows.courses import courses_of
 from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
 from features.windows.frames import FRAME_COLUMNS, describe_frames, frame_count
 from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythms_of
-from features.windows.tones import SEGMENT_HOP, long_spectra, tones_of
+from features.windows.spectra import SEGMENT_HOP, long_spectra
+from features.windows.tones import tone_features
+from features.windows.trajectories import trajectory_features
 from features.windows.working import FRAME_RATE, RATE
 
 if TYPE_CHECKING:
@@ -118,8 +119,8 @@ def describe_windows(
     end = np.minimum(begin + round(LENGTH * ENVELOPE_RATE), power.size)
     features = np.concatenate(
         [
-            courses_of(frames, first, last),
-            tones_of(long_spectra(sound, spectra), of_spectra, until, limit),
+            trajectory_features(frames, first, last),
+            tone_features(long_spectra(sound, spectra), of_spectra, until, limit),
             rhythms_of(power, begin, end),
             rhythms_of(blows, begin, end),
             _tops(top, power, blows, windows),

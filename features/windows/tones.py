@@ -1,8 +1,7 @@
 """Lines of a window's spectrum: how many, how strong, and whether they are harmonics of one.
 
-A bin is 3.9 Hz wide and three overlapping spectra of a quarter of a second are averaged, so that a
-squawk of 100 Hz shows each of its harmonics. What stands 10 dB above its surroundings and falls to
-either side before the next rises is a line, as in `features.kernels.lines`.
+What stands 10 dB above its surroundings and falls to either side before the next rises is a line,
+as in `features.kernels.lines`.
 """
 
 from __future__ import annotations
@@ -10,86 +9,36 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
-from scipy import fft
 
-from features.kernels.bands import a_weighting
-from features.windows.lines import (
-    BLOCK,
-    FIRST,
-    LOBE,
-    MOST,
-    RANGE_DB,
-    SPACING,
-    find_harmonics,
-    find_lines,
-)
+from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows
+from features.windows.declared import TONE_FEATURES
+from features.windows.harmonics import harmonic_features
+from features.windows.maxima import prominent_maxima
+from features.windows.spectra import BLOCK, FIRST, SPACING, line_power, window_spectra
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["SEGMENT_HOP", "TONE_NAMES", "long_spectra", "tones_of"]
+    from features.windows.spectra import WindowSpectra
 
-_SEGMENT = 4000
-_LENGTH = 4096
-SEGMENT_HOP = 2000
-"""Samples from one long spectrum to the next."""
+__all__ = ["TONE_NAMES", "tone_features"]
 
-_LEAST = np.float32(1e-20)
+_MOST_LINES = 40
 
-TONE_NAMES = (
-    "line_count", "strong_line_count", "line_frequency", "line_share", "lines_share",
-    "second_line", "third_line", "line_prominence", "line_width", "fundamental",
-    "harmonic_share", "harmonic_count", "inharmonicity", "harmonic_gain", "below_line",
-    "above_line", "spectral_flatness", "spectral_slope", "lowest_line", "line_spacing_spread",
-    "weighted_above_1", "weighted_above_2", "weighted_above_4", "weighted_lines",
-)  # fmt: skip
-"""Of a window, in the order of `tones_of`.
+_RANGE_DB = 30.0
+"""Weaker lines than this below the strongest bin are none [dB]."""
 
-Lines within 30 dB and within 18 dB of the strongest; the frequency of the strongest [octave re
-1 kHz], the share of the power in it and in all lines; second and third re the first [dB]; how far
-the first stands above its surroundings [dB] and its width at half power [Hz]; the fundamental
-[octave re 100 Hz] that explains most of the power in lines, the share of the whole that lies at its
-harmonics, their number, their mean distance from multiples, and the share's excess over
-what evenly spread power would put there; power below and above the strongest line re the line
-[dB]; flatness [dB] and slope [dB an octave] of the spectrum; lowest line re the strongest
-[octave]; spread of the distances between lines [share of their mean]. A-weighted power above 1, 2
-and 4 kHz and in all lines re all [dB].
-"""
+_STRONG_DB = 18.0
+"""Stronger ones than this below it are counted as strong [dB]."""
+
+_STANDS_DB = 10.0
+"""What a line stands above the floor, and above the saddle to the next [dB]."""
+
+TONE_NAMES = tuple(feature.name for feature in TONE_FEATURES)
+"""Of a window, in the order of `tone_features`."""
 
 
-def long_spectra(sound: NDArray[np.float32], count: int) -> NDArray[np.float32]:
-    """Power spectra of `count` overlapping quarters of a second.
-
-    Parameters
-    ----------
-    sound : ndarray of float32, shape (n,)
-        At `RATE`; zeros follow its end.
-    count : int
-
-    Returns
-    -------
-    ndarray of float32, shape (count, 2049)
-
-    Examples
-    --------
-    >>> long_spectra(np.zeros(8000, dtype=np.float32), 3).shape
-    (3, 2049)
-    """
-    needed = (count - 1) * SEGMENT_HOP + _SEGMENT
-    if sound.size < needed:
-        sound = np.concatenate([sound, np.zeros(needed - sound.size, dtype=np.float32)])
-    segments = np.lib.stride_tricks.sliding_window_view(sound, _SEGMENT)[::SEGMENT_HOP][:count]
-    spectrum = fft.rfft(segments * _WINDOW, n=_LENGTH, axis=1)
-    power = spectrum.real**2
-    power += spectrum.imag**2
-    return np.asarray(power)
-
-
-_WINDOW = np.hanning(_SEGMENT + 2)[1:-1].astype(np.float32)
-
-
-def tones_of(
+def tone_features(
     spectra: NDArray[np.float32],
     first: NDArray[np.int64],
     last: NDArray[np.int64],
@@ -113,140 +62,117 @@ def tones_of(
 
     Examples
     --------
+    >>> from features.windows.spectra import long_spectra
     >>> time = np.arange(8000) / 16e3
     >>> sound = np.sin(2 * np.pi * 700 * time) + 0.5 * np.sin(2 * np.pi * 1400 * time)
     >>> spectra = long_spectra(sound.astype(np.float32), 3)
-    >>> found = tones_of(spectra, np.array([0]), np.array([3]), 7000.0)[0]
+    >>> found = tone_features(spectra, np.array([0]), np.array([3]), 7000.0)[0]
     >>> dict(zip(TONE_NAMES, found.round(1).tolist()))["line_count"]
     2.0
     """
-    # Blows are heard above 1 kHz; what is below counts as the ear hears it.
-    out = np.full((len(first), len(TONE_NAMES)), np.nan, dtype=np.float32)
-    end = min(int(limit / SPACING) + 1, spectra.shape[1] - 2)
-    _windows(spectra, first, last, end, out)
+    windows = window_spectra(spectra, first, last, limit)
+    level, top = windows.level, windows.top
+    rows = np.arange(len(level))
+    left, middle, right = (level[rows, top + i] for i in (-1, 0, 1))
+    bend = left - 2.0 * middle.astype(np.float64) + right
+    shift = 0.5 * (left - right) / np.where(bend < -1e-6, bend, np.inf)
+    place = np.asarray(top + np.clip(shift, -0.5, 0.5), dtype=np.float64)
+    found = {
+        "line_frequency": OCTAVES * np.log(place * (SPACING / 1000.0)),
+        "line_share": windows.line / windows.total,
+        "line_width": (windows.high - windows.low) * SPACING,
+        **_shape(windows),
+        **_lines(windows, place),
+    }
+    return np.stack([found[name] for name in TONE_NAMES], axis=1).astype(np.float32)
+
+
+def _audible(spectra: WindowSpectra) -> NDArray[np.float32]:
+    """Return the A-weighted power of all."""
+    low, middle, high, highest = spectra.audible
+    return np.asarray((low + high) + (middle + highest))
+
+
+def _decibel(share: NDArray[np.floating], least: float) -> NDArray[np.float64]:
+    return np.asarray(10.0 * np.log10(np.maximum(share.astype(np.float64), least)))
+
+
+def _shape(spectra: WindowSpectra) -> dict[str, NDArray[np.floating]]:
+    """Describe how the power is spread over frequency."""
+    total, line, below = spectra.total, spectra.line, spectra.below
+    audible, (low, _, high, highest) = _audible(spectra), spectra.audible
+    above = (total - (line + below)).astype(np.float64)
+    return {
+        "below_line": _decibel(below / line, 1e-5),
+        "above_line": _decibel(above / line, 1e-5),
+        "spectral_flatness": spectra.flatness,
+        "spectral_slope": spectra.slope,
+        "weighted_above_1": _decibel((audible - low) / audible, 1e-6),
+        "weighted_above_2": _decibel((high + highest) / audible, 1e-6),
+        "weighted_above_4": _decibel(highest / audible, 1e-6),
+    }
+
+
+def _floor(level: NDArray[np.float32], end: int) -> NDArray[np.float32]:
+    """Return the median level of each block; a short last one takes that before it."""
+    half, rest = BLOCK // 2, (end - FIRST) % BLOCK  # there is a whole one at least
+    blocks = level[:, FIRST : end - rest].reshape(len(level), -1, BLOCK)
+    middle = np.partition(blocks, (half - 1, half), axis=2)
+    floor = (middle[:, :, half - 1] + middle[:, :, half]) / np.float32(2.0)
+    if rest >= half:
+        last = np.median(level[:, end - rest : end], axis=1, keepdims=True)
+    else:
+        last = floor[:, -1:]
+    return np.concatenate([floor, last], axis=1)
+
+
+def _lines(
+    spectra: WindowSpectra, place: NDArray[np.float64]
+) -> dict[str, NDArray[np.floating] | NDArray[np.int64]]:
+    """Describe lines and what they are harmonics of; the strongest bin lies at `place`."""
+    level, top, n = spectra.level, spectra.top, len(spectra.level)
+    floor = _floor(level, spectra.end)
+    strongest = level[np.arange(n), top]
+    row, at = prominent_maxima(level, FIRST, np.full(n, spectra.end), _STANDS_DB, pointed=True)
+    height = level[row, at]
+    kept = height.astype(np.float64) >= strongest[row].astype(np.float64) - _RANGE_DB
+    kept &= height - floor[row, (at - FIRST) // BLOCK] >= _STANDS_DB
+    row, at = row[kept], at[kept]
+    count = np.bincount(row, minlength=n)
+    kept = np.arange(row.size) - (np.cumsum(count) - count)[row] < _MOST_LINES
+    row, at = row[kept], at[kept]
+    count = np.bincount(row, minlength=n)
+    height = level[row, at]
+    strong = height.astype(np.float64) >= strongest[row].astype(np.float64) - _STRONG_DB
+    power, audible = line_power(spectra, row, at)
+    bins, some = padded_rows(at, row, count, 0), count > 0
+    heights = padded_rows(height, row, count, -200.0)
+    first, second, third = np.sort(
+        np.pad(heights, ((0, 0), (2, 0)), constant_values=-200.0).astype(np.float64), axis=1
+    )[:, :-4:-1].T
+    lowest = np.where(some, bins[:, 0], top)
+    return {
+        "line_count": count,
+        "strong_line_count": np.bincount(row[strong], minlength=n),
+        "line_prominence": strongest - floor[np.arange(n), (top - FIRST) // BLOCK],
+        "lines_share": np.minimum(1.0, power / spectra.total),
+        "weighted_lines": np.where(
+            some, np.minimum(_decibel(audible / _audible(spectra), 1e-6), 0.0), -60.0
+        ),
+        "second_line": np.where(some, np.maximum(second - first, -_RANGE_DB), -_RANGE_DB),
+        "third_line": np.where(some, np.maximum(third - first, -_RANGE_DB), -_RANGE_DB),
+        "lowest_line": np.where(some, OCTAVES * np.log(lowest / top), np.nan),
+        "line_spacing_spread": _spacing_spread(bins, count),
+        **harmonic_features(spectra, bins, heights - strongest[:, None], count, place),
+    }
+
+
+def _spacing_spread(at: NDArray[np.int64], count: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the mean deviation of the distances between at least three lines, over their mean."""
+    out, several = np.full(count.size, np.nan), count > 2
+    at, n = at[several], count[several, None] - 1
+    mean = (np.take_along_axis(at, n, axis=1) - at[:, :1]) / n
+    off = np.abs(np.diff(at, axis=1) - mean)
+    off = np.where(np.arange(at.shape[1] - 1) < n, off, 0.0)
+    out[several] = ordered_sum(off, axis=1) / n[:, 0] / mean[:, 0]
     return out
-
-
-_KILOHERTZ = (256, 512, 1024, 1 << 20)
-"""Bins of 1, 2 and 4 kHz."""
-
-_FREQUENCY = np.arange(_LENGTH // 2 + 1) * SPACING
-_WEIGHT = (10.0 ** (0.1 * a_weighting(np.maximum(_FREQUENCY, 10.0)))).astype(np.float32)
-
-_OCTAVES = 1.0 / np.log(2.0)
-"""What makes a natural logarithm one of base two."""
-
-
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
-def _windows(spectra, first, last, end, out):
-    n = end - FIRST
-    p = np.empty(end + 2, dtype=np.float32)
-    level = np.empty(end + 2, dtype=np.float32)
-    n_blocks = (n + BLOCK - 1) // BLOCK
-    floor = np.empty(n_blocks, dtype=np.float32)
-    at = np.empty(MOST, dtype=np.int64)
-    height = np.empty(MOST, dtype=np.float32)
-    for w in range(len(first)):
-        for k in range(end + 2):
-            p[k] = _LEAST
-        for s in range(first[w], last[w]):
-            for k in range(FIRST - 2, end + 2):
-                p[k] += spectra[s, k]
-        total = np.float32(0.0)
-        top = FIRST
-        for k in range(FIRST, end):
-            total += p[k]
-            if p[k] > p[top]:
-                top = k
-        heard = np.zeros(5, dtype=np.float32)
-        for k in range(FIRST, _KILOHERTZ[0]):
-            heard[0] += p[k] * _WEIGHT[k]
-        for part in range(3):
-            for k in range(_KILOHERTZ[part], max(_KILOHERTZ[part], min(end, _KILOHERTZ[part + 1]))):
-                heard[part + 1] += p[k] * _WEIGHT[k]
-        audible = heard.sum()
-        out[w, 20] = 10.0 * np.log10(max((audible - heard[0]) / audible, 1e-6))
-        out[w, 21] = 10.0 * np.log10(max((heard[2] + heard[3]) / audible, 1e-6))
-        out[w, 22] = 10.0 * np.log10(max(heard[3] / audible, 1e-6))
-        out[w, 23] = -60.0
-        logs = np.float32(0.0)
-        sx, sy, sxx, sxy = 0.0, 0.0, 0.0, 0.0
-        for k in range(FIRST - 2, end + 2):
-            level[k] = 10.0 * np.log10(p[k])
-        for b in range(n_blocks):
-            lo, hi = FIRST + b * BLOCK, min(FIRST + (b + 1) * BLOCK, end)
-            if hi - lo < BLOCK // 2:
-                floor[b] = floor[b - 1]
-                continue
-            floor[b] = np.median(level[lo:hi])
-            mean = np.float32(0.0)
-            for k in range(lo, hi):
-                mean += level[k]
-            logs += mean
-            mean /= hi - lo
-            x = _OCTAVES * np.log((lo + hi) * 0.5)
-            sx += x
-            sy += mean
-            sxx += x * x
-            sxy += x * mean
-        count, strong = find_lines(level, floor, end, top, at, height)
-        out[w, 0] = count
-        out[w, 1] = strong
-        out[w, 16] = logs / n - 10.0 * np.log10(total / n)
-        out[w, 17] = (n_blocks * sxy - sx * sy) / (n_blocks * sxx - sx * sx)
-        # The strongest maximum, whether it is a line or not.
-        left, right = level[top - 1], level[top + 1]
-        bend = left - 2.0 * level[top] + right
-        shift = 0.5 * (left - right) / bend if bend < -1e-6 else 0.0
-        place = top + min(0.5, max(-0.5, shift))
-        out[w, 2] = _OCTAVES * np.log(place * (SPACING / 1000.0))
-        reach = LOBE + int(0.005 * top)
-        line = np.float32(0.0)
-        for k in range(max(FIRST, top - reach), min(end, top + reach + 1)):
-            line += p[k]
-        out[w, 3] = line / total
-        below = np.float32(0.0)
-        for k in range(FIRST, max(FIRST, top - reach)):
-            below += p[k]
-        above = np.maximum(total - line - below, 0.0)
-        out[w, 14] = 10.0 * np.log10(np.maximum(below / line, 1e-5))
-        out[w, 15] = 10.0 * np.log10(np.maximum(above / line, 1e-5))
-        out[w, 7] = level[top] - floor[min((top - FIRST) // BLOCK, n_blocks - 1)]
-        low, high = top, top
-        while low > FIRST and p[low] > 0.5 * p[top]:
-            low -= 1
-        while high < end - 1 and p[high] > 0.5 * p[top]:
-            high += 1
-        out[w, 8] = (high - low) * SPACING
-        out[w, 5] = -RANGE_DB
-        out[w, 6] = -RANGE_DB
-        out[w, 4] = 0.0
-        if count > 0:
-            lines = np.float32(0.0)
-            highest, second, third = height[0], -200.0, -200.0
-            for i in range(count):
-                highest = max(highest, height[i])
-            seen = False
-            for i in range(count):
-                h = height[i]
-                if h == highest and not seen:
-                    seen = True
-                elif h > second:
-                    second, third = h, second
-                elif h > third:
-                    third = h
-                for k in range(max(FIRST, at[i] - LOBE), min(end, at[i] + LOBE + 1)):
-                    lines += p[k]
-                    heard[4] += p[k] * _WEIGHT[k]
-            out[w, 23] = 10.0 * np.log10(min(max(heard[4] / audible, 1e-6), 1.0))
-            out[w, 4] = min(1.0, lines / total)
-            out[w, 5] = max(second - highest, -RANGE_DB)
-            out[w, 6] = max(third - highest, -RANGE_DB)
-            out[w, 18] = _OCTAVES * np.log(at[0] / top)
-            if count > 2:
-                mean = (at[count - 1] - at[0]) / (count - 1)
-                spread = 0.0
-                for i in range(count - 1):
-                    spread += abs(at[i + 1] - at[i] - mean)
-                out[w, 19] = spread / (count - 1) / mean
-            find_harmonics(p, level, at, height, count, top, place, end, total, out[w])

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["PER_LEAF", "boosted_trees", "grow_boosted_trees", "grow_quantile_forest"]
+__all__ = ["PER_LEAF", "boosted_trees", "boosting", "grow_boosted_trees", "grow_quantile_forest"]
 
 PER_LEAF = 8
 """Values that a leaf of a quantile forest keeps: the middles of as many equal shares."""
@@ -56,24 +56,45 @@ def grow_boosted_trees(
     >>> trees.probabilities(np.array([[0.0, 0.0], [8.0, np.nan]])).argmax(axis=1).tolist()
     [0, 2]
     """
+    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
+    # hold for other sound.
+    model = boosting(
+        x, y, weight=weight, n_rounds=n_rounds, seed=seed,
+        learning_rate=0.1, max_leaf_nodes=16, min_samples_leaf=10, max_features=0.3,
+    )  # fmt: skip
+    return boosted_trees([model])
+
+
+def boosting(
+    x: NDArray[np.floating[Any]],
+    y: NDArray[np.int64],
+    *,
+    weight: NDArray[np.float64] | None = None,
+    n_rounds: int,
+    seed: int,
+    **shape: float,
+) -> Any:
+    """Fit scikit-learn's boosted trees, the same on every machine.
+
+    Parameters
+    ----------
+    x, y, weight, n_rounds, seed
+        As of `grow_boosted_trees`; without weights each sample counts alike.
+    **shape : float
+        What the trees are to look like, by scikit-learn's names.
+
+    Returns
+    -------
+    HistGradientBoostingClassifier
+    """
     from sklearn.ensemble import HistGradientBoostingClassifier
     from threadpoolctl import threadpool_limits
 
-    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
-    # hold for other sound.
     model = HistGradientBoostingClassifier(
-        max_iter=n_rounds,
-        learning_rate=0.1,
-        max_leaf_nodes=16,
-        min_samples_leaf=10,
-        l2_regularization=1.0,
-        max_features=0.3,
-        early_stopping=False,
-        random_state=seed,
+        max_iter=n_rounds, l2_regularization=1.0, early_stopping=False, random_state=seed, **shape
     )
     with threadpool_limits(1):  # sums are the same on every machine
-        model.fit(x, y, sample_weight=weight)
-    return boosted_trees([model])
+        return model.fit(x, y, sample_weight=weight)
 
 
 def boosted_trees(models: Sequence[Any]) -> BoostedTrees:

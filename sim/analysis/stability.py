@@ -35,7 +35,7 @@ from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion import contact_hooks
 from sim.parameters import resolve
-from sim.solvers.contact_solver import no_law
+from sim.solvers.stand_ins import no_law
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

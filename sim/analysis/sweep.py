@@ -27,7 +27,7 @@ from sim.effects.effect import activated
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
-from sim.solvers.free_motion import parts_of_a_step
+from sim.solvers.free_motion import extended, parts_of_a_step
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -202,11 +202,18 @@ class Sweep:
         step = 1.0 / self.rate
         systems = packed_systems(rig, interference, support_stiffness)
         parts = np.array([parts_of_a_step(system, step) for system in systems[:, :6]])
+        whole = np.array([extended(system) for system in systems[:, :6]])
         features = np.empty((speed.size, len(FEATURES)))
         chunks = (slice(i, i + _CHUNK) for i in range(0, speed.size, _CHUNK))
         Parallel(n_jobs=self.workers, prefer="threads", batch_size=1)(
             delayed(plain_features)(
-                systems[runs], speed[runs], step, parts[runs], *self._samples(), features[runs]
+                whole[runs],
+                systems[runs, 6:],
+                speed[runs],
+                step,
+                parts[runs],
+                *self._samples(),
+                features[runs],
             )
             for runs in chunks
         )

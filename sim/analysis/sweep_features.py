@@ -54,11 +54,11 @@ _BLOCK = 256
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def plain_features(systems, speeds, step, parts, settling, n_samples, features) -> None:
+def plain_features(systems, torques, speeds, step, parts, settling, n_samples, features) -> None:
     """Fill the rows of `features`: one a run of the plain model at constant speed, from rest.
 
-    Rows of `systems` are packed, with T_crit and T_kin after them; the first `settling` of all
-    `n_samples` are left out.
+    Rows of `systems` are extended, those of `torques` are T_crit and T_kin; the first `settling` of
+    all `n_samples` are left out.
     """
     buffer = np.empty(6 * _BLOCK)
     direction = np.empty(_BLOCK, dtype=np.int64)
@@ -68,7 +68,7 @@ def plain_features(systems, speeds, step, parts, settling, n_samples, features) 
         state = np.zeros(N_STATE)
         state[1] = speeds[run]
         speed[:] = speeds[run]
-        system, t_crit, t_kin = systems[run, :6], systems[run, 6], systems[run, 7]
+        t_crit, t_kin = torques[run, 0], torques[run, 1]
         total, square, clamp, low, high = 0.0, 0.0, 0.0, math.inf, -math.inf
         while state[SAMPLE] < n_samples:
             first = int(state[SAMPLE])
@@ -80,7 +80,7 @@ def plain_features(systems, speeds, step, parts, settling, n_samples, features) 
                 state[STICK_START] = first * step
             out = buffer[: 6 * size].reshape((6, size))
             step_through(
-                system, t_crit, t_kin, speed[: size + 1], step, parts[run], state, out,
+                systems[run], t_crit, t_kin, speed[: size + 1], step, parts[run], state, out,
                 direction[:size], no_events,
             )  # fmt: skip
             if counts:

@@ -11,22 +11,18 @@ from numba import boolean, float64, int64, njit, types
 
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE, STICKS
 from sim.solvers import contact_state as at
+from sim.solvers.compilation import UNCOUNTED
 from sim.solvers.contact_rates import contact_rates
+from sim.solvers.contact_state import N_MOTION, N_STAGES
 from sim.solvers.dormand_prince import (
-    N_MOTION,
-    N_STAGES,
     NODES,
-    UNCOUNTED,
     fill_dense,
     fill_stage,
     step_error,
     vertex,
 )
 
-__all__ = ["SHORTEST_STEP", "run_contact"]
-
-SHORTEST_STEP = 1e-7
-"""Average over a run, below which it is given up [s]."""
+__all__ = ["run_contact"]
 
 _GRACE = 2e-3
 """Time that is granted to what has just begun [s]."""
@@ -145,7 +141,7 @@ def run_contact(
             sample += 1
         if sample == n:
             break
-        if n_done * SHORTEST_STEP > _GRACE + first * step + t1:
+        if n_done * at.SHORTEST_STEP > _GRACE + first * step + t1:
             carried[at.DONE] = -1.0
             return
         # The next step, on a stretch of the drive without a kink.

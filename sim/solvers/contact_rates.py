@@ -33,7 +33,7 @@ from sim.contact import (
     TWIST,
     TWIST_RATE,
 )
-from sim.solvers.dormand_prince import UNCOUNTED
+from sim.solvers.compilation import PART
 
 __all__ = ["contact_rates"]
 
@@ -43,7 +43,7 @@ _CREEP_ACCURACY = 1e-4
 _MOST_CREEP_PASSES = 30
 
 
-@njit(forceinline=True, **UNCOUNTED)
+@njit(forceinline=True, **PART)
 def contact_rates(
     since, i, time, stick_time, mode, u, p, s, law, has_law, coefficients,
     h0, h1, h2, h3, h4, h5, h6, h7, n_hooks, values, inner, rates, drive, context, contact,

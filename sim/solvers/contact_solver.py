@@ -14,18 +14,25 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numba import njit
 
 from models.errors import ParameterError
-from sim.contact import HOOK_SIGNATURE, LAW_SIGNATURE, N_CONTACT, N_CONTEXT
-from sim.solvers.contact_kernel import SHORTEST_STEP, run_contact
-from sim.solvers.contact_state import DONE, FRESH, N_CARRIED, N_ROWS, STEP_OF_SLIP, STEP_OF_STICK
-from sim.solvers.dormand_prince import N_MOTION, N_STAGES
+from sim.contact import N_CONTACT, N_CONTEXT
+from sim.solvers.contact_state import (
+    DONE,
+    FRESH,
+    N_CARRIED,
+    N_MOTION,
+    N_ROWS,
+    N_STAGES,
+    SHORTEST_STEP,
+    STEP_OF_SLIP,
+    STEP_OF_STICK,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["LONGEST_STEP", "MOST_HOOKS", "ContactRun", "Hook", "no_law", "solve_contact"]
+__all__ = ["LONGEST_STEP", "MOST_HOOKS", "ContactRun", "Hook", "solve_contact"]
 
 MOST_HOOKS = 8
 """Effects that can act on the contact at once."""
@@ -48,17 +55,6 @@ class Hook:
     function: Any
     values: NDArray[np.float64]
     n_states: int
-
-
-@njit(HOOK_SIGNATURE, cache=True)
-def _no_hook(context, values, state, state_rates, contact):
-    pass
-
-
-@njit(LAW_SIGNATURE, cache=True)
-def no_law(sliding_speed, coefficients, contact, state, state_rates):  # noqa: ARG001
-    """Stand in for a law where the contact truly sticks."""
-    return 0.0
 
 
 class ContactRun:
@@ -112,6 +108,9 @@ class ContactRun:
         tolerance: float = _TOLERANCE,
         refined: float = 1.0,
     ) -> None:
+        # What is not imported before it is needed is not compiled either.
+        from sim.solvers.stand_ins import no_hook, no_law
+
         if len(hooks) > MOST_HOOKS:
             raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
         law_state = np.zeros(0) if law_state is None else law_state
@@ -124,7 +123,7 @@ class ContactRun:
             row[: hook.values.size] = hook.values
         j_e, j_c, _, k_b, _, _ = system
         mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
-        functions = [hook.function for hook in hooks] + [_no_hook] * (MOST_HOOKS - len(hooks))
+        functions = [hook.function for hook in hooks] + [no_hook] * (MOST_HOOKS - len(hooks))
         self._constants = (
             np.array([*system, *mobilities, critical_torque, kinetic_torque]),
             law or no_law,
@@ -172,6 +171,8 @@ class ContactRun:
             If the friction changes faster than any reasonable number of steps could follow.
         """
         states, direction = np.empty((7, n)), np.empty(n, dtype=np.int64)
+        from sim.solvers.contact_kernel import run_contact
+
         compiled: Any = run_contact
         compiled(
             *self._constants, np.ascontiguousarray(shaft_speed), *self._steps, self._carried,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from sim.solvers.dormand_prince import N_STAGES
-
 __all__ = [
-    "ANGLE", "DONE", "FAR", "FIRST", "FRESH", "MODE", "NEXT_MODE", "N_CARRIED", "N_ROWS", "SLIDE",
-    "STEP_END", "STEP_OF_SLIP", "STEP_OF_STICK", "STEP_START", "STICK_LENGTH", "STICK_START",
+    "ANGLE", "DONE", "FAR", "FIRST", "FRESH", "MODE", "NEXT_MODE", "N_CARRIED", "N_MOTION",
+    "N_ROWS", "N_STAGES", "SHORTEST_STEP", "SLIDE", "STEP_END", "STEP_OF_SLIP", "STEP_OF_STICK",
+    "STEP_START", "STICK_LENGTH", "STICK_START",
 ]  # fmt: skip
+
+SHORTEST_STEP = 1e-7
+"""Average over a run, below which it is given up [s]."""
 
 MODE = 0
 """+1 or -1 while it slides, 0 in stick and with a law."""
@@ -38,6 +40,12 @@ FAR = 12
 NEXT_MODE = 13
 """After the last step."""
 N_CARRIED = 14
+
+N_STAGES = 7
+"""Of a step of `sim.solvers.dormand_prince`."""
+
+N_MOTION = 6
+"""First of the variables, whose errors have scales of their own."""
 
 # Rows of an array of states: the rates at the stages of the last step, its start and its end, and
 # room for the state of a stage, its rates, and the coefficients between start and end.

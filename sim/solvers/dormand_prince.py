@@ -4,27 +4,23 @@
 """Steps of Dormand and Prince's pair of fifth and fourth order, with dense output.
 
 Dormand and Prince (1980), with the dense output of Shampine (1986). The seventh stage is the first
-of the next step. Compiled where they are used, and without the counting of references to arrays,
-which would take longer than the steps: nothing here makes or keeps an array.
+of the next step. Nothing here makes or keeps an array.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numba import njit
 from scipy.integrate import RK45
 
+from sim.solvers.compilation import PART
+from sim.solvers.contact_state import N_MOTION, N_STAGES
+
 __all__ = [
-    "NODES", "N_STAGES", "UNCOUNTED", "fill_dense", "fill_stage", "step_error", "vertex",
+    "NODES", "fill_dense", "fill_stage", "step_error", "vertex",
 ]  # fmt: skip
-
-N_STAGES = 7
-
-N_MOTION = 6
-"""First of the variables, whose errors have scales of their own."""
 
 NODES = np.append(RK45.C, 1.0)
 """Of the stages, in shares of the step."""
@@ -35,10 +31,7 @@ _STAGES[6, :6] = RK45.B
 _ERROR = np.array(RK45.E)
 _DENSE = np.array(RK45.P)
 
-UNCOUNTED: dict[str, Any] = {"error_model": "numpy", "_nrt": False}
-"""How functions are compiled that only read and write arrays of their caller's."""
-
-_inlined = njit(forceinline=True, **UNCOUNTED)
+_inlined = njit(forceinline=True, **PART)
 
 
 @_inlined

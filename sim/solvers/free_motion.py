@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 
 from models.errors import ParameterError
+from sim.solvers.compilation import PART
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +27,6 @@ __all__ = [
     "ORDER",
     "SLIP",
     "STICK",
-    "count_parts",
     "extended",
     "fill_matrices",
     "fill_series",
@@ -71,57 +71,64 @@ def parts_of_a_step(system: NDArray[np.float64], step: float) -> int:
     >>> parts_of_a_step(np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0425, 0.0425]), 1e-3)
     15
     """
-    parts: int = count_parts(np.asarray(system, dtype=np.float64), step)
-    if parts == 0:
+    parts = math.inf
+    if step > 0.0 and system[0] > 0.0 and system[1] > 0.0:
+        parts = _fastest_rate(system.tolist()) * step / _LONGEST_PART
+    if not parts <= _MOST_PARTS:
         raise ParameterError(
             f"a step of {step:g} s is too long for inertia {system[0]:g} and {system[1]:g} kg m2, "
             f"stiffness {system[2]:g} Nm/rad and damping {system[4]:g} Nm s/rad"
         )
-    return parts
+    return max(1, math.ceil(parts))
 
 
-@njit(cache=True, error_model="numpy")
-def _fastest_rate(system):
+def _fastest_rate(system: list[float]) -> float:
     j_e, j_c, k_e, k_b, c_e, c_b = system
     stiffness, damping = k_e / j_e, c_e / j_e
     if k_b >= 0.0:
         stiffness += (k_e + k_b) / j_c
         damping += (c_e + c_b) / j_c
-    return damping + math.sqrt(stiffness)
+    return damping + math.sqrt(stiffness) if stiffness >= 0.0 else math.nan
 
 
-@njit(cache=True, error_model="numpy")
-def count_parts(system, step) -> int:
-    """Parts of a step; 0 where there is no number of them that would do."""
-    parts = np.ceil(_fastest_rate(system) * step / _LONGEST_PART)
-    if not (step > 0.0 and system[0] > 0.0 and system[1] > 0.0 and parts <= _MOST_PARTS):
-        return 0
-    return max(1, int(parts))
+def extended(system: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Append the inertias' reciprocals, none for a fixed clamp, and the longest part's own.
+
+    Parameters
+    ----------
+    system : ndarray, shape (6,)
+        `sim.bushing.LumpedBushing.packed`.
+
+    Returns
+    -------
+    ndarray, shape (9,)
+
+    Examples
+    --------
+    >>> system = np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0425, 0.0425])
+    >>> extended(system)[6:].round()
+    array([65000.,  1200., 14043.])
+    """
+    j_e, j_c, _, k_b, _, _ = values = system.tolist()
+    j_c_inverse = 0.0 if k_b < 0.0 else 1.0 / j_c
+    return np.array([*values, 1.0 / j_e, j_c_inverse, _fastest_rate(values) / _LONGEST_PART])
 
 
-@njit(cache=True, error_model="numpy")
-def extended(system) -> NDArray[np.float64]:
-    """Append the inertias' reciprocals, none for a fixed clamp, and the longest part's own."""
-    s = np.empty(9)
-    s[:6] = system
-    s[6] = 1.0 / system[0]
-    s[7] = 0.0 if system[3] < 0.0 else 1.0 / system[1]
-    s[8] = _fastest_rate(system) / _LONGEST_PART
-    return s
-
-
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def order_for(share) -> int:
     """Order that the series needs over this share of the longest part: it loses below 1e-17."""
     return min(ORDER, 9 + int(np.ceil(8.0 * share)))
 
 
-@njit(cache=True, error_model="numpy")
-def fill_series(c, order, x0, x1, x2, x3, torque, acceleration, stuck, s) -> None:
-    """Fill `c[k]` with the coefficients of theta1, theta1', theta2, theta2' and T_E."""
+@njit(**PART)
+def fill_series(c, order, x0, x1, x2, x3, way, torque, acceleration, s) -> None:
+    """Fill `c[k]` with the coefficients of theta1, theta1', theta2, theta2' and T_E.
+
+    `way` is the direction of the sliding, 0 in stick.
+    """
     k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[2], s[3], s[4], s[5], s[6], s[7]
-    drive = acceleration if stuck else torque * j_e_inverse
-    pull = 0.0 if stuck else j_e_inverse
+    drive = acceleration if way == 0.0 else torque * j_e_inverse
+    pull = 0.0 if way == 0.0 else j_e_inverse
     for k in range(order):
         elastomer = k_e * (x0 - x2) + c_e * (x1 - x3)
         c[k, 0], c[k, 1], c[k, 2], c[k, 3], c[k, 4] = x0, x1, x2, x3, elastomer
@@ -137,21 +144,22 @@ def fill_series(c, order, x0, x1, x2, x3, torque, acceleration, stuck, s) -> Non
     c[order, 4] = k_e * (x0 - x2) + c_e * (x1 - x3)
 
 
-@njit(cache=True, error_model="numpy")
-def fill_matrices(matrices, c, h, s) -> None:
-    """Fill the matrices of a step of length `h`, from the series of unit states."""
+@njit(**PART)
+def fill_matrices(matrices, c, one, h, s) -> None:
+    """Fill the matrices of a step of length `h`, from the series of unit states in `one`."""
+    order = c.shape[0] - 1
     for column in range(5):
-        one = np.zeros(5)
-        one[column] = 1.0
-        fill_series(c, ORDER, one[0], one[1], one[2], one[3], one[4], 0.0, False, s)
+        for i in range(5):
+            one[i] = 1.0 if i == column else 0.0
+        fill_series(c, order, one[0], one[1], one[2], one[3], 1.0, one[4], 0.0, s)
         for row in range(4):
             matrices[SLIP + 5 * row + column] = _sum(c, row, h)
-        fill_series(c, ORDER, one[0], one[1], one[3], one[4], 0.0, one[2], True, s)
+        fill_series(c, order, one[0], one[1], one[3], one[4], 0.0, 0.0, one[2], s)
         for row in range(2):
             matrices[STICK + 5 * row + column] = _sum(c, row + 2, h)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _sum(c, column, t):
     y = c[ORDER, column]
     for k in range(ORDER - 1, -1, -1):

@@ -11,20 +11,22 @@ from __future__ import annotations
 
 from numba import njit
 
+from sim.solvers.compilation import PART
+
 __all__ = ["first_crossing", "turns_within"]
 
 _ROUNDING = 4.0e-16
 """Of the interval: below it, bisection no longer moves."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def turns_within(start, end, slope, end_slope, length) -> bool:
     """Whether the cubic through these values and slopes turns, by its slope at ends and middle."""
     middle = 1.5 * (end - start) / length - 0.25 * (slope + end_slope)
     return (slope < 0.0) != (end_slope < 0.0) or (slope < 0.0) != (middle < 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def first_crossing(p, order, end) -> float:
     """First t in (0, end] where sum(p[k] t^k) comes from above zero to zero or below; else -1."""
     value, slope = _value_and_slope(p, order, end)
@@ -37,7 +39,7 @@ def first_crossing(p, order, end) -> float:
     return _crossing(p, order, 0.0, end, p[0], value, p[1], slope)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _crossing(p, order, start, end, start_value, end_value, start_slope, end_slope):
     if end_value <= 0.0:
         return _root(p, order, start, end, start_value, end_value)
@@ -56,7 +58,7 @@ def _crossing(p, order, start, end, start_value, end_value, start_slope, end_slo
     return -1.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _value_and_slope(p, order, t):
     value, slope = p[order], 0.0
     for k in range(order - 1, -1, -1):
@@ -65,7 +67,7 @@ def _value_and_slope(p, order, t):
     return value, slope
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _root(p, order, start, end, start_value, end_value):
     low, high = start, end
     t = start

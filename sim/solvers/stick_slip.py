@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.solvers.free_motion import parts_of_a_step
+from sim.solvers.free_motion import extended, parts_of_a_step
 from sim.solvers.stick_slip_kernel import N_STATE, step_through
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def advance_stick_slip(
     direction = np.empty(n, dtype=np.int64)
     event_times = np.empty(2 * n * parts + 64)
     count = step_through(
-        np.ascontiguousarray(system, dtype=np.float64), critical_torque, kinetic_torque,
+        extended(system), float(critical_torque), float(kinetic_torque),
         np.ascontiguousarray(shaft_speed, dtype=np.float64), step, parts, state, states,
         direction, event_times,
     )  # fmt: skip

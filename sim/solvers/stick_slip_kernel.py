@@ -12,13 +12,13 @@ the fastest mode (omega h is at most 0.7, and 0.2 on the thesis's rig at 30 kHz:
 from __future__ import annotations
 
 import numpy as np
-from numba import float64, int64, njit
+from numba import njit
 
+from sim.solvers.compilation import PART
 from sim.solvers.free_motion import (
     ORDER,
     SLIP,
     STICK,
-    extended,
     fill_matrices,
     fill_series,
     order_for,
@@ -48,7 +48,7 @@ SLIPS, FIRST_SLIP, LAST_SLIP = 8, 9, 10
 N_STATE = 11
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**PART)
 def _through_events(
     x, length, speed, acceleration, time, s, t_crit, t_kin, c, p, event_times, events
 ) -> int:
@@ -63,7 +63,7 @@ def _through_events(
         way = x[DIRECTION]
         inertia = s[0] * acceleration
         order = order_for(left * s[8])
-        fill_series(c, order, x[0], x[1], x[2], x[3], way * t_kin, acceleration, way == 0.0, s)
+        fill_series(c, order, x[0], x[1], x[2], x[3], way, way * t_kin, acceleration, s)
         t_event, next_way = -1.0, 0.0
         if way == 0.0:
             # Both ways of breaking loose: holding torque up to +T_crit or down to -T_crit.
@@ -115,44 +115,40 @@ def _through_events(
         events += 1
     # Chatter: the part is finished as it is.
     t = length - done
-    order = ORDER
-    fill_series(c, order, x[0], x[1], x[2], x[3], x[4] * t_kin, acceleration, x[4] == 0.0, s)
+    order, way = c.shape[0] - 1, x[DIRECTION]
+    fill_series(c, order, x[0], x[1], x[2], x[3], way, way * t_kin, acceleration, s)
     for j in range(4):
-        y = c[ORDER, j]
-        for k in range(ORDER - 1, -1, -1):
+        y = c[order, j]
+        for k in range(order - 1, -1, -1):
             y = y * t + c[k, j]
         x[j] = y
     return events
 
 
-@njit(
-    int64(
-        float64[::1], float64, float64, float64[::1], float64, int64, float64[::1],
-        float64[:, ::1], int64[::1], float64[::1],
-    ),
-    cache=True, error_model="numpy", nogil=True,
-)  # fmt: skip
+@njit(**PART)
+def _row(m, i, x0, x1, x2, x3, x4) -> float:
+    """Return a row of a matrix times a state."""
+    return m[i] * x0 + m[i + 1] * x1 + m[i + 2] * x2 + m[i + 3] * x3 + m[i + 4] * x4
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
 def step_through(
-    system, t_crit, t_kin, shaft_speed, step, parts, x, out, direction_out, event_times
+    s, t_crit, t_kin, shaft_speed, step, parts, x, out, direction_out, event_times
 ) -> int:
-    """Write the columns of `out` and go on to the sample after them, if there is a speed for it."""
-    s = extended(system)
+    """Write the columns of `out` and go on to the sample after them, if there is a speed for it.
+
+    `s` is the system as `sim.solvers.free_motion.extended` returns it.
+    """
     j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
     h = step / parts
     c = np.empty((ORDER + 1, 5))
     p = np.empty(ORDER + 1)
     m = np.empty(STICK + 10)
-    fill_matrices(m, c, h, s)
-    a0, a1, a2, a3, a4 = m[SLIP], m[SLIP + 1], m[SLIP + 2], m[SLIP + 3], m[SLIP + 4]
-    b0, b1, b2, b3, b4 = m[SLIP + 5], m[SLIP + 6], m[SLIP + 7], m[SLIP + 8], m[SLIP + 9]
-    d0, d1, d2, d3, d4 = m[SLIP + 10], m[SLIP + 11], m[SLIP + 12], m[SLIP + 13], m[SLIP + 14]
-    e0, e1, e2, e3, e4 = m[SLIP + 15], m[SLIP + 16], m[SLIP + 17], m[SLIP + 18], m[SLIP + 19]
-    f0, f1, f2, f3, f4 = m[STICK], m[STICK + 1], m[STICK + 2], m[STICK + 3], m[STICK + 4]
-    g0, g1, g2, g3, g4 = m[STICK + 5], m[STICK + 6], m[STICK + 7], m[STICK + 8], m[STICK + 9]
+    fill_matrices(m, c, p, h, s)
     x0, x1, x2, x3, way = x[0], x[1], x[2], x[3], x[DIRECTION]
     elastomer = k_e * (x0 - x2) + c_e * (x1 - x3)
-    events = 0
     n = direction_out.size
+    events = n - n  # the literal 0 is a type of its own, for which more would be compiled
     for i in range(n):
         speed = shaft_speed[i]
         goes_on = i + 1 < shaft_speed.size
@@ -169,8 +165,8 @@ def step_through(
             if way == 0.0:
                 y0 = x0 + 0.5 * h * (before + after)
                 y1 = after
-                y2 = f0 * x0 + f1 * before + f2 * acceleration + f3 * x2 + f4 * x3
-                y3 = g0 * x0 + g1 * before + g2 * acceleration + g3 * x2 + g4 * x3
+                y2 = _row(m, STICK + 0, x0, before, acceleration, x2, x3)
+                y3 = _row(m, STICK + 5, x0, before, acceleration, x2, x3)
                 torque = k_e * (y0 - y2) + c_e * (y1 - y3)
                 slope = k_e * (before - x3) + c_e * (
                     acceleration - (elastomer - k_b * x2 - c_b * x3) * j_c_inverse
@@ -182,10 +178,10 @@ def step_through(
                 least = t_crit - max(abs(elastomer + inertia), abs(torque + inertia))
             else:
                 drive = way * t_kin
-                y0 = a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3 + a4 * drive
-                y1 = b0 * x0 + b1 * x1 + b2 * x2 + b3 * x3 + b4 * drive
-                y2 = d0 * x0 + d1 * x1 + d2 * x2 + d3 * x3 + d4 * drive
-                y3 = e0 * x0 + e1 * x1 + e2 * x2 + e3 * x3 + e4 * drive
+                y0 = _row(m, SLIP + 0, x0, x1, x2, x3, drive)
+                y1 = _row(m, SLIP + 5, x0, x1, x2, x3, drive)
+                y2 = _row(m, SLIP + 10, x0, x1, x2, x3, drive)
+                y3 = _row(m, SLIP + 15, x0, x1, x2, x3, drive)
                 torque = k_e * (y0 - y2) + c_e * (y1 - y3)
                 start_sliding, sliding = way * (before - x1), way * (after - y1)
                 slope = (way * (elastomer + inertia) - t_kin) * j_e_inverse

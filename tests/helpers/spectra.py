@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields
 from types import SimpleNamespace
 
@@ -12,12 +13,16 @@ __all__ = ["path_spectra"]
 
 def path_spectra(paths, frequencies):
     """Sums of h[n] exp(-i omega n / rate), named as the impulse responses are."""
-    angle = -2j * np.pi * np.asarray(frequencies, dtype=np.float64) / paths.rate
-    found = {}
-    for name in (field.name for field in fields(paths) if field.name != "rate"):
-        h = getattr(paths, name)
-        found[name] = sum(
-            h[i : i + 2048] @ np.exp(np.outer(np.arange(i, min(i + 2048, h.size)), angle))
-            for i in range(0, h.size, 2048)
-        )
-    return SimpleNamespace(**found)
+    angle = 2 * np.pi * np.asarray(frequencies, dtype=np.float64) / paths.rate
+    names = (field.name for field in fields(paths) if field.name != "rate")
+    return SimpleNamespace(**{name: _transform(getattr(paths, name), angle) for name in names})
+
+
+def _transform(impulse_response, angle):
+    """In rows of samples and a sum over the rows, which takes the root of the exponentials."""
+    row = math.isqrt(impulse_response.size) + 1
+    rows = np.zeros((row, row))
+    rows.ravel()[: impulse_response.size] = impulse_response
+    within = np.exp(-1j * np.outer(np.arange(row), angle))
+    between = np.exp(-1j * np.outer(np.arange(row) * row, angle))
+    return np.sum(between * (rows @ within), axis=0)

@@ -5,16 +5,10 @@ import pytest
 import soundfile
 from scipy.signal import resample_poly
 
-from features.windows.courses import COURSE_NAMES
 from features.windows.declared import (
-    RHYTHM_FEATURES,
-    TONE_FEATURES,
-    TRAJECTORY_FEATURES,
     WINDOW_FEATURES,
 )
-from features.windows.rhythm import RHYTHM_NAMES
 from features.windows.table import WINDOW_NAMES, window_count
-from features.windows.tones import TONE_NAMES
 from models.recording import Channel, Recording
 from noise.labels.levels import CellLevels
 from noise.labels.segmentation import change_points, viterbi_path
@@ -43,13 +37,7 @@ def noise(seconds, rate=48_000, seed=0):
     return blows + 0.3 * np.sin(2 * np.pi * 880.0 * time) + 0.02 * coloured_noise(n, 1.0, rng)
 
 
-def test_windows_are_declared_in_the_order_in_which_they_are_computed():
-    for names, features in (
-        (COURSE_NAMES, TRAJECTORY_FEATURES),
-        (TONE_NAMES, TONE_FEATURES),
-        (RHYTHM_NAMES, RHYTHM_FEATURES),
-    ):
-        assert names == tuple(feature.name for feature in features)
+def test_each_feature_of_a_window_has_its_own_name_a_unit_and_a_definition():
     assert len(set(WINDOW_NAMES)) == len(WINDOW_NAMES)
     for feature in WINDOW_FEATURES:
         assert feature.unit

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models.condition import KnownCondition
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from noise.diagnosis.simulated.chain_run import plan_repeat
@@ -32,7 +32,9 @@ def planned(**given):
 def test_the_stages_one_by_one_are_the_run():
     run, plan = simulate(RIG, 1.0, seconds=0.2, **AT), planned()
     motion = run_motion(plan)
-    sound = radiate_motion(motion, response(plan.rig, *AT.values(), plan.rate), plan.effects)
+    sound = radiate_motion(
+        motion, impulse_responses(plan.rig, *AT.values(), plan.rate), plan.effects
+    )
     kept = slice(plan.n_settling, None)
     assert np.array_equal(motion.torque[kept], run.motion.torque)
     assert np.array_equal(sound.pressure[kept], run.pressure)
@@ -44,7 +46,7 @@ def test_the_stages_one_by_one_are_the_run():
 
 def test_without_pulses_all_the_sound_is_that_of_the_torque():
     plan = planned()
-    motion, paths = run_motion(plan), response(plan.rig, *AT.values(), plan.rate)
+    motion, paths = run_motion(plan), impulse_responses(plan.rig, *AT.values(), plan.rate)
     sound, torque_alone = (radiate_motion(motion, paths, e) for e in (plan.effects, ()))
     assert not torque_alone.pulse_pressure.any()
     assert sound.pressure == pytest.approx(torque_alone.pressure + sound.pulse_pressure, abs=1e-12)
@@ -53,7 +55,7 @@ def test_without_pulses_all_the_sound_is_that_of_the_torque():
 def test_sensors_see_the_run_from_where_it_is_kept():
     plan = planned(settling=0.1)
     motion = run_motion(plan)
-    sound = radiate_motion(motion, response(plan.rig, *AT.values(), plan.rate))
+    sound = radiate_motion(motion, impulse_responses(plan.rig, *AT.values(), plan.rate))
     signals = sensor_signals(motion, sound, plan.n_settling)
     assert {x.size for x in signals.values()} == {plan.n_kept}
     assert signals["angle"][0] == 0.0

@@ -3,18 +3,11 @@
 import numpy as np
 import pytest
 
-from noise.training.classifier.augmentation import (
-    RATES,
-    augmented,
-    coded,
-    coloured_noise,
-    in_a_room,
-    levelled,
-    quantised,
-    recorded,
-    resampled,
-    through_a_microphone,
-)
+from noise.training.classifier.augmentation.backgrounds import coloured_noise
+from noise.training.classifier.augmentation.codecs import coded, quantised
+from noise.training.classifier.augmentation.microphones import levelled, through_a_microphone
+from noise.training.classifier.augmentation.recorder import RATES, augmented, recorded, resampled
+from noise.training.classifier.augmentation.rooms import in_a_room
 
 
 def test_coloured_noise_falls_as_its_slope_says():

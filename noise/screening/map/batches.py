@@ -19,7 +19,7 @@ from joblib import Parallel, delayed
 from models.errors import BushingNoiseError, ParameterError
 from noise.batch.cluster import cluster
 from noise.batch.work import one_thread
-from noise.screening.map.point import REGIMES, judge
+from noise.screening.map.point import REGIMES, evaluate_point
 from sim.shaft import Oscillation
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def _evaluate(batch: Batch) -> NDArray[np.float64]:
     for i in range(batch.speed.size):
         speed, frequency = float(batch.speed[i]), float(batch.frequency[i])
         swings = math.isfinite(frequency)
-        found = judge(
+        found = evaluate_point(
             batch.rig,
             Oscillation(speed / (2.0 * math.pi * frequency), frequency) if swings else speed,
             interference=float(batch.interference[i]),

@@ -1,4 +1,4 @@
-"""One point of a map: simulated, and named by its physics.
+"""Evaluation of one point of a map: simulated, and its noise named by its physics.
 
 What noise a condition makes is said by `noise.noise_definition`, the definition that the classifier
 learns: it looks at motion and sound without room and microphone, and costs no more than the run. So
@@ -8,7 +8,7 @@ vibration then neither grows nor dies, else after 1.5 s; some creaks set in that
 steps are as long as regimes and spectra allow, rather than single events.
 
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
-are those of the two stretches in which it moves at half its peak speed or more, whichever is
+are those of the two intervals in which it moves at half its peak speed or more, whichever is
 livelier. Every turning sticks, which by itself is neither regime nor noise.
 """
 
@@ -24,7 +24,7 @@ from features.kernels.levels import a_weighted, fast_levels
 from models.radiation.rig_response import impulse_responses
 from models.rig import damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
-from noise.screening.map.stretches import stretches_of
+from noise.screening.map.fast_intervals import fast_intervals
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -44,14 +44,14 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.timing import Timing
 
-__all__ = ["REGIMES", "Judged", "Sound", "judge", "point_sound"]
+__all__ = ["REGIMES", "PointResult", "Sound", "evaluate_point", "point_sound"]
 
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""
 
 _TOLERANCE = 1e-5
 
-_JUDGED = 0.6
+_EVALUATED = 0.6
 """Length of what is judged, after settling [s]."""
 
 _SETTLED = 0.8
@@ -62,8 +62,8 @@ _DAMPING_STEP = 0.04
 
 
 @dataclass(frozen=True)
-class Judged:
-    """What a simulated point came to.
+class PointResult:
+    """Regime, noise and level of a simulated point.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Sound:
     before: NDArray[np.float64]
 
 
-def judge(
+def evaluate_point(
     rig: Rig,
     shaft: float | Oscillation,
     *,
@@ -110,7 +110,7 @@ def judge(
     temperature: float = 23.0,
     library: Mapping[str, Effect] = EFFECTS,
     structure: tuple[Rig, float] | None = None,
-) -> Judged:
+) -> PointResult:
     """Simulate a point, and say its regime, its noise and its level.
 
     Parameters
@@ -132,7 +132,7 @@ def judge(
 
     Returns
     -------
-    Judged
+    PointResult
 
     Raises
     ------
@@ -143,24 +143,24 @@ def judge(
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
-    >>> judge(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0).label
+    >>> evaluate_point(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0).label
     'squeal'
     """
     plan = _plan(rig, shaft, interference, support_stiffness, temperature, library, SCREENING)
     plan, motion = _settled(plan)
     swings = isinstance(shaft, Oscillation)
-    stretches = stretches_of(motion.since(plan.n_settling), swings=swings)
-    if all(_swing(stretch) <= 1.0 for stretch in stretches):
-        return Judged(Regime.STEADY_SLIDING, "none", math.nan)
+    intervals = fast_intervals(motion.since(plan.n_settling), swings=swings)
+    if all(_oscillation(interval) <= 1.0 for interval in intervals):
+        return PointResult(Regime.STEADY_SLIDING, "none", math.nan)
     made_of, support = structure or (plan.rig, support_stiffness)
     paths = _paths(made_of, interference, support, plan.rate)
     sound = _sound(plan, motion, paths)
-    found = _criteria(sound, stretches)
+    found = _criteria(sound, intervals)
     regime = Regime.STICK_SLIP if found.stick > 1.0 else Regime.QUASI_HARMONIC
     label = found.label
     if swings and label == "creak" and found.blows < 0.0:
         label = "squawk"  # lines that follow the speed, which no single spectrum shows
-    return Judged(regime, label, _loudest(sound), found)
+    return PointResult(regime, label, _loudest(sound), found)
 
 
 def point_sound(
@@ -173,7 +173,7 @@ def point_sound(
     rate: float = 48e3,
     library: Mapping[str, Effect] = EFFECTS,
 ) -> Sound:
-    """Return motion and sound of a point as `judge` looks at them, at another rate [Hz]."""
+    """Return motion and sound of a point as `evaluate_point` has them, at another rate [Hz]."""
     plan = _plan(
         rig, shaft, interference, support_stiffness, temperature, library, SCREENING_SLOW, rate
     )
@@ -193,7 +193,7 @@ def _plan(
 ) -> Plan:
     """Plan a run at a rate [Hz]; a swinging shaft settles for a quarter of its cycle instead."""
     rate = rate or timing.least_rate
-    n_settling, n_kept = round(timing.settling * rate), round(_JUDGED * rate)
+    n_settling, n_kept = round(timing.settling * rate), round(_EVALUATED * rate)
     if isinstance(shaft, Oscillation):
         n_settling = round(0.25 / shaft.frequency * rate)
         n_kept = round(1.25 / shaft.frequency * rate) - n_settling
@@ -228,7 +228,7 @@ def _is_settled(motion: Motion) -> bool:
     return _SETTLED * first <= last <= first / _SETTLED
 
 
-def _swing(motion: Motion) -> float:
+def _oscillation(motion: Motion) -> float:
     mean = abs(float(np.mean(motion.torque)))
     return float(np.std(motion.torque)) / (LEAST_OSCILLATION * mean) if mean > 0.0 else math.inf
 
@@ -262,7 +262,9 @@ def _paths(
     return impulse_responses(rig, interference, support_stiffness, rate)
 
 
-def _criteria(sound: Sound, stretches: list[Motion]) -> NoiseCriteria:
-    """Criteria of the liveliest stretch, with the sound of all."""
-    found = [noise_criteria(stretch, sound.pressure, sound.pulse_pressure) for stretch in stretches]
+def _criteria(sound: Sound, intervals: list[Motion]) -> NoiseCriteria:
+    """Criteria of the liveliest interval, with the sound of all."""
+    found = [
+        noise_criteria(interval, sound.pressure, sound.pulse_pressure) for interval in intervals
+    ]
     return max(found, key=lambda criteria: criteria.audible)

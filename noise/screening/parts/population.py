@@ -19,7 +19,7 @@ from joblib import Parallel, delayed
 from models.errors import ParameterError
 from noise.batch.work import one_thread
 from noise.screening.map.grid import DEFAULT_SPEEDS
-from noise.screening.map.point import judge
+from noise.screening.map.point import evaluate_point
 from noise.screening.parts.variation import UsePoint, use_point, varied
 from noise.screening.ranking.margins import margin_of, range_of
 from sim.analysis.critical_speeds import regime_at
@@ -142,7 +142,7 @@ def _outcome(
     rig, point = varied(rig, point, factors)
     label = ""
     if labels:
-        label = judge(
+        label = evaluate_point(
             rig,
             point.speed,
             interference=point.interference,

@@ -10,14 +10,14 @@ signals are answered less surely rather than wrongly.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from noise.diagnosis.causes.location import null_maxima
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.evidence import evidence, scale_of
-from noise.training.trees import boosted_trees
+from noise.training.trees import boosted_trees, boosting
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -143,30 +143,22 @@ def _boosted(
     met = [k for k in range(y.shape[1]) if 0 < y[:, k].sum() < len(y)]
     trees = boosted_trees(
         Parallel(n_jobs=-1, prefer="threads")(
-            delayed(_grown)(x, y[:, k], n_rounds, seed) for k in met
+            delayed(boosting)(
+                x,
+                y[:, k],
+                n_rounds=n_rounds,
+                seed=seed,
+                learning_rate=0.06,
+                max_leaf_nodes=12,
+                min_samples_leaf=12,
+                max_features=0.15,
+            )
+            for k in met
         )
     )
     base = np.where(y.any(axis=0), _CERTAIN, -_CERTAIN)
     base[met] = trees.base
     return replace(trees, base=base, classes=np.array(met, dtype=np.int16)[trees.classes])
-
-
-def _grown(x: NDArray[np.float32], y: NDArray[np.int64], n_rounds: int, seed: int) -> Any:
-    from sklearn.ensemble import HistGradientBoostingClassifier
-    from threadpoolctl import threadpool_limits
-
-    model = HistGradientBoostingClassifier(
-        max_iter=n_rounds,
-        learning_rate=0.06,
-        max_leaf_nodes=12,
-        min_samples_leaf=12,
-        max_features=0.15,
-        l2_regularization=1.0,
-        early_stopping=False,
-        random_state=seed,
-    )
-    with threadpool_limits(1):  # sums are the same on every machine
-        return model.fit(x, y)
 
 
 def causes_of(truth: Truth) -> NDArray[np.int64]:
@@ -214,18 +206,9 @@ def with_fewer(case: Known, rng: np.random.Generator) -> Known:
 
 
 _OWN = (
-    "top",
-    "bottom",
-    "crest",
-    "asymmetry",
-    "skewness",
-    "flat",
-    "dwell",
-    "offset",
-    "floor",
-    "band",
+    "top", "bottom", "crest", "asymmetry", "skewness", "flat", "dwell", "offset", "floor", "band",
     "raw",
-)
+)  # fmt: skip
 """Numbers that a channel has of itself alone."""
 
 

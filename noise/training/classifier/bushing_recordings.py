@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.recording import Channel, Recording
-from noise.training.classifier.augmentation import augmented, recorded
+from noise.training.classifier.augmentation.recorder import augmented, recorded
 from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:

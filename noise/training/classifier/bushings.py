@@ -20,7 +20,7 @@ from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.errors import ParameterError
 from noise.noise_definition import is_ambiguous, label_by_physics, run_criteria
-from noise.training.classifier.augmentation import RATES
+from noise.training.classifier.augmentation.recorder import RATES
 from noise.training.classifier.designs import random_design
 from noise.training.classifier.extras import random_extras
 from sim.acquisition import Acquisition

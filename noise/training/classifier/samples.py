@@ -15,18 +15,13 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.training.classifier.augmentation import augmented
+from noise.training.classifier.augmentation.recorder import augmented
 from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, background_sound
 from noise.training.classifier.bushing_recordings import bushing_recording
 from noise.training.classifier.bushings import random_run
-from noise.training.classifier.friction_sources import (
-    CREAKS,
-    SQUAWKS,
-    SQUEALS,
-    creak,
-    squawk,
-    squeal,
-)
+from noise.training.classifier.friction_sources.creaks import CREAKS, creak
+from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
+from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
 from noise.training.classifier.quiet import quiet
 
 if TYPE_CHECKING:

@@ -34,7 +34,7 @@ from noise.inference.inputs import (
     SUPPORT_RANGE,
 )
 from noise.noise_definition import label_by_physics
-from noise.training.classifier.augmentation import resampled
+from noise.training.classifier.augmentation.recorder import resampled
 from noise.training.inference.recording_chain import recorded
 from sim.run import simulate
 

@@ -1,7 +1,7 @@
-"""The stretches of a swing in which the shaft moves fast, each nearly of one speed.
+"""Intervals of a swing in which the shaft moves fast, each nearly of one speed.
 
 Where the shaft turns back its torque turns from one side to the other, which is neither vibration
-nor noise. In between, the slow course of the torque with the speed is taken off.
+nor noise. In between, the slow trend of the torque with the speed is taken off.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ import numpy as np
 if TYPE_CHECKING:
     from sim.motion import Motion
 
-__all__ = ["stretches_of"]
+__all__ = ["fast_intervals"]
 
 _FAST_SHARE = 0.5
 """Of the peak speed, above which a swing is judged."""
 
 
-def stretches_of(motion: Motion, *, swings: bool) -> list[Motion]:
+def fast_intervals(motion: Motion, *, swings: bool) -> list[Motion]:
     """List the parts of a motion that are nearly of one speed.
 
     Parameters
@@ -32,7 +32,7 @@ def stretches_of(motion: Motion, *, swings: bool) -> list[Motion]:
     Returns
     -------
     list of Motion
-        All of it, or the two longest stretches at half the peak speed or more.
+        All of it, or the two longest intervals at half the peak speed or more.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def stretches_of(motion: Motion, *, swings: bool) -> list[Motion]:
     >>> from sim.shaft import Oscillation
     >>> motion = simulate_motion(load_material_rig("PDMS"), Oscillation(0.26, 4.0), rate=30e3,
     ...                          interference=0.3e-3, support_stiffness=2214.0, seconds=0.25)
-    >>> [round(part.torque.size / motion.rate, 3) for part in stretches_of(motion, swings=True)]
+    >>> [round(part.torque.size / motion.rate, 3) for part in fast_intervals(motion, swings=True)]
     [0.083, 0.042]
     """
     if not swings:
@@ -53,13 +53,13 @@ def stretches_of(motion: Motion, *, swings: bool) -> list[Motion]:
 
 
 def _piece(motion: Motion, first: int, last: int) -> Motion:
-    """Part of a motion, without the slow course of its torque over a swing."""
+    """Part of a motion, without the slow trend of its torque over a swing."""
     kept = {
         field.name: getattr(motion, field.name)[first:last]
         for field in fields(motion)
         if field.name != "rate"
     }
     time = np.linspace(-1.0, 1.0, last - first)
-    course = np.polynomial.Polynomial.fit(time, kept["torque"], 3)(time)
-    kept["torque"] = kept["torque"] - course + course.mean()
+    trend = np.polynomial.Polynomial.fit(time, kept["torque"], 3)(time)
+    kept["torque"] = kept["torque"] - trend + trend.mean()
     return replace(motion, **kept)
