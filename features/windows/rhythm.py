@@ -90,7 +90,7 @@ def rhythms_of(
     Returns
     -------
     ndarray of float32, shape (n_windows, n_names)
-        By `RHYTHM_NAMES`.
+        By `RHYTHM_NAMES`, each in its declared [unit].
 
     Examples
     --------

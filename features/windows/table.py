@@ -46,11 +46,11 @@ class WindowTable:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        By `WINDOW_NAMES`; NaN where undefined.
+        By `WINDOW_NAMES`, each in its declared [unit]; NaN where undefined.
     level : ndarray of float32, shape (n_windows,)
         Power of each window [dB re the signal's unit].
     frames : ndarray of float32, shape (n_frames, n_columns + n_bands)
-        By `features.windows.frames.FRAME_COLUMNS`, then the bands, both re the signal's unit.
+        By `features.windows.frames.FRAME_COLUMNS`, then the bands, both re the signal's [unit].
     """
 
     features: NDArray[np.float32]
@@ -86,7 +86,7 @@ def describe_windows(
         As `features.windows.working.Block` has them, with what follows as far as the last window
         reaches and the recording goes.
     top : ndarray of float32, shape (n_frames, 2)
-        As there.
+        As of `features.windows.working.Block` too.
     scale : float
         Unit of the three [unit of the signal].
     windows : int

@@ -58,7 +58,7 @@ def tone_features(
     Returns
     -------
     ndarray of float32, shape (n_windows, n_names)
-        By `TONE_NAMES`.
+        By `TONE_NAMES`, each in its declared [unit].
 
     Examples
     --------

@@ -51,7 +51,8 @@ def trajectory_features(
     Returns
     -------
     ndarray of float32, shape (n_windows, n_names)
-        By `TRAJECTORY_NAMES`; NaN where a window has fewer than three frames.
+        By `TRAJECTORY_NAMES`, each in its declared [unit]; NaN where a window has fewer than three
+        frames.
 
     Examples
     --------
