@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from models.errors import ParameterError
 from noise.base.progress import note, say
 from noise.base.user_effects import effect_library
-from noise.commands import options as opt
+from noise.commands import condition_options as opt
+from noise.commands.options import number_or_none
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -21,31 +22,7 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-__all__ = ["CONDITION_OPTIONS", "given_options", "is_long", "run_arguments"]
-
-CONDITION_OPTIONS = (
-    "speed",
-    "oscillate",
-    "interference",
-    "support_stiffness",
-    "material",
-    "temperature",
-    "seconds",
-    "effect",
-    "effects",
-    "rig",
-    "converter",
-)
-"""What `noise.commands.options.add_condition` adds, as attributes of the options."""
-
-
-def given_options(options: Namespace) -> list[str]:
-    """Return the options of a condition that were given, as they are typed."""
-    return [
-        "--" + name.replace("_", "-")
-        for name in CONDITION_OPTIONS
-        if getattr(options, name) is not None
-    ]
+__all__ = ["is_long", "run_arguments"]
 
 
 def is_long(arguments: Mapping[str, Any]) -> bool:
@@ -226,7 +203,7 @@ def _read_log(path: Path) -> tuple[list[float], list[float]]:
             cells = [cell.strip() for cell in row]
             if not any(cells):
                 continue
-            if header_possible and not any(map(_is_number, cells)):
+            if header_possible and all(number_or_none(cell) is None for cell in cells):
                 header_possible = False
                 if not {"time_s", "speed_rad_s"} <= set(cells):
                     raise ParameterError(
@@ -245,11 +222,3 @@ def _read_log(path: Path) -> tuple[list[float], list[float]]:
             time.append(moment)
             speed.append(value)
     return time, speed
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

@@ -10,6 +10,7 @@ from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
 from noise.commands import options as opt
+from noise.commands.condition_options import add_condition
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -120,7 +121,7 @@ def configure(parser: ArgumentParser) -> None:
         "needs the extra sound-quality, and some seconds a second of sound",
     )
     opt.add_full_scale(parser)
-    opt.add_condition(parser)
+    add_condition(parser)
     opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
 
 

@@ -12,7 +12,6 @@ from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable
 
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
@@ -151,31 +150,25 @@ def run(options: Namespace) -> int:
 
 
 def _given(options: Namespace) -> Use:
-    from noise.screening.design.axis_values import text_values
-    from noise.screening.design.design import SPEED_STEP, Use
-    from noise.screening.design.tolerances import ABSOLUTE_ZERO
+    from noise.screening.design import axis_values as axes
+    from noise.screening.design.design import Use
 
-    def read(option: str, text: str | None, **more: object) -> tuple[float, ...]:
-        values: Callable[..., tuple[float, ...]] = text_values
-        return () if text is None else values(text, option, **more)
-
-    fits = read("--interference", options.interference)
+    fits = axes.axis_values(options.interference, "--interference")
     if fits and fits[-1] > 10.0:
         raise ParameterError(f"--interference is {fits[-1]:g} mm; it must be at most 10")
+    stiffness = axes.axis_values(options.support_stiffness, "--support-stiffness", axes.SUPPORT)
     return Use(
-        speed=read("--speed", options.speed, step=SPEED_STEP),
+        speed=axes.axis_values(options.speed, "--speed", axes.SPEED),
         interference=tuple(1e-3 * fit for fit in fits),
-        support_stiffness=read("--support-stiffness", options.support_stiffness, fixed=True),
-        temperature=read(
-            "--temperature", options.temperature, points=3, low=ABSOLUTE_ZERO, open_low=False
-        ),
+        support_stiffness=stiffness,
+        temperature=axes.axis_values(options.temperature, "--temperature", axes.TEMPERATURE),
         swinging=None if options.oscillate is None else _swinging(options.oscillate),
     )
 
 
 def _swinging(text: str) -> Swinging:
-    from noise.screening.design.axis_values import text_values
-    from noise.screening.design.design import FREQUENCY_STEP, Swinging
+    from noise.screening.design.axis_values import FREQUENCY, text_values
+    from noise.screening.design.design import Swinging
 
     degrees, comma, frequency = text.partition(",")
     if not comma:
@@ -183,9 +176,7 @@ def _swinging(text: str) -> Swinging:
             f"--oscillate is {text!r}, expected degrees and Hz, such as 15,2 or 15,0.5..4"
         )
     (amplitude,) = text_values(degrees, "--oscillate")[:1]
-    return Swinging(
-        math.radians(amplitude), text_values(frequency, "--oscillate", step=FREQUENCY_STEP)
-    )
+    return Swinging(math.radians(amplitude), text_values(frequency, "--oscillate", FREQUENCY))
 
 
 def _write(folder: Path, found: Screening) -> None:

@@ -13,6 +13,7 @@ from noise.base.atomic import check_target
 from noise.base.progress import note, say
 from noise.base.tables import check_table_path, write_table
 from noise.commands import options as opt
+from noise.commands.condition_options import add_condition
 from noise.commands.operating import is_long, run_arguments
 from sim.effects import EFFECTS
 
@@ -45,7 +46,7 @@ def configure(parser: ArgumentParser) -> None:
         "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07; effects: "
         f"{', '.join(EFFECTS)}"
     )
-    opt.add_condition(parser)
+    add_condition(parser)
     parser.add_argument(
         "--rate",
         type=_rate,

@@ -15,11 +15,12 @@ from noise.base.tables import check_table_path, read_table, write_table
 from noise.labels.labelling import COLUMNS
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from matplotlib.axes import Axes
 
-__all__ = ["LabelTable", "read_label_table"]
+__all__ = ["LabelTable", "cell_number", "read_label_table"]
 
 _TEXTS = {
     "file", "channel", "label", "material", "error",
@@ -147,7 +148,7 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
 def _checked(row: object, where: str) -> dict[str, object]:
     if not isinstance(row, dict) or any(column not in row for column in _NEEDED):
         raise RecordingError(f"{where} lacks {' or '.join(_NEEDED)}, so this is no label table")
-    checked = {column: _value(row.get(column), column, where) for column in COLUMNS}
+    checked = {column: _value(row, column, where) for column in COLUMNS}
     if checked["label"] not in (*LABELS, None):
         known = ", ".join(LABELS)
         raise RecordingError(f"{where} has label {checked['label']!r}, expected {known}")
@@ -160,13 +161,34 @@ def _checked(row: object, where: str) -> dict[str, object]:
     return checked
 
 
-def _value(value: object, column: str, where: str) -> object:
+def _value(row: Mapping[str, object], column: str, where: str) -> object:
+    value = row.get(column)
     if value is None or value == "":
         return None
     if column in _TEXTS:
         return str(value)
     if column == "calibrated":
         return value in (True, "true", "True")
+    return cell_number(row, column, where)
+
+
+def cell_number(row: Mapping[str, object], column: str, where: str) -> float | None:
+    """Read the number of a cell of a table, in the unit of its column [-]; None for an empty one.
+
+    Raises
+    ------
+    RecordingError
+        It is no number; the message names where it stands.
+
+    Examples
+    --------
+    >>> row = {"speed_rad_s": "5", "level_db": ""}
+    >>> [cell_number(row, column, "labels.csv: row 1") for column in row]
+    [5.0, None]
+    """
+    value = row.get(column)
+    if value is None or value == "":
+        return None
     try:
         number = float(str(value))
     except ValueError:

@@ -13,11 +13,8 @@ import numpy as np
 
 from features.kernels.slip_drops import torque_slips
 from models.errors import ParameterError
-from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, rig_of
-from sim.analysis.critical_damping import with_damping
+from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, motion
 from sim.analysis.thesis_listing import STEP
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -158,28 +155,18 @@ def exact_trace(case: Case, seconds: float = 0.5) -> Trace:
 
 
 def _simulated(material: str, case: Case, seconds: float, name: str) -> Trace:
-    rig = rig_of(material)
-    if case.damping is not None and material == THESIS:
-        rig = with_damping(rig, case.damping)
-    motion = simulate_motion(
-        rig,
-        ConstantSpeed(case.speed),
-        interference=case.interference,
-        support_stiffness=case.support_stiffness,
-        seconds=seconds,
-        rate=_RATE,
-    )
-    time = np.arange(motion.torque.size, dtype=np.float64) / _RATE
+    run = motion(material, case, seconds, _RATE)
+    time = np.arange(run.torque.size, dtype=np.float64) / _RATE
     if material == THESIS:
-        slips = time[1:][motion.stuck[:-1] & ~motion.stuck[1:]]
+        slips = time[1:][run.stuck[:-1] & ~run.stuck[1:]]
     else:
-        slips = torque_slips(motion.torque, _RATE).times
+        slips = torque_slips(run.torque, _RATE).times
     return Trace(
         name=name,
         time=time,
-        torque=motion.torque,
-        displacement=motion.interface_angle,
-        sliding_speed=motion.sliding_speed,
-        clamp_speed=motion.clamp_speed,
+        torque=run.torque,
+        displacement=run.interface_angle,
+        sliding_speed=run.sliding_speed,
+        clamp_speed=run.clamp_speed,
         slips=slips,
     )

@@ -137,8 +137,18 @@ def rig_of(material: str) -> Rig:
 
 
 @lru_cache(maxsize=4)
-def motion(material: str, case: Case) -> Motion:
-    """Simulate a case from rest; another damping is for the thesis's material alone."""
+def motion(material: str, case: Case, seconds: float | None = None, rate: float = RATE) -> Motion:
+    """Simulate a case from rest; another damping is for the thesis's material alone.
+
+    Parameters
+    ----------
+    material : str
+    case : Case
+    seconds : float, optional
+        Length of the run [s]; by default what mean slip rates need.
+    rate : float
+        Of the output [Hz].
+    """
     rig = rig_of(material)
     if case.damping is not None and material == THESIS:
         rig = with_damping(rig, case.damping)
@@ -147,8 +157,8 @@ def motion(material: str, case: Case) -> Motion:
         ConstantSpeed(case.speed),
         interference=case.interference,
         support_stiffness=case.support_stiffness,
-        seconds=_SECONDS.get(material, _OTHER_SECONDS),
-        rate=RATE,
+        seconds=seconds or _SECONDS.get(material, _OTHER_SECONDS),
+        rate=rate,
     )
 
 

@@ -177,8 +177,7 @@ def test_every_environment_but_dry_is_marked_as_assumed_number_by_number(name):
     changed = in_environment(rig, where)
     assert len(changed.assumed) == len(rig.assumed) + len(where.why)
     assert all(entry.startswith(f"{name}: ") for entry in changed.assumed[len(rig.assumed) :])
-    numbers = [where.elastomer_stiffness, where.damping, where.critical_torque]
-    numbers += [where.kinetic_torque, *(1.0 + len(e.parameters) for e in where.effects)]
+    numbers = [*where.factors.values(), *(1.0 + len(e.parameters) for e in where.effects)]
     assert any(number != 1.0 for number in numbers)
 
 

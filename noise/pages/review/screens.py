@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import RecordingError
 from noise.base.label_names import LABELS
 from noise.base.tables import read_table
+from noise.labels.table import cell_number
 from noise.pictures.titles import support_words
 
 if TYPE_CHECKING:
@@ -125,8 +127,8 @@ def read_screen(path: Path) -> list[ScreenMap]:
     if not rows:
         raise RecordingError(f"{path}: has no rows, so is no map of a screen")
     maps: dict[tuple[str, str, str, float | None, float | None], list[ScreenPoint]] = {}
-    for number, row in enumerate(rows, 1):
-        where = f"{path}: row {number}"
+    for n, row in enumerate(rows, 1):
+        where = f"{path}: row {n}"
         named = row if isinstance(row, dict) else {}  # a line of JSON may be anything
         missing = [column for column in _NEEDED if named.get(column) in (None, "")]
         if missing:
@@ -134,24 +136,25 @@ def read_screen(path: Path) -> list[ScreenMap]:
         label = str(row["label"])
         if label not in LABELS:
             raise RecordingError(f"{where} has label {label!r}, expected {', '.join(LABELS)}")
+        number = partial(cell_number, row, where=where)
         key = (
             str(row["design"]),
             str(row.get("environment") or ""),
             str(row.get("motion") or ""),
-            _number(row, "temperature_C", where),
+            number("temperature_C"),
             _support(row, where),
         )
-        speed, fit = _number(row, "speed_rad_s", where), _number(row, "interference_mm", where)
+        speed, fit = number("speed_rad_s"), number("interference_mm")
         if speed is None or fit is None:
             raise RecordingError(f"{where}: speed and interference are numbers")
         maps.setdefault(key, []).append(
             ScreenPoint(
                 speed, fit, label,
                 str(row.get("regime") or ""),
-                _number(row, "level_db", where),
-                _number(row, "loudness", where),
+                number("level_db"),
+                number("loudness"),
                 str(row.get("how") or ""),
-                _number(row, "frequency_hz", where) or None,
+                number("frequency_hz") or None,
             )
         )  # fmt: skip
     return [ScreenMap(*key, tuple(points)) for key, points in maps.items()]
@@ -162,15 +165,4 @@ def _support(row: dict[str, object], where: str) -> float | None:
         return None
     if row[_SUPPORT] in (None, "", "fixed"):
         return math.inf
-    return _number(row, _SUPPORT, where)
-
-
-def _number(row: dict[str, object], column: str, where: str) -> float | None:
-    value = row.get(column)
-    if value is None or value == "":
-        return None
-    try:
-        number = float(str(value))
-    except ValueError:
-        raise RecordingError(f"{where} has {column} {value!r}, expected a number") from None
-    return None if math.isnan(number) else number
+    return cell_number(row, _SUPPORT, where)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +19,7 @@ from joblib import Parallel, delayed
 from models.errors import BushingNoiseError, ParameterError
 from noise.batch.cluster import cluster
 from noise.batch.work import one_thread
-from noise.screening.map.point import REGIMES, evaluate_point
-from sim.shaft import Oscillation
+from noise.screening.map.point import REGIMES, evaluate_point, shaft_motion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -67,14 +66,8 @@ class Batch:
 
     def part(self, chosen: NDArray[np.int64]) -> Batch:
         """Return some of the points."""
-        return Batch(
-            self.rig,
-            self.speed[chosen],
-            self.frequency[chosen],
-            self.interference[chosen],
-            self.support_stiffness[chosen],
-            self.temperature[chosen],
-        )
+        _, *axes = (getattr(self, one.name) for one in fields(self))
+        return Batch(self.rig, *(axis[chosen] for axis in axes))
 
 
 Evaluator = Callable[[Batch], "NDArray[np.float64]"]
@@ -167,10 +160,9 @@ def _evaluate(batch: Batch) -> NDArray[np.float64]:
     rows = np.empty((batch.speed.size, 3))
     for i in range(batch.speed.size):
         speed, frequency = float(batch.speed[i]), float(batch.frequency[i])
-        swings = math.isfinite(frequency)
         found = evaluate_point(
             batch.rig,
-            Oscillation(speed / (2.0 * math.pi * frequency), frequency) if swings else speed,
+            shaft_motion(speed, frequency if math.isfinite(frequency) else None),
             interference=float(batch.interference[i]),
             support_stiffness=float(batch.support_stiffness[i]),
             temperature=float(batch.temperature[i]),

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
-from noise.screening.design.axis_values import spread
-from noise.screening.design.design import SPEED_STEP, Use
+from noise.screening.design.axis_values import SPEED_STEP, spread
+from noise.screening.design.design import Use
 from noise.screening.design.environments import DRY, environment
 
 if TYPE_CHECKING:

@@ -15,9 +15,8 @@ import numpy as np
 from scipy import ndimage
 
 from features.sound_quality import SHORTEST, loudness_n10
-from noise.screening.map.point import point_sound
+from noise.screening.map.point import point_sound, shaft_motion
 from noise.screening.ranking.ranking import loudness_weight
-from sim.shaft import Oscillation
 
 if TYPE_CHECKING:
     from models.rig import Rig
@@ -58,14 +57,9 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
     for where, label in _regions(found):
         t, k, i, v = where
         grid = found.grid
-        speed = grid.speed[v]
-        shaft: float | Oscillation = speed
-        if grid.frequency:
-            frequency = grid.frequency[v]
-            shaft = Oscillation(speed / (2.0 * np.pi * frequency), frequency)
         sound = point_sound(
             rig,
-            shaft,
+            shaft_motion(grid.speed[v], grid.frequency[v] if grid.frequency else None),
             interference=grid.interference[i],
             support_stiffness=grid.support_stiffness[k],
             temperature=grid.temperature[t],

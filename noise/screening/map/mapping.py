@@ -8,7 +8,7 @@ steady sliding, and its map is refined without.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -199,12 +199,6 @@ def _copied(found: DesignMap) -> DesignMap:
     n = len(found.grid.temperature)
     how = np.repeat(found.how, n, axis=0)
     how[1:] = UNCHANGED
-    return replace(
-        found,
-        regime=np.repeat(found.regime, n, axis=0),
-        label=np.repeat(found.label, n, axis=0),
-        level=np.repeat(found.level, n, axis=0),
-        loudness=np.repeat(found.loudness, n, axis=0),
-        how=how,
-        growth=np.repeat(found.growth, n, axis=0),
-    )
+    alike = ("regime", "label", "level", "loudness", "growth")
+    copies: dict[str, Any] = {name: np.repeat(getattr(found, name), n, axis=0) for name in alike}
+    return replace(found, how=how, **copies)

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.timing import Timing
 
-__all__ = ["REGIMES", "PointResult", "Sound", "evaluate_point", "point_sound"]
+__all__ = ["REGIMES", "PointResult", "Sound", "evaluate_point", "point_sound", "shaft_motion"]
 
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""
@@ -99,6 +99,26 @@ class Sound:
     pressure: NDArray[np.float64]
     pulse_pressure: NDArray[np.float64]
     before: NDArray[np.float64]
+
+
+def shaft_motion(speed: float, frequency: float | None) -> float | Oscillation:
+    """Return how the shaft turns at a point: steadily, or swinging as fast as that at most.
+
+    Parameters
+    ----------
+    speed : float
+        The largest [rad/s].
+    frequency : float, optional
+        Of the swing [Hz].
+
+    Examples
+    --------
+    >>> shaft_motion(5.0, None), shaft_motion(math.pi, 2.0).amplitude
+    (5.0, 0.25)
+    """
+    if frequency is None:
+        return speed
+    return Oscillation(speed / (2.0 * math.pi * frequency), frequency)
 
 
 def evaluate_point(

@@ -195,13 +195,7 @@ def _slope(changes: Sequence[tuple[int, float]], margins: Sequence[float], nomin
     return float((margins[1] - margins[0]) / run)
 
 
-def _advice(
-    variable: DesignVariable,
-    found: Found,
-    gain: float = math.nan,
-    slope: float = math.nan,
-    label: str = "",
-) -> Advice:
+def _advice(variable: DesignVariable, found: Found, **brought: Any) -> Advice:
     return Advice(
         name=variable.name,
         value=found.value,
@@ -209,9 +203,7 @@ def _advice(
         cost=variable.price(found.value),
         enough=found.enough,
         steady=found.steady,
-        gain=gain,
-        slope=slope,
-        label=label,
+        **brought,
     )
 
 

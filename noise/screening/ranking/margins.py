@@ -73,27 +73,24 @@ def critical_points(found: DesignMap) -> list[CriticalPoint]:
     sticks = found.regime == Regime.STICK_SLIP.value
     vibrates = found.regime != Regime.STEADY_SLIDING.value
     points = []
-    for t, temperature in enumerate(found.grid.temperature):
-        for k, support in enumerate(found.grid.support_stiffness):
-            for i, fit in enumerate(found.grid.interference):
-                growth = found.growth[t, k, i]
-                ranges = (
-                    range_of(speed, sticks[t, k, i]),
-                    range_of(speed, vibrates[t, k, i]),
-                    range_of(speed, growth > 0.0, growth),
-                )
-                margins = (margin_of(span, found.grid.use) for span in ranges)
-                points.append(
-                    CriticalPoint(
-                        found.design,
-                        found.environment,
-                        temperature,
-                        fit,
-                        support,
-                        *(span[1] for span in ranges),
-                        *margins,
-                    )
-                )
+    for at in np.ndindex(found.growth.shape[:3]):
+        growth = found.growth[at]
+        ranges = (
+            range_of(speed, sticks[at]),
+            range_of(speed, vibrates[at]),
+            range_of(speed, growth > 0.0, growth),
+        )
+        points.append(
+            CriticalPoint(
+                found.design,
+                found.environment,
+                found.grid.temperature[at[0]],
+                found.grid.interference[at[2]],
+                found.grid.support_stiffness[at[1]],
+                *(span[1] for span in ranges),
+                *(margin_of(span, found.grid.use) for span in ranges),
+            )
+        )
     return points
 
 
