@@ -58,7 +58,7 @@ class Segment:
     label : str
         The most probable of `noise.classifier.LABELS`.
     probabilities : mapping of str to float
-        Of all labels; mean over the segment's windows.
+        Of all labels [-]; mean over the segment's windows.
     frequency : float or None
         Slip frequency of a creak or squawk, strongest line of others [Hz]; ``None`` where there
         is none.
