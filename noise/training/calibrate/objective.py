@@ -92,7 +92,7 @@ class Score:
 
     def log_error(self, cells: Iterable[Cell]) -> float:
         """Root mean square of log(simulated / measured) [-]."""
-        errors = [math.log(self.speeds[cell] / cell.speed) for cell in cells]
+        errors = [cell.log_error(self.speeds[cell]) for cell in cells]
         return math.sqrt(sum(error * error for error in errors) / len(errors))
 
 
