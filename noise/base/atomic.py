@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all.
+"""Writing of files that appear whole or not at all.
 
 A batch that is killed half-way must not leave half a file that a later run, or another program,
 takes for a result. So every output is written under another name beside its target, on the same

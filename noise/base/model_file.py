@@ -70,7 +70,7 @@ def save_model(path: str | Path, kind: ModelKind, header: Header, arrays: Arrays
     header : mapping
         What JSON can hold: names of what the model takes and gives, and its ``card``.
     arrays : mapping of str to ndarray
-        By any name but ``header``.
+        Of any shape and unit, by any name but ``header``.
 
     Raises
     ------

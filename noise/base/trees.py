@@ -38,7 +38,7 @@ class Trees:
     feature : ndarray of int16, shape (n_nodes,)
         Feature that a node looks at; `LEAF` in a leaf.
     threshold : ndarray of float, shape (n_nodes,)
-        Up to it the way goes left; in the unit of the feature.
+        Up to it the way goes left [unit of the feature].
     children : ndarray of int32, shape (n_nodes, 2)
         Left and right child; none of a leaf counts.
     missing_left : ndarray of bool, shape (n_nodes,)
@@ -84,7 +84,7 @@ class Trees:
         Parameters
         ----------
         x : ndarray, shape (n, n_features)
-            Each feature in its own unit; NaN where it is missing.
+            [unit of each feature]; NaN where it is missing.
 
         Returns
         -------
@@ -137,7 +137,13 @@ class BoostedTrees(Trees):
     base: NDArray[np.float64]
 
     def check(self, n_features: int) -> None:
-        """Refuse trees that cannot be evaluated, as `Trees.check` does."""
+        """Refuse trees that cannot be evaluated, as `Trees.check` does.
+
+        Raises
+        ------
+        ValueError
+            As of `Trees.check`, or the leaves hold what cannot be used.
+        """
         super().check(n_features)
         if self.value.shape != self.feature.shape or self.classes.shape != self.roots.shape:
             raise ValueError("its arrays do not fit together")
@@ -153,12 +159,12 @@ class BoostedTrees(Trees):
         Parameters
         ----------
         x : ndarray, shape (n, n_features)
-            Each feature in its own unit; NaN where it is missing.
+            [unit of each feature]; NaN where it is missing.
 
         Returns
         -------
         ndarray, shape (n, n_classes)
-            Without unit.
+            [-]
         """
         scores = np.tile(self.base.astype(np.float64), (len(x), 1))
         for first in range(0, len(x), _ROWS_AT_ONCE):
@@ -197,13 +203,19 @@ class QuantileForest(Trees):
     roots, feature, threshold, children, missing_left : ndarray
         As of `Trees`, the left child being the next node; thresholds of single precision.
     values : ndarray of float16, shape (n_leaves, n_kept)
-        What the leaves keep, in the order of the leaves.
+        What the leaves keep [unit of what is asked for], in the order of the leaves.
     """
 
     values: NDArray[np.float16]
 
     def check(self, n_features: int) -> None:
-        """Refuse trees that cannot be evaluated, as `Trees.check` does."""
+        """Refuse trees that cannot be evaluated, as `Trees.check` does.
+
+        Raises
+        ------
+        ValueError
+            As of `Trees.check`, or the leaves hold what cannot be used.
+        """
         super().check(n_features)
         if self.values.ndim != 2 or len(self.values) != np.count_nonzero(self.feature == LEAF):
             raise ValueError("its leaves and their values do not fit together")
@@ -216,12 +228,12 @@ class QuantileForest(Trees):
         Parameters
         ----------
         x : ndarray, shape (n, n_features)
-            Each feature in its own unit; NaN where it is missing.
+            [unit of each feature]; NaN where it is missing.
 
         Returns
         -------
         ndarray of float32, shape (n, n_trees * n_kept)
-            In the unit of what is asked for.
+            [unit of what is asked for]
         """
         # As scikit-learn does, features are compared in single precision.
         found = self.leaves(np.asarray(x, dtype=np.float32))

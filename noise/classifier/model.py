@@ -92,12 +92,12 @@ class Classifier:
         Parameters
         ----------
         features : ndarray, shape (n_windows, n_features)
-            By `feature_names`; NaN where missing.
+            By `feature_names` [unit of each feature]; NaN where missing.
 
         Returns
         -------
         ndarray, shape (n_windows, 5)
-            Each row sums to 1.
+            [-]; each row sums to 1.
         """
         votes = self.trees.probabilities(features)
         alone, among_others = (calibration(votes) for calibration in self.calibrations)

@@ -138,7 +138,7 @@ def unscaled(name: str, point: float) -> float:
     Returns
     -------
     float
-        In rad/s, m or Nm/rad.
+        [rad/s], [m] or [Nm/rad]
 
     Examples
     --------
@@ -160,7 +160,7 @@ def segment_features(
     Parameters
     ----------
     table : ndarray, shape (n, n_names)
-        Features of segments, each in its own unit.
+        Features of segments [unit of each feature].
     names : sequence of str
         Of its columns, as `features.registry.recording_feature_names` has them.
     known : ndarray, shape (n, 3)
@@ -169,6 +169,7 @@ def segment_features(
     Returns
     -------
     ndarray, shape (n, n_segment_features)
+        [unit of each feature]
 
     Examples
     --------
@@ -199,6 +200,7 @@ def of_channels(
     Parameters
     ----------
     table : ndarray, shape (n, n_names)
+        [unit of each feature]
     names : sequence of str
     subset : int or ndarray of int, shape (n,)
         As `subset_of` numbers them; one for all samples, or one for each.
@@ -206,6 +208,7 @@ def of_channels(
     Returns
     -------
     ndarray, shape (n, n_names)
+        [unit of each feature]
 
     Examples
     --------

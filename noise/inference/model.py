@@ -116,7 +116,8 @@ class Inference:
     forests : tuple of QuantileForest
         One for each of `QUANTITIES`.
     prior : ndarray of float32, shape (3, n)
-        Values of the population, which join those of the leaves: nothing in it is ruled out.
+        Values of the population [on the scale of each quantity], which join those of the leaves:
+        nothing in it is ruled out.
     used : ndarray of int16, shape (3, 8, 2, 4)
         By quantity, subset of channels, calibrated or not, and others that are logged: the part
         of the subset that counts, as `noise.inference.inputs.subset_of` numbers it.
@@ -202,10 +203,12 @@ class Inference:
         index : int
             Of the quantity.
         x : ndarray, shape (n, n_segment_features)
+            [unit of each feature]
 
         Returns
         -------
-        ndarray, shape (n, n_values)
+        ndarray of float32, shape (n, n_values)
+            [on the scale of the quantity]
         """
         pooled = self.forests[index].pooled(x)
         prior = np.broadcast_to(self.prior[index], (len(x), self.prior.shape[1]))

@@ -60,7 +60,8 @@ class CellLevels:
         begin, end : int
             Samples of the whole signal.
         samples : ndarray, shape (n,)
-            What is at hand, from sample `start` on: the cells have to end in it.
+            What is at hand [unit of the signal], from sample `start` on: the cells have to end in
+            it.
         start : int
         """
         first, last = np.searchsorted(self.edges[:-1], (begin, end)).tolist()

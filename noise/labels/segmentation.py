@@ -55,7 +55,7 @@ def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
     Parameters
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
-        Without unit; each row sums to 1.
+        [-]; each row sums to 1.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def labelled_stretches(
     Parameters
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
-        Without unit; each row sums to 1.
+        [-]; each row sums to 1.
 
     Returns
     -------

@@ -58,7 +58,7 @@ class Segment:
     label : str
         The most probable of `noise.classifier.LABELS`.
     probabilities : mapping of str to float
-        Of all labels; mean over the segment's windows.
+        Of all labels [-]; mean over the segment's windows.
     frequency : float or None
         Slip frequency of a creak or squawk, strongest line of others [Hz]; ``None`` where there
         is none.
@@ -194,19 +194,13 @@ def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> lis
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     last_cell = found.cells.count
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
+    parts = zip(pairwise(edges.tolist()), pairwise(limits), strict=True)
     return [
         _segment(
-            blocks,
-            found,
-            channel,
-            (first, last),
-            (begin, end),
-            probabilities[first:last].mean(axis=0),
+            blocks, found, channel, windows, cells, probabilities[slice(*windows)].mean(axis=0)
         )
-        for (first, last), (begin, end) in zip(
-            pairwise(edges.tolist()), pairwise(limits), strict=True
-        )
-        if end > begin
+        for windows, cells in parts
+        if cells[1] > cells[0]
     ]
 
 
@@ -246,14 +240,7 @@ def _segment(
 ) -> Segment:
     label = LABELS[int(probabilities.argmax())]
     edges = found.cells.edges[list(cells)] / blocks.rate
-    row = blocks.first("pressure")
-    level, level_dbfs = None, None
-    if row is not None:
-        level, level_dbfs = sound_levels(
-            found.cells.rms_db(*cells),
-            calibrated=blocks.calibrated,
-            full_scale=blocks.channels[row].full_scale,
-        )
+    level, level_dbfs = _levels(blocks, found.cells, *cells)
     return Segment(
         channel=channel,
         start=float(edges[0]),
@@ -270,15 +257,10 @@ def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
     """Return the segment of a recording that no noise can be told from."""
     levels = CellLevels(blocks.rate, blocks.n_samples)
     row = blocks.first("pressure")
-    level, level_dbfs = None, None
     if row is not None:
         # Few samples a second, so few in all.
         levels.add(0, blocks.n_samples, blocks.read(0, blocks.n_samples)[row], 0)
-        level, level_dbfs = sound_levels(
-            levels.rms_db(0, levels.count),
-            calibrated=blocks.calibrated,
-            full_scale=blocks.channels[row].full_scale,
-        )
+    level, level_dbfs = _levels(blocks, levels, 0, levels.count)
     certain = np.eye(len(LABELS))[LABELS.index("unknown")].tolist()
     return Segment(
         channel=channel,
@@ -290,3 +272,15 @@ def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
         level=level,
         level_dbfs=level_dbfs,
     )
+
+
+def _levels(
+    blocks: RecordingBlocks, cells: CellLevels, first: int, last: int
+) -> tuple[float | None, float | None]:
+    """Levels of the pressure in cells `first` up to `last`; none where there is no pressure."""
+    row = blocks.first("pressure")
+    if row is None:
+        return None, None
+    full_scale = blocks.channels[row].full_scale
+    rms = cells.rms_db(first, last)
+    return sound_levels(rms, calibrated=blocks.calibrated, full_scale=full_scale)

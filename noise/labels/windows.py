@@ -75,7 +75,7 @@ class Described:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        By `FEATURE_NAMES`.
+        By `FEATURE_NAMES` [unit of each feature].
     level : ndarray, shape (n_windows,)
         Power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
     frames : ndarray of float32, shape (n_frames, n)
@@ -198,12 +198,7 @@ class _Reader:
         )
         frames = math.ceil(size * FRAME_RATE / RATE)
         return describe_windows(
-            sound[:size],
-            high[:size],
-            top[:frames],
-            scale=scale,
-            windows=windows,
-            limit=self._limit,
+            sound[:size], high[:size], top[:frames], scale=scale, windows=windows, limit=self._limit
         )
 
     def _block(self, number: int) -> dict[int, Block]:
@@ -263,7 +258,7 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        Of the segment's windows, by `noise.labels.windows.FEATURE_NAMES`, in their declared units.
+        Of the segment's windows, by `FEATURE_NAMES` [unit of each feature].
     label : str
 
     Returns

@@ -35,11 +35,11 @@ def grow_boosted_trees(
     Parameters
     ----------
     x : ndarray, shape (n, n_features)
-        NaN where a feature is missing.
+        [unit of each feature]; NaN where it is missing.
     y : ndarray of int, shape (n,)
         Classes 0, 1, 2 ..., three or more.
     weight : ndarray, shape (n,)
-        How much each sample counts.
+        How much each sample counts [-].
     n_rounds, seed : int
         Trees a class, seed of the draws.
 
@@ -81,7 +81,7 @@ def boosting(
     x, y, weight, n_rounds, seed
         As of `grow_boosted_trees`; without weights each sample counts alike.
     **shape : float
-        What the trees are to look like, by scikit-learn's names.
+        What the trees are to look like [-], by scikit-learn's names.
 
     Returns
     -------
@@ -146,9 +146,9 @@ def grow_quantile_forest(
     Parameters
     ----------
     x : ndarray, shape (n, n_features)
-        NaN where a feature is missing.
+        [unit of each feature]; NaN where it is missing.
     y : ndarray, shape (n,)
-        What is asked for, in its own unit.
+        What is asked for [in its own unit].
     n_trees, least_leaf : int
         Number of trees, samples in the smallest leaf.
     share : float

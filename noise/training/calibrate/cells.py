@@ -8,7 +8,7 @@ beyond 13 rad/s at 0.381 mm, and the noises of 5.2.3.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, log
 
 __all__ = ["CELLS", "NOISES", "STICKING", "SUPPORTS", "THIN_CELLS", "Cell", "NoiseCell"]
 
@@ -36,6 +36,10 @@ class Cell:
     support_stiffness: float
     item: str
     speed: float
+
+    def log_error(self, speed: float) -> float:
+        """Logarithm of a simulated speed [rad/s] over the measured one [-]."""
+        return log(speed / self.speed) if speed > 0.0 else -inf
 
     def __str__(self) -> str:
         support = (

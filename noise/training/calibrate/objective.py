@@ -82,7 +82,7 @@ class Score:
     Parameters
     ----------
     cost : float
-        To be minimised.
+        To be minimised [-].
     speeds : dict of Cell to float
         Critical speeds as the search sees them [rad/s].
     """
@@ -91,8 +91,8 @@ class Score:
     speeds: Mapping[Cell, float]
 
     def log_error(self, cells: Iterable[Cell]) -> float:
-        """Root mean square of log(simulated / measured)."""
-        errors = [math.log(self.speeds[cell] / cell.speed) for cell in cells]
+        """Root mean square of log(simulated / measured) [-]."""
+        errors = [cell.log_error(self.speeds[cell]) for cell in cells]
         return math.sqrt(sum(error * error for error in errors) / len(errors))
 
 

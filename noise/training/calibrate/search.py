@@ -37,7 +37,7 @@ class Found:
     Parameters
     ----------
     values : mapping of str to float
-        Of the unknowns.
+        Of the unknowns [each in its `unit`].
     score : Score
     """
 
@@ -92,10 +92,7 @@ def search(
         return Found(
             values,
             score(
-                rig_of(values),
-                fitted,
-                critical_speeds_alone=critical_speeds_alone,
-                workers=workers,
+                rig_of(values), fitted, critical_speeds_alone=critical_speeds_alone, workers=workers
             ),
         )
 

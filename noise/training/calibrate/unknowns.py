@@ -47,7 +47,7 @@ class Unknown:
     ----------
     start, round_start, low, high : float
         Where the search begins, where it does with a cell left out, which must not know what
-        searches on all cells found, and what it may not leave, in `unit`.
+        searches on all cells found, and what it may not leave [in `unit`].
     unit, description : str
     """
 

@@ -86,8 +86,7 @@ def random_run(rng: np.random.Generator) -> LabelledRun:
         design = replace(
             design,
             rig=replace(
-                design.rig,
-                effects=design.rig.effects + random_extras(design.rig.effects, rng),
+                design.rig, effects=design.rig.effects + random_extras(design.rig.effects, rng)
             ),
         )
         try:

@@ -175,10 +175,7 @@ def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> F
 
 
 def _jittered(
-    spec: LawSpec,
-    declared: Mapping[str, Parameter],
-    scatter: float,
-    rng: np.random.Generator,
+    spec: LawSpec, declared: Mapping[str, Parameter], scatter: float, rng: np.random.Generator
 ) -> LawSpec:
     """Scatter a law's or an effect's parameters within their admitted ranges."""
     return LawSpec(
@@ -197,11 +194,7 @@ def _jittered(
 
 def _random_microphone(rng: np.random.Generator) -> Microphone:
     return Microphone(
-        (
-            float(rng.uniform(-0.8, 0.8)),
-            float(rng.uniform(-0.8, 0.8)),
-            float(rng.uniform(0.2, 1.5)),
-        )
+        (float(rng.uniform(-0.8, 0.8)), float(rng.uniform(-0.8, 0.8)), float(rng.uniform(0.2, 1.5)))
     )
 
 

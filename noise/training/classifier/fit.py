@@ -83,7 +83,8 @@ class Sample:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        Of the windows in which the label holds, by `noise.labels.windows.FEATURE_NAMES`.
+        Of the windows in which the label holds, by `noise.labels.windows.FEATURE_NAMES`
+        [unit of each feature].
     label : str
     ambiguous : bool
         Whether the label hangs on a bound of its definition.
@@ -174,7 +175,13 @@ def learn(
     seed: int,
     added: Sequence[OwnSample] = (),
 ) -> Classifier:
-    """Learn from the first samples, calibrate on the next, and score on what is left."""
+    """Learn from the first samples, calibrate on the next, and score on what is left.
+
+    Raises
+    ------
+    ParameterError
+        Too few training samples to hold every label.
+    """
     found = {sample.label for sample in samples[:n_training]}
     absent = ", ".join(label for label in LABELS if label not in found)
     if absent:
@@ -204,10 +211,7 @@ def learn(
 
 
 def _grown(
-    training: Sequence[Sample],
-    own: Sequence[OwnSample],
-    calibration: Sequence[Sample],
-    seed: int,
+    training: Sequence[Sample], own: Sequence[OwnSample], calibration: Sequence[Sample], seed: int
 ) -> Classifier:
     """Grow trees and calibrate them."""
     x, y, weight = _masked_rows(training, own)

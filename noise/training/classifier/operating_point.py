@@ -42,7 +42,7 @@ def fit_calibration(
     Parameters
     ----------
     votes : ndarray, shape (n_windows, n_labels)
-        Without unit; each row sums to 1.
+        [-]; each row sums to 1.
     group : ndarray of int, shape (n_windows,)
         Recording of each window.
     y : ndarray of int, shape (n_recordings,)
@@ -89,6 +89,17 @@ def fit_calibration(
 def file_name(p: NDArray[np.float64], none: int) -> int:
     """Label of a file by its windows: that of the longest segment that is not `none`.
 
+    Parameters
+    ----------
+    p : ndarray, shape (n_windows, n_labels)
+        Probabilities [-].
+    none : int
+        Label that names no file but where there is no other.
+
+    Returns
+    -------
+    int
+
     Examples
     --------
     >>> file_name(np.array([[0.9, 0.0, 0.1]] * 4 + [[0.0, 0.9, 0.1]] * 8), none=1)
@@ -101,6 +112,17 @@ def file_name(p: NDArray[np.float64], none: int) -> int:
 
 def means_of_groups(p: NDArray[np.float64], group: NDArray[np.int64]) -> NDArray[np.float64]:
     """Mean of the rows of each group 0, 1, 2 ..., none of which is empty.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n, n_labels)
+        [-]
+    group : ndarray of int, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n_groups, n_labels)
+        [-]
 
     Examples
     --------
@@ -118,6 +140,7 @@ def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[s
     Parameters
     ----------
     p : ndarray, shape (n, n_labels)
+        [-]
     y : ndarray of int, shape (n,)
     unknown : int
         The label of background sounds, which follows those of all noises and ``none``.

@@ -40,7 +40,8 @@ class OwnSample:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        Of the windows that the classifier sees in it, by `noise.labels.windows.FEATURE_NAMES`.
+        Of the windows that the classifier sees in it, by `noise.labels.windows.FEATURE_NAMES`
+        [unit of each feature].
     label : str
         One of `noise.classifier.LABELS`.
     name : str

@@ -39,7 +39,7 @@ class Runs:
     Parameters
     ----------
     tables : ndarray, shape (2, n_runs, n_names)
-        Features in the field, and on the rig; each in its own unit.
+        Features in the field, and on the rig [unit of each feature].
     scaled : ndarray, shape (n_runs, 3)
         Conditions as `noise.inference.inputs.scaled` gives them.
     """
@@ -132,12 +132,7 @@ def _distribution(
 
 
 def _intervals(
-    model: Inference,
-    runs: Runs,
-    index: int,
-    calibrated: int,
-    subset: int,
-    others: int,
+    model: Inference, runs: Runs, index: int, calibrated: int, subset: int, others: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
     """Return the ends of the intervals on the quantity's scale, and where there is one."""
     at = (index, subset, calibrated, others)
@@ -167,6 +162,16 @@ def interval_coverage(model: Inference, runs: Runs) -> dict[str, dict[str, float
 
 def rounded(y: NDArray[np.float64]) -> NDArray[np.float32]:
     """Round as the leaves' values are, so that what is equal stays equal.
+
+    Parameters
+    ----------
+    y : ndarray, shape (n,)
+        [any unit]
+
+    Returns
+    -------
+    ndarray of float32, shape (n,)
+        [unit of `y`]
 
     Examples
     --------

@@ -61,7 +61,7 @@ class RunSample:
     scaled : ndarray, shape (3,)
         Its condition, as `noise.inference.inputs.scaled` gives it.
     features : tuple of (mapping of str to float)
-        In the field, and on the rig.
+        In the field, and on the rig [unit of each feature].
     """
 
     label: str

@@ -26,6 +26,19 @@ def background(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.floa
     A cabin's noise falls by 6 to 10 dB an octave and carries weak engine orders; a tyre's has its
     hump at 150-1000 Hz; wind is low and comes in gusts.
 
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
     Examples
     --------
     >>> float(background(4800, 48e3, np.random.default_rng(1)).std().round(6))
@@ -74,6 +87,19 @@ def quiet(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
 
     Hum is the mains' or a transformer's, 50 to 120 Hz, with up to 20 harmonics, odd ones stronger;
     steady sliding hisses without a line, as strongly as it may.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------

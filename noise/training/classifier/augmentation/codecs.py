@@ -30,7 +30,7 @@ def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> ND
     Parameters
     ----------
     sound : ndarray, shape (n,)
-        Within -1 to 1.
+        Within -1 to 1 [full scale].
     rate : int
         [Hz]
     rng : numpy.random.Generator
@@ -59,6 +59,18 @@ def quantised(
     sound: NDArray[np.float64], bits: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
     """Round to so many bits of full scale 1, with or without dither; clip at full scale.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [full scale]
+    bits : int
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [full scale]
 
     Examples
     --------

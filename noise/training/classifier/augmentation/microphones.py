@@ -18,16 +18,26 @@ __all__ = ["clipped", "levelled", "through_a_microphone"]
 
 
 def through_a_microphone(
-    sound: NDArray[np.float64],
-    rate: float,
-    rng: np.random.Generator,
-    *,
-    phone: bool = False,
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, phone: bool = False
 ) -> NDArray[np.float64]:
     """Colour by slopes at both ends of the band and a gentle ripple between.
 
     A phone's band is narrower, 100 Hz to 8 kHz or so, and steeper, of second order; its ripple
     larger.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+    phone : bool
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `sound`]
 
     Examples
     --------
@@ -59,6 +69,19 @@ def levelled(
 
     The level of the output rises by 1 dB where that of the input rises by 1.3 to 4 dB.
 
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
     Examples
     --------
     >>> quiet_then_loud = np.repeat([0.01, 1.0], 48_000) * np.sin(np.arange(96_000))
@@ -76,6 +99,17 @@ def levelled(
 
 def clipped(sound: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
     """Limit to 30-90 % of the peak, hard or softly.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `sound`]
 
     Examples
     --------

@@ -52,6 +52,18 @@ class RecordedSound:
 def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArray[np.float64]:
     """Resample to another rate, band-limited; rates are taken to the nearest hertz.
 
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        [any unit]
+    rate, wanted : float
+        Its rate, and the other [Hz].
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        [unit of `signal`]
+
     Examples
     --------
     >>> resampled(np.zeros(96), 96_000, 44_100).size

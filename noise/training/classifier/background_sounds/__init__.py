@@ -45,12 +45,10 @@ WEIGHTS: Mapping[str, float] = {
 }  # fmt: skip
 """How often a recipe is drawn, relative to the others."""
 
-RECIPES: Mapping[str, Recipe] = {
-    name: getattr(family, name)
-    for name in WEIGHTS
-    for family in (animals, blows, machines, outdoors, people, signals)
-    if name in family.__all__
-}
+_FAMILIES = (animals, blows, machines, outdoors, people, signals)
+_MADE = {recipe.__name__: recipe for family in _FAMILIES for recipe in family.RECIPES}
+
+RECIPES: Mapping[str, Recipe] = {name: _MADE[name] for name in WEIGHTS}
 """Every recipe takes the number of samples, the rate [Hz] and a generator."""
 
 
@@ -67,6 +65,11 @@ def background_sound(
     rng : numpy.random.Generator
     name : str, optional
         Of a recipe in `RECIPES`; by default one is drawn.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------

@@ -30,21 +30,7 @@ from noise.training.draws import coloured_noise, log_uniform, wandering
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = [
-    "birds",
-    "cat",
-    "cicada",
-    "cow",
-    "crickets",
-    "crow",
-    "dog",
-    "fly",
-    "frog",
-    "hen",
-    "pig",
-    "rooster",
-    "sheep",
-]
+__all__ = ["RECIPES"]
 
 
 def _glide(m: int, low: float, high: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -309,3 +295,7 @@ def birds(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
         part = repeated(n, rate, lengths, (0.01, 0.6), note, rng)
         sound += part * (1.0 if i == 0 else rng.uniform(0.05, 0.7))
     return sound
+
+
+RECIPES = (birds, cat, cicada, cow, crickets, crow, dog, fly, frog, hen, pig, rooster, sheep)
+"""Each takes the number of samples, the rate [Hz] and a generator."""

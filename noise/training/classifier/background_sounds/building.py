@@ -32,6 +32,22 @@ def harmonics(
 ) -> NDArray[np.float64]:
     """Sum of the harmonics of a pitch [Hz], whose amplitudes fall as ``k ** -roll_off``.
 
+    Parameters
+    ----------
+    pitch : ndarray, shape (n,)
+        [Hz]
+    rate : float
+        [Hz]
+    roll_off : float
+        [-]
+    n_most : int
+        No more of them.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
     Examples
     --------
     >>> tone = harmonics(np.full(48_000, 440.0), 48e3, 1.0)
@@ -53,6 +69,18 @@ def resonance(
 ) -> NDArray[np.float64]:
     """Filter by one resonance [Hz].
 
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [any unit]
+    centre, bandwidth, rate : float
+        [Hz]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `x`]
+
     Examples
     --------
     >>> resonance(np.ones(4), 1e3, 100.0, 48e3).shape
@@ -68,6 +96,21 @@ def through_formants(
 ) -> NDArray[np.float64]:
     """Put a source through the resonances of a throat, in parallel, besides itself.
 
+    Parameters
+    ----------
+    source : ndarray, shape (n,)
+        [any unit]
+    formants : tuple of float
+        [Hz]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `source`]
+
     Examples
     --------
     >>> through_formants(np.ones(8), (500.0, 1500.0), 48e3, np.random.default_rng(0)).shape
@@ -82,6 +125,19 @@ def through_formants(
 
 def arch(n: int, rng: np.random.Generator, attack: float = 0.15) -> NDArray[np.float64]:
     """Envelope of a call: it rises, holds, and fades.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rng : numpy.random.Generator
+    attack : float
+        Share of the length in which it rises [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------
@@ -118,9 +174,14 @@ def voiced(
         [Hz]
     rng : numpy.random.Generator
     roughness : float
-        0 is a clear voice; 1 doubles and breaks its periods.
+        0 is a clear voice; 1 doubles and breaks its periods [-].
     breath : float
-        Noise over the voice.
+        Noise over the voice [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------
@@ -150,6 +211,23 @@ def repeated(
 ) -> NDArray[np.float64]:
     """Draw calls one after the other, of lengths and gaps in seconds; the first may have begun.
 
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    lengths, gaps : pair of float
+        [s]
+    make : callable
+        Call of so many samples, an ndarray of shape (m,).
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of the calls]
+
     Examples
     --------
     >>> rng = np.random.default_rng(0)
@@ -170,6 +248,22 @@ def placed(
     n: int, times: NDArray[np.float64], strength: NDArray[np.float64], rate: float
 ) -> NDArray[np.float64]:
     """Impulses at times [s].
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    times : ndarray, shape (m,)
+        [s]
+    strength : ndarray, shape (m,)
+        [any unit]
+    rate : float
+        [Hz]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `strength`]
 
     Examples
     --------
@@ -193,6 +287,24 @@ def blow(
     noise: float = 0.5,
 ) -> NDArray[np.float64]:
     """One blow: modes in a band [Hz] that die within decay times (to 1/e) [s], and a noisy knock.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    band : pair of float
+        [Hz]
+    decay : pair of float
+        [s]
+    rng : numpy.random.Generator
+    n_modes : int
+    noise : float
+        Most of the knock, over the modes [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------

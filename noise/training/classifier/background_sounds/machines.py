@@ -24,18 +24,7 @@ from noise.training.draws import coloured_noise, log_uniform, wandering
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = [
-    "airplane",
-    "brushing",
-    "chainsaw",
-    "engine",
-    "hand_saw",
-    "helicopter",
-    "scraping",
-    "train",
-    "vacuum_cleaner",
-    "washing_machine",
-]
+__all__ = ["RECIPES"]
 
 
 def engine(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -182,3 +171,10 @@ def _stroked(
     stroke = np.abs(np.sin(np.pi * x)) ** rng.uniform(0.4, 2.0)
     back = np.where(x.astype(int) % 2 == 0, 1.0, rng.uniform(0.1, 1.0))
     return np.asarray(sound * (at_rest + stroke * back))
+
+
+RECIPES = (
+    airplane, brushing, chainsaw, engine, hand_saw, helicopter, scraping, train, vacuum_cleaner,
+    washing_machine,
+)  # fmt: skip
+"""Each takes the number of samples, the rate [Hz] and a generator."""

@@ -11,16 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.background_sounds.building import (
-    blow,
-    harmonics,
-)
+from noise.training.classifier.background_sounds.building import blow, harmonics
 from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["alarm", "bells", "horn", "music", "siren", "tone"]
+__all__ = ["RECIPES"]
 
 
 def alarm(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -139,3 +136,7 @@ def music(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
             first = int(at * rate)
             sound[first : first + hit.size] += hit * rng.uniform(0.3, 2.0)
     return sound
+
+
+RECIPES = (alarm, bells, horn, music, siren, tone)
+"""Each takes the number of samples, the rate [Hz] and a generator."""

@@ -105,6 +105,20 @@ def random_slips(material: str, n: int, rate: float, rng: np.random.Generator) -
 def pulses(slips: Slips, n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Force of the slips: pulses of random strength about their size, with a rattle.
 
+    Parameters
+    ----------
+    slips : Slips
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
     Examples
     --------
     >>> slips = Slips(np.array([0.01]), np.array([1.0]))

@@ -36,15 +36,16 @@ MATERIALS = {
 
 @dataclass(frozen=True, eq=False)
 class ModalBody:
-    """Modes of a body; arrays of shape (n_modes,).
+    """Modes of a body.
 
     Parameters
     ----------
-    frequency : ndarray
+    frequency : ndarray, shape (n_modes,)
         Natural frequencies [Hz].
-    damping_ratio : ndarray
-    weight : ndarray
-        Signed, arbitrary unit.
+    damping_ratio : ndarray, shape (n_modes,)
+        [-]
+    weight : ndarray, shape (n_modes,)
+        Signed [arbitrary unit].
     """
 
     frequency: NDArray[np.float64]
@@ -53,6 +54,18 @@ class ModalBody:
 
     def impulse_response(self, rate: float, longest: float = 0.4) -> NDArray[np.float64]:
         """Sound of a blow at `rate` [Hz], until it has died away but no longer than `longest` [s].
+
+        Parameters
+        ----------
+        rate : float
+            [Hz]
+        longest : float
+            [s]
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [unit of the weights]
 
         Examples
         --------
@@ -105,6 +118,17 @@ def random_body(material: str, rng: np.random.Generator) -> ModalBody:
 
 def overlapping_modes(rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Impulse response of unit peak of modes that overlap: coloured noise, dying in 1 to 25 ms.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------

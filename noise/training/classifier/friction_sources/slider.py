@@ -48,6 +48,21 @@ def random_drive(
     A hand or a gust: its logarithm wanders between `slowest` and `fastest`; at times it comes to
     rest, or begins fast and dies away.
 
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    slowest, fastest : float
+        [1/s]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [1/s]
+
     Examples
     --------
     >>> drive = random_drive(48_000, 48e3, 5.0, 250.0, np.random.default_rng(0))
@@ -89,7 +104,7 @@ def slide(
     ageing_time : float
         tau [s].
     scatter : float
-        sigma.
+        sigma [-].
     rng : numpy.random.Generator
 
     Examples
