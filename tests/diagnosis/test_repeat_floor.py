@@ -12,9 +12,9 @@ from models.condition import Condition
 from models.rig_files.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.distance import gap_of, reference
-from noise.diagnosis.gap.floor import case_gap, condition_key, floor_widening, repeat_gap
+from noise.diagnosis.gap.floor import case_gap, floor_widening, repeat_gap
 from noise.diagnosis.gap.signature import GROUPS, NAMES, block_signatures, signature
-from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.nominal import condition_key, nominal_recordings
 from noise.diagnosis.simulated.repeats import Scatter
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.blind.cases import run_case, write_case

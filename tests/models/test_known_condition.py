@@ -8,7 +8,7 @@ import pytest
 from models.condition import FIXED, Condition, KnownCondition, known_condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.diagnosis.gap.floor import condition_key
+from noise.diagnosis.simulated.nominal import condition_key
 
 WHOLE = Condition(2.5, 0.279e-3, FIXED, material="PDMS", temperature=30.0)
 

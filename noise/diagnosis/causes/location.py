@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
-from noise.diagnosis.evidence.evidence import aligned
+from noise.diagnosis.evidence.evidence import deviations, standard_errors
 from noise.diagnosis.outcome import Location, StageFinding
 from sim.effects.effect import Stage
 
@@ -105,10 +105,8 @@ def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFin
     for i, stage in enumerate(STAGES):
         most = _most(size[stages == stage])
         null = posterior.null[:, i]
-        beyond = int(np.count_nonzero(null >= most))
-        p_value = min(1.0, len(STAGES) * (1.0 + beyond) / (len(null) + 1.0))
         gap = most / max(float(np.median(null)), 1e-9)
-        found[stage] = (min(gap, _LARGEST_GAP), p_value)
+        found[stage] = (min(gap, _LARGEST_GAP), _p_value(most, null))
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
     whole = sum(excess.values())
     return {
@@ -178,10 +176,9 @@ def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
         largest = np.array(numbers)[np.argsort(-size[numbers])][:3]
         most = float(size[largest[0]])
         null = posterior.null[:, STAGES.index(stage)]
-        p_value = len(STAGES) * (1.0 + np.count_nonzero(null >= most)) / (len(null) + 1.0)
         place = Location(
             stage, (channel,), band or _WHOLE_BAND, phase, _where(table, posterior, largest),
-            min(1.0, float(p_value)),
+            _p_value(most, null),
         )  # fmt: skip
         found.append((place.p_value, -most, place))
     return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
@@ -191,9 +188,8 @@ def _sure(
     table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Mean difference of each number in units of its standard error; NaN where it tells nothing."""
-    z = _deviation(table, names, scale)
-    count = np.isfinite(z).sum(axis=0)
-    sure = np.where(count > 0, np.nansum(z, axis=0) / np.sqrt(np.maximum(count, 1)), np.nan)
+    z = deviations(table, names, scale)
+    sure = np.where(np.isfinite(z).any(axis=0), standard_errors(z), np.nan)
     if any(name.startswith("contact") for name in table.names):
         sure[[_is_overall(name) for name in names]] = np.nan
     return np.asarray(sure)
@@ -204,13 +200,10 @@ def _is_overall(name: str) -> bool:
     return kind in ("acceleration", "pressure") and what.startswith(_OVERALL)
 
 
-def _deviation(
-    table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    measured, nominal, scatter = aligned(table, names)
-    return np.asarray(
-        (measured - nominal) / np.sqrt(np.nan_to_num(scatter, nan=0.0) ** 2 + scale**2)
-    )
+def _p_value(size: float, null: NDArray[np.float64]) -> float:
+    """Probability of so large a difference without a cause, corrected for all stages [-]."""
+    beyond = int(np.count_nonzero(null >= size))
+    return min(1.0, len(STAGES) * (1.0 + beyond) / (len(null) + 1.0))
 
 
 def _most(sizes: NDArray[np.float64]) -> float:
@@ -246,7 +239,7 @@ def _where(table: CaseTable, posterior: Posterior, strongest: NDArray[np.int64])
     speed = np.array([c.speed for c in table.conditions], dtype=np.float64)
     if np.unique(speed).size < 3:
         return "all"
-    z = np.abs(_deviation(table, posterior.names, posterior.scale)[:, strongest])
+    z = np.abs(deviations(table, posterior.names, posterior.scale)[:, strongest])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         size = np.nanmean(z, axis=1)

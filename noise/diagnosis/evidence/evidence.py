@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = ["LARGEST", "MISSING", "PARTS", "aligned", "evidence", "evidence_names", "scale_of"]
+__all__ = [
+    "LARGEST", "MISSING", "PARTS", "aligned", "deviations", "evidence", "evidence_names",
+    "scale_of", "standard_errors",
+]  # fmt: skip
 
 PARTS = ("middle", "sure", "spread", "largest", "with_speed", "repeats", "as_is")
 """Of each number's differences over the recordings of a case, in the order of the row."""
@@ -138,20 +141,18 @@ def evidence(
     ndarray of float32, shape (n_columns,)
         By `evidence_names`; `MISSING` where undefined; differences over scatter [-].
     """
-    measured, nominal, scatter = aligned(table, names)
+    measured, nominal, _ = aligned(table, names)
     away = measured - nominal
-    scatter = np.nan_to_num(scatter, nan=0.0)
-    z = away / np.sqrt(scatter**2 + scale**2)
+    z = deviations(table, names, scale)
     speed = np.array([c.speed for c in table.conditions], dtype=np.float64)
     fast, slow = speed >= np.median(speed), speed <= np.median(speed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that no recording has
         size = np.where(np.isfinite(z), np.abs(z), -1.0)
         largest = np.take_along_axis(z, size.argmax(axis=0)[None], axis=0)[0]
-        count = np.isfinite(z).sum(axis=0)
         parts = [
             np.nanmedian(away, axis=0),
-            np.nansum(z, axis=0) / np.sqrt(np.maximum(count, 1)),
+            standard_errors(z),
             np.nanstd(z, axis=0),
             largest,
             np.nanmean(z[fast], axis=0) - np.nanmean(z[slow], axis=0),
@@ -161,6 +162,52 @@ def evidence(
     row = np.concatenate([*parts, [len(measured), table.rate]])
     row = np.nan_to_num(row, nan=MISSING, posinf=LARGEST, neginf=-LARGEST)
     return np.asarray(np.clip(row, -LARGEST, LARGEST * 100.0), dtype=np.float32)
+
+
+def deviations(
+    table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Differences of a case from its nominal numbers, over the scatter of repeats.
+
+    Parameters
+    ----------
+    table : CaseTable
+    names : sequence of str
+        Of the numbers that count.
+    scale : ndarray, shape (n_names,)
+        As `scale_of` gives it.
+
+    Returns
+    -------
+    ndarray, shape (n_recordings, n_names)
+        In standard deviations [-]; NaN where a number is unknown.
+    """
+    measured, nominal, scatter = aligned(table, names)
+    return np.asarray(
+        (measured - nominal) / np.sqrt(np.nan_to_num(scatter, nan=0.0) ** 2 + scale**2)
+    )
+
+
+def standard_errors(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean over recordings, in units of its standard error.
+
+    Parameters
+    ----------
+    deviation : ndarray, shape (n_recordings, n_names)
+        In standard deviations [-].
+
+    Returns
+    -------
+    ndarray, shape (n_names,)
+        [-], 0 where nothing is known.
+
+    Examples
+    --------
+    >>> standard_errors(np.array([[1.0, np.nan], [1.0, np.nan], [1.0, np.nan], [1.0, np.nan]]))
+    array([2., 0.])
+    """
+    count = np.isfinite(deviation).sum(axis=0)
+    return np.asarray(np.nansum(deviation, axis=0) / np.sqrt(np.maximum(count, 1)))
 
 
 def _between_repeats(table: CaseTable, measured: NDArray[np.float64]) -> NDArray[np.float64]:

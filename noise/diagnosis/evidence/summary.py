@@ -28,7 +28,7 @@ from noise.diagnosis.evidence.channel_summary import (
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import reconstruct
-from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 from sim.bushing import lumped_bushing
 
@@ -157,24 +157,15 @@ class NominalNumbers:
 
     def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
-        c = known_condition(recording.condition)
-        at = _condition(recording)
-        key = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
+        key = (*condition_key(recording), recording.channel_names)
         if key not in self._kept:
-            transfer_functions = self.transfer_functions.at(at[1], at[2])
-            repeats = nominal_recordings(
-                self.rig,
-                c,
-                transfer_functions,
-                rate=recording.rate,
-                seconds=recording.duration,
-                seeds=[self.seed + i for i in range(N_REPEATS)],
-                library=self.library,
-            )
+            repeats = nominal_repeats(
+                recording, self.rig, self.transfer_functions,
+                [self.seed + i for i in range(N_REPEATS)], library=self.library,
+            )  # fmt: skip
+            transfer_functions = self.transfer_functions.of(recording)
             alike = [same_channels(repeat, recording) for repeat in repeats]
-            self._kept[key] = _moments(
-                [summary(repeat, self.rig, transfer_functions) for repeat in alike]
-            )
+            self._kept[key] = _moments([summary(x, self.rig, transfer_functions) for x in alike])
         return self._kept[key]
 
 
@@ -205,7 +196,7 @@ def case_table(
     """
     nominal = nominal or NominalNumbers(rig, library, seed)
     rows = [
-        summary(recording, rig, nominal.transfer_functions.at(*_condition(recording)[1:]))
+        summary(recording, rig, nominal.transfer_functions.of(recording))
         for recording in recordings
     ]
     means, spreads = zip(*(nominal.moments(recording) for recording in recordings), strict=True)
@@ -222,11 +213,6 @@ def case_table(
         tuple(recording.condition for recording in recordings),
         recordings[0].rate,
     )
-
-
-def _condition(recording: Recording) -> tuple[float, float, float]:
-    c = known_condition(recording.condition)
-    return (c.speed, c.interference, c.support_stiffness)
 
 
 def same_channels(repeat: Recording, recording: Recording) -> Recording:

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.condition import known_condition
 from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import same_channels, summary
 from noise.diagnosis.gap.distance import group_costs
-from noise.diagnosis.gap.floor import condition_key, references_of
+from noise.diagnosis.gap.floor import references_of
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import Scatter
 
 if TYPE_CHECKING:
@@ -212,9 +212,7 @@ class CaseComparison:
                 run = same_channels(
                     self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0)), template
                 )
-                c = known_condition(template.condition)
-                transfers = self.runs.transfer_functions.at(c.interference, c.support_stiffness)
-                found = summary(run, self.rig, transfers)
+                found = summary(run, self.rig, self.runs.transfer_functions.of(template))
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
             z = (measured[i] - self._numbers[key]) / scale

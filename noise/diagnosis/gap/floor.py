@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.condition import known_condition
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
     gap_of,
@@ -24,7 +23,7 @@ from noise.diagnosis.gap.distance import (
     with_least_scatter,
 )
 from noise.diagnosis.gap.signature import GROUPS, block_signatures, group_of, signature
-from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.simulated.repeats import Scatter
     from sim.effects.effect import Effect
 
-__all__ = ["case_gap", "condition_key", "floor_widening", "references_of", "repeat_gap"]
+__all__ = ["case_gap", "floor_widening", "references_of", "repeat_gap"]
 
 N_REPEATS = 12
 """Simulated repeats a condition."""
@@ -93,13 +92,10 @@ def case_gap(
     simulated: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
     transfer_functions = TransferFunctionCache(rig)
     for recording in recordings:
-        key, c = condition_key(recording), known_condition(recording.condition)
+        key = condition_key(recording)
         if key not in simulated:
-            found = transfer_functions.at(key[1], key[2])
-            runs = nominal_recordings(
-                rig, c, found, rate=recording.rate, seconds=recording.duration,
-                seeds=_seeds(seed, len(simulated), n_repeats), scatter=scatter, library=library,
-            )  # fmt: skip
+            seeds = _seeds(seed, len(simulated), n_repeats)
+            runs = nominal_repeats(recording, rig, transfer_functions, seeds, scatter, library)
             simulated[key] = [signature(run) for run in runs]
     return repeat_gap(recordings, simulated, least=0.0, seed=seed)
 
@@ -253,23 +249,6 @@ def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     known = np.isfinite(rows)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(known, rows, 0.0).sum(axis=0) / known.sum(axis=0))
-
-
-def condition_key(recording: Recording) -> tuple[float, ...]:
-    """Return what recordings that can be repeats of each other have in common.
-
-    Parameters
-    ----------
-    recording : Recording
-
-    Returns
-    -------
-    tuple of float
-        Speed [rad/s], interference [m], support stiffness [Nm/rad], sampling rate [Hz] and length
-        [s].
-    """
-    c = known_condition(recording.condition)
-    return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
 
 
 def _seeds(seed: int, place: int, n: int) -> list[int]:

@@ -16,8 +16,8 @@ import numpy as np
 
 from models.condition import known_condition
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
-from noise.diagnosis.gap.floor import condition_key
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
+from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import Scatter, perturb_run, plan_repeat, record
 from noise.diagnosis.simulated.transfer_functions import (
     TransferFunctionCache,

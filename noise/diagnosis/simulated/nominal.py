@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from noise.diagnosis.simulated.repeats import Scatter, perturb_rig, perturb_run, plan_repeat, record
 from noise.diagnosis.simulated.transfer_functions import predict, shift_clamp_mode
 from sim.acquisition import Acquisition, decimate
@@ -31,9 +32,10 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
     from models.transfer_functions.transfer_function import TransferFunction
+    from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
     from sim.effects.effect import Effect
 
-__all__ = ["nominal_recordings"]
+__all__ = ["condition_key", "nominal_recordings", "nominal_repeats"]
 
 _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""
@@ -112,6 +114,53 @@ def nominal_recordings(
         }
         recordings.append(record(signals, rate, condition, rng, scatter))
     return recordings
+
+
+def nominal_repeats(
+    template: Recording,
+    rig: Rig,
+    transfer_functions: TransferFunctionCache,
+    seeds: Sequence[int],
+    scatter: Scatter | None = None,
+    library: Mapping[str, Effect] | None = None,
+) -> list[Recording]:
+    """Simulate repeats at the condition, rate and length of a recording.
+
+    Parameters
+    ----------
+    template : Recording
+    rig : Rig
+    transfer_functions : TransferFunctionCache
+        Of the rig.
+    seeds, scatter, library
+        As of `nominal_recordings`.
+
+    Returns
+    -------
+    list of Recording
+    """
+    return nominal_recordings(
+        rig, known_condition(template.condition), transfer_functions.of(template),
+        rate=template.rate, seconds=template.duration, seeds=seeds, scatter=scatter,
+        library=library,
+    )  # fmt: skip
+
+
+def condition_key(recording: Recording) -> tuple[float, ...]:
+    """Return what recordings that can be repeats of each other have in common.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    tuple of float
+        Speed [rad/s], interference [m], support stiffness [Nm/rad], sampling rate [Hz] and length
+        [s].
+    """
+    c = known_condition(recording.condition)
+    return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
 
 
 def _full_repeat(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import rfft
 
+from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.transfer_functions.filtering import filter_period
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from models.recording import Recording
     from models.rig import Rig
     from sim.bushing import LumpedBushing
 
@@ -114,6 +116,11 @@ class TransferFunctionCache:
         if key not in self._known:
             self._known[key] = torque_transfer_functions(self._rig, *key)
         return self._known[key]
+
+    def of(self, recording: Recording) -> dict[str, TransferFunction]:
+        """Return those at the condition of a recording."""
+        c = known_condition(recording.condition)
+        return self.at(c.interference, c.support_stiffness)
 
 
 def predict(

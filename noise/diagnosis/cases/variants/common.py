@@ -25,17 +25,35 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
 
 Array = NDArray[np.float64]
+Rng = np.random.Generator
 
-Recipe = Callable[[float, np.random.Generator], Effect]
+Recipe = Callable[[float, Rng], Effect]
 """Of a strength from 0 to 1, and a generator."""
 
 _N_CURVE = 129
-_SENSED = ("torque", "acceleration", "pressure")
+SENSED = ("torque", "acceleration", "pressure")
 
 
-def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+def log_uniform(rng: Rng, low: float, high: float) -> float:
     """Draw a number whose logarithm is uniform."""
     return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def log_uniforms(rng: Rng, low: float, high: float, n: int) -> Array:
+    """Draw numbers whose logarithms are uniform."""
+    return np.exp(rng.uniform(np.log(low), np.log(high), n))
+
+
+def family(
+    make: Callable[[str, float, Rng, Array], Effect],
+    *shapes: tuple[str, Callable[[Rng], Array]],
+) -> tuple[Recipe, ...]:
+    """Make a recipe of each form and the shape that is drawn for it."""
+
+    def recipe(form: str, shape: Callable[[Rng], Array]) -> Recipe:
+        return lambda strength, rng: make(form, strength, rng, shape(rng))
+
+    return tuple(recipe(form, shape) for form, shape in shapes)
 
 
 def _made(name: str, form: str, strength: float, **acting: Any) -> Effect:
@@ -49,7 +67,7 @@ def on_contact(
     form: str,
     strength: float,
     hook: Any,
-    numbers: Callable[[np.random.Generator], Array],
+    numbers: Callable[[Rng], Array],
     n_states: int = 0,
 ) -> Effect:
     """Make an effect on the contact; a run's own generator draws the numbers of its hook."""
@@ -63,7 +81,7 @@ def on_drive(
     name: str,
     form: str,
     strength: float,
-    change: Callable[[Array, float, np.random.Generator], Array],
+    change: Callable[[Array, float, Rng], Array],
 ) -> Effect:
     """Make an effect on the speed, the relative change of which is `change`."""
     return _made(
@@ -81,13 +99,11 @@ def on_chain(
     name: str,
     form: str,
     strength: float,
-    change: Callable[[ImpulseResponses, np.random.Generator], ImpulseResponses],
+    change: Callable[[ImpulseResponses, Rng], ImpulseResponses],
 ) -> Effect:
     """Make an effect on the way from torque to sound; neutral at strength 0."""
 
-    def chain(
-        response: ImpulseResponses, _form: str, _values: Any, rng: np.random.Generator
-    ) -> ImpulseResponses:
+    def chain(response: ImpulseResponses, _form: str, _values: Any, rng: Rng) -> ImpulseResponses:
         return change(response, rng) if strength > 0.0 else response
 
     return _made(name, form, strength, chain=chain)
@@ -98,13 +114,11 @@ def on_sensors(
     form: str,
     strength: float,
     shares: dict[str, float],
-    change: Callable[[Array, float, float, np.random.Generator], Array],
+    change: Callable[[Array, float, float, Rng], Array],
 ) -> Effect:
     """Make an effect on channels; ``change(x, share, rate, rng)`` where the share is not 0."""
 
-    def sensors(
-        signals: Signals, rate: float, _form: str, _values: Any, rng: np.random.Generator
-    ) -> Signals:
+    def sensors(signals: Signals, rate: float, _form: str, _values: Any, rng: Rng) -> Signals:
         return {
             channel: change(x, shares.get(channel, 0.0), rate, rng)
             if strength > 0.0 and shares.get(channel, 0.0) != 0.0
@@ -116,7 +130,7 @@ def on_sensors(
 
 
 def draw_shares(
-    rng: np.random.Generator, names: tuple[str, ...] = _SENSED, *, signed: bool = False
+    rng: Rng, names: tuple[str, ...] = SENSED, *, signed: bool = False
 ) -> dict[str, float]:
     """Draw shares of a fault: mostly of one channel alone."""
     chosen = [str(rng.choice(names))]
@@ -137,7 +151,17 @@ def far_curve(shape: Callable[[Array], Array]) -> Array:
     return curve(lambda u: shape(u / np.maximum(1.0 - u, 1e-6)))
 
 
-def drawn_curve(rng: np.random.Generator) -> Array:
+def hill(power: float) -> Array:
+    """Tabulate a rise from 0 to 1 that begins late."""
+    return far_curve(lambda x: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** power))
+
+
+def overshoot(left: float) -> Array:
+    """Tabulate a rise to a peak, and a fall to what is left of it."""
+    return far_curve(lambda x: (1 - left) * x * np.exp(1 - np.minimum(x, 99)) - left * np.expm1(-x))
+
+
+def drawn_curve(rng: Rng) -> Array:
     """Draw a monotone shape from 0 to 1, with few steep parts or many even ones."""
     n, evenness = int(rng.integers(4, 9)), log_uniform(rng, 0.6, 4.0)
     steps = np.cumsum(rng.dirichlet(np.full(n, evenness)))
@@ -145,7 +169,7 @@ def drawn_curve(rng: np.random.Generator) -> Array:
     return curve(PchipInterpolator(knots, np.concatenate([[0.0], steps])))
 
 
-def noise(rng: np.random.Generator, n: int, rate: float, low: float, high: float) -> Array:
+def noise(rng: Rng, n: int, rate: float, low: float, high: float) -> Array:
     """Draw periodic noise of a band, of unit variance."""
     frequency = np.fft.rfftfreq(n, 1.0 / rate)
     inside = (frequency >= low) & (frequency <= high)
@@ -155,7 +179,7 @@ def noise(rng: np.random.Generator, n: int, rate: float, low: float, high: float
     return np.asarray(time_series / time_series.std())
 
 
-def wander(rng: np.random.Generator, n: int, rate: float, corner: float) -> Array:
+def wander(rng: Rng, n: int, rate: float, corner: float) -> Array:
     """Draw a slow random time series of about unit variance."""
     b, a = butter(2, min(2.0 * corner / rate, 0.9))
     settling = round(min(2.0 * rate / corner, 4.0 * n))
@@ -163,6 +187,6 @@ def wander(rng: np.random.Generator, n: int, rate: float, corner: float) -> Arra
     return np.asarray(time_series * math.sqrt(0.5 * rate / (1.11 * corner)))
 
 
-def telegraph(rng: np.random.Generator, n: int, rate: float, often: float) -> Array:
+def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:
     """Draw a time series that switches between -1 and 1, so often a second [Hz]."""
     return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)

@@ -8,13 +8,15 @@ import numpy as np
 from scipy.signal import butter, lfilter
 
 from noise.diagnosis.cases.variants.common import (
+    SENSED,
     Array,
     Recipe,
+    Rng,
     log_uniform,
     on_sensors,
     telegraph,
     wander,
-)
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,10 +24,6 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
 __all__ = ["HUM", "NOISE"]
-
-Rng = np.random.Generator
-
-_CHANNELS = ("torque", "acceleration", "pressure")
 
 
 def _adds(
@@ -40,7 +38,7 @@ def _adds(
     sizes = np.array(levels) * rng.uniform(0.2, 1.0, 3)
     if rng.random() < 0.4:
         sizes[rng.choice(3, int(rng.integers(1, 3)), replace=False)] = 0.0
-    shares = dict(zip(_CHANNELS, (a * sizes).tolist(), strict=True))
+    shares = dict(zip(SENSED, (a * sizes).tolist(), strict=True))
 
     def change(x: Array, level: float, rate: float, rng: Rng) -> Array:
         added = time_series(x.size, rate, rng)

@@ -11,11 +11,12 @@ from scipy.signal import lfilter
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     log_uniform,
     on_contact,
     on_drive,
     telegraph,
-)
+)  # fmt: skip
 from noise.diagnosis.cases.variants.hooks import compliance_hook
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
 __all__ = ["FLUCTUATION", "SHAFT"]
-
-Rng = np.random.Generator
 
 _HIGHEST = 2.0 * math.pi * 4e3
 """[rad/s]"""

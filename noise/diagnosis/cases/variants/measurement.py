@@ -12,21 +12,21 @@ from scipy.signal import bilinear, butter, lfilter, lfilter_zi
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     draw_shares,
     drawn_curve,
     log_uniform,
+    log_uniforms,
     on_sensors,
     telegraph,
     wander,
-)
+)  # fmt: skip
 from noise.diagnosis.cases.variants.limits import droop
 
 if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
 __all__ = ["CLIPPING", "DELAY", "GAIN", "MOUNT"]
-
-Rng = np.random.Generator
 TimeSeries = Callable[[int, float, Rng], Array]
 
 
@@ -241,8 +241,8 @@ def _moving(x: Array, rate: float, frequency: float, damping: float) -> Array:
 
 def _mount_several(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(3, 6))
-    modes = np.exp(rng.uniform(np.log(900.0), np.log(12e3), n)).tolist()
-    dampings = np.exp(rng.uniform(np.log(0.012), np.log(0.15), n)).tolist()
+    modes = log_uniforms(rng, 900.0, 12e3, n).tolist()
+    dampings = log_uniforms(rng, 0.012, 0.15, n).tolist()
     parts = rng.dirichlet(np.full(n, 2.0)).tolist()
     listed = list(zip(modes, dampings, parts, strict=True))
     return _mounts(

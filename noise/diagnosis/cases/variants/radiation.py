@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import butter, lfilter
 
-from noise.diagnosis.cases.variants.common import Array, Recipe, log_uniform, on_chain
+from noise.diagnosis.cases.variants.common import (
+    Array,
+    Recipe,
+    Rng,
+    log_uniform,
+    log_uniforms,
+    on_chain,
+)  # fmt: skip
 from noise.diagnosis.cases.variants.structure import waveguide
 from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 
@@ -18,8 +25,6 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
 __all__ = ["PLATE", "ROOM"]
-
-Rng = np.random.Generator
 
 
 def _added(name: str, form: str, a: float, taps: Callable[[float, Rng], Array]) -> Effect:
@@ -45,8 +50,8 @@ def _rings(rate: float, modes: list[tuple[float, float, float]]) -> Array:
 
 def _several(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 7))
-    frequencies = np.exp(rng.uniform(np.log(150.0), np.log(8000.0), n)).tolist()
-    dampings = np.exp(rng.uniform(np.log(0.005), np.log(0.1), n)).tolist()
+    frequencies = log_uniforms(rng, 150.0, 8000.0, n).tolist()
+    dampings = log_uniforms(rng, 0.005, 0.1, n).tolist()
     strengths = (2.0 * rng.choice([-1.0, 1.0], n) * rng.uniform(0.3, 1.0, n)).tolist()
     modes = list(zip(frequencies, dampings, strengths, strict=True))
     return _added("plate_modes", "several", a, lambda rate, _rng: _rings(rate, modes))
@@ -73,7 +78,7 @@ def _plate_waveguide(a: float, rng: Rng) -> Effect:
 
 def _notched(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(1, 5))
-    frequencies = np.exp(rng.uniform(np.log(200.0), np.log(6000.0), n)).tolist()
+    frequencies = log_uniforms(rng, 200.0, 6000.0, n).tolist()
     damping = log_uniform(rng, 0.02, 0.2)
     modes = [(f, damping, -1.0) for f in frequencies]
     return _added("plate_modes", "notches", a, lambda rate, _rng: _rings(rate, modes))
@@ -104,7 +109,7 @@ def _corridor(a: float, rng: Rng) -> Effect:
 
 def _few_echoes(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 10))
-    times = np.exp(rng.uniform(np.log(1.5e-3), np.log(0.08), n))
+    times = log_uniforms(rng, 1.5e-3, 0.08, n)
     gains = 3.0 * rng.choice([-1.0, 1.0], n, p=[0.25, 0.75]) * rng.uniform(0.2, 1.0, n) / np.sqrt(n)
     return _added("room_reflections", "few", a, lambda rate, _rng: _spaced(times, gains, rate))
 

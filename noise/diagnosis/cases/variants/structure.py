@@ -11,10 +11,12 @@ from scipy.signal import butter, fftconvolve, lfilter
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     log_uniform,
+    log_uniforms,
     on_chain,
     on_joint,
-)
+)  # fmt: skip
 from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 from sim.effects.slip_pulse import torque_drops
 
@@ -26,8 +28,6 @@ if TYPE_CHECKING:
     from sim.motion import Motion
 
 __all__ = ["BEAMS", "PULSES", "waveguide"]
-
-Rng = np.random.Generator
 
 _REFERENCE_DROP = 6.94
 _LONGEST = 0.25
@@ -98,9 +98,9 @@ def _with_force(paths: ImpulseResponses, acceleration: Array, force: Array) -> I
 
 def _several(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(3, 8))
-    frequencies = np.exp(rng.uniform(np.log(350.0), np.log(9000.0), n))
+    frequencies = log_uniforms(rng, 350.0, 9000.0, n)
     constants = log_uniform(rng, 8.0, 40.0) * rng.choice([-1.0, 1.0], n) * rng.uniform(0.2, 1.0, n)
-    dampings = np.exp(rng.uniform(np.log(0.004), np.log(0.06), n))
+    dampings = log_uniforms(rng, 0.004, 0.06, n)
     columns = (frequencies.tolist(), dampings.tolist(), constants.tolist())
     return _with_modes("several", a, rng, list(zip(*columns, strict=True)))
 
