@@ -23,13 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-__all__ = ["DIAGNOSIS", "SCREEN", "Inputs", "LabelTable", "Refusal", "sort_inputs"]
+__all__ = ["DIAGNOSIS", "Inputs", "LabelTable", "Refusal", "sort_inputs"]
 
 DIAGNOSIS = "diagnosis.json"
 """What a folder of a diagnosis holds."""
-
-SCREEN = "map.csv"
-"""What a folder of a screen holds."""
 
 _MOST_FOLDERS = 8
 """That a name is lengthened by, to tell it from another."""

@@ -72,14 +72,11 @@ class PointResult:
         ``creak``, ``squawk``, ``squeal`` or ``none``.
     level : float
         L_AFmax of the sound [dB re 20 uPa]; NaN where it slides steadily.
-    criteria : NoiseCriteria, optional
-        What the label follows from; None where it slides steadily.
     """
 
     regime: Regime
     label: str
     level: float
-    criteria: NoiseCriteria | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +177,7 @@ def evaluate_point(
     label = found.label
     if swings and label == "creak" and found.blows < 0.0:
         label = "squawk"  # lines that follow the speed, which no single spectrum shows
-    return PointResult(regime, label, _loudest(sound), found)
+    return PointResult(regime, label, _loudest(sound))
 
 
 def point_sound(

@@ -26,7 +26,6 @@ from noise.screening.parts.population import outcomes
 from noise.screening.parts.probability import NOISES, label_probabilities
 from noise.screening.parts.sensitivity import sobol_indices
 from noise.screening.parts.variation import nominal_values, use_point
-from noise.screening.ranking.risk import Candidate
 from noise.screening.ranking.use_risk import use_risk
 
 if TYPE_CHECKING:
@@ -98,7 +97,7 @@ class Robustness:
     >>> from noise.screening.design.design import load_design
     >>> design = load_design("PDMS")
     >>> found = robustness(design, np.random.default_rng(0), half_width=0.1, samples=64)
-    >>> found.clear.value, found.candidate.margin, "assumed" in found._repr_html_()
+    >>> found.clear.value, found.margin, "assumed" in found._repr_html_()
     (1.0, inf, True)
     """
 
@@ -112,11 +111,6 @@ class Robustness:
     noise_advice: tuple[Advice, ...]
     risk: int
     assumed: bool
-
-    @property
-    def candidate(self) -> Candidate:
-        """What the ranking needs to know of it."""
-        return Candidate(self.design, self.risk, self.noises.any_but(_QUIET), self.margin)
 
     def _repr_html_(self) -> str:
         """Show what parts do, what matters, and what helps."""

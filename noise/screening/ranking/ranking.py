@@ -118,9 +118,8 @@ def standings(
     found = [
         _standing(mapped, critical, risks[mapped.design, mapped.environment]) for mapped in maps
     ]
-    order = ranked(_candidates(found, statistics))
-    rank = {one.candidate.name: one.rank for one in order}
-    all_ranked = [replace(one, rank=rank.get(one.design, 1 + len(order))) for one in found]
+    rank = ranked(_candidates(found, statistics))
+    all_ranked = [replace(one, rank=rank.get(one.design, 1 + len(rank))) for one in found]
     return tuple(sorted(all_ranked, key=lambda one: (one.rank, one.design)))
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from noise.screening.parts.estimate import Estimate
 
-__all__ = ["Candidate", "Ranked", "design_risk", "ranked", "risk_band", "risk_grades"]
+__all__ = ["Candidate", "design_risk", "ranked", "risk_band", "risk_grades"]
 
 _ACCELERATION = 1.0, 1000.0
 """Peaks graded 1 and 10, at the accelerometer [m/s2]; decades between count alike."""
@@ -182,15 +182,7 @@ class Candidate:
     margin: float
 
 
-@dataclass(frozen=True)
-class Ranked:
-    """A candidate and its rank, 1 being the quietest; who cannot be told apart share one."""
-
-    rank: int
-    candidate: Candidate
-
-
-def ranked(candidates: Sequence[Candidate]) -> tuple[Ranked, ...]:
+def ranked(candidates: Sequence[Candidate]) -> dict[str, int]:
     """Rank designs by risk, then by probability of noise, then by margin.
 
     Probabilities are tied with the least of their group if they exceed it by no more than the
@@ -203,27 +195,27 @@ def ranked(candidates: Sequence[Candidate]) -> tuple[Ranked, ...]:
 
     Returns
     -------
-    tuple of Ranked
-        Quietest first; those of one rank by their names.
+    dict of str to int
+        Ranks by name, 1 being the quietest, who comes first; who cannot be told apart share one,
+        and stand by their names.
 
     Examples
     --------
     >>> from noise.screening.parts.estimate import Estimate
     >>> some, few = Estimate(0.4, 0.35, 0.45), Estimate(0.38, 0.33, 0.43)
-    >>> found = ranked([Candidate("soft", 4, few, -2.0), Candidate("stiff", 4, some, 1.0)])
-    >>> [(one.rank, one.candidate.name) for one in found]
-    [(1, 'stiff'), (2, 'soft')]
+    >>> ranked([Candidate("soft", 4, few, -2.0), Candidate("stiff", 4, some, 1.0)])
+    {'stiff': 1, 'soft': 2}
     """
-    keys: list[tuple[tuple[int, float], Candidate]] = []
+    keys: list[tuple[tuple[int, float], str]] = []
     group, least = 0, None
     for candidate in sorted(candidates, key=lambda one: (one.risk, one.noise.value)):
         if least is None or candidate.risk != least.risk or _noisier(candidate, least):
             group, least = group + 1, candidate
         margin = -math.inf if math.isnan(candidate.margin) else candidate.margin
-        keys.append(((group, -margin), candidate))
-    keys.sort(key=lambda one: (one[0], one[1].name))
+        keys.append(((group, -margin), candidate.name))
+    keys.sort()
     order = [key for key, _ in keys]
-    return tuple(Ranked(1 + order.index(key), candidate) for key, candidate in keys)
+    return {name: 1 + order.index(key) for key, name in keys}
 
 
 def _noisier(one: Candidate, other: Candidate) -> bool:
