@@ -87,7 +87,7 @@ def null_maxima(
         Each column rising, in standard errors [-].
     """
     stages = np.array([stage_of(name) for name in names])
-    sizes = [np.abs(_sure(table, names, scale)) for table in tables]
+    sizes = [np.abs(_standard_errors(table, names, scale)) for table in tables]
     return np.sort(
         np.array([[_most(size[stages == stage]) for stage in STAGES] for size in sizes]), axis=0
     )
@@ -99,7 +99,7 @@ def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFin
     The gap is that of the number that differs most, over what is usual without a cause; the
     p-values are corrected for the looks within and between stages.
     """
-    size = np.abs(_sure(table, posterior.names, posterior.scale))
+    size = np.abs(_standard_errors(table, posterior.names, posterior.scale))
     stages = np.array([stage_of(name) for name in posterior.names])
     found = {}
     for i, stage in enumerate(STAGES):
@@ -132,7 +132,7 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
     inside = np.array([stage_of(name) == stage for name in names])
     if not inside.any():
         inside[:] = True
-    sizes = np.nan_to_num(np.abs(_sure(table, names, posterior.scale)))
+    sizes = np.nan_to_num(np.abs(_standard_errors(table, names, posterior.scale)))
     size = np.where(inside, sizes, -1.0)
     strongest = np.argsort(size)[::-1][:12]
     strongest = strongest[size[strongest] >= 0.5 * size[strongest[0]]]
@@ -145,7 +145,7 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
         channels=tuple(c for c in ("torque", "acceleration", "pressure", "angle") if c in channels),
         band=(low, high),
         phase=_phase(top),
-        conditions=_where(table, posterior, strongest),
+        conditions=_conditions(table, posterior, strongest),
         p_value=findings[stage].p_value,
     )
 
@@ -165,7 +165,7 @@ def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
         that whole stages have without a cause, so it is corrected for all looks.
     """
     names = posterior.names
-    size = np.abs(_sure(table, names, posterior.scale))
+    size = np.abs(_standard_errors(table, names, posterior.scale))
     places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
     for i, name in enumerate(names):
         if np.isfinite(size[i]):
@@ -177,22 +177,22 @@ def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
         most = float(size[largest[0]])
         null = posterior.null[:, STAGES.index(stage)]
         place = Location(
-            stage, (channel,), band or _WHOLE_BAND, phase, _where(table, posterior, largest),
+            stage, (channel,), band or _WHOLE_BAND, phase, _conditions(table, posterior, largest),
             _p_value(most, null),
         )  # fmt: skip
         found.append((place.p_value, -most, place))
     return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
 
 
-def _sure(
+def _standard_errors(
     table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Mean difference of each number in units of its standard error; NaN where it tells nothing."""
     z = deviations(table, names, scale)
-    sure = np.where(np.isfinite(z).any(axis=0), standard_errors(z), np.nan)
+    errors = np.where(np.isfinite(z).any(axis=0), standard_errors(z), np.nan)
     if any(name.startswith("contact") for name in table.names):
-        sure[[_is_overall(name) for name in names]] = np.nan
-    return np.asarray(sure)
+        errors[[_is_overall(name) for name in names]] = np.nan
+    return np.asarray(errors)
 
 
 def _is_overall(name: str) -> bool:
@@ -234,7 +234,7 @@ def _phase(name: str) -> str:
     return next((phase for phase, heads in _PHASES.items() if what.startswith(heads)), "cycle")
 
 
-def _where(table: CaseTable, posterior: Posterior, strongest: NDArray[np.int64]) -> str:
+def _conditions(table: CaseTable, posterior: Posterior, strongest: NDArray[np.int64]) -> str:
     """In which conditions it shows, if only fast or only slow ones."""
     speed = np.array([c.speed for c in table.conditions], dtype=np.float64)
     if np.unique(speed).size < 3:

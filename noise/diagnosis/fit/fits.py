@@ -78,14 +78,14 @@ def add_fits(
     )
     fitted_to, held = split([recording.condition for recording in case.recordings])
     diagnosis = replace(diagnosis, held_out=tuple(case.names[i] for i in held))
-    own = [name for name in library if name not in EFFECTS and name not in known]
-    if not diagnosis.verdict and not own:
+    user_effects = [name for name in library if name not in EFFECTS and name not in known]
+    if not diagnosis.verdict and not user_effects:
         return replace(diagnosis, illustrations=_illustrations(case, comparison, held, None))
     tell("recalibrating the parameters")
     alone = fit_parameters(comparison, fitted_to)
     named = [name for name in diagnosis.verdict if name in library]
     groups = [named] if len(named) > 1 else []
-    single = [*_candidates(diagnosis), *own] if diagnosis.verdict else own
+    single = [*_candidates(diagnosis), *user_effects] if diagnosis.verdict else user_effects
     groups += [[name] for name in single if name not in named or len(named) == 1]
     fits = fitted_causes(comparison, fitted_to, held, groups, alone, seed, tell)
     findings = {
@@ -93,7 +93,7 @@ def add_fits(
         for name, (fitted, scores) in fits.items()
     }
     was = diagnosis.verdict
-    diagnosis = prefer_user_effects(diagnosis, findings, own)
+    diagnosis = prefer_user_effects(diagnosis, findings, user_effects)
     if diagnosis.verdict != was:
         stage = library[diagnosis.verdict[0]].stage.value
         diagnosis = replace(diagnosis, location=locate(table, posterior, stage))
@@ -104,7 +104,7 @@ def add_fits(
             findings.get(effect.name, effect),
             probability=diagnosis.probabilities.get(effect.name, 0.0),
         )
-        for effect in (*diagnosis.effects, *(findings[name] for name in own))
+        for effect in (*diagnosis.effects, *(findings[name] for name in user_effects))
     ]
     best = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else alone
     listened = tuple(

@@ -24,7 +24,7 @@ _CLEARLY = 0.8
 
 
 def prefer_user_effects(
-    diagnosis: Diagnosis, findings: Mapping[str, EffectFinding], own: Sequence[str]
+    diagnosis: Diagnosis, findings: Mapping[str, EffectFinding], user_effects: Sequence[str]
 ) -> Diagnosis:
     """Let a fitted effect of the user's own take over the verdict, if it closes the gap best.
 
@@ -33,19 +33,19 @@ def prefer_user_effects(
     diagnosis : Diagnosis
     findings : mapping of str to EffectFinding
         All effects that were fitted.
-    own : sequence of str
+    user_effects : sequence of str
         Those of the user.
     """
     gaps = {name: found.gap_after for name, found in findings.items()}
     fitted = {name: max(gap, 1.0) for name, gap in gaps.items() if gap is not None}
-    mine = [name for name in own if name in fitted]
+    mine = [name for name in user_effects if name in fitted]
     if not mine:
         return diagnosis
     best = min(mine, key=lambda name: fitted[name])
     recalibrated = findings[best].gap_recalibrated or 0.0
     if not diagnosis.verdict and findings[best].closed is None:
         return diagnosis  # nothing is the matter, and there is no gap that says otherwise
-    others = [gap for name, gap in fitted.items() if name not in own]
+    others = [gap for name, gap in fitted.items() if name not in user_effects]
     if fitted[best] > _CLEARLY * min([recalibrated, *others]):
         return diagnosis
     closed = findings[best].closed

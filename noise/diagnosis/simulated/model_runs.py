@@ -49,7 +49,7 @@ T = TypeVar("T")
 
 _EXACT = Scatter(0.0, 0.0, 0.0)
 
-_KEPT = 24
+_CACHED = 24
 """Motions that are kept; one of a second at 90 kHz takes six megabytes."""
 
 
@@ -85,10 +85,10 @@ class ModelRuns:
     library: Mapping[str, Effect]
     forms: dict[tuple[str, str], Form]
     transfer_functions: TransferFunctionCache = field(init=False)
-    _responses: _Kept[ImpulseResponses] = field(init=False, default_factory=lambda: _Kept())
-    _motions: _Kept[Motion] = field(init=False, default_factory=lambda: _Kept())
-    _signals: _Kept[Signals] = field(init=False, default_factory=lambda: _Kept())
-    _parts: _Kept[NDArray[np.float64]] = field(init=False, default_factory=lambda: _Kept())
+    _responses: _Cache[ImpulseResponses] = field(init=False, default_factory=lambda: _Cache())
+    _motions: _Cache[Motion] = field(init=False, default_factory=lambda: _Cache())
+    _signals: _Cache[Signals] = field(init=False, default_factory=lambda: _Cache())
+    _parts: _Cache[NDArray[np.float64]] = field(init=False, default_factory=lambda: _Cache())
 
     def __post_init__(self) -> None:
         self.transfer_functions = TransferFunctionCache(self.rig)
@@ -223,7 +223,7 @@ class ModelRuns:
         return self._responses.get((*at, plan.rate, impacts, repr(lumped)), made)
 
 
-class _Kept(Generic[T]):
+class _Cache(Generic[T]):
     """What was made last, by what it was made of."""
 
     def __init__(self) -> None:
@@ -233,7 +233,7 @@ class _Kept(Generic[T]):
         """Return what was made under a key, or make it."""
         if key not in self._made:
             made = make()
-            while len(self._made) >= _KEPT:
+            while len(self._made) >= _CACHED:
                 self._made.pop(next(iter(self._made)))
             self._made[key] = made
         return self._made[key]

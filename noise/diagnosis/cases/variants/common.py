@@ -56,7 +56,7 @@ def family(
     return tuple(recipe(form, shape) for form, shape in shapes)
 
 
-def _made(name: str, form: str, strength: float, **acting: Any) -> Effect:
+def _variant(name: str, form: str, strength: float, **acting: Any) -> Effect:
     plain = EFFECTS[name]
     given = {"strength": Parameter(strength, "", 0.0, 1.0, "nothing at 0")}
     return Effect(name, plain.stage, (form,), given, "strength", **acting)
@@ -71,7 +71,7 @@ def on_contact(
     n_states: int = 0,
 ) -> Effect:
     """Make an effect on the contact; a run's own generator draws the numbers of its hook."""
-    return _made(
+    return _variant(
         name, form, strength, contact=hook, pack=lambda _form, _values, rng: numbers(rng),
         n_states=n_states,
     )  # fmt: skip
@@ -84,7 +84,7 @@ def on_drive(
     change: Callable[[Array, float, Rng], Array],
 ) -> Effect:
     """Make an effect on the speed, the relative change of which is `change`."""
-    return _made(
+    return _variant(
         name, form, strength,
         drive=lambda speed, rate, _form, _values, rng: speed * (1.0 + change(speed, rate, rng)),
     )  # fmt: skip
@@ -92,7 +92,7 @@ def on_drive(
 
 def on_joint(name: str, form: str, strength: float, force: Callable[[Any], Array]) -> Effect:
     """Make an effect that strikes the joint of the anchors."""
-    return _made(name, form, strength, force=lambda motion, _form, _values: force(motion))
+    return _variant(name, form, strength, force=lambda motion, _form, _values: force(motion))
 
 
 def on_chain(
@@ -106,7 +106,7 @@ def on_chain(
     def chain(response: ImpulseResponses, _form: str, _values: Any, rng: Rng) -> ImpulseResponses:
         return change(response, rng) if strength > 0.0 else response
 
-    return _made(name, form, strength, chain=chain)
+    return _variant(name, form, strength, chain=chain)
 
 
 def on_sensors(
@@ -126,7 +126,7 @@ def on_sensors(
             for channel, x in signals.items()
         }
 
-    return _made(name, form, strength, sensors=sensors)
+    return _variant(name, form, strength, sensors=sensors)
 
 
 def draw_shares(

@@ -81,13 +81,15 @@ def _clicks(a: float, rng: Rng) -> Effect:
         turn = frequency * np.arange(round(6.0 * cycles / frequency * rate) + 2) / rate
         ring = np.cos(2.0 * np.pi * turn) * np.exp(-turn / cycles)
         return (
-            np.asarray(lfilter(ring, [1.0], impacts)) if ring.size < 64 else _through(impacts, ring)
+            np.asarray(lfilter(ring, [1.0], impacts))
+            if ring.size < 64
+            else _convolved(impacts, ring)
         )
 
     return _noisy("clicks", a, rng, time_series)
 
 
-def _through(x: Array, taps: Array) -> Array:
+def _convolved(x: Array, taps: Array) -> Array:
     n = x.size + taps.size
     return np.asarray(np.fft.irfft(np.fft.rfft(x, n) * np.fft.rfft(taps, n), n)[: x.size])
 

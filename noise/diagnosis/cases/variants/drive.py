@@ -33,7 +33,7 @@ _LEAST_SPEED = 0.05
 """Of the mean one, so that the shaft does not turn back."""
 
 
-def _yields(
+def _compliance(
     form: str,
     a: float,
     rng: Rng,
@@ -62,19 +62,19 @@ def _yields(
 
 
 def _shaft_softening(a: float, rng: Rng) -> Effect:
-    return _yields("softening", a, rng, softening=float(rng.uniform(0.4, 0.8)))
+    return _compliance("softening", a, rng, softening=float(rng.uniform(0.4, 0.8)))
 
 
 def _shaft_cubic(a: float, rng: Rng) -> Effect:
-    return _yields("cubic", a, rng, cubic=float(rng.uniform(0.3, 0.8)))
+    return _compliance("cubic", a, rng, cubic=float(rng.uniform(0.3, 0.8)))
 
 
 def _shaft_dry(a: float, rng: Rng) -> Effect:
-    return _yields("dry_friction", a, rng, dry_torque=log_uniform(rng, 0.2, 2.0))
+    return _compliance("dry_friction", a, rng, dry_torque=log_uniform(rng, 0.2, 2.0))
 
 
 def _shaft_creeping(a: float, rng: Rng) -> Effect:
-    return _yields("maxwell_branch", a, rng, branch=log_uniform(rng, 0.3, 2.0))
+    return _compliance("maxwell_branch", a, rng, branch=log_uniform(rng, 0.3, 2.0))
 
 
 def _uneven(form: str, a: float, time_series: Callable[[Array, float, Rng], Array]) -> Effect:
