@@ -17,6 +17,7 @@ from scipy import fft, special
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_medians, padded_rows
 from features.windows.maxima import prominent_maxima
 from features.windows.working import RATE
+from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -148,7 +149,7 @@ def rhythms_of(
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, **COMPILED)
 def _smooth(rows, n, smooth, average, fourth) -> None:
     """Fill in the power of the last millisecond, its mean, and the sum of its squares re that."""
     for w in range(rows.shape[0]):
