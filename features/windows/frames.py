@@ -10,6 +10,7 @@ from numba import njit
 from scipy import fft
 
 from features.windows.working import FRAME_RATE, RATE
+from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -128,7 +129,7 @@ _OCTAVES = 1.0 / np.log(2.0)
 """What makes a natural logarithm one of base two."""
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
 def _describe(power, magnitude, correlation, last, values):
     for i in range(power.shape[0]):
         p = power[i]

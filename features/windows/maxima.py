@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
+from models.compilation import COMPILED
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -55,7 +57,7 @@ def prominent_maxima(
     return found[0, :count], found[1, :count]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, **COMPILED)
 def _find(level, first, last, prominence, pointed, found) -> int:
     count = 0
     for row in range(level.shape[0]):

@@ -18,6 +18,7 @@ from features.windows.arithmetic import OCTAVES, ordered_sum, padded_medians, pa
 from features.windows.declared import RHYTHM_FEATURES
 from features.windows.maxima import prominent_maxima
 from features.windows.working import RATE
+from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -137,7 +138,7 @@ def rhythms_of(
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, **COMPILED)
 def _smooth(rows, n, smooth, average, fourth) -> None:
     """Fill in the power of the last millisecond, its mean, and the sum of its squares re that."""
     for w in range(rows.shape[0]):

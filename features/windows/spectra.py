@@ -16,6 +16,7 @@ from scipy import fft
 
 from features.kernels.bands import a_weighting
 from features.windows.arithmetic import OCTAVES
+from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -161,7 +162,7 @@ def window_spectra(
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
 def _measure(power, end, level, sums, bins) -> None:
     n = end - FIRST
     n_blocks = -(-n // BLOCK)
@@ -245,7 +246,7 @@ def line_power(
     return sums[0], sums[1]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
 def _add_lines(power, row, at, end, sums) -> None:
     for i in range(row.size):
         p = power[row[i]]

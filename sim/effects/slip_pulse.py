@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
+from models.compilation import COMPILED
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -35,12 +36,10 @@ _REFERENCE_DROP = 6.94
 """T_crit - T_kin at 0.381 mm, from the peak sliding speed of Figure 6.7 [Nm]."""
 
 
-@njit(cache=True)
-def _drops(torque, least):
-    """Index of the steepest fall and size of each fall of more than `least`."""
+@njit(cache=True, **COMPILED)
+def _drops(torque, least, where, size):
+    """Fill in index of the steepest fall and size of each fall of more than `least`."""
     n = torque.size
-    where = np.empty(n // 2 + 1, dtype=np.int64)
-    size = np.empty(n // 2 + 1)
     count = 0
     falling = False
     extreme = torque[0]
@@ -70,7 +69,7 @@ def _drops(torque, least):
                 falling = True
                 top = extreme
                 extreme = torque[i]
-    return where[:count], size[:count]
+    return count
 
 
 def torque_drops(
@@ -97,8 +96,10 @@ def torque_drops(
     >>> torque_drops(np.array([0.0, 1.0, 2.0, 0.5, 0.4, 1.5, 2.0]), 1.0)
     (array([3]), array([1.6]))
     """
-    where, size = _drops(np.ascontiguousarray(torque), least)
-    return where, size
+    most = torque.size // 2 + 1
+    where, size = np.empty(most, dtype=np.int64), np.empty(most)
+    count = _drops(np.ascontiguousarray(torque), float(least), where, size)
+    return where[:count], size[:count]
 
 
 def _force(motion: Motion, form: str, values: Mapping[str, float]) -> NDArray[np.float64]:

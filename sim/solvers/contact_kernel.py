@@ -14,9 +14,9 @@ import math
 
 from numba import boolean, float64, int64, njit, types
 
+from models.compilation import COMPILED, PART
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE, STICKS
 from sim.solvers import contact_state as at
-from sim.solvers.compilation import PART, UNCOUNTED
 from sim.solvers.contact_rates import contact_rates
 from sim.solvers.contact_state import MOST_HOOKS, N_STAGES, Bushing, Drive, Hooks, Limits, Rows
 from sim.solvers.dormand_prince import NODES, fill_dense, fill_stage, step_error, vertex
@@ -104,7 +104,7 @@ def _bracketed(h, far, low, high, far_low, far_high, side):
         _BUSHING, _LAW, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOKS, _DRIVE,
         _LIMITS, _VECTOR, _ROWS, _MATRIX, int64[::1],
     ),
-    cache=True, nogil=True, **UNCOUNTED,
+    cache=True, nogil=True, **COMPILED,
 )  # fmt: skip
 def run_contact(
     bushing, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, drive, limits, carried, rows, out,

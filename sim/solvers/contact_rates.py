@@ -14,6 +14,7 @@ import math
 
 from numba import njit
 
+from models.compilation import PART
 from sim.contact import (
     CREEP,
     CRITICAL,
@@ -33,7 +34,6 @@ from sim.contact import (
     TWIST,
     TWIST_RATE,
 )
-from sim.solvers.compilation import PART
 
 __all__ = ["contact_rates"]
 
@@ -64,7 +64,7 @@ def contact_rates(
     e = k_e * twist + c_e * (surface - u[3])
     critical, kinetic, creep = t_crit, t_kin, 0.0
     mobility, shaft_torque = 0.0, 0.0
-    if hooks.n_acting > 0:
+    if hooks.n > 0:
         context[TIME], context[STICK_TIME] = time, stick_time
         turned = since * (drive.speed[i] + 0.5 * acceleration * since)
         context[SHAFT_ANGLE] = drive.angle[i] + turned
@@ -83,19 +83,19 @@ def contact_rates(
             # One after the other by fixed indices: a loop over tuples would cost as much again.
             values, states, state_rates = hooks.values, hooks.states, hooks.rates
             functions[0](context, values[0], states[0], state_rates[0], contact)
-            if hooks.n_acting > 1:
+            if hooks.n > 1:
                 functions[1](context, values[1], states[1], state_rates[1], contact)
-            if hooks.n_acting > 2:
+            if hooks.n > 2:
                 functions[2](context, values[2], states[2], state_rates[2], contact)
-            if hooks.n_acting > 3:
+            if hooks.n > 3:
                 functions[3](context, values[3], states[3], state_rates[3], contact)
-            if hooks.n_acting > 4:
+            if hooks.n > 4:
                 functions[4](context, values[4], states[4], state_rates[4], contact)
-            if hooks.n_acting > 5:
+            if hooks.n > 5:
                 functions[5](context, values[5], states[5], state_rates[5], contact)
-            if hooks.n_acting > 6:
+            if hooks.n > 6:
                 functions[6](context, values[6], states[6], state_rates[6], contact)
-            if hooks.n_acting > 7:
+            if hooks.n > 7:
                 functions[7](context, values[7], states[7], state_rates[7], contact)
             creep = contact[CREEP]
             gap = creep - share

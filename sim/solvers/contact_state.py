@@ -77,7 +77,7 @@ class Bushing(NamedTuple):
 class Hooks(NamedTuple):
     """What the effects' compiled functions are called with; each has `MOST_HOOKS` items."""
 
-    n_acting: int
+    n: int
     """Of effects that act."""
     values: tuple[NDArray[np.float64], ...]
     states: tuple[NDArray[np.float64], ...]

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from scipy.integrate import RK45
 
-from sim.solvers.compilation import PART
+from models.compilation import PART
 from sim.solvers.contact_state import N_MOTION, N_STAGES
 
 __all__ = [

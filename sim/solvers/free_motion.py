@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
+from models.compilation import PART
 from models.errors import ParameterError
-from sim.solvers.compilation import PART
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

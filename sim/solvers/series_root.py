@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from sim.solvers.compilation import PART
+from models.compilation import PART
 
 __all__ = ["first_crossing", "turns_within"]
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from sim.solvers.compilation import PART
+from models.compilation import PART
 from sim.solvers.free_motion import (
     ORDER,
     SLIP,
