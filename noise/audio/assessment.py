@@ -64,7 +64,7 @@ class Assessment:
         return self.levels.raised(20.0 * math.log10(reference / full_scale))
 
     def row(self, full_scale: float) -> dict[str, object]:
-        """Return cells by `COLUMNS`; those that are not known are left out."""
+        """Return cells by `COLUMNS` at a full scale [Pa]; those that are not known are left out."""
         row: dict[str, object] = {"level_dbfs": _rounded(self.in_file(full_scale).level)}
         if self.calibrated:
             row |= {

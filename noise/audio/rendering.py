@@ -56,7 +56,7 @@ class Survey:
     name : str
     calibrated : bool
     true_peak : float
-        In the sound's unit.
+        [unit of the sound]
     loudness : float or None
         With the true peak at full scale [LUFS]; None where it was not asked for.
     parts : tuple of Part

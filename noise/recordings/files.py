@@ -65,7 +65,7 @@ class RawSamples:
     Parameters
     ----------
     samples : ndarray, shape (n_channels, n_samples)
-        As stored: fractions of full scale where `fractional`.
+        As stored: over full scale [-] where `fractional`.
     rate : float
         Sampling rate [Hz].
     fractional : bool

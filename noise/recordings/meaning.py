@@ -132,7 +132,18 @@ def check_finite(
     channels: tuple[Channel, ...],
     start: int = 0,
 ) -> None:
-    """Refuse samples that are no numbers; the first of them is sample `start` of the file.
+    """Refuse samples that are no numbers.
+
+    Parameters
+    ----------
+    path : Path
+    samples : ndarray, shape (n_channels, n_samples)
+        [units of the channels]
+    rate : float
+        Sampling rate [Hz].
+    channels : tuple of Channel
+    start : int
+        Number of the first sample in the file.
 
     Raises
     ------

@@ -90,7 +90,7 @@ def write_blocks(
     path : path-like
         ``run07`` and ``run07.wav`` are the same; parent folders are made.
     blocks : iterable of ndarray, shape (n_channels, n)
-        In the units of the channels.
+        [units of the channels]
     n_samples : int
         Of all blocks together.
     rate : float

@@ -79,7 +79,7 @@ def describe_channels(
     raw : RawSamples
         Without samples.
     rows : list of (LoggedChannel, float)
-        The channel that each row is read from, and its unit in SI.
+        The channel that each row is read from, and its unit [SI unit].
 
     Raises
     ------
@@ -138,6 +138,11 @@ def sample_blocks(
     path: Path, rows: Sequence[tuple[LoggedChannel, float]]
 ) -> Iterator[NDArray[np.float64]]:
     """Read the rows of `describe_channels` one after the other, each in blocks, in SI.
+
+    Yields
+    ------
+    ndarray, shape (n,)
+        [SI unit of the channel]
 
     Raises
     ------

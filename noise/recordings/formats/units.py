@@ -62,7 +62,7 @@ def kind_of_unit(unit: str) -> tuple[str, float] | None:
     Returns
     -------
     tuple of (str, float), optional
-        None for a unit that is no channel's.
+        Kind, and the value [SI unit]; None for a unit that is no channel's.
 
     Examples
     --------
