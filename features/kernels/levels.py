@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import fft, signal as sig
+from scipy import fft
 
 from features.kernels.bands import a_weighting, band_levels, fine_third_octaves
 from features.kernels.conditioning import checked_signal
@@ -184,7 +184,9 @@ def fast_levels(
     >>> round(float(fast_levels(burst, 48e3, reference=1.0).max()), 1)
     -1.0
     """
+    from scipy.signal import lfilter
+
     x = checked_signal(signal, rate)
     kept = float(np.exp(-1.0 / (FAST * rate)))
-    smoothed = sig.lfilter([1.0 - kept], [1.0, -kept], x**2)
+    smoothed = lfilter([1.0 - kept], [1.0, -kept], x**2)
     return band_levels(smoothed, reference)

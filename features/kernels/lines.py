@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage, special
-from scipy.signal import find_peaks
 
 from features.kernels.spectra import DEFAULT_RESOLUTION
 
@@ -153,6 +152,8 @@ def find_lines(
     >>> lines.frequency.round().tolist(), round(lines.strongest_share, 2)
     ([700.0, 1130.0], 0.8)
     """
+    from scipy.signal import find_peaks
+
     p, f, spacing = spectrum.density, spectrum.frequency, spectrum.spacing
     floor = noise_floor(spectrum) if floor is None else floor
     inside = (f >= low) & (f <= high)

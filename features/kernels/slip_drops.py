@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
-from scipy.signal import find_peaks
 
 from features.kernels.conditioning import NOTHING, checked_signal
 from features.kernels.lines import interpolated
@@ -122,6 +121,8 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
     >>> round(slips.rate), round(slips.mean_drop, 1), round(slips.stick_slope)
     (149, 2.5, 405)
     """
+    from scipy.signal import find_peaks
+
     x = checked_signal(torque, rate)
     if float(np.ptp(x)) <= NOTHING * float(np.abs(x).max()):
         return _no_slips(math.nan)

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
 
 from features.kernels.conditioning import (
     ACOUSTIC_FROM,
@@ -228,6 +227,8 @@ def squared(analytic: NDArray[np.complex128]) -> NDArray[np.float64]:
 
 def _pulse_times(smooth: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     """Find the maxima of a smoothed squared envelope; their times [s]."""
+    from scipy.signal import find_peaks
+
     top = float(smooth.max())
     if not top > 0.0:
         return np.empty(0)
