@@ -43,9 +43,8 @@ from .kernels.spectra import (
 )
 from .modal.hammer import (
     Hit as Hit,
-    TransferEstimate as TransferEstimate,
     check_hit as check_hit,
-    transfer_estimate as transfer_estimate,
+    estimate_transfer_function as estimate_transfer_function,
 )
 from .modal.modal_fit import (
     fit_modes as fit_modes,
@@ -70,4 +69,8 @@ from .sound_quality import (
 )
 from .transformer import (
     RecordingFeatures as RecordingFeatures,
+)
+from .windows.declared import (
+    WINDOW_FEATURES as WINDOW_FEATURES,
+    WindowFeature as WindowFeature,
 )

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from features.kernels.stick_rate import stick_rate_of
 from features.named.band_features import BAND_FEATURES
 from features.named.prepared import ACOUSTIC_KINDS, prepare
 from features.named.spectral_features import SPECTRAL_FEATURES
@@ -41,13 +40,10 @@ KINDS = (*ACOUSTIC_KINDS, "torque")
 """Kinds of channel that have features."""
 
 
-FEATURES: tuple[Feature, ...] = (
-    *SPECTRAL_FEATURES,
-    *BAND_FEATURES,
-    *TEMPORAL_FEATURES,
-    *TORQUE_FEATURES,
-)
-"""All features of all kinds."""
+_ACOUSTIC: tuple[Feature, ...] = (*SPECTRAL_FEATURES, *BAND_FEATURES, *TEMPORAL_FEATURES)
+
+FEATURES: tuple[Feature, ...] = tuple(dict.fromkeys((*_ACOUSTIC, *TORQUE_FEATURES)))
+"""All features of all kinds; those of several kinds stand once."""
 
 
 def features_of(kind: str) -> tuple[Feature, ...]:
@@ -73,7 +69,8 @@ def features_of(kind: str) -> tuple[Feature, ...]:
     """
     if kind not in KINDS:
         raise ParameterError(f"channels of kind {kind!r} have no features; use {', '.join(KINDS)}")
-    return tuple(f for f in FEATURES if kind in f.kinds)
+    table = TORQUE_FEATURES if kind == "torque" else _ACOUSTIC
+    return tuple(feature for feature in table if kind in feature.kinds)
 
 
 def feature_names(kind: str) -> tuple[str, ...]:
@@ -196,6 +193,8 @@ def recording_features(
     >>> found["pressure_line_count"], found["torque_slip_rate"]
     (0.0, nan)
     """
+    from features.kernels.stick_rate import stick_rate_of
+
     found: dict[str, float] = {}
     for kind in KINDS:
         wanted = {f"{kind}_{feature.name}": feature for feature in features_of(kind)}

@@ -1,4 +1,4 @@
-"""How a sound is heard: loudness, sharpness, roughness, tones that stand out.
+"""Sound quality: loudness, sharpness, roughness, tones that stand out.
 
 The standards' procedures are long and their tables longer, so they are left to the library that
 the field keeps for them, MoSQITo (Apache-2.0), an optional extra. It is loaded when it is first
@@ -147,9 +147,26 @@ def sound_quality_of(pressure: ArrayLike, rate: float) -> SoundQuality:
 
 
 def loudness_n10(pressure: ArrayLike, rate: float) -> float:
-    """Loudness that is exceeded in 10 % of the time, ISO 532-1 for time-varying sounds [sone].
+    """Loudness that is exceeded in 10 % of the time, ISO 532-1 for time-varying sounds.
 
-    Parameters, errors and source are those of `sound_quality_of`, which takes six times as long.
+    `sound_quality_of` takes six times as long.
+
+    Parameters
+    ----------
+    pressure : array_like, shape (n_samples,)
+        [Pa]
+    rate : float
+        Sampling rate [Hz], 48 kHz.
+
+    Returns
+    -------
+    float
+        [sone]
+
+    Raises
+    ------
+    ParameterError
+        A sound or a rate that the procedures do not take, or MoSQITo is not installed.
 
     Examples
     --------

@@ -147,8 +147,7 @@ class RecordingFeatures(TransformerMixin, BaseEstimator):  # type: ignore[misc]
             raise ParameterError(f"rate is {self.rate!r}; a sampling rate is a positive number")
 
     def _waveforms(self, X: Any, *, reset: bool) -> NDArray[np.float64]:
-        rows: NDArray[np.float64] = validate_data(self, X, dtype=np.float64, reset=reset)
-        return rows
+        return np.asarray(validate_data(self, X, dtype=np.float64, reset=reset))
 
     def _of_recording(self, recording: Recording) -> list[float]:
         names = self.get_feature_names_out().tolist()

@@ -53,12 +53,12 @@ from .structure.plate import (
     plate_modes as plate_modes,
 )
 from .transfer_functions.files import (
-    read_frf as read_frf,
-    write_frf as write_frf,
+    read_transfer_function as read_transfer_function,
+    write_transfer_function as write_transfer_function,
 )
 from .transfer_functions.measured import (
     MeasuredResponse as MeasuredResponse,
 )
 from .transfer_functions.transfer_function import (
-    Frf as Frf,
+    TransferFunction as TransferFunction,
 )

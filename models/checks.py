@@ -1,4 +1,4 @@
-"""Checked access to what a TOML file holds; every refusal names the file, the key and the value."""
+"""Checked access to the content of a TOML file; a refusal names file, key and value."""
 
 from __future__ import annotations
 
@@ -13,7 +13,17 @@ __all__ = ["a_number", "a_support", "a_table", "a_text", "a_vector", "refuse_unk
 
 
 def refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> None:
-    """Refuse keys that are not known, which are most often misspelt."""
+    """Refuse keys that are not known, which are most often misspelt.
+
+    Raises
+    ------
+    ParameterError
+        A key is not among `known`.
+
+    Examples
+    --------
+    >>> refuse_unknown({"speed": 1.0}, {"speed"}, "rig.toml")
+    """
     for key in table:
         if key not in known:
             raise ParameterError(
@@ -22,14 +32,36 @@ def refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> Non
 
 
 def a_table(value: Any, key: str, where: str) -> Mapping[str, Any]:
-    """Return `value` if it is a table."""
+    """Return `value` if it is a table.
+
+    Raises
+    ------
+    ParameterError
+        It is not; the message names file and key.
+
+    Examples
+    --------
+    >>> a_table({"speed": 1.0}, "shaft", "rig.toml")
+    {'speed': 1.0}
+    """
     if not isinstance(value, Mapping):
         raise ParameterError(f"{where}: {key} must be a table")
     return value
 
 
 def a_text(value: Any, key: str, where: str) -> str:
-    """Return `value` if it is a text."""
+    """Return `value` if it is a text.
+
+    Raises
+    ------
+    ParameterError
+        It is not; the message names file and key.
+
+    Examples
+    --------
+    >>> a_text("PDMS", "material", "rig.toml")
+    'PDMS'
+    """
     if not isinstance(value, str):
         raise ParameterError(f"{where}: {key} = {value!r} must be a text in quotes")
     return value
@@ -44,7 +76,20 @@ def a_number(
     high: float = math.inf,
     closed: bool = False,
 ) -> float:
-    """Return a finite number above `low`, up to `high`; `closed` admits `low` itself."""
+    """Return a finite number above `low`, up to `high`; `closed` admits `low` itself.
+
+    All are in the unit that the file's key has [unit of the key].
+
+    Raises
+    ------
+    ParameterError
+        It is missing, no number, or out of range.
+
+    Examples
+    --------
+    >>> a_number({"speed": 5}, "speed", "rig.toml", high=10.0)
+    5.0
+    """
     value = table.get(key)
     if value is None:
         raise ParameterError(f"{where}: {key} is missing")
@@ -62,7 +107,18 @@ def a_number(
 
 
 def a_support(text: str, key: str, where: str) -> float:
-    """Return the support stiffness [Nm/rad] that a text says; ``fixed`` is infinite."""
+    """Return the support stiffness [Nm/rad] that a text says; ``fixed`` is infinite.
+
+    Raises
+    ------
+    ParameterError
+        It is neither a positive number nor ``fixed``.
+
+    Examples
+    --------
+    >>> a_support("2214", "damping", "rig.toml"), a_support("fixed", "damping", "rig.toml")
+    (2214.0, inf)
+    """
     if text == "fixed":
         return math.inf
     number = math.nan
@@ -77,7 +133,18 @@ def a_support(text: str, key: str, where: str) -> float:
 
 
 def a_vector(table: Mapping[str, Any], key: str, size: int, where: str) -> tuple[float, ...]:
-    """Return the list of `size` finite numbers at `key`."""
+    """Return the list of `size` finite numbers at `key`.
+
+    Raises
+    ------
+    ParameterError
+        It is no such list.
+
+    Examples
+    --------
+    >>> a_vector({"position_m": [0, 0, 1]}, "position_m", 3, "rig.toml")
+    (0.0, 0.0, 1.0)
+    """
     value = table.get(key)
     if not isinstance(value, list) or len(value) != size:
         raise ParameterError(f"{where}: {key} = {value!r} must be a list of {size} numbers")

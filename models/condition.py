@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-__all__ = ["FIXED", "Condition"]
+from models.errors import ParameterError
+
+__all__ = ["FIXED", "Condition", "KnownCondition", "known_condition", "same_support"]
 
 FIXED = math.inf
 """Support stiffness of the clamp bolted to the baseplate [Nm/rad]."""
+
+_SAME = 1e-3  # relative difference
 
 
 @dataclass(frozen=True)
@@ -60,3 +64,81 @@ class Condition:
         if self.speed is not None:
             words.append(f"{self.speed:g} rad/s")
         return words
+
+
+@dataclass(frozen=True)
+class KnownCondition(Condition):
+    """Operating condition of which speed, interference and support stiffness are known.
+
+    Parameters
+    ----------
+    speed : float
+        Angular speed of the shaft [rad/s], signed.
+    interference : float
+        Interference fit between shaft and compressed bushing [m].
+    support_stiffness : float
+        Torsional stiffness of the beams [Nm/rad], or `FIXED`.
+    material, temperature
+        As of `Condition`.
+
+    Examples
+    --------
+    >>> KnownCondition(5.0, 0.279e-3, 2214.0).speed
+    5.0
+    """
+
+    speed: float
+    interference: float
+    support_stiffness: float
+
+
+def known_condition(condition: Condition) -> KnownCondition:
+    """Return a condition as one that is known, for whatever simulates it.
+
+    Parameters
+    ----------
+    condition : Condition
+
+    Returns
+    -------
+    KnownCondition
+
+    Raises
+    ------
+    ParameterError
+        What is not known; the message names all of it.
+
+    Examples
+    --------
+    >>> known_condition(Condition(5.0, 0.279e-3, 2214.0, material="PDMS")).material
+    'PDMS'
+    >>> known_condition(Condition(interference=0.279e-3))
+    Traceback (most recent call last):
+    models.errors.ParameterError: the condition states no speed [rad/s], support stiffness ...
+    """
+    if isinstance(condition, KnownCondition):
+        return condition
+    speed, interference = condition.speed, condition.interference
+    support = condition.support_stiffness
+    if speed is None or interference is None or support is None:
+        named = {
+            "speed [rad/s]": speed,
+            "interference [m]": interference,
+            "support stiffness [Nm/rad]": support,
+        }
+        missing = ", ".join(name for name, value in named.items() if value is None)
+        raise ParameterError(
+            f"the condition states no {missing}; a run needs speed, interference and support"
+        )
+    return KnownCondition(speed, interference, support, condition.material, condition.temperature)
+
+
+def same_support(one: float, other: float) -> bool:
+    """Whether two support stiffnesses [Nm/rad] are the same, to a tenth of a percent.
+
+    Examples
+    --------
+    >>> same_support(2214.0, 2215.0), same_support(2214.0, FIXED), same_support(FIXED, FIXED)
+    (True, False, True)
+    """
+    return math.isclose(one, other, rel_tol=_SAME)

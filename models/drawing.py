@@ -1,4 +1,4 @@
-"""How curves are drawn: style, colours, frequency axes, and how much of a curve is drawn.
+"""Drawing of curves: style, colours, frequency axes, and the thinning of long curves.
 
 A curve is thinned to what the paper can show, the lowest and the highest point of each column, so
 that an hour costs no more than a second and no peak is lost. An axis spans no less than what a
@@ -12,6 +12,7 @@ draws is imported before it is called.
 from __future__ import annotations
 
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -65,33 +66,7 @@ CHANNEL_LOOKS = {
 }
 """By kind of channel."""
 
-STYLE: dict[str, object] = {
-    "svg.fonttype": "path",  # the same on every machine, whatever fonts it has
-    "svg.hashsalt": "bushing-noise",
-    "font.family": "DejaVu Sans",
-    "font.size": 11.0,
-    "axes.titlesize": 11.5,
-    "axes.titlelocation": "left",
-    "axes.labelsize": 11.0,
-    "xtick.labelsize": 10.0,
-    "ytick.labelsize": 10.0,
-    "legend.fontsize": 10.0,
-    "legend.frameon": True,
-    "legend.framealpha": 0.9,
-    "legend.edgecolor": "none",
-    "legend.borderpad": 0.25,
-    "legend.handlelength": 1.8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#444444",
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.7,
-    "lines.linewidth": 1.3,
-    "savefig.dpi": 150,
-}
+STYLE = Path(__file__).parent / "data" / "curves.mplstyle"
 """Settings of matplotlib, beside its defaults, under which pictures are made and written."""
 
 _SIZE = (9.0, 3.8)
@@ -108,7 +83,15 @@ _SMALLEST = 1e-60  # stands for a density of zero
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Make figures in the style of this project, leaving the caller's as it is."""
+    """Make figures in the style of this project, leaving the caller's as it is.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> with styled():
+    ...     matplotlib.rcParams["axes.spines.top"]
+    False
+    """
     import matplotlib.style
 
     with matplotlib.style.context(["default", STYLE]):
@@ -148,15 +131,15 @@ def thinned(
     Parameters
     ----------
     x, y : ndarray, shape (n,)
-        A curve; `x` rises.
+        A curve, each in its own [unit]; `x` rises.
     position : ndarray, shape (n,), optional
-        Where on the axis each point is drawn, if not in proportion to `x`.
+        Where on the axis each point is drawn, if not in proportion to `x` [-].
     columns : int
 
     Returns
     -------
     x, y : ndarray, shape (m,)
-        Of no more than ``2 * columns + 2`` points.
+        In the same [unit], of no more than ``2 * columns + 2`` points.
 
     Examples
     --------
@@ -180,6 +163,8 @@ def thinned(
 def padded(low: float, high: float, least: float) -> tuple[float, float]:
     """Return limits of an axis somewhat wider than from `low` to `high`, and wider than `least`.
 
+    All in the [unit] of the axis.
+
     Examples
     --------
     >>> padded(0.0, 100.0, 1.0), padded(5.0, 5.0, 1.0)
@@ -190,7 +175,7 @@ def padded(low: float, high: float, least: float) -> tuple[float, float]:
 
 
 def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64]:
-    """Levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz.
+    """Levels of a spectral density [unit^2/Hz] in dB re (`reference` [unit])^2/Hz, in its shape.
 
     Examples
     --------
@@ -201,7 +186,16 @@ def levels(density: NDArray[np.float64], reference: float) -> NDArray[np.float64
 
 
 def frequency_axis(axes: Axes, low: float, high: float) -> None:
-    """Make the horizontal axis one of frequency, logarithmic from `low` to `high` [Hz]."""
+    """Make the horizontal axis one of frequency, logarithmic from `low` to `high` [Hz].
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> axes = Figure().subplots()
+    >>> frequency_axis(axes, 100.0, 1000.0)
+    >>> axes.get_xticks().tolist()
+    [100.0, 200.0, 500.0, 1000.0]
+    """
     from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
     axes.set_xscale("log")

@@ -1,4 +1,4 @@
-"""What can go wrong, as few exceptions as callers need to tell apart.
+"""The exceptions of bushing-noise, as few as callers need to tell apart.
 
 Every message names the place (file, channel, field), the value found and what would be right,
 in one line: the command line shows it as it is.

@@ -1,4 +1,4 @@
-"""How warm the contact gets: heat conducted into two half-spaces (Appendix G).
+"""Temperature of the rubbing contact: heat conducted into two half-spaces (Appendix G).
 
 Runs of a quarter of a second heat a layer thinner than a millimetre, so shaft and bushing are
 half-spaces, and the friction's power divides such that both surfaces are equally warm. The thesis

@@ -41,10 +41,15 @@ class Channel:
     position : tuple of 3 floats, optional
         Where the sensor sits [m].
     direction : tuple of 3 floats, optional
-        Unit vector along which it measures.
+        Unit vector along which it measures [-].
     full_scale : float
-        Value of the channel, in its unit, at digital full scale of the file it came from; the
-        reference of levels in dBFS.
+        Value of the channel, in its unit, at digital full scale of the file it came from
+        [the channel's unit]; the reference of levels in dBFS.
+
+    Raises
+    ------
+    ParameterError
+        A name of no known kind.
 
     Examples
     --------
@@ -95,6 +100,11 @@ class Recording:
         Whether the samples are in physical units.
     name : str
         What the recording is called in tables and messages, usually its file.
+
+    Raises
+    ------
+    ParameterError
+        Samples that are not one row a channel, two channels of one name, or a rate that is none.
 
     Examples
     --------

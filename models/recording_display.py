@@ -1,4 +1,4 @@
-"""How a recording shows itself: a table of its channels, and a channel over time."""
+"""Display of a recording: a table of its channels, and a channel over time."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class LawSpec:
     name : str
         Of a file in `sim.friction` or of an effect in `sim.effects`.
     parameters : mapping of str to float or str
-        Those that differ from the law's own.
+        Those that differ from the law's own, each in the unit that its `Parameter` declares [unit].
 
     Examples
     --------
@@ -74,6 +74,11 @@ class Fit:
     damping : mapping of float to float
         Torsional damping c_E of bushing and beams together [Nm s/rad] by support stiffness
         [Nm/rad], the bolted clamp being ``math.inf`` (Table 5.5).
+
+    Raises
+    ------
+    ParameterError
+        A value that is not positive or not finite, or a kinetic torque above the critical one.
     """
 
     interference: float
@@ -114,7 +119,7 @@ class Beams:
     density : float
         [kg/m3]
     damping_ratio : float
-        Of the beams' bending modes above the first torsional one.
+        Of the beams' bending modes above the first torsional one [-].
     accelerometer : float
         Where on the beam it sits, as a fraction of the length from the clamp.
     anchor_rotation : float, optional

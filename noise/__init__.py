@@ -49,7 +49,8 @@ _EXPORTS = {
     "noise.diagnosis.run": ("diagnose",),
     "noise.inference": ("Inference", "Inferred", "Interval", "load_inference"),
     "noise.training.inference.fit": ("train_inference",),
-    "noise.labels": ("LabelTable", "Segment", "Segments", "file_label", "label_recording"),
+    "noise.labels.segments": ("Segment", "Segments", "file_label", "label_recording"),
+    "noise.labels.table": ("LabelTable",),
     "noise.labels.files": ("label",),
     "noise.pictures.files": ("write_picture",),
     "noise.pictures.run": ("plot_run",),
@@ -61,7 +62,7 @@ _EXPORTS = {
     "noise.screening.parts.robustness": ("Robustness", "robustness"),
     "noise.screening.outcome": ("Screening",),
     "noise.screening.screen": ("screen",),
-    "noise.pages": ("ReportEntry", "write_report"),
+    "noise.pages.report": ("ReportEntry", "write_report"),
     "noise.pages.review.build": ("Review", "review"),
     "sim.acquisition": ("Acquisition",),
     "sim.analysis.critical_damping": ("critical_damping",),
@@ -112,3 +113,4 @@ def _refuse_hidden_packages() -> None:
 
 
 _refuse_hidden_packages()
+import_module("models")  # names the folder for compiled code, before anything is compiled

@@ -1,4 +1,4 @@
-"""The command ``bushing-noise``: which command is meant, and how anything that goes wrong is told.
+"""The command line of ``bushing-noise``: it finds the command, runs it, and reports errors.
 
 What a user can cause ends in one line on standard error and an exit code, never in a traceback:
 0 all done, 1 done but inputs were refused, 2 the call cannot be used. Beyond these a program that
@@ -12,6 +12,7 @@ Only the command that is called is imported, so that help is there at once.
 from __future__ import annotations
 
 import argparse
+import gc
 import re
 import sys
 import traceback
@@ -62,14 +63,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
         try:
-            return _told(arguments)
+            return _report_errors(arguments)
         except BrokenPipeError:
             discard(sys.stdout)
             return _CLOSED_PIPE
+        finally:
+            if argv is None:  # the process ends: to look through what it leaves takes 0.3 s
+                gc.freeze()
 
 
-def _told(arguments: list[str]) -> int:
-    """Run the command; tell what goes wrong."""
+def _report_errors(arguments: list[str]) -> int:
+    """Run the command; say in one line what goes wrong."""
     try:
         code = _run(arguments)
         if sys.stdout is not None:

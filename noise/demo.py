@@ -1,4 +1,4 @@
-"""The main job in one call: the rig's three noises and a silent rubber, from physics to a page.
+"""Demonstration: the rig's three noises and a silent rubber, from physics to a page in one call.
 
 The conditions are those of the thesis's Figures 5.21, 5.22 and 5.24, and PDMS for comparison.
 """
@@ -13,13 +13,15 @@ import numpy as np
 
 from features.registry import recording_feature_names, recording_features
 from models.rig_files.rig_file import load_material_rig
-from noise.audio import QUIETEST_FULL_SCALE, audible, common_full_scale, write_audio
+from noise.audio.files import write_audio
+from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
+from noise.audio.sound import audible
 from noise.base.progress import say, track
 from noise.base.tables import write_table
 from noise.classifier import load_classifier
+from noise.labels.labelling import COLUMNS, label_rows
 from noise.labels.segments import file_label, label_recording
-from noise.labels.table import COLUMNS, label_rows
-from noise.pages import ReportEntry, write_report
+from noise.pages.report import ReportEntry, write_report
 from noise.recordings import read_recording, write_recording
 from sim.run import simulate
 
@@ -32,7 +34,18 @@ __all__ = ["CASES", "Case", "run_demo"]
 
 @dataclass(frozen=True)
 class Case:
-    """One condition of the demonstration; units as in `sim.run.simulate`."""
+    """One condition of the demonstration.
+
+    Parameters
+    ----------
+    name : str
+        Label that it has.
+    material : str
+    speed, interference, support_stiffness : float
+        [rad/s], [m], [Nm/rad]
+    source : str
+        Where in the thesis it stands.
+    """
 
     name: str
     material: str
@@ -43,41 +56,14 @@ class Case:
 
 
 CASES = (
-    Case(
-        "creak",
-        "fluorocarbon",
-        1.0,
-        0.381e-3,
-        2214.0,
-        "the condition of Figure 5.21",
-    ),
-    Case(
-        "squawk",
-        "fluorocarbon",
-        5.0,
-        0.279e-3,
-        2214.0,
-        "the condition of Figure 5.22",
-    ),
-    Case(
-        "squeal",
-        "fluorocarbon",
-        10.0,
-        0.279e-3,
-        3745.0,
-        "the condition of Figure 5.24",
-    ),
-    Case(
-        "none",
-        "PDMS",
-        5.0,
-        0.381e-3,
-        2214.0,
-        "silent at every speed (Section 5.1.2)",
-    ),
+    Case("creak", "fluorocarbon", 1.0, 0.381e-3, 2214.0, "the condition of Figure 5.21"),
+    Case("squawk", "fluorocarbon", 5.0, 0.279e-3, 2214.0, "the condition of Figure 5.22"),
+    Case("squeal", "fluorocarbon", 10.0, 0.279e-3, 3745.0, "the condition of Figure 5.24"),
+    Case("none", "PDMS", 5.0, 0.381e-3, 2214.0, "silent at every speed (Section 5.1.2)"),
 )
 
 _SECONDS = 2.0
+"""Of each recording [s]."""
 
 _RATE = 48_000
 """Of the sounds for listening [Hz]."""
@@ -93,6 +79,11 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
         ``report.html``.
     seed : int
         Of the sensors' noise.
+
+    Raises
+    ------
+    ParameterError
+        The folder cannot be written.
     """
     out = Path(out)
     say("simulating four conditions of the rig (the first run compiles the solver)")

@@ -1,4 +1,4 @@
-"""What noise a simulated run makes, by its physics: the definition that the classifier learns.
+"""Labels by physics: the definition of the noises of a simulated run, which the classifier learns.
 
 The thesis names the noises by what makes them (5.2.3, 6.2), and so does this page, the one place
 where they are defined. It looks at the motion and at the sound free of noise, room and microphone,
@@ -42,7 +42,10 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.run import Run
 
-__all__ = ["LEAST_LEVEL", "Evidence", "evidence", "evidence_of", "is_ambiguous", "noise_of"]
+__all__ = [
+    "LEAST_LEVEL", "NoiseCriteria", "is_ambiguous", "label_by_physics", "noise_criteria",
+    "run_criteria",
+]  # fmt: skip
 
 LEAST_LEVEL = 35.0
 """Sound below it is not heard in a quiet room [dB(A) re 20 uPa]."""
@@ -57,12 +60,12 @@ _LINE_RANGE = 18.0
 """Lines weaker than the strongest by more than this do not count [dB]."""
 
 _DECIBELS, _SHARE = 2.0, 0.2
-"""How far a bound is moved to see whether a name depends on it."""
+"""How far a bound is moved to see whether a label depends on it."""
 
 
 @dataclass(frozen=True)
-class Evidence:
-    """What a run's name follows from.
+class NoiseCriteria:
+    """What a run's label follows from, each over its bound.
 
     Parameters
     ----------
@@ -71,15 +74,15 @@ class Evidence:
     blows : float
         Level of the blows' sound re all the rest, re the least of a creak [dB].
     swing : float
-        Standard deviation of the torque over its mean, re the least of an oscillation.
+        Standard deviation of the torque over its mean, re the least of an oscillation [-].
     audible : float
-        The same of its part from 20 Hz to 5 kHz.
+        The same of its part from 20 Hz to 5 kHz [-].
     stick : float
-        Share of the time that the contact sticks, re the least of stick-slip.
+        Share of the time that the contact sticks, re the least of stick-slip [-].
     second : float
         Level of the second line of the torque re the first, re the least that counts [dB].
     share : float
-        Of that part's power in the strongest line, re the least of a predominant one.
+        Of that part's power in the strongest line, re the least of a predominant one [-].
     """
 
     level: float
@@ -91,7 +94,7 @@ class Evidence:
     share: float
 
     @property
-    def name(self) -> str:
+    def label(self) -> str:
         """The noise."""
         if self.swing <= 1.0 or self.level < 0.0:
             return "none"
@@ -105,8 +108,8 @@ class Evidence:
             return "squeal"
         return "squawk" if self.stick > 1.0 else "creak"
 
-    def moved(self) -> Iterator[Evidence]:
-        """Yield the evidence with each bound moved down and up in turn."""
+    def with_moved_bounds(self) -> Iterator[NoiseCriteria]:
+        """Yield the criteria with each bound moved down and up in turn."""
         for step in (-_DECIBELS, _DECIBELS):
             yield replace(self, level=self.level + step)
             yield replace(self, blows=self.blows + step)
@@ -118,24 +121,33 @@ class Evidence:
             yield replace(self, share=self.share * factor)
 
 
-def evidence(run: Run) -> Evidence:
-    """Measure what the name of a run at constant speed follows from.
+def run_criteria(run: Run) -> NoiseCriteria:
+    """Measure what the label of a run at constant speed follows from.
+
+    Parameters
+    ----------
+    run : Run
+
+    Returns
+    -------
+    NoiseCriteria
+        Of the motion's second half, and of all the sound.
 
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.run import simulate
-    >>> evidence(simulate(load_material_rig("PDMS"), 5.0)).swing < 1e-3
+    >>> run_criteria(simulate(load_material_rig("PDMS"), 5.0)).swing < 1e-3
     True
     """
     settled = run.motion.since(run.motion.torque.size // 2)
-    return evidence_of(settled, run.pressure, run.pulse_pressure)
+    return noise_criteria(settled, run.pressure, run.pulse_pressure)
 
 
-def evidence_of(
+def noise_criteria(
     motion: Motion, pressure: NDArray[np.float64], pulse_pressure: NDArray[np.float64]
-) -> Evidence:
-    """Measure what the name follows from, of a motion that has settled and of its sound.
+) -> NoiseCriteria:
+    """Measure what the label follows from, of a motion that has settled and of its sound.
 
     Parameters
     ----------
@@ -144,19 +156,23 @@ def evidence_of(
     pressure, pulse_pressure : ndarray, shape (n,)
         At the motion's rate [Pa]: the sound, and the part of it that slip pulses make.
 
+    Returns
+    -------
+    NoiseCriteria
+
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.5)
-    >>> evidence_of(run.motion, run.pressure, run.pulse_pressure).name
+    >>> noise_criteria(run.motion, run.pressure, run.pulse_pressure).label
     'none'
     """
     rate = motion.rate
     mean = abs(float(np.mean(motion.torque)))
     lines = find_lines(autospectrum(motion.torque, rate), low=20.0, high=5e3)
     blows = _level(pulse_pressure, rate) - _level(pressure - pulse_pressure, rate)
-    return Evidence(
+    return NoiseCriteria(
         level=_level(pressure, rate) - LEAST_LEVEL,
         blows=-math.inf if math.isnan(blows) else blows + _CREAK_MARGIN,
         swing=float(np.std(motion.torque)) / mean / LEAST_OSCILLATION,
@@ -167,7 +183,7 @@ def evidence_of(
     )
 
 
-def noise_of(run: Run) -> str:
+def label_by_physics(run: Run) -> str:
     """Return the noise of a run at constant speed: creak, squawk, squeal or none.
 
     Examples
@@ -175,24 +191,24 @@ def noise_of(run: Run) -> str:
     >>> from models.rig_files.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon")
-    >>> noise_of(simulate(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0))
+    >>> label_by_physics(simulate(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0))
     'squeal'
-    >>> noise_of(simulate(rig, 1.0, interference=0.381e-3, support_stiffness=2214.0))
+    >>> label_by_physics(simulate(rig, 1.0, interference=0.381e-3, support_stiffness=2214.0))
     'creak'
     """
-    return evidence(run).name
+    return run_criteria(run).label
 
 
-def is_ambiguous(found: Evidence) -> bool:
-    """Whether the name changes where one of the bounds is moved by 2 dB or a fifth.
+def is_ambiguous(found: NoiseCriteria) -> bool:
+    """Whether the label changes where one of the bounds is moved by 2 dB or a fifth.
 
     Examples
     --------
-    >>> clear = Evidence(20.0, -30.0, 5.0, 5.0, 0.0, -9.0, 1.8)
-    >>> clear.name, is_ambiguous(clear), is_ambiguous(replace(clear, second=-1.0))
+    >>> clear = NoiseCriteria(20.0, -30.0, 5.0, 5.0, 0.0, -9.0, 1.8)
+    >>> clear.label, is_ambiguous(clear), is_ambiguous(replace(clear, second=-1.0))
     ('squeal', False, True)
     """
-    return any(other.name != found.name for other in found.moved())
+    return any(other.label != found.label for other in found.with_moved_bounds())
 
 
 def _second(lines: Lines) -> float:

@@ -8,17 +8,18 @@ Gains and range are those of Section 3.1.2 and Appendices B to E: 12 bits over +
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import resample_poly
+from scipy.signal import firwin, resample_poly
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-__all__ = ["CONVERTER_GAIN", "Acquisition", "sample"]
+__all__ = ["CONVERTER_GAIN", "Acquisition", "anti_alias_filter", "decimate", "sample"]
 
 CONVERTER_GAIN = {
     "torque": 82.0,
@@ -32,6 +33,9 @@ _CONVERTER_RANGE = 1.25
 """Largest voltage of the converter, either sign [V]."""
 
 _CONVERTER_STEPS = 2**12
+
+_FILTER_HALF_LENGTH = 10
+"""Of the anti-alias filter, in samples kept."""
 
 
 @dataclass(frozen=True)
@@ -97,13 +101,64 @@ def sample(
     """
     sampled = {}
     for kind, signal in signals.items():
-        values = resample_poly(signal, 1, decimation, padtype="line") if decimation > 1 else signal
+        values = decimate(signal, decimation)
         level = acquisition.noise.get(kind, 0.0)
         values = values + level * rng.standard_normal(values.size)
         if acquisition.converter:
             values = _convert(values, CONVERTER_GAIN[kind])
         sampled[kind] = values
     return sampled
+
+
+def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
+    """Keep every so many samples, after the anti-alias filter; beyond its ends a signal goes on.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        In any [unit].
+    factor : int
+        Of the rates; 1 leaves the signal as it is.
+
+    Returns
+    -------
+    ndarray, shape (ceil(n / factor),)
+        In the signal's own [unit].
+
+    Examples
+    --------
+    >>> decimate(np.linspace(0.0, 9.0, 10), 3).round(9)
+    array([0., 3., 6., 9.])
+    """
+    if factor == 1:
+        return signal
+    taps = anti_alias_filter(factor)
+    return np.asarray(resample_poly(signal, 1, factor, padtype="line", window=taps))
+
+
+@lru_cache(maxsize=8)
+def anti_alias_filter(factor: int) -> NDArray[np.float64]:
+    """Linear-phase low-pass filter ahead of a decimation.
+
+    Parameters
+    ----------
+    factor : int
+        Above 1.
+
+    Returns
+    -------
+    ndarray, shape (20 * factor + 1,)
+        What `scipy.signal.resample_poly` designs by default.
+
+    Examples
+    --------
+    >>> anti_alias_filter(3).size, round(float(anti_alias_filter(3).sum()), 9)
+    (61, 1.0)
+    """
+    size = 2 * _FILTER_HALF_LENGTH * factor + 1
+    taps = np.asarray(firwin(size, 1.0 / factor, window=("kaiser", 5.0)), np.float64)
+    taps.flags.writeable = False  # shared by all that ask for it
+    return taps
 
 
 def _convert(values: NDArray[np.float64], gain: float) -> NDArray[np.float64]:

@@ -51,7 +51,7 @@ class LumpedBushing:
         return math.isinf(self.support_stiffness)
 
     def packed(self) -> NDArray[np.float64]:
-        """Return the parameters as an array for compiled code; a fixed clamp has k_B = -1."""
+        """Return the parameters for compiled code, shape (6,); a fixed clamp has k_B = -1 [SI]."""
         support = -1.0 if self.clamp_is_fixed else self.support_stiffness
         return np.array(
             [
@@ -65,7 +65,9 @@ class LumpedBushing:
         )
 
     def natural_frequencies(self, *, stuck: bool = False) -> NDArray[np.float64]:
-        """Undamped natural frequencies [Hz], ascending; `stuck` with the surface held by the shaft.
+        """Undamped natural frequencies [Hz], rising; `stuck` with the surface held by the shaft.
+
+        Of shape (1,) or (2,), as many as can move.
 
         Examples
         --------

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import ActiveEffect
 
-__all__ = ["HIGHEST_SHARE", "changed_chain", "resonance", "through", "total"]
+__all__ = ["HIGHEST_SHARE", "changed_chain", "filter_pressure", "padded_sum", "resonance"]
 
 HIGHEST_SHARE = 0.45
 """Modes above this share of the sampling rate are left out."""
@@ -33,13 +33,13 @@ _LONGEST = 2.0
 
 
 def changed_chain(
-    paths: Response, effects: Sequence[ActiveEffect], rng: np.random.Generator
-) -> Response:
+    paths: ImpulseResponses, effects: Sequence[ActiveEffect], rng: np.random.Generator
+) -> ImpulseResponses:
     """Apply all effects that act on the chain.
 
     Parameters
     ----------
-    paths : Response
+    paths : ImpulseResponses
         Of the plain model.
     effects : sequence of ActiveEffect
         Those without a part in the chain are passed over.
@@ -48,14 +48,14 @@ def changed_chain(
 
     Returns
     -------
-    Response
+    ImpulseResponses
 
     Examples
     --------
-    >>> from models.radiation.impulse_responses import Response
+    >>> from models.radiation.impulse_responses import ImpulseResponses
     >>> from sim.effects import EFFECTS
     >>> one = np.ones(1)
-    >>> plain = Response(48e3, one, one, one, one)
+    >>> plain = ImpulseResponses(48e3, one, one, one, one)
     >>> floor = EFFECTS["room_reflections"].active({"form": "floor"})
     >>> changed = changed_chain(plain, [floor], np.random.default_rng(0))
     >>> changed.torque_to_acceleration.size, changed.torque_to_pressure.size
@@ -75,17 +75,18 @@ def resonance(
     Parameters
     ----------
     numerator : sequence of 3 floats
-        In falling powers of s / omega, over s^2 / omega^2 + 2 zeta s / omega + 1.
+        In falling powers of s / omega [-], over s^2 / omega^2 + 2 zeta s / omega + 1.
     frequency : float
         Undamped natural frequency, below half of `rate` [Hz].
     damping_ratio : float
+        [-]
     rate : float
         Sampling rate [Hz].
 
     Returns
     -------
     ndarray, shape (n,)
-        Exact at the natural frequency (bilinear transform).
+        [-], exact at the natural frequency (bilinear transform).
 
     Examples
     --------
@@ -102,12 +103,12 @@ def resonance(
     return np.asarray(lfilter(b, a, unit))
 
 
-def total(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Sum of responses of different lengths.
+def padded_sum(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Sum of responses of different lengths, each of shape (n,) and in one [unit].
 
     Examples
     --------
-    >>> total([np.ones(3), np.ones(1)])
+    >>> padded_sum([np.ones(3), np.ones(1)])
     array([2., 1., 1.])
     """
     listed = list(signals)
@@ -117,25 +118,26 @@ def total(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
     return added
 
 
-def through(paths: Response, taps: NDArray[np.float64]) -> Response:
+def filter_pressure(paths: ImpulseResponses, taps: NDArray[np.float64]) -> ImpulseResponses:
     """Send both paths to the pressure through a further filter; nothing else changes.
 
     Parameters
     ----------
-    paths : Response
+    paths : ImpulseResponses
     taps : ndarray, shape (n,)
-        Impulse response of the filter, at the rate of the paths.
+        Impulse response of the filter, at the rate of the paths [-].
 
     Returns
     -------
-    Response
+    ImpulseResponses
         Pressures longer by n - 1 samples.
 
     Examples
     --------
-    >>> from models.radiation.impulse_responses import Response
+    >>> from models.radiation.impulse_responses import ImpulseResponses
     >>> one = np.ones(1)
-    >>> through(Response(48e3, one, one, one, one), np.array([1.0, 0.5])).torque_to_pressure
+    >>> plain = ImpulseResponses(48e3, one, one, one, one)
+    >>> filter_pressure(plain, np.array([1.0, 0.5])).torque_to_pressure
     array([1. , 0.5])
     """
     return replace(

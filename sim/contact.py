@@ -1,4 +1,4 @@
-"""What solver, friction laws and effects share while the motion is solved: two small arrays.
+"""The two small arrays that solver, friction laws and effects share while a motion is solved.
 
 Effects read the *context*, what goes on at this instant, and change the *contact*, what bushing
 and elastomer are at this instant. Friction laws read the contact. Compiled functions with these
@@ -7,13 +7,13 @@ signatures are called through pointers, so that one compiled solver serves all l
 
 from __future__ import annotations
 
-from numba import float64, types
+from numba import float64, njit, types
 
 __all__ = [
     "CREEP", "CRITICAL", "ELASTOMER_TORQUE", "HOOK_SIGNATURE", "KINETIC", "LAW_SIGNATURE",
     "N_CONTACT", "N_CONTEXT", "SHAFT_ANGLE", "SHAFT_INERTIA", "SHAFT_LAG", "SHAFT_LAG_RATE",
     "SHAFT_SPEED", "SHAFT_TORQUE", "SLIDING_SPEED", "STICKS", "STICK_TIME", "STIFFNESS", "TIME",
-    "TORQUE", "TWIST", "TWIST_RATE",
+    "TORQUE", "TWIST", "TWIST_RATE", "slipless",
 ]  # fmt: skip
 
 # Context.
@@ -67,3 +67,9 @@ HOOK_SIGNATURE = types.void(_ARRAY, _ARRAY, _ARRAY, _ARRAY, _ARRAY)
 
 LAW_SIGNATURE = float64(float64, _ARRAY, _ARRAY, _ARRAY, _ARRAY)
 """``torque = law(sliding_speed, coefficients, contact, state, state_rates)``."""
+
+
+@njit(cache=True)
+def slipless(context):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201
+    """Whether a contact has not slipped since the start, or its law knows no slips."""
+    return context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]

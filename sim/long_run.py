@@ -10,37 +10,36 @@ motion sees it half a second to both sides.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.condition import Condition
 from models.errors import ParameterError
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
-from sim.friction import at_temperature
-from sim.motion import Motion
-from sim.motion_blocks import motion_blocks, refuse_whole_run_effects
-from sim.run import _LEAST_SOUND_RATE, _channels, _check, motion_and_settling
-from sim.shaft import ConstantSpeed
+from sim.motion import motion_blocks
+from sim.pipeline import pulse_force
+from sim.run import plan_run, sensor_channels
 from sim.streams import Convolution, Decimation
+from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from models.radiation.rig_response import Response
+    from models.condition import Condition
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.recording import Channel
     from models.rig import Rig
     from sim.effects.effect import ActiveEffect, Effect
+    from sim.motion import Motion
+    from sim.pipeline import Plan
     from sim.shaft import ShaftMotion
 
-__all__ = ["BlockRun", "simulate_blocks"]
+__all__ = ["BlockRun", "simulate_blocks", "whole_run_effects"]
 
 _MARGIN = 0.5
 """Of the motion, to both sides of a block, that effects which make a force see [s]."""
@@ -59,7 +58,7 @@ class BlockRun:
     n_samples : int
         Of all blocks together.
     blocks : iterator of ndarray, shape (n_channels, n)
-        In the units of the channels; can be run through once.
+        In the units of the channels [unit]; can be run through once.
     """
 
     rate: float
@@ -111,87 +110,98 @@ def simulate_blocks(
     >>> run.n_samples, sum(block.shape[1] for block in run.blocks)
     (15000, 15000)
     """
-    acquisition = acquisition or Acquisition()
-    noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
-    shaft, settling = motion_and_settling(shaft, settling)
-    _check(min(seconds, 1.0), settling, acquisition.rate, interference, temperature)
-    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
     if not 0.0 < block_seconds < math.inf or not seconds < math.inf:
         raise ParameterError(
             f"seconds = {seconds:g} and block_seconds = {block_seconds:g} must be above 0, finite"
         )
-    effects = activated(rig.effects, library or EFFECTS)
-    refuse_whole_run_effects(effects)
-    decimation = math.ceil(_LEAST_SOUND_RATE / acquisition.rate)
-    rate = decimation * acquisition.rate
-    n_samples, n_settling = round(seconds * acquisition.rate), round(settling * rate)
-    decimations = [Decimation(decimation, n_settling) for _ in _channels(rig)]
-    motions = motion_blocks(
+    acquisition = acquisition or Acquisition()
+    noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
+    plan = plan_run(
         rig,
         shaft,
         interference=interference,
         support_stiffness=support_stiffness,
-        n_samples=n_settling + n_samples * decimation + decimations[0].lookahead,
-        rate=rate,
-        block=max(2, round(block_seconds * rate)),
-        effects=effects,
+        temperature=temperature,
+        seconds=seconds,
+        rate=acquisition.rate,
+        settling=settling,
+        library=library,
+        in_blocks=True,
+    )
+    _refuse_whole_run_effects(plan.effects)
+    channels, n_samples = sensor_channels(rig), round(seconds * acquisition.rate)
+    decimation = SIMULATION.decimation(acquisition.rate)
+    decimations = [Decimation(decimation, plan.n_settling) for _ in channels]
+    motions = motion_blocks(
+        plan.rig,
+        plan.shaft,
+        interference=interference,
+        support_stiffness=support_stiffness,
+        n_samples=plan.n_settling + plan.n_kept + decimations[0].lookahead,
+        rate=plan.rate,
+        block=max(2, round(block_seconds * plan.rate)),
+        effects=plan.effects,
         rng=effect_rng,
     )
+    paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
     signals = _signals(
-        _with_force(motions, [a for a in effects if a.effect.force is not None], rate),
-        changed_chain(
-            response(rig, interference, support_stiffness, rate), effects, effect_rng.spawn(1)[0]
-        ),
-        n_settling,
+        _with_force(motions, plan),
+        changed_chain(paths, plan.effects, effect_rng.spawn(1)[0]),
+        plan.n_settling,
     )
     return BlockRun(
         rate=acquisition.rate,
-        channels=_channels(rig),
-        condition=Condition(
-            speed=shaft.value if isinstance(shaft, ConstantSpeed) else None,
-            interference=interference,
-            support_stiffness=support_stiffness,
-            material=rig.material,
-            temperature=temperature,
-        ),
+        channels=channels,
+        condition=plan.condition,
         n_samples=n_samples,
         blocks=_sampled(signals, decimations, acquisition, noise_rng.spawn(4), n_samples),
     )
 
 
+def whole_run_effects(effects: Sequence[ActiveEffect]) -> list[str]:
+    """Names of the effects that need the whole run at once: those of drive and sensors."""
+    return [
+        active.effect.name
+        for active in effects
+        if active.effect.drive is not None or active.effect.sensors is not None
+    ]
+
+
+def _refuse_whole_run_effects(effects: Sequence[ActiveEffect]) -> None:
+    names = whole_run_effects(effects)
+    if names:
+        raise ParameterError(
+            f"effect {', '.join(names)}: acts on a run as a whole, so it cannot act on one that "
+            "is computed in blocks; make the run shorter, or leave the effect out"
+        )
+
+
 def _with_force(
-    motions: Iterator[Motion], effects: Sequence[ActiveEffect], rate: float
+    motions: Iterator[Motion], plan: Plan
 ) -> Iterator[tuple[Motion, NDArray[np.float64] | None]]:
     """Each block with the force of the effects; with any, blocks come a margin later."""
-    if not effects:
+    if all(active.effect.force is None for active in plan.effects):
         yield from ((motion, None) for motion in motions)
         return
-    margin = round(_MARGIN * rate)
+    margin = round(_MARGIN * plan.rate)
     held: Motion | None = None
     emitted = 0  # samples of `held` that have gone out already
     for motion in motions:
-        held = motion if held is None else _joined(held, motion)
+        held = motion if held is None else held.followed_by(motion)
         ready = held.torque.size - margin
         if ready > emitted:
-            yield _piece(held, effects, emitted, ready)
+            force = pulse_force(held, plan.effects)
+            yield held.part(emitted, ready), force[emitted:ready]
             first = max(0, ready - margin)
-            held, emitted = _cut(held, first, None), ready - first
+            held, emitted = held.since(first), ready - first
     if held is not None:
-        yield _piece(held, effects, emitted, held.torque.size)
-
-
-def _piece(
-    motion: Motion, effects: Sequence[ActiveEffect], start: int, stop: int
-) -> tuple[Motion, NDArray[np.float64]]:
-    force = np.zeros_like(motion.torque)
-    for active in effects:
-        if active.effect.force is not None:
-            force += active.effect.force(motion, active.form, active.values)
-    return _cut(motion, start, stop), force[start:stop]
+        yield held.since(emitted), pulse_force(held, plan.effects)[emitted:]
 
 
 def _signals(
-    blocks: Iterator[tuple[Motion, NDArray[np.float64] | None]], paths: Response, n_settling: int
+    blocks: Iterator[tuple[Motion, NDArray[np.float64] | None]],
+    paths: ImpulseResponses,
+    n_settling: int,
 ) -> Iterator[tuple[dict[str, NDArray[np.float64]], float]]:
     """Signals of each block as the sensors see them, and the angle where the recording starts."""
     by_torque = Convolution([paths.torque_to_acceleration, paths.torque_to_pressure])
@@ -235,21 +245,3 @@ def _sampled(
         left -= rows[0].size
         if rows[0].size:
             yield np.stack(rows)
-
-
-def _arrays(motion: Motion) -> dict[str, NDArray[np.float64]]:
-    names = (field.name for field in fields(motion) if field.name != "rate")
-    return {name: getattr(motion, name) for name in names}
-
-
-def _joined(left: Motion, right: Motion) -> Motion:
-    both = {
-        name: np.concatenate([values, getattr(right, name)])
-        for name, values in _arrays(left).items()
-    }
-    return Motion(rate=left.rate, **both)
-
-
-def _cut(motion: Motion, start: int, stop: int | None) -> Motion:
-    kept = {name: values[start:stop] for name, values in _arrays(motion).items()}
-    return Motion(rate=motion.rate, **kept)

@@ -9,15 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from sim.bushing import LumpedBushing, lumped_bushing
+from sim.bushing import lumped_bushing
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
 from sim.friction import friction_law
+from sim.motion_limits import refuse_fast, refuse_overflow
 from sim.parameters import resolve
-from sim.solvers.contact_solver import Hook, solve_contact
+from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
 from sim.solvers.contact_state import MOST_HOOKS
-from sim.solvers.stick_slip import solve_stick_slip
+from sim.solvers.stick_slip import advance_stick_slip, rest_state
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -25,36 +28,30 @@ if TYPE_CHECKING:
     from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
-__all__ = ["STICK_SPEED_SHARE", "Motion", "contact_hooks", "simulate_motion"]
+__all__ = ["STICK_SPEED_SHARE", "Motion", "contact_hooks", "motion_blocks", "simulate_motion"]
 
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""
 
-_FASTEST_SLIP = 60.0
-"""Sliding speeds exceed the shaft's by about so much [rad/s]; the thesis has 45 (Figure 6.7)."""
-
-_FASTEST_RATE = 3e7
-"""That the solver of contacts follows in a bearable time [1/s]."""
-
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Motion and torques over time, sampled at `rate`; all arrays have shape (n,).
+    """Motion and torques over time, sampled at `rate`.
 
     Parameters
     ----------
     rate : float
         [Hz]
-    torque : ndarray
+    torque : ndarray, shape (n,)
         Torque that the bushing puts into the clamp, T_E [Nm]; what the thesis plots and the
         torque cell is taken to read.
-    friction_torque : ndarray
+    friction_torque : ndarray, shape (n,)
         Torque in the contact [Nm]; differs from `torque` by the inertia of the elastomer.
-    shaft_angle, shaft_speed : ndarray
+    shaft_angle, shaft_speed : ndarray, shape (n,)
         [rad], [rad/s]
-    interface_angle, interface_speed : ndarray
+    interface_angle, interface_speed : ndarray, shape (n,)
         Of the bushing's surface: how far it has been carried along [rad], [rad/s].
-    clamp_angle, clamp_speed : ndarray
+    clamp_angle, clamp_speed : ndarray, shape (n,)
         [rad], [rad/s]
     """
 
@@ -70,17 +67,24 @@ class Motion:
 
     @property
     def sliding_speed(self) -> NDArray[np.float64]:
-        """Speed of the shaft over the bushing's surface [rad/s]."""
+        """Speed of the shaft over the bushing's surface [rad/s], shape (n,)."""
         return self.shaft_speed - self.interface_speed
+
+    def part(self, start: int, stop: int | None = None) -> Motion:
+        """Return the motion from sample `start` to before `stop`, by default to its end."""
+        return Motion(self.rate, *(values[start:stop] for values in self._arrays()))
 
     def since(self, first: int) -> Motion:
         """Return the motion from sample `first` on."""
-        kept = {
-            field.name: getattr(self, field.name)[first:]
-            for field in fields(self)
-            if field.name != "rate"
-        }
-        return Motion(rate=self.rate, **kept)
+        return self.part(first)
+
+    def followed_by(self, later: Motion) -> Motion:
+        """Return the motion with what comes after it."""
+        pairs = zip(self._arrays(), later._arrays(), strict=True)
+        return Motion(self.rate, *(np.concatenate(pair) for pair in pairs))
+
+    def _arrays(self) -> list[NDArray[np.float64]]:
+        return [getattr(self, field.name) for field in fields(self) if field.name != "rate"]
 
     @property
     def stuck(self) -> NDArray[np.bool_]:
@@ -97,7 +101,7 @@ def simulate_motion(
     support_stiffness: float,
     seconds: float,
     rate: float,
-    effects: Sequence[ActiveEffect] = (),
+    effects: Sequence[ActiveEffect] | None = None,
     rng: np.random.Generator | None = None,
     tolerance: float | None = None,
 ) -> Motion:
@@ -117,13 +121,14 @@ def simulate_motion(
         Of the output [Hz]. At constant and ramped speed the solution does not depend on it; other
         motions of the shaft are linear between its samples, which moves events by some 5e-9 s at
         30 kHz, and by the square of the step.
-    effects : sequence of ActiveEffect
-        Those of drive and friction act, in this order; the others are left to others.
+    effects : sequence of ActiveEffect, optional
+        Those of drive and friction act, in this order; the others are left to others. By default
+        the rig's, among those of `sim.effects`.
     rng : numpy.random.Generator, optional
         Of effects that scatter; by default seeded with 0.
     tolerance : float, optional
-        Error of a step where the motion has no exact solution; by default that of the friction law,
-        which is less than regimes and spectra need.
+        Error of a step where the motion has no exact solution [-]; by default that of the friction
+        law, which is less than regimes and spectra need.
 
     Returns
     -------
@@ -148,63 +153,147 @@ def simulate_motion(
     n = round(seconds * rate)
     if not n >= 2:
         raise ParameterError(f"seconds = {seconds:g} at rate = {rate:g} Hz gives no samples")
-    system = lumped_bushing(rig, interference, support_stiffness)
-    fit = rig.fit(interference)
-    law = friction_law(rig.friction.name)
-    values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
-    step = 1.0 / rate
-    drive = shaft.speed(np.arange(n, dtype=np.float64) * step)
+    drive = _drive(shaft, 0, n, rate)
+    effects = activated(rig.effects, EFFECTS) if effects is None else effects
     for active in effects:
         if active.effect.drive is not None:
             drive = active.effect.drive(drive, rate, active.form, active.values, rng)
-    hooks = contact_hooks(effects, rng)
-    torques = fit.critical_torque, fit.kinetic_torque
-    if law.torque is None and not hooks:
-        states, _, _ = solve_stick_slip(system.packed(), *torques, drive, step)
-        speed = drive
-    else:
-        _refuse_fast(system, rig, fit.kinetic_torque, values, drive)
-        coefficients = law.coefficients(values)
-        states, _ = solve_contact(
-            system.packed(), *torques, drive, step, law=law.torque, coefficients=coefficients,
-            law_state=law.state(coefficients), hooks=hooks, name=_friction(law.name, effects),
-            tolerance=tolerance or law.tolerance,
-        )  # fmt: skip
-        speed = states[:, 6]
-    _refuse_overflow(states, system, rig, drive)
-    return Motion(
-        rate=rate,
-        torque=states[:, 1],
-        friction_torque=states[:, 0],
-        shaft_angle=_integral(drive, step),
-        shaft_speed=speed,
-        interface_angle=states[:, 2],
-        interface_speed=states[:, 3],
-        clamp_angle=states[:, 4],
-        clamp_speed=states[:, 5],
-    )
+    solver = _Solver(
+        rig, interference, support_stiffness, rate, effects, rng,
+        start_speed=float(drive[0]), top_speed=float(np.abs(drive).max()), tolerance=tolerance,
+    )  # fmt: skip
+    return solver.advance(drive, n)
 
 
-def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
-    """List what acts on the contact, in the order of the effects."""
-    acting = [active for active in effects if active.effect.contact is not None]
-    if len(acting) > MOST_HOOKS:
-        names = ", ".join(active.effect.name for active in acting)
-        raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
-    return tuple(_hook(active, rng) for active in acting)
+def motion_blocks(
+    rig: Rig,
+    shaft: ShaftMotion,
+    *,
+    interference: float,
+    support_stiffness: float,
+    n_samples: int,
+    rate: float,
+    block: int,
+    effects: Sequence[ActiveEffect] = (),
+    rng: np.random.Generator | None = None,
+) -> Iterator[Motion]:
+    """Simulate the rig from rest, block by block, each going on where the one before ended.
+
+    Parameters
+    ----------
+    rig, shaft, interference, support_stiffness, rate, rng
+        As for `simulate_motion`.
+    n_samples, block : int
+        Of the run, and of a block; the last one may be shorter.
+    effects : sequence of ActiveEffect
+        Those of friction act; one of the drive cannot, since it needs the whole run at once.
+
+    Yields
+    ------
+    Motion
+        Joined they are what `simulate_motion` gives, to rounding.
+
+    Raises
+    ------
+    ParameterError
+        As `simulate_motion`.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.shaft import ConstantSpeed
+    >>> blocks = motion_blocks(
+    ...     load_material_rig("fluorocarbon-thesis"), ConstantSpeed(1.0), interference=0.279e-3,
+    ...     support_stiffness=3745.0, n_samples=2500, rate=30e3, block=1000,
+    ... )
+    >>> [block.torque.size for block in blocks]
+    [1000, 1000, 500]
+    """
+    starts = range(0, n_samples, block)
+    tops = (float(np.abs(_drive(shaft, start, block + 1, rate)).max()) for start in starts)
+    solver = _Solver(
+        rig, interference, support_stiffness, rate, effects, rng or np.random.default_rng(0),
+        start_speed=float(shaft.speed(np.zeros(1))[0]), top_speed=max(tops), tolerance=None,
+    )  # fmt: skip
+    beyond = math.ceil(LONGEST_STEP / (1.0 / rate)) + 1  # steps reach beyond the block
+    for start in starts:
+        n = min(block, n_samples - start)
+        yield solver.advance(_drive(shaft, start, n + beyond, rate), n)
 
 
-def _hook(active: ActiveEffect, rng: np.random.Generator) -> Hook:
-    effect = active.effect
-    values = np.array(list(active.values.values()))
-    if effect.pack is not None:
-        values = effect.pack(active.form, active.values, rng)
-    return Hook(effect.contact, values, effect.n_states)
+class _Solver:
+    """The rig from rest, solved as many samples at a time as is asked for.
+
+    Parameters
+    ----------
+    rig, interference, support_stiffness, rate, effects, rng, tolerance
+        As for `simulate_motion`; effects of the drive have acted already.
+    start_speed, top_speed : float
+        Of the drive: at the start, and the largest of the run [rad/s].
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        interference: float,
+        support_stiffness: float,
+        rate: float,
+        effects: Sequence[ActiveEffect],
+        rng: np.random.Generator,
+        *,
+        start_speed: float,
+        top_speed: float,
+        tolerance: float | None,
+    ) -> None:
+        self._rig, self._rate, self._step, self._top_speed = rig, rate, 1.0 / rate, top_speed
+        self._system = lumped_bushing(rig, interference, support_stiffness)
+        self._packed = self._system.packed()
+        fit = rig.fit(interference)
+        self._torques = fit.critical_torque, fit.kinetic_torque
+        law = friction_law(rig.friction.name)
+        values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
+        hooks = contact_hooks(effects, rng)
+        self._angle = 0.0
+        self._state = rest_state(start_speed)
+        self._contact: ContactRun | None = None
+        if law.torque is not None or hooks:
+            refuse_fast(self._system, rig, fit.kinetic_torque, values, top_speed)
+            coefficients = law.coefficients(values)
+            self._contact = ContactRun(
+                self._packed, *self._torques, start_speed, self._step, law=law.torque,
+                coefficients=coefficients, law_state=law.state(), hooks=hooks,
+                name=_friction(law.name, effects), tolerance=tolerance or law.tolerance,
+            )  # fmt: skip
+
+    def advance(self, drive: NDArray[np.float64], n: int) -> Motion:
+        """Solve the next `n` samples; `drive` goes on beyond them unless the run ends there."""
+        if self._contact is None:
+            states, _, _ = advance_stick_slip(
+                self._packed, *self._torques, drive[: n + 1], self._step, self._state, n
+            )
+            speed = drive[:n]
+        else:
+            states, _ = self._contact.advance(drive, n)
+            speed = states[:, 6]
+        refuse_overflow(states, self._system, self._rig, self._top_speed)
+        angles = self._angle + _integral(drive[: n + 1], self._step)
+        self._angle = float(angles[-1])
+        return Motion(
+            rate=self._rate,
+            torque=states[:, 1],
+            friction_torque=states[:, 0],
+            shaft_angle=angles[:n],
+            shaft_speed=speed,
+            interface_angle=states[:, 2],
+            interface_speed=states[:, 3],
+            clamp_angle=states[:, 4],
+            clamp_speed=states[:, 5],
+        )
 
 
-def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:
-    names = [active.effect.name for active in effects if active.effect.contact is not None]
-    return f"friction law {law!r}" + (f" with {', '.join(names)}" if names else "")
+def _drive(shaft: ShaftMotion, start: int, n: int, rate: float) -> NDArray[np.float64]:
+    """Speed of the drive at `n` samples from `start` on [rad/s]."""
+    return shaft.speed(np.arange(start, start + n, dtype=np.float64) * (1.0 / rate))
 
 
 def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
@@ -213,50 +302,23 @@ def _integral(speed: NDArray[np.float64], step: float) -> NDArray[np.float64]:
     return angle
 
 
-def _refuse_fast(
-    system: LumpedBushing,
-    rig: Rig,
-    kinetic_torque: float,
-    law: Mapping[str, float],
-    drive: NDArray[np.float64],
-) -> None:
-    """Refuse what no bearable number of steps follows, by an estimate of the fastest rate."""
-    contact = law.get("contact_stiffness_per_torque", 0.0)
-    damping = system.elastomer_damping
-    damping += law.get("contact_damping_per_torque", 0.0) * kinetic_torque
-    sliding = float(np.abs(drive).max()) + _FASTEST_SLIP
-    stiffness = contact * kinetic_torque + system.elastomer_stiffness
-    rates = [
-        math.sqrt(stiffness / system.elastomer_inertia),
-        damping / system.elastomer_inertia,
-        contact * sliding,
-        sliding / law["renewal_angle"] if "renewal_angle" in law else 0.0,
-    ]
-    if not system.clamp_is_fixed:
-        stiffness = system.elastomer_stiffness + system.support_stiffness
-        rates += [
-            math.sqrt(stiffness / system.clamp_inertia),
-            (damping + system.support_damping) / system.clamp_inertia,
-        ]
-    fastest = max(rates)
-    if fastest > _FASTEST_RATE:
-        raise ParameterError(
-            f"{_what(system, rig, drive)}: some part moves {fastest:.3g} times a second, which "
-            f"no step of this solver follows; make it softer, heavier or less damped"
-        )
+def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> tuple[Hook, ...]:
+    """List what acts on the contact, in the order of the effects.
 
-
-def _refuse_overflow(
-    states: NDArray[np.float64], system: LumpedBushing, rig: Rig, drive: NDArray[np.float64]
-) -> None:
-    if not np.isfinite(states[-1]).all():
-        raise ParameterError(f"{_what(system, rig, drive)}: the motion grows without bound")
-
-
-def _what(system: LumpedBushing, rig: Rig, drive: NDArray[np.float64]) -> str:
-    return (
-        f"with speeds up to {np.abs(drive).max():g} rad/s, friction {rig.friction}, inertia "
-        f"{system.elastomer_inertia:g} and {system.clamp_inertia:g} kg m2, stiffness "
-        f"{system.elastomer_stiffness:g} and {system.support_stiffness:g} Nm/rad, damping "
-        f"{system.elastomer_damping:g} and {system.support_damping:g} Nm s/rad"
+    Raises
+    ------
+    ParameterError
+        More effects act on the contact than the solver takes.
+    """
+    acting = [active for active in effects if active.effect.contact is not None]
+    if len(acting) > MOST_HOOKS:
+        names = ", ".join(active.effect.name for active in acting)
+        raise ParameterError(f"{names}: at most {MOST_HOOKS} effects can act on the contact")
+    return tuple(
+        Hook(active.effect.contact, active.packed(rng), active.effect.n_states) for active in acting
     )
+
+
+def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:
+    names = [active.effect.name for active in effects if active.effect.contact is not None]
+    return f"friction law {law!r}" + (f" with {', '.join(names)}" if names else "")

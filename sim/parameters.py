@@ -24,9 +24,10 @@ class Parameter:
     Parameters
     ----------
     default : float
+        [`unit`]
     unit : str
     low, high : float
-        Admitted range, both ends included.
+        Admitted range, both ends included [`unit`].
     meaning : str
         One line.
     """

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.condition import Condition
 from models.errors import ParameterError
-from models.radiation.rig_response import radiate, response
+from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import at_temperature
-from sim.motion import Motion, simulate_motion
+from sim.pipeline import (
+    Plan,
+    apply_sensor_effects,
+    radiate_motion,
+    run_motion,
+    sensor_signals,
+)
 from sim.shaft import ConstantSpeed, ShaftMotion
+from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,20 +34,15 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
     from sim.effects.effect import Effect
+    from sim.motion import Motion
 
-__all__ = ["DEFAULT_SETTLING", "Run", "simulate"]
-
-DEFAULT_SETTLING = 0.5
-"""How long a shaft at constant speed has turned before the recording starts [s]."""
-
-_LEAST_SOUND_RATE = 90e3
-"""Motion and sound are computed at a multiple of the sampling rate no lower than this [Hz]."""
+__all__ = ["LONGEST_RUN", "Run", "plan_run", "sensor_channels", "simulate"]
 
 _ABSOLUTE_ZERO = 273.15
 """Below 0 degree Celsius [K]."""
 
-_LONGEST_RUN = 600.0
-"""[s]; the whole run is held in memory."""
+LONGEST_RUN = 600.0
+"""[s]; the whole run is held in memory. `sim.long_run` has no such limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,19 +59,22 @@ class Run:
         Sound pressure at the microphone at ``motion.rate``, free of noise [Pa].
     pulse_pressure : ndarray, shape (n,)
         The part of `pressure` that slip pulses make through the plate [Pa].
+    settling : float
+        How long the rig has run before all this [s].
 
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
-    >>> run.motion.rate, run.pressure.shape
-    (90000.0, (9000,))
+    >>> run.motion.rate, run.settling, run.pressure.shape
+    (90000.0, 0.5, (9000,))
     """
 
     recording: Recording
     motion: Motion
     pressure: NDArray[np.float64]
     pulse_pressure: NDArray[np.float64]
+    settling: float
 
     def plot(
         self, ax: Axes | None = None, *, start: float | None = None, end: float | None = None
@@ -143,8 +146,8 @@ def simulate(
     acquisition : Acquisition, optional
         Sampling rate, noise and converter; by default 30 kHz.
     settling : float, optional
-        How long the rig has run before the recording starts [s]; by default `DEFAULT_SETTLING`
-        at constant speed, else none.
+        How long the rig has run before the recording starts [s]; by default that of
+        `sim.timing.SIMULATION` at constant speed, else none.
     library : mapping of str to Effect, optional
         Effects that the rig's can be found among; by default `sim.effects.EFFECTS`.
     rng : numpy.random.Generator, optional
@@ -169,92 +172,108 @@ def simulate(
     acquisition = acquisition or Acquisition()
     # Two streams, so that an effect that scatters leaves the sensors' noise as it is.
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
-    shaft, settling = motion_and_settling(shaft, settling)
-    _check(seconds, settling, acquisition.rate, interference, temperature)
-    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
-
-    decimation = math.ceil(_LEAST_SOUND_RATE / acquisition.rate)
-    rate = decimation * acquisition.rate
-    n_kept = round(seconds * acquisition.rate) * decimation
-    n_settling = round(settling * rate)
-    effects = activated(rig.effects, library or EFFECTS)
-    motion = simulate_motion(
+    plan = plan_run(
         rig,
         shaft,
         interference=interference,
         support_stiffness=support_stiffness,
-        seconds=(n_settling + n_kept) / rate,
-        rate=rate,
-        effects=effects,
-        rng=effect_rng,
-    )
-    force = np.zeros_like(motion.torque)
-    for active in effects:
-        if active.effect.force is not None:
-            force += active.effect.force(motion, active.form, active.values)
-    paths = changed_chain(
-        response(rig, interference, support_stiffness, rate), effects, effect_rng.spawn(1)[0]
-    )
-    acceleration, pressure = radiate(paths, motion.torque, force)
-    _, pulse_pressure = radiate(paths, np.zeros_like(force), force)
-
-    kept = slice(n_settling, None)
-    signals = {
-        "torque": motion.torque[kept],
-        "acceleration": acceleration[kept],
-        "pressure": pressure[kept],
-        "angle": motion.shaft_angle[kept] - motion.shaft_angle[n_settling],
-    }
-    for active in effects:
-        if active.effect.sensors is not None:
-            signals = active.effect.sensors(signals, rate, active.form, active.values, effect_rng)
-    sampled = sample(signals, decimation, acquisition, noise_rng)
-    condition = Condition(
-        speed=shaft.value if isinstance(shaft, ConstantSpeed) else None,
-        interference=interference,
-        support_stiffness=support_stiffness,
-        material=rig.material,
         temperature=temperature,
+        seconds=seconds,
+        rate=acquisition.rate,
+        settling=settling,
+        library=library,
     )
+    motion = run_motion(plan, effect_rng)
+    paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
+    paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
+    sound = radiate_motion(motion, paths, plan.effects)
+    signals = sensor_signals(motion, sound, plan.n_settling)
+    signals = apply_sensor_effects(signals, plan.effects, plan.rate, effect_rng)
+    decimation = SIMULATION.decimation(acquisition.rate)
+    sampled = sample(signals, decimation, acquisition, noise_rng)
     recording = Recording(
         samples=np.stack(list(sampled.values())),
         rate=acquisition.rate,
-        channels=_channels(rig),
-        condition=condition,
+        channels=sensor_channels(rig),
+        condition=plan.condition,
     )
+    kept = slice(plan.n_settling, None)
     return Run(
         recording=recording,
-        motion=motion.since(n_settling),
-        pressure=pressure[kept],
-        pulse_pressure=pulse_pressure[kept],
+        motion=motion.since(plan.n_settling),
+        pressure=sound.pressure[kept],
+        pulse_pressure=sound.pulse_pressure[kept],
+        settling=plan.n_settling / plan.rate,
     )
 
 
-def motion_and_settling(
-    shaft: ShaftMotion | float, settling: float | None
-) -> tuple[ShaftMotion, float]:
-    """Return the shaft's motion, a number being a constant speed, and how long it settles [s].
+def plan_run(
+    rig: Rig,
+    shaft: ShaftMotion | float,
+    *,
+    interference: float,
+    support_stiffness: float,
+    temperature: float,
+    seconds: float,
+    rate: float,
+    settling: float | None,
+    library: Mapping[str, Effect] | None,
+    in_blocks: bool = False,
+) -> Plan:
+    """Check what is asked of a run, and plan it.
+
+    Parameters
+    ----------
+    rig, shaft, interference, support_stiffness, temperature, seconds, settling, library
+        As for `simulate`.
+    rate : float
+        Of the recording [Hz].
+    in_blocks : bool
+        Whether it may be longer than what is held in memory.
+
+    Returns
+    -------
+    Plan
+        At a multiple of `rate`, as `sim.timing.SIMULATION` has it.
 
     Raises
     ------
     ParameterError
-        If the shaft is neither a number nor a motion.
+        If a value cannot be used, or the shaft is neither a number nor a motion.
 
     Examples
     --------
-    >>> motion_and_settling(5, None)
-    (ConstantSpeed(value=5.0), 0.5)
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> plan = plan_run(
+    ...     load_material_rig("PDMS"), 5, interference=0.279e-3, support_stiffness=2214.0,
+    ...     temperature=23.0, seconds=1.0, rate=30e3, settling=None, library=None,
+    ... )
+    >>> plan.shaft, plan.rate, plan.n_settling, plan.n_kept
+    (ConstantSpeed(value=5.0), 90000.0, 45000, 90000)
     """
     if isinstance(shaft, Real):
         shaft = ConstantSpeed(float(shaft))
     if not isinstance(shaft, ShaftMotion):
         raise ParameterError(f"shaft = {shaft!r}: give a speed in rad/s, or a motion of sim.shaft")
     if settling is None:
-        settling = DEFAULT_SETTLING if isinstance(shaft, ConstantSpeed) else 0.0
-    return shaft, settling
+        settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
+    held = min(seconds, 1.0) if in_blocks else seconds
+    _check(held, settling, rate, interference, temperature)
+    return Plan(
+        rig=replace(rig, friction=at_temperature(rig.friction, temperature)),
+        shaft=shaft,
+        interference=interference,
+        support_stiffness=support_stiffness,
+        effects=activated(rig.effects, library or EFFECTS),
+        rate=SIMULATION.rate(rate),
+        n_settling=round(settling * SIMULATION.rate(rate)),
+        n_kept=round(seconds * rate) * SIMULATION.decimation(rate),
+        temperature=temperature,
+    )
 
 
-def _channels(rig: Rig) -> tuple[Channel, ...]:
+def sensor_channels(rig: Rig) -> tuple[Channel, ...]:
+    """Return the channels of a recording of a rig."""
     return (
         Channel("torque"),
         Channel("acceleration"),
@@ -266,10 +285,10 @@ def _channels(rig: Rig) -> tuple[Channel, ...]:
 def _check(
     seconds: float, settling: float, rate: float, interference: float, temperature: float
 ) -> None:
-    if not (0.0 < seconds <= _LONGEST_RUN and 0.0 <= settling <= _LONGEST_RUN):
+    if not (0.0 < seconds <= LONGEST_RUN and 0.0 <= settling <= LONGEST_RUN):
         raise ParameterError(
             f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "
-            f"most {_LONGEST_RUN:g}"
+            f"most {LONGEST_RUN:g}"
         )
     if not 1e3 <= rate <= 400e3:
         raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")

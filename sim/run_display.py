@@ -1,4 +1,4 @@
-"""How a run shows itself: a table of what moved and sounded, and its torques over time."""
+"""Display of a run: a table of what moved and sounded, and its torques over time."""
 
 from __future__ import annotations
 
@@ -64,6 +64,7 @@ def run_html(run: Run) -> str:
         ["sliding speed", f"{sliding.min():.4g} to {sliding.max():.4g} rad/s"],
         ["in stick", f"{100 * motion.stuck.mean():.0f} % of the time"],
         ["sound at the microphone", _level(run.pressure)],
+        ["computed", f"at {motion.rate:g} Hz, after {run.settling:g} s of settling"],
     ]
     caption = ", ".join(["Simulated run", *run.recording.condition.words])
     return html_table(caption, rows) + run.recording._repr_html_()

@@ -1,4 +1,4 @@
-"""How the shaft turns: at constant speed, on a ramp, to and fro, or as it was logged."""
+"""Motions of the shaft: at constant speed, on a ramp, to and fro, or as it was logged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ShaftMotion(Protocol):
     """Anything that knows the shaft's angular speed at given times."""
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s]."""
+        """Angular speed [rad/s] at `time` [s], both of one shape."""
         ...
 
 
@@ -43,7 +43,7 @@ class ConstantSpeed:
     value: float
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s]."""
+        """Angular speed [rad/s] at `time` [s], both of one shape."""
         return np.full(time.shape, float(self.value))
 
 
@@ -69,7 +69,7 @@ class SpeedRamp:
     duration: float
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s]."""
+        """Angular speed [rad/s] at `time` [s], both of one shape."""
         return self.start + (self.end - self.start) * np.clip(time / self.duration, 0.0, 1.0)
 
 
@@ -83,6 +83,11 @@ class Oscillation:
         [rad]
     frequency : float
         [Hz]
+
+    Raises
+    ------
+    ParameterError
+        If an amplitude or a frequency is not finite, or the frequency not above 0.
 
     Examples
     --------
@@ -101,7 +106,7 @@ class Oscillation:
             )
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s]."""
+        """Angular speed [rad/s] at `time` [s], both of one shape."""
         omega = 2.0 * math.pi * self.frequency
         return np.asarray(self.amplitude * omega * np.cos(omega * time))
 
@@ -145,5 +150,5 @@ class LoggedSpeed:
             raise ParameterError(f"logged speed: time does not rise at row {falls[0] + 2}")
 
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s]."""
+        """Angular speed [rad/s] at `time` [s], both of one shape."""
         return np.asarray(np.interp(time, self._time, self._speed))

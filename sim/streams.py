@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
-from scipy.signal import firwin, upfirdn
+from scipy.signal import upfirdn
+
+from sim.acquisition import anti_alias_filter
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,9 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Convolution", "Decimation"]
 
-_HALF_LENGTH = 10
-"""Of the anti-alias filter, in samples kept; that of `scipy.signal.resample_poly`."""
-
 
 class Convolution:
     """Causal convolution of one signal with several impulse responses.
@@ -29,6 +28,7 @@ class Convolution:
     Parameters
     ----------
     responses : sequence of ndarray, shape (m,)
+        [unit of each output over that of the signal]
 
     Examples
     --------
@@ -81,10 +81,8 @@ class Decimation:
 
     def __init__(self, factor: int, skip: int = 0) -> None:
         self._factor, self._skip = factor, skip
-        self._half = _HALF_LENGTH * factor if factor > 1 else 0
-        self._filter = np.ones(1)
-        if factor > 1:
-            self._filter = firwin(2 * self._half + 1, 1.0 / factor, window=("kaiser", 5.0))
+        self._filter = anti_alias_filter(factor) if factor > 1 else np.ones(1)
+        self._half = self._filter.size // 2
         self._held: NDArray[np.float64] | None = None
 
     @property

@@ -8,6 +8,7 @@ does not reach is NaN, never zero: "not measured" is not "silent".
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from features.kernels.spectra import Spectrum
 
 __all__ = [
+    "LEAST_SHARE_DB",
     "NOMINAL_THIRD_OCTAVES",
     "REFERENCES",
     "THESIS_BANDS",
@@ -29,6 +31,7 @@ __all__ = [
     "band_levels",
     "band_power",
     "overall_level",
+    "relative_db",
     "third_octave_edges",
     "third_octave_levels",
 ]
@@ -45,6 +48,9 @@ NOMINAL_THIRD_OCTAVES = (
 
 THESIS_BANDS = ((0.0, 2e3), (2e3, 5e3), (5e3, 15e3))
 """Bands [Hz] in which the thesis tells torque from structure from creak (5.2.3)."""
+
+LEAST_SHARE_DB = -80.0
+"""Lowest relative level that is told from nothing [dB]."""
 
 _ANTI_ALIAS = 0.9
 """Share of the Nyquist frequency that a recorder's anti-aliasing filter leaves alone."""
@@ -283,7 +289,25 @@ def overall_level(spectrum: Spectrum, *, reference: float, weighting: str = "Z")
 def _a_response(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
     f2 = frequency**2
     p1, p2, p3, p4 = (pole**2 for pole in _A_POLES)
-    response: NDArray[np.float64] = (p4 * f2**2) / (
-        (f2 + p1) * np.sqrt((f2 + p2) * (f2 + p3)) * (f2 + p4)
-    )
-    return response
+    return np.asarray((p4 * f2**2) / ((f2 + p1) * np.sqrt((f2 + p2) * (f2 + p3)) * (f2 + p4)))
+
+
+def relative_db(part: float, whole: float) -> float:
+    """Level of a part relative to a whole, at least -80 dB.
+
+    Parameters
+    ----------
+    part, whole : float
+        Mean squares [unit^2]; the latter is positive.
+
+    Returns
+    -------
+    float
+        [dB]
+
+    Examples
+    --------
+    >>> relative_db(0.5, 5.0), relative_db(0.0, 1.0)
+    (-10.0, -80.0)
+    """
+    return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))

@@ -94,7 +94,17 @@ class Transform:
 
 
 def usable_limit(rate: float) -> float:
-    """Highest frequency [Hz] to which a sampling rate [Hz] is taken at face value.
+    """Highest frequency to which a sampling rate is taken at face value.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+
+    Returns
+    -------
+    float
+        [Hz]
 
     Examples
     --------
@@ -110,9 +120,14 @@ def checked_signal(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
     Parameters
     ----------
     signal : array_like, shape (n_samples,)
-        One channel.
+        One channel, in any unit.
     rate : float
         Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n_samples,)
+        In the signal's own [unit].
 
     Raises
     ------
@@ -147,9 +162,13 @@ def forward(signal: NDArray[np.float64], rate: float) -> Transform:
     Parameters
     ----------
     signal : ndarray, shape (n_samples,)
-        Mean removed.
+        Mean removed, in any [unit].
     rate : float
         Sampling rate [Hz].
+
+    Returns
+    -------
+    Transform
 
     Examples
     --------
@@ -180,7 +199,8 @@ def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[
 
     Returns
     -------
-    samples : ndarray
+    samples : ndarray, shape (n,)
+        In the signal's own [unit].
     rate : float
         [Hz]; `high` divided by `USABLE_SHARE` to within the rounding of whole samples, at most the
         rate of the signal.
@@ -216,8 +236,8 @@ def band_analytic(
 
     Returns
     -------
-    analytic : ndarray of complex
-        The magnitude of a sinusoid in the band is its amplitude.
+    analytic : ndarray of complex, shape (n,)
+        In the signal's unit; the magnitude of a sinusoid in the band is its amplitude.
     rate : float
         [Hz], about 1.25 times the band's width with its flanks.
 

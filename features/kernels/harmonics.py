@@ -74,7 +74,7 @@ class Harmonics:
     fundamental : float
         [Hz]; NaN where the signal has no period.
     strength : float
-        Normalised autocorrelation at the period, 0 to 1.
+        Normalised autocorrelation at the period, 0 to 1 [-].
     amplitudes : ndarray, shape (n_harmonics,)
         Peak amplitude of each harmonic up to the upper limit, the fundamental first [unit]; empty
         without a fundamental.
@@ -186,6 +186,10 @@ def harmonics_of(
     lowest, highest : float
         Limits of the fundamental [Hz].
 
+    Returns
+    -------
+    Harmonics
+
     Examples
     --------
     >>> import numpy as np
@@ -227,7 +231,18 @@ def harmonics_of(
 
 
 def inharmonicity_of(fundamental: float, lines: Lines) -> float:
-    """Distance of lines from the harmonics of a fundamental [Hz]; see `Harmonics`.
+    """Distance of lines from the harmonics of a fundamental; see `Harmonics`.
+
+    Parameters
+    ----------
+    fundamental : float
+        [Hz]
+    lines : Lines
+
+    Returns
+    -------
+    float
+        0 to 1 [-]; NaN without lines.
 
     Notes
     -----

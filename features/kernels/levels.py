@@ -22,7 +22,13 @@ from models.recording import REFERENCE_PRESSURE
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FAST", "SoundLevels", "a_weighted", "fast_levels", "sound_levels"]
+__all__ = [
+    "FAST",
+    "SoundLevels",
+    "a_weighted",
+    "fast_levels",
+    "sound_levels",
+]
 
 FAST = 0.125
 """Time constant of the weighting F [s] (IEC 61672-1)."""
@@ -57,7 +63,16 @@ class SoundLevels:
     third_octaves: dict[str, float]
 
     def raised(self, gain_db: float) -> SoundLevels:
-        """Return the levels of the same sound, this much louder [dB].
+        """Return the levels of the same sound, this much louder.
+
+        Parameters
+        ----------
+        gain_db : float
+            [dB]
+
+        Returns
+        -------
+        SoundLevels
 
         Examples
         --------
@@ -120,13 +135,14 @@ def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
     ----------
     signal : array_like, shape (n_samples,)
     rate : float
+        In any [unit].
         Sampling rate [Hz].
 
     Returns
     -------
     ndarray, shape (n_samples,)
-        Magnitudes are those of IEC 61672-1:2013, Annex E, up to half the sampling rate; phases are
-        left as they are.
+        In the sound's own [unit]. Magnitudes are those of IEC 61672-1:2013, Annex E, up to half
+        the sampling rate; phases are left as they are.
 
     Raises
     ------

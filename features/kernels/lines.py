@@ -10,6 +10,7 @@ a friction tone wanders by about that much in a second and is still one tone.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -72,6 +73,11 @@ class Lines:
     total: float
 
     @property
+    def strongest(self) -> float:
+        """Frequency of the strongest line [Hz], NaN if there is none."""
+        return float(self.frequency[0]) if self.frequency.size else math.nan
+
+    @property
     def strongest_share(self) -> float:
         """Share of the band's power in the strongest line, 0 if there is none."""
         return float(self.power[0] / self.total) if self.power.size else 0.0
@@ -83,10 +89,20 @@ class Lines:
 
 
 def line_resolution(duration: float) -> float:
-    """Spacing of bins [Hz] at which to look for lines in so many seconds.
+    """Spacing of the bins at which to look for lines.
 
     A quarter of a second a segment, less where fewer than three segments would be averaged: in a
     single one noise itself rises 13 dB above its mean.
+
+    Parameters
+    ----------
+    duration : float
+        Of the signal [s].
+
+    Returns
+    -------
+    float
+        [Hz]
 
     Examples
     --------
@@ -97,7 +113,16 @@ def line_resolution(duration: float) -> float:
 
 
 def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
-    """Density of the noise between the lines [unit^2/Hz], shape (n_bins,).
+    """Density of the noise between the lines.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+
+    Returns
+    -------
+    ndarray, shape (n_bins,)
+        [unit^2/Hz]
 
     Notes
     -----
@@ -135,7 +160,7 @@ def find_lines(
     low, high : float
         Limits of the search [Hz].
     floor : ndarray, shape (n_bins,), optional
-        `noise_floor` of the spectrum, if it is at hand.
+        `noise_floor` of the spectrum, if it is at hand [unit^2/Hz].
 
     Returns
     -------
@@ -188,10 +213,25 @@ def line_powers(
     *,
     spacing: NDArray[np.float64] | float,
 ) -> NDArray[np.float64]:
-    """Power above the floor about given frequencies [unit^2], shape (n_lines,).
+    """Power above the floor about given frequencies.
 
     A line reaches as far as the window's main lobe and its wander, but not beyond half of
-    `spacing`, the distance to the next one [Hz].
+    `spacing`.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+    floor : ndarray, shape (n_bins,)
+        `noise_floor` of it [unit^2/Hz].
+    frequency : ndarray, shape (n_lines,)
+        [Hz]
+    spacing : float or ndarray, shape (n_lines,)
+        Distance to the next line [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n_lines,)
+        [unit^2]
 
     Examples
     --------
@@ -207,14 +247,25 @@ def line_powers(
     excess = np.append(0.0, np.cumsum(spectrum.density - floor)) * spectrum.spacing
     edges = np.append(spectrum.frequency, spectrum.frequency[-1] + spectrum.spacing)
     edges = edges - 0.5 * spectrum.spacing
-    power: NDArray[np.float64] = np.interp(frequency + reach, edges, excess) - np.interp(
-        frequency - reach, edges, excess
+    return np.asarray(
+        np.interp(frequency + reach, edges, excess) - np.interp(frequency - reach, edges, excess)
     )
-    return power
 
 
 def interpolated(values: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.float64]:
     """Position of local maxima between samples, from the parabola through three of them.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        In any unit.
+    peaks : ndarray of int, shape (n_peaks,)
+        Samples at which they are highest.
+
+    Returns
+    -------
+    ndarray, shape (n_peaks,)
+        [sample]
 
     Examples
     --------

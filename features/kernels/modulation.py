@@ -38,7 +38,7 @@ class Modulation(NamedTuple):
     rate : float
         Of its strongest repetition [Hz]; NaN if it does not repeat.
     strength : float
-        Normalised autocorrelation of the envelope there, 0 to 1.
+        Normalised autocorrelation of the envelope there, 0 to 1 [-].
     depth : float
         Standard deviation of the envelope between 2 and 400 Hz over its mean: 0.71 for a sinusoidal
         modulation of 100 %.
@@ -55,7 +55,7 @@ def modulation(envelope: NDArray[np.float64], rate: float) -> Modulation:
     Parameters
     ----------
     envelope : ndarray, shape (n_samples,)
-        Not negative.
+        In any [unit], not negative.
     rate : float
         Sampling rate [Hz].
 

@@ -52,7 +52,7 @@ class Period(NamedTuple):
     frequency : float
         Repetitions in a second [Hz]; NaN if there are none.
     strength : float
-        Normalised autocorrelation at the period: 1 where every period is like the one before, 0
+        Normalised autocorrelation at the period [-]: 1 where every period is like the one before, 0
         where there is none.
     """
 
@@ -71,7 +71,7 @@ def strongest_period(
     Parameters
     ----------
     x : ndarray, shape (n_samples,)
-        Mean removed.
+        Mean removed, in any [unit].
     rate : float
         Sampling rate [Hz].
     lowest, highest : float
@@ -139,7 +139,7 @@ def track_periods(
     Parameters
     ----------
     power : ndarray, shape (n_segments, n_bins)
-        Of Hann-windowed segments, from 0 Hz; bins that shall not count are 0.
+        In any [unit^2], of Hann-windowed segments, from 0 Hz; bins that shall not count are 0.
     spacing : float
         Distance between the bins [Hz].
     lowest : float
@@ -150,13 +150,13 @@ def track_periods(
     frequency : ndarray, shape (n_segments,)
         [Hz]; NaN where a segment has no period.
     strength : ndarray, shape (n_segments,)
-        Autocorrelation at the period over that of the window (P. Boersma, Proc. Inst. Phonetic
+        Autocorrelation at the period over that of the window [-] (P. Boersma, Proc. Inst. Phonetic
         Sci. 17 (1993) 97-110).
 
     Examples
     --------
     >>> import numpy as np
-    >>> from features.kernels.spectra import segment_powers
+    >>> from features.kernels.segments import segment_powers
     >>> tone = np.sin(2 * np.pi * 400 * np.arange(4096) / 16e3)
     >>> power, _ = segment_powers(tone, 1024)
     >>> track_periods(power, 16e3 / 1024, lowest=60.0)[0].round().tolist()

@@ -1,7 +1,7 @@
-"""The course of the pitch over time, by pYIN: on request, since it takes as long as the sound.
+"""Pitch over time, by pYIN: on request, since it takes as long as the sound.
 
 The fundamental of `features.kernels.harmonics` is one number a segment, found in some milliseconds.
-Where the pitch moves, as a creak's does when the shaft slows down, its course tells more.
+Where the pitch moves, as a creak's does when the shaft slows down, its track tells more.
 """
 
 from __future__ import annotations

@@ -17,12 +17,13 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from features.kernels.conditioning import NOTHING, checked_signal
+from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import interpolated
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["TorqueSlips", "torque_slips"]
+__all__ = ["TorqueSlips", "repetition_rate", "torque_slips"]
 
 _SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
 """Standard deviation of a Gaussian that halves 2 kHz [s]: the torque has little above (5.2.3)."""
@@ -56,15 +57,15 @@ class TorqueSlips:
     times : ndarray, shape (n_slips,)
         When each drop begins, from the start of the signal [s].
     rate : float
-        Slips in a second, 0 for fewer than two.
+        Slips in a second [1/s], 0 for fewer than two.
     mean_drop : float
         Mean fall [N m].
     drop_variation : float
-        Coefficient of variation of the falls.
+        Coefficient of variation of the falls [-].
     mean_interval : float
         [s]
     interval_variation : float
-        Coefficient of variation of the intervals.
+        Coefficient of variation of the intervals [-].
     glide : float
         Trend of the slip rate [octave/s]: 1 doubles it in a second. Median slope of its logarithm,
         which a slip missed or made up does not move; NaN for fewer than five slips.
@@ -72,13 +73,13 @@ class TorqueSlips:
         Median slope of the torque in the middle of the rises [N m/s]. Its quotient with k_EFF times
         the shaft's speed tells true stick from mere oscillation (thesis, (5.1)).
     stick_curvature : float
-        Slope in the later over that in the earlier half of a rise, median: below 1 where the torque
-        rises ever more slowly (thesis, 5.1.1).
+        Slope in the later over that in the earlier half of a rise, median [-]: below 1 where the
+        torque rises ever more slowly (thesis, 5.1.1).
     stick_fraction : float
         Share of the time between slips in which the torque is on its way up.
     asymmetry : float
-        Skewness of the torque's slope away from zero: strongly negative where it rises slowly and
-        drops, 0 for a harmonic oscillation. Given for any torque that is not constant.
+        Skewness of the torque's slope away from zero [-]: strongly negative where it rises slowly
+        and drops, 0 for a harmonic oscillation. Given for any torque that is not constant.
     """
 
     times: NDArray[np.float64]
@@ -164,6 +165,40 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
         stick_fraction=float(rises.sum() / rate / intervals.sum()),
         asymmetry=asymmetry,
     )
+
+
+def repetition_rate(torque: ArrayLike, rate: float) -> float | None:
+    """Slips a second, or periods of the torque where nothing slips suddenly.
+
+    Parameters
+    ----------
+    torque : array_like, shape (n_samples,)
+        [N m]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    float or None
+        [Hz]; None where nothing repeats.
+
+    Raises
+    ------
+    ParameterError
+        A signal that can't be analysed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(6000) / 30e3
+    >>> round(repetition_rate(8.0 + np.sin(2 * np.pi * 300.0 * t), 30e3))
+    300
+    """
+    interval = torque_slips(torque, rate).mean_interval
+    if math.isfinite(interval):
+        return 1.0 / interval
+    period = analyse_harmonics(torque, rate).fundamental
+    return period if math.isfinite(period) else None
 
 
 def _no_slips(asymmetry: float) -> TorqueSlips:

@@ -62,7 +62,7 @@ class Pulses:
     times : ndarray, shape (n_pulses,)
         From the start of the signal [s].
     rate : float
-        Pulses in a second, 0 for fewer than two. The fades at the signal's ends do not count.
+        Pulses in a second [1/s], 0 for fewer than two. The fades at the signal's ends do not count.
     irregularity : float
         Median magnitude of the logarithm of each interval's ratio to the one before: 0 for a clock
         even where its rate glides or a pulse is missing, 1.1 (the logarithm of 3) for a Poisson
@@ -70,12 +70,12 @@ class Pulses:
     glide : float
         Trend of the rate's logarithm [1/s]: 0.7 doubles the rate in a second. NaN likewise.
     crest_factor : float
-        Peak of the envelope over the rms value of the signal; 1.41 for a tone.
+        Peak of the envelope over the rms value of the signal [-]; 1.41 for a tone.
     kurtosis : float
-        Of the signal's part below 7 kHz: 1.5 for a tone, 3 for noise, more for pulses.
+        Of the signal's part below 7 kHz [-]: 1.5 for a tone, 3 for noise, more for pulses.
     high_kurtosis : float
         The same of the band in which pulses are sought; NaN where that holds less than a millionth
-        of the power.
+        of the power [-].
     concentration : float
         Share of that band's energy in the loudest tenth of the time, 0.1 to 1; NaN likewise.
     """
@@ -137,7 +137,17 @@ def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
 
 
 def pulse_band_from(limit: float) -> float:
-    """Lower limit of the band in which pulses are sought, for its upper limit [Hz].
+    """Lower limit of the band in which pulses are sought.
+
+    Parameters
+    ----------
+    limit : float
+        Upper limit [Hz].
+
+    Returns
+    -------
+    float
+        [Hz]
 
     Examples
     --------
@@ -164,6 +174,10 @@ def pulses_of(
         Sampling rate of the latter [Hz].
     start : float
         Time of their first sample [s].
+
+    Returns
+    -------
+    Pulses
 
     Examples
     --------
@@ -202,6 +216,16 @@ def envelope_kurtosis(power: NDArray[np.float64]) -> float:
     Half as much again as that of the envelope's square: for any signal whose phase is evenly
     spread the same as of its samples, but sampled at the band's own rate.
 
+    Parameters
+    ----------
+    power : ndarray, shape (n,)
+        Squared envelope [unit^2].
+
+    Returns
+    -------
+    float
+        [-]
+
     Examples
     --------
     >>> import numpy as np
@@ -215,6 +239,16 @@ def envelope_kurtosis(power: NDArray[np.float64]) -> float:
 
 def squared(analytic: NDArray[np.complex128]) -> NDArray[np.float64]:
     """Squared envelope of an analytic signal.
+
+    Parameters
+    ----------
+    analytic : ndarray of complex, shape (n,)
+        In any unit.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit^2]
 
     Examples
     --------

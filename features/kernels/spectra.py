@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import fft
 
 from features.kernels.conditioning import checked_signal
+from features.kernels.segments import segment_powers
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -32,9 +32,6 @@ DEFAULT_RESOLUTION = 4.0
 
 _ROLL_OFF = 0.85
 _HANN_NOISE_BANDWIDTH = 1.5
-_OVERLAP_SLACK = 0.02
-"""Segments that a signal may lack for an overlap of half: no further one for a few samples."""
-
 _FLATNESS_FLOOR = 1e-12
 
 _FADE_ENERGY = 0.375
@@ -87,9 +84,10 @@ class Spectrum:
 
     @property
     def degrees_of_freedom(self) -> float:
-        """Of the chi-square law that a bin of Gaussian noise follows, segments overlapping by half.
+        """Degrees of freedom of a bin of Gaussian noise, segments overlapping by half [-].
 
-        Welch (1967): the powers of neighbouring Hann segments correlate by 1/36.
+        Those of the chi-square law that the bin follows; Welch (1967): the powers of neighbouring
+        Hann segments correlate by 1/36.
         """
         k = self.n_segments
         return 2.0 * k / (1.0 + (k - 1) / (18.0 * k))
@@ -106,7 +104,7 @@ class SpectralShape:
     spread : float
         Standard deviation about it [Hz].
     flatness : float
-        Geometric over arithmetic mean of the density: near 1 for noise, 0 for a line.
+        Geometric over arithmetic mean of the density [-]: near 1 for noise, 0 for a line.
     roll_off : float
         Frequency below which 85 % of the band's power lies [Hz].
     """
@@ -163,6 +161,19 @@ def autospectrum(
 def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     """`autospectrum` of samples that have been checked already.
 
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        In any unit.
+    rate : float
+        Sampling rate [Hz].
+    resolution : float
+        Spacing of the bins wanted [Hz].
+
+    Returns
+    -------
+    Spectrum
+
     Examples
     --------
     >>> import numpy as np
@@ -178,6 +189,14 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
 
 def whole_spectrum(transform: Transform) -> Spectrum:
     """Spectrum with the finest bins that a signal's length allows; fades count by their energy.
+
+    Parameters
+    ----------
+    transform : Transform
+
+    Returns
+    -------
+    Spectrum
 
     Examples
     --------
@@ -197,51 +216,6 @@ def whole_spectrum(transform: Transform) -> Spectrum:
     spacing = transform.rate / transform.length
     frequency = np.arange(density.size, dtype=np.float64) * spacing
     return Spectrum(frequency, density, transform.rate, 1)
-
-
-def segment_powers(
-    x: NDArray[np.float64], length: int, *, transform_length: int | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Squared magnitudes of the transforms of Hann-windowed segments spread over a signal.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n_samples,)
-    length : int
-        Samples a segment, at most `n_samples`.
-    transform_length : int, optional
-        Zeros fill each segment up to it.
-
-    Returns
-    -------
-    power : ndarray, shape (n_segments, n_bins)
-    window : ndarray, shape (length,)
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> power, window = segment_powers(np.zeros(1000), 256)
-    >>> power.shape
-    (7, 129)
-    """
-    n_segments = 1 + math.ceil((x.size - length) / (length / 2) - _OVERLAP_SLACK)
-    starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
-    segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
-    window = _hann(length)
-    windowed = segments - segments.mean(axis=1, keepdims=True)
-    windowed *= window
-    bins = fft.rfft(windowed, transform_length or length, axis=1)
-    power = bins.real**2
-    power += bins.imag**2
-    return power, window
-
-
-@lru_cache(maxsize=16)
-def _hann(length: int) -> NDArray[np.float64]:
-    """Hann window; the same few lengths come again and again."""
-    window = np.sin(np.pi * np.arange(length) / length) ** 2
-    window.setflags(write=False)
-    return window
 
 
 def spectral_shape(spectrum: Spectrum, *, low: float, high: float) -> SpectralShape:

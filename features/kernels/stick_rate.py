@@ -1,4 +1,4 @@
-"""How fast the torque of a rig rises while its contact sticks, from what a recording tells of it.
+"""Slope of a torque in true stick, from what a recording tells of its operating condition.
 
 Stick-slip and the oscillations that merely look like it differ in this (thesis, 5.1.1): a contact
 that sticks takes the shaft's whole motion into the springs, so that the torque rises at k_EFF times

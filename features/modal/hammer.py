@@ -1,4 +1,4 @@
-"""Hits with an impulse hammer: which can be used, and the response function that they give.
+"""Hits with an impulse hammer: which can be used, and the transfer function that they give.
 
 Each hit is one segment under a boxcar window: the force is over before the segment ends and the
 response has died away, so a window could only add damping that is not there. Cross- and
@@ -22,13 +22,17 @@ import numpy as np
 from scipy.signal import csd, find_peaks, welch
 
 from models.errors import ParameterError, RecordingError
+from models.transfer_functions.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["Hit", "TransferEstimate", "check_hit", "transfer_estimate"]
+__all__ = ["ESTIMATORS", "Hit", "check_hit", "estimate_transfer_function"]
+
+ESTIMATORS = ("H1", "H2", "Hv")
+"""For noise in the response, for noise in the force, for noise in both."""
 
 DOUBLE_HIT = 0.05
 """A further contact counts from this share of the largest force on; ringing of the sensor's own
@@ -70,29 +74,6 @@ class Hit:
     response: NDArray[np.float64]
     rate: float
     name: str = "hit"
-
-
-@dataclass(frozen=True, eq=False)
-class TransferEstimate:
-    """Response functions by the three estimators, with the coherence.
-
-    Parameters
-    ----------
-    frequency : ndarray, shape (n,)
-        [Hz], from 0.
-    h1, h2, hv : ndarray, shape (n,), complex
-        Response per force.
-    coherence : ndarray, shape (n,)
-        Ordinary coherence; one throughout where there is a single hit.
-    n_hits : int
-    """
-
-    frequency: NDArray[np.float64]
-    h1: NDArray[np.complex128]
-    h2: NDArray[np.complex128]
-    hv: NDArray[np.complex128]
-    coherence: NDArray[np.float64]
-    n_hits: int
 
 
 def check_hit(hit: Hit) -> None:
@@ -148,33 +129,50 @@ def check_hit(hit: Hit) -> None:
         )
 
 
-def transfer_estimate(hits: Sequence[Hit]) -> TransferEstimate:
-    """H1, H2, Hv and coherence, averaged over hits.
+def estimate_transfer_function(
+    hits: Sequence[Hit],
+    *,
+    estimator: str = "H1",
+    input_unit: str = "N",
+    output_unit: str = "m/s^2",
+    name: str = "response",
+) -> TransferFunction:
+    """Estimate the transfer function and its coherence, averaged over hits.
 
     Parameters
     ----------
     hits : sequence of Hit
         At least one, all of one sampling rate and length.
+    estimator : str
+        ``"H1"``, ``"H2"`` or ``"Hv"``.
+    input_unit, output_unit : str
+        Of force and response.
+    name : str
+        What messages call it.
 
     Returns
     -------
-    TransferEstimate
+    TransferFunction
+        From 0 Hz; its ordinary coherence is None where there is a single hit, which has none.
 
     Raises
     ------
     ParameterError
-        There are none, or they differ in sampling rate or length.
+        There are no hits, they differ in sampling rate or length, or the estimator is unknown.
 
     Examples
     --------
     >>> force = np.zeros(64)
     >>> force[3] = 1.0
-    >>> estimate = transfer_estimate([Hit(force, 2.0 * force, 1e3), Hit(-force, -2.0 * force, 1e3)])
-    >>> float(estimate.h1[5].real.round(6)), float(estimate.coherence[5].round(6))
+    >>> hits = [Hit(force, 2.0 * force, 1e3), Hit(-force, -2.0 * force, 1e3)]
+    >>> found = estimate_transfer_function(hits)
+    >>> float(found.response[5].real.round(6)), float(found.coherence[5].round(6))
     (2.0, 1.0)
     """
     if not hits:
         raise ParameterError("there are no hits to average")
+    if estimator not in ESTIMATORS:
+        raise ParameterError(f"estimator = {estimator!r} must be {', '.join(ESTIMATORS)}")
     n, rate = hits[0].force.size, hits[0].rate
     for hit in hits:
         if hit.force.size != n or hit.response.size != n or hit.rate != rate:
@@ -184,19 +182,22 @@ def transfer_estimate(hits: Sequence[Hit]) -> TransferEstimate:
             )
     force = np.concatenate([hit.force for hit in hits])
     response = np.concatenate([hit.response for hit in hits])
-    frequency, cross = csd(force, response, rate, "boxcar", n, 0, detrend=False)
+    frequencies, cross = csd(force, response, rate, "boxcar", n, 0, detrend=False)
     _, of_force = welch(force, rate, "boxcar", n, 0, detrend=False)
     _, of_response = welch(response, rate, "boxcar", n, 0, detrend=False)
     # Bins that hold nothing at all give zero, not a warning.
-    nothing = np.finfo(np.float64).tiny
-    h1 = cross / np.maximum(of_force, nothing)
+    found = cross / np.maximum(of_force, np.finfo(np.float64).tiny)
     power = np.abs(cross) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
-        h2 = np.where(power > 0.0, of_response / np.where(power > 0.0, cross.conj(), 1.0), 0.0)
         ratio = power / (of_force * of_response)
-        hv = h1 * np.where(ratio > 0.0, 1 / np.sqrt(ratio), 0.0)
+        if estimator == "H2":
+            found = np.where(power > 0.0, of_response / np.where(power > 0.0, cross.conj(), 1.0), 0)
+        elif estimator == "Hv":
+            found = found * np.where(ratio > 0.0, 1 / np.sqrt(ratio), 0.0)
     coherence = np.clip(np.where(np.isfinite(ratio), ratio, 0.0), 0.0, 1.0)
-    return TransferEstimate(frequency, h1, h2, hv, coherence, len(hits))
+    return TransferFunction(
+        frequencies, found, coherence if len(hits) > 1 else None, input_unit, output_unit, name
+    )
 
 
 def _lobe(signal: NDArray[np.float64], top: int, share: float) -> tuple[int, int]:

@@ -45,7 +45,17 @@ _TINY = 1e-12  # of the largest response, which keeps weights finite
 
 
 class Pole(NamedTuple):
-    """A pole: natural frequency [Hz], fraction of critical damping, orders it stayed through."""
+    """A pole of response functions.
+
+    Parameters
+    ----------
+    frequency : float
+        Undamped natural frequency [Hz].
+    damping_ratio : float
+        Fraction of critical damping [-].
+    orders : int
+        Through how many orders it stayed.
+    """
 
     frequency: float
     damping_ratio: float
@@ -62,8 +72,9 @@ def lasting_poles(
     f : ndarray, shape (n,)
         [Hz], rising, above 0.
     h : ndarray, shape (n_responses, n), complex
+        In any [unit].
     weight : ndarray, shape (n_responses, n)
-        Trust in each line, from 0 to 1.
+        Trust in each line, from 0 to 1 [-].
 
     Returns
     -------
@@ -93,6 +104,15 @@ def lasting_poles(
 def without_doubles(poles: list[Pole]) -> list[Pole]:
     """Of poles within half a mode's width of each other the one that stayed longest.
 
+    Parameters
+    ----------
+    poles : list of Pole
+
+    Returns
+    -------
+    list of Pole
+        By rising frequency.
+
     Examples
     --------
     >>> pair = [Pole(100.0, 0.01, 4), Pole(100.3, 0.01, 9), Pole(101.0, 0.01, 5)]
@@ -103,7 +123,19 @@ def without_doubles(poles: list[Pole]) -> list[Pole]:
 
 
 def line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights of the lines of a fit: between those that mind peaks and valleys alike and not.
+    """Weights of the lines of a fit: responses are neither weighted alike nor by their logarithm.
+
+    Parameters
+    ----------
+    h : ndarray, shape (..., n), complex
+        Response functions, in any unit.
+    weight : ndarray, shape (..., n)
+        Trust in each line, from 0 to 1 [-].
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        [1/unit^0.5]
 
     Examples
     --------
@@ -112,8 +144,7 @@ def line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDAr
     """
     level = np.abs(h)
     largest = level.max(axis=-1, keepdims=True)
-    weights: NDArray[np.float64] = weight / np.sqrt(np.maximum(level, _TINY * largest))
-    return weights
+    return np.asarray(weight / np.sqrt(np.maximum(level, _TINY * largest)))
 
 
 def _bands(f: NDArray[np.float64], size: int) -> list[tuple[slice, float, float]]:

@@ -35,7 +35,7 @@ class Modes:
         Real factors of 1/(i omega)^2, 1, i omega and (i omega)^2, relative to the highest omega:
         what modes outside the band leave in it.
     orders : ndarray, shape (n_modes,)
-        Through how many orders each pole stayed.
+        Through how many orders each pole stayed [-].
     highest : float
         Upper end of the band [Hz].
 
@@ -61,11 +61,21 @@ class Modes:
         return _poles(self.frequency, self.damping_ratio)
 
     def response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
-        """Response functions at frequencies [Hz], shape (n_responses, n)."""
+        """Response functions at frequencies.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (n,)
+            [Hz]
+
+        Returns
+        -------
+        ndarray, shape (n_responses, n), complex
+            In the unit of the responses.
+        """
         basis = modal_basis(self.poles, np.asarray(frequency, dtype=np.float64), self.highest)
         coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
-        response: NDArray[np.complex128] = coefficients @ basis
-        return response
+        return np.asarray(coefficients @ basis)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitudes of the responses that the modes make up, and where the modes are.
@@ -120,6 +130,10 @@ def modes_of_poles(
     scale : ndarray, shape (n_responses, n)
         Weights of the lines.
 
+    Returns
+    -------
+    Modes
+
     Examples
     --------
     >>> from features.modal.lscf import Pole
@@ -149,9 +163,21 @@ def modes_of_poles(
 def modal_basis(
     poles: NDArray[np.complex128], f: NDArray[np.float64], highest: float
 ) -> NDArray[np.complex128]:
-    """Return what unit residues, real and imaginary, and unit residuals make.
+    """Responses that unit residues, real and imaginary, and unit residuals make.
 
-    Shape (2 n_modes + 4, n).
+    Parameters
+    ----------
+    poles : ndarray, shape (n_modes,), complex
+        [rad/s]
+    f : ndarray, shape (n,)
+        [Hz]
+    highest : float
+        Frequency that residuals are relative to [Hz].
+
+    Returns
+    -------
+    ndarray, shape (2 n_modes + 4, n), complex
+        [s] for residues, [-] for residuals.
 
     Examples
     --------
@@ -170,6 +196,18 @@ def least_squares(
 ) -> NDArray[np.float64]:
     """Real factors with which the rows of `basis` make up `wanted`, by normal equations.
 
+    Parameters
+    ----------
+    basis : ndarray, shape (n_rows, n), complex
+        In any unit.
+    wanted : ndarray, shape (n,) or (n_wanted, n), complex
+        In any unit.
+
+    Returns
+    -------
+    ndarray, shape (n_rows,) or (n_wanted, n_rows)
+        [unit of wanted over that of basis]
+
     Examples
     --------
     >>> least_squares(np.array([[1.0, 1j], [0.0, 1j]]), np.array([2.0, 5j])).round(6)
@@ -179,12 +217,21 @@ def least_squares(
     scale = np.sqrt(np.maximum(np.sum(parts**2, axis=1), np.finfo(float).tiny))
     parts /= scale[:, None]
     factors = np.linalg.lstsq(parts @ parts.T, parts @ real_and_imaginary(wanted).T, rcond=1e-13)[0]
-    result: NDArray[np.float64] = factors.T / scale
-    return result
+    return np.asarray(factors.T / scale)
 
 
 def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
     """Real and imaginary parts one after the other along the last axis.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., n), complex
+        In any [unit].
+
+    Returns
+    -------
+    ndarray, shape (..., 2 n)
+        In the unit of the values [unit].
 
     Examples
     --------
@@ -197,7 +244,4 @@ def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
 def _poles(
     frequency: NDArray[np.float64], damping_ratio: NDArray[np.float64]
 ) -> NDArray[np.complex128]:
-    poles: NDArray[np.complex128] = (
-        2 * np.pi * frequency * (-damping_ratio + 1j * np.sqrt(1 - damping_ratio**2))
-    )
-    return poles
+    return np.asarray(2 * np.pi * frequency * (-damping_ratio + 1j * np.sqrt(1 - damping_ratio**2)))

@@ -1,4 +1,4 @@
-"""How modes show themselves: a table, and the magnitude of the responses that they make up."""
+"""Display of modes: a table, and the magnitude of the responses that they make up."""
 
 from __future__ import annotations
 
@@ -24,6 +24,15 @@ _MARGIN = 0.5
 
 def modes_html(modes: Modes) -> str:
     """Return modes as a table.
+
+    Parameters
+    ----------
+    modes : Modes
+
+    Returns
+    -------
+    str
+        HTML.
 
     Examples
     --------

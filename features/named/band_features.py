@@ -14,18 +14,20 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
-from features.kernels.bands import NOMINAL_THIRD_OCTAVES, REFERENCES
-from features.named.feature import Feature
-from features.named.prepared import LEAST_SHARE_DB
+from features.kernels.bands import LEAST_SHARE_DB, NOMINAL_THIRD_OCTAVES, REFERENCES
+from features.named.feature import THESIS_NOISES, THIS, Feature
 
 if TYPE_CHECKING:
     from features.named.prepared import Prepared
 
 __all__ = ["BAND_FEATURES"]
 
-_NOISES = "thesis, 5.2.3"
-_IEC_OCTAVES = "IEC 61260-1:2014"
-_THIS = "bushing-noise"
+_RE_ALL = "re that from 150 Hz to 7 kHz"
+_TENTH_DB = (0.0, 0.1)
+
+
+def _share(low: float, high: float, p: Prepared) -> float:
+    return p.share_db(low, high)
 
 
 def _third_octave(name: str, p: Prepared) -> float:
@@ -39,90 +41,27 @@ def _third_octave(name: str, p: Prepared) -> float:
 
 
 BAND_FEATURES = (
-    Feature(
-        "band_150_500",
-        "dB",
-        "Level from 150 to 500 Hz re that from 150 Hz to 7 kHz.",
-        _THIS,
-        lambda p: p.share_db(150.0, 500.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_500_1000",
-        "dB",
-        "Level from 500 Hz to 1 kHz re that from 150 Hz to 7 kHz.",
-        _THIS,
-        lambda p: p.share_db(500.0, 1_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_1000_2000",
-        "dB",
-        "Level from 1 to 2 kHz re that from 150 Hz to 7 kHz.",
-        _THIS,
-        lambda p: p.share_db(1_000.0, 2_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_2000_5000",
-        "dB",
-        "Level from 2 to 5 kHz re that from 150 Hz to 7 kHz.",
-        _NOISES,
-        lambda p: p.share_db(2_000.0, 5_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_5000_7000",
-        "dB",
-        "Level from 5 to 7 kHz re that from 150 Hz to 7 kHz.",
-        _NOISES,
-        lambda p: p.share_db(5_000.0, 7_000.0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_7000_13000",
-        "dB",
-        "Level from 7 to 13 kHz re that from 150 Hz to 7 kHz; needs a rate of 29.8 kHz.",
-        _NOISES,
-        lambda p: p.top_bands[0][0],
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_13000_19000",
-        "dB",
-        "Level from 13 to 19 kHz re that from 150 Hz to 7 kHz; needs a rate of 43.5 kHz.",
-        _NOISES,
-        lambda p: p.top_bands[1][0],
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_0_2000",
-        "dB",
-        "Level below 2 kHz, hum included, re that from 150 Hz to 7 kHz.",
-        _NOISES,
-        lambda p: p.thesis_band(0),
-        tolerance=(0.0, 0.1),
-    ),
-    Feature(
-        "band_5000_15000",
-        "dB",
-        "Level from 5 to 15 kHz re that from 150 Hz to 7 kHz; needs a rate of 34.3 kHz.",
-        _NOISES,
-        lambda p: p.thesis_band(2),
-        tolerance=(0.0, 0.2),
-    ),
     *(
-        Feature(
-            f"third_octave_{name}",
-            "dB",
-            f"Level in the one-third octave at {name} Hz, re 20 uPa or 1 um/s2.",
-            _IEC_OCTAVES,
-            partial(_third_octave, name),
-            silent=None,
-            calibrated=True,
-            tolerance=(0.0, 0.1),
-        )
+        Feature(f"band_{low}_{high}", "dB", f"Level from {low} to {high} Hz {_RE_ALL}.",
+                source, partial(_share, float(low), float(high)), tolerance=_TENTH_DB)
+        for low, high, source in ((150, 500, THIS), (500, 1000, THIS), (1000, 2000, THIS),
+                                  (2000, 5000, THESIS_NOISES), (5000, 7000, THESIS_NOISES))
+    ),
+    Feature("band_7000_13000", "dB", f"Level from 7 to 13 kHz {_RE_ALL}; needs a rate of 29.8 kHz.",
+            THESIS_NOISES, lambda p: p.top_bands[0].level, tolerance=_TENTH_DB),
+    Feature("band_13000_19000", "dB",
+            f"Level from 13 to 19 kHz {_RE_ALL}; needs a rate of 43.5 kHz.",
+            THESIS_NOISES, lambda p: p.top_bands[1].level, tolerance=_TENTH_DB),
+    Feature("band_0_2000", "dB", f"Level below 2 kHz, hum included, {_RE_ALL}.",
+            THESIS_NOISES, lambda p: p.thesis_band(0), tolerance=_TENTH_DB),
+    Feature("band_5000_15000", "dB", f"Level from 5 to 15 kHz {_RE_ALL}; needs a rate of 34.3 kHz.",
+            THESIS_NOISES, lambda p: p.thesis_band(2), tolerance=(0.0, 0.2)),
+    *(
+        Feature(f"third_octave_{name}", "dB",
+                f"Level in the one-third octave at {name} Hz, re 20 uPa or 1 um/s2.",
+                "IEC 61260-1:2014", partial(_third_octave, name), silent=None, calibrated=True,
+                tolerance=_TENTH_DB)
         for name in NOMINAL_THIRD_OCTAVES
     ),
-)
-"""Entries in the order of the feature vector."""
+)  # fmt: skip
+"""Of sound and acceleration, in the order of the feature vector."""

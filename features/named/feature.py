@@ -1,4 +1,4 @@
-"""What a feature is: one number, its unit, its definition, its source, and how it is computed."""
+"""A feature as an entry of a table: name, unit, definition, source, and how it is computed."""
 
 from __future__ import annotations
 
@@ -14,6 +14,13 @@ if TYPE_CHECKING:
     from features.named.prepared import Prepared
 
 __all__ = ["Feature"]
+
+THESIS_STICK_SLIP = "thesis, 5.1.1"
+THESIS_SPECTRA = "thesis, 5.2.1"
+THESIS_NOISES = "thesis, 5.2.3"
+PEETERS = "Peeters 2004"
+PITCH = "McLeod & Wyvill 2005"
+THIS = "bushing-noise"
 
 
 @dataclass(frozen=True)
@@ -32,7 +39,7 @@ class Feature:
     compute : callable
         Of a `Prepared` signal.
     silent : float, optional
-        Value for a signal without content; None where `compute` knows itself.
+        Value for a signal without content [unit]; None where `compute` knows itself.
     calibrated : bool
         Whether it needs a calibrated signal; all others do not depend on the gain.
     kinds : tuple of str

@@ -11,11 +11,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from features.kernels.bands import THESIS_BANDS, band_power, fine_third_octaves
+from features.kernels.bands import (
+    LEAST_SHARE_DB,
+    THESIS_BANDS,
+    band_power,
+    fine_third_octaves,
+    relative_db,
+)
 from features.kernels.conditioning import (
     ACOUSTIC_FROM,
     NOTHING,
@@ -28,22 +34,16 @@ from features.kernels.conditioning import (
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
-from features.kernels.modulation import Modulation, modulation
 from features.kernels.slip_drops import TorqueSlips, torque_slips
-from features.kernels.slip_pulses import (
-    Pulses,
-    envelope_kurtosis,
-    pulse_band_from,
-    pulses_of,
-    squared,
-)
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
-from features.kernels.time_course import TimeCourse, time_course
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from features.kernels.conditioning import Transform
+    from features.kernels.modulation import Modulation
+    from features.kernels.short_time import ShortTime
+    from features.kernels.slip_pulses import Pulses
 
 __all__ = ["ACOUSTIC_KINDS", "TOP_BANDS", "Prepared", "prepare"]
 
@@ -60,6 +60,21 @@ _LEVEL_RESOLUTION = 25.0
 """Spacing of the bins from which the weighted level is summed [Hz]."""
 
 
+class TopBand(NamedTuple):
+    """A band above the common limit; NaN where the rate does not reach it.
+
+    Parameters
+    ----------
+    level : float
+        Re the band that is described [dB].
+    kurtosis : float
+        [-]; NaN also where the band holds nothing.
+    """
+
+    level: float
+    kurtosis: float
+
+
 @dataclass(frozen=True, eq=False)
 class Prepared:
     """One channel and what has been computed of it so far. Made by `prepare`.
@@ -67,7 +82,7 @@ class Prepared:
     Parameters
     ----------
     samples : ndarray, shape (n_samples,)
-        In the channel's unit.
+        In the channel's own [unit].
     rate : float
         Sampling rate [Hz].
     kind : str
@@ -113,17 +128,17 @@ class Prepared:
 
     @cached_property
     def below(self) -> tuple[NDArray[np.float64], float]:
-        """All below the limit, at the working rate, and that rate [Hz]."""
+        """All below the limit, at the working rate, and that rate [Hz]; shape (n,)."""
         return band_signal(self.transform, 0.0, self.limit)
 
     @cached_property
     def in_band(self) -> tuple[NDArray[np.float64], float]:
-        """Part within the band that is described, at the working rate, and that rate [Hz]."""
+        """Part within the band described, at the working rate, and that rate [Hz]; shape (n,)."""
         return band_signal(self.transform, self.low, self.limit)
 
     @cached_property
     def in_band_power(self) -> float:
-        """Mean square of that part."""
+        """Mean square of that part, over that of the signal [-]."""
         return float(np.mean(self.in_band[0] ** 2))
 
     @cached_property
@@ -140,7 +155,7 @@ class Prepared:
 
     @cached_property
     def floor(self) -> NDArray[np.float64]:
-        """Noise floor of the spectrum [1/Hz]."""
+        """Noise floor of the spectrum [1/Hz], shape (n_bins,)."""
         return noise_floor(self.spectrum)
 
     @cached_property
@@ -166,10 +181,12 @@ class Prepared:
         return spectral_shape(self.spectrum, low=self.low, high=self.limit)
 
     @cached_property
-    def course(self) -> TimeCourse:
-        """How it changes with time."""
+    def short_time(self) -> ShortTime:
+        """Tones and levels of its short segments, and how they change from one to the next."""
+        from features.kernels.short_time import short_time
+
         x, rate = self.in_band
-        return time_course(x, rate, low=self.low, high=self.limit)
+        return short_time(x, rate, low=self.low, high=self.limit)
 
     @cached_property
     def analytic(self) -> tuple[NDArray[np.complex128], float]:
@@ -179,6 +196,8 @@ class Prepared:
     @cached_property
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
+        from features.kernels.slip_pulses import pulse_band_from, pulses_of
+
         high, rate = band_analytic(self.transform, pulse_band_from(self.limit), self.limit)
         start = self.transform.lead / self.rate
         return pulses_of(self.analytic[0], high, rate, start=start)
@@ -186,11 +205,14 @@ class Prepared:
     @cached_property
     def modulation(self) -> Modulation:
         """Modulation of the envelope."""
+        from features.kernels.modulation import modulation
+        from features.kernels.slip_pulses import squared
+
         analytic, rate = self.analytic
         return modulation(np.sqrt(squared(analytic)), rate)
 
     @cached_property
-    def torque_slips(self) -> TorqueSlips:
+    def slips(self) -> TorqueSlips:
         """Slips of a torque, in its own unit."""
         return torque_slips(self.samples, self.rate)
 
@@ -210,7 +232,18 @@ class Prepared:
         return fine_third_octaves(self.samples, self.rate, reference=1.0)
 
     def thesis_band(self, number: int) -> float:
-        """Level of one of the thesis's bands relative to the band described [dB]; or NaN."""
+        """Level of one of the thesis's bands relative to the band described.
+
+        Parameters
+        ----------
+        number : int
+            In `features.kernels.bands.THESIS_BANDS`, from 0.
+
+        Returns
+        -------
+        float
+            [dB]; NaN where the rate does not reach it.
+        """
         low, high = THESIS_BANDS[number]
         if high > usable_limit(self.rate):
             return math.nan
@@ -218,39 +251,37 @@ class Prepared:
         return relative_db(float(part), float(whole))
 
     def share_db(self, low: float, high: float) -> float:
-        """Level of a part of the band relative to the whole of it [dB]; NaN if not reached."""
+        """Level of a part of the band relative to the whole of it.
+
+        Parameters
+        ----------
+        low, high : float
+            Limits of the part [Hz].
+
+        Returns
+        -------
+        float
+            [dB]; NaN where it is not reached.
+        """
         if high > 1.001 * self.limit:
             return math.nan
         part, whole = band_power(self.spectrum, [low, self.low], [high, self.limit])
         return relative_db(float(part), float(whole))
 
     @cached_property
-    def top_bands(self) -> tuple[tuple[float, float], ...]:
-        """Level of each top band re the band described [dB], and its kurtosis; or NaN."""
+    def top_bands(self) -> tuple[TopBand, ...]:
+        """Of `TOP_BANDS`."""
         return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
 
-    def _top_band(self, low: float, high: float) -> tuple[float, float]:
+    def _top_band(self, low: float, high: float) -> TopBand:
         if high > usable_limit(self.rate):
-            return math.nan, math.nan
+            return TopBand(math.nan, math.nan)
+        from features.kernels.slip_pulses import envelope_kurtosis, squared
+
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)
         level = relative_db(0.5 * float(power.mean()), self.in_band_power)
-        return level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan
-
-
-LEAST_SHARE_DB = -80.0
-"""Lowest relative level that is told from nothing [dB]."""
-
-
-def relative_db(part: float, whole: float) -> float:
-    """Level of a part relative to a whole [dB], at least -80 dB.
-
-    Examples
-    --------
-    >>> relative_db(0.5, 5.0), relative_db(0.0, 1.0)
-    (-10.0, -80.0)
-    """
-    return 10.0 * math.log10(max(part / whole, 10.0 ** (0.1 * LEAST_SHARE_DB)))
+        return TopBand(level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan)
 
 
 def prepare(

@@ -42,16 +42,18 @@ def padded_rows(
     Parameters
     ----------
     values : ndarray, shape (n,)
+        In any [unit].
     row : ndarray of int, shape (n,)
         Of each value, not falling.
     counts : ndarray of int, shape (n_rows,)
         Values in each row.
     fill : float
-        What follows them, in the unit of the values.
+        What follows them, in the same [unit].
 
     Returns
     -------
     ndarray, shape (n_rows, max(1, counts.max()))
+        In the same [unit].
 
     Examples
     --------
@@ -71,13 +73,14 @@ def padded_medians(rows: NDArray[Any], counts: NDArray[np.int64]) -> NDArray[Any
     Parameters
     ----------
     rows : ndarray, shape (n_rows, most)
-        As `padded_rows` gives them, with infinity behind them; some column at least.
+        As `padded_rows` gives them, in any [unit], with infinity behind them; some column at least.
     counts : ndarray of int, shape (n_rows,)
         Values in each row.
 
     Returns
     -------
     ndarray, shape (n_rows,)
+        In the same [unit].
 
     Examples
     --------

@@ -60,7 +60,7 @@ class Frames:
     Parameters
     ----------
     values : ndarray of float32, shape (n_frames, n_columns)
-        By `FRAME_COLUMNS`.
+        By `FRAME_COLUMNS`, in their units [dB, octave or -].
     bands : ndarray of float32, shape (n_frames, BANDS)
         Power in half octaves [dB re the page's scale].
     """
@@ -86,7 +86,7 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
     Parameters
     ----------
     sound : ndarray of float32, shape (n,)
-        At `RATE`.
+        At `RATE`, in any [unit].
     limit : float
         Frequency up to which it is described [Hz].
 

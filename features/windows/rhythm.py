@@ -15,6 +15,7 @@ from numba import njit
 from scipy import fft, special
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_medians, padded_rows
+from features.windows.declared import RHYTHM_FEATURES
 from features.windows.maxima import prominent_maxima
 from features.windows.working import RATE
 from models.compilation import COMPILED
@@ -59,20 +60,8 @@ _BETTER = 1.1
 _MODULATION = (4, 12, 31, 82, 205, 410, 820, 1640)
 """Edges of the bands of modulation, in bins of about 1 Hz."""
 
-RHYTHM_NAMES = (
-    "blow_rate", "blow_irregularity", "blow_glide", "blow_spread", "blow_heights", "crest",
-    "kurtosis", "concentration", "period_strength", "period_rate", "second_period", "decay",
-    *(f"modulation_{i + 1}" for i in range(len(_MODULATION) - 1)), "modulation_depth",
-)  # fmt: skip
-"""Of a window, in the order of `rhythms_of`.
-
-Blows in a second [octave re 10]; median change from one interval to the next [octave]; the rate's
-trend [octave a second]; deviation of the intervals' logarithm [octave] and of the blows' levels
-[dB]; peak, fourth moment and loudest tenth of the envelope; the highest
-autocorrelation of its square root, the rate that belongs to it [octave re 10 Hz], and what is left
-of it at twice the lag; median fall within 4 ms after a blow [dB]; shares of the modulation from 4
-to 1600 Hz in bands of an octave or more, and its depth.
-"""
+RHYTHM_NAMES = tuple(feature.name for feature in RHYTHM_FEATURES)
+"""Of a window, in the order of `rhythms_of`."""
 
 
 def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -102,7 +91,7 @@ def rhythms_of(
     Returns
     -------
     ndarray of float32, shape (n_windows, n_names)
-        By `RHYTHM_NAMES`.
+        By `RHYTHM_NAMES`, each in its declared [unit].
 
     Examples
     --------

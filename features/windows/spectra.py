@@ -65,13 +65,13 @@ class WindowSpectra:
     end : int
         The first bin that does not count.
     total, line, below : ndarray of float32, shape (n_windows,)
-        Power of all, about the strongest bin, and below that.
+        Power of all, about the strongest bin, and below that [share of the block's scale squared].
     flatness : ndarray of float32, shape (n_windows,)
         Geometric over arithmetic mean of the power [dB].
     slope : ndarray of float32, shape (n_windows,)
         [dB an octave]
     audible : ndarray of float32, shape (4, n_windows)
-        A-weighted power up to 1 kHz, to 2 kHz, to 4 kHz, and above.
+        A-weighted power up to 1 kHz, to 2 kHz, to 4 kHz, and above [likewise].
     top, low, high : ndarray of int, shape (n_windows,)
         The strongest bin, and the next on either side that have half its power or less.
     """

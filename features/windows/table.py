@@ -1,7 +1,7 @@
-"""All features of the windows of a page, and their names.
+"""All features of the windows that begin in some seconds of signal, side by side.
 
-Windows of half a second begin every quarter of a second. A page is some seconds of signal and
-what follows it for half a second more, so that windows go on across its end.
+Windows of half a second begin every quarter of a second. The signal goes on for half a second after
+the last of them begins, so that what is cut into such chunks has windows across the cuts.
 """
 
 from __future__ import annotations
@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
 from features.windows.frames import FRAME_COLUMNS, describe_frames, frame_count
-from features.windows.rhythm import ENVELOPE_RATE, RHYTHM_NAMES, envelope, rhythms_of
+from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythms_of
 from features.windows.spectra import SEGMENT_HOP, long_spectra
-from features.windows.tones import TONE_NAMES, tone_features
-from features.windows.trajectories import TRAJECTORY_NAMES, trajectory_features
+from features.windows.tones import tone_features
+from features.windows.trajectories import trajectory_features
 from features.windows.working import FRAME_RATE, RATE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["HOP", "LENGTH", "WINDOW_NAMES", "Page", "describe_page", "window_count"]
+__all__ = ["HOP", "LENGTH", "WINDOW_NAMES", "WindowTable", "describe_windows", "window_count"]
 
 LENGTH = 0.5
 """Of a window [s]."""
@@ -29,37 +30,27 @@ LENGTH = 0.5
 HOP = 0.25
 """From the beginning of a window to that of the next [s]."""
 
-_TOP_NAMES = ("top_1", "top_2", "top_together", "high_share")
-
 _LEAST_FRAMES = 3
 
 _FRAMES_OF = round(LENGTH * FRAME_RATE) - 3
 """Frames that lie in a window as a whole."""
 
-WINDOW_NAMES = (
-    *TRAJECTORY_NAMES,
-    *TONE_NAMES,
-    *RHYTHM_NAMES,
-    *(f"high_{name}" for name in RHYTHM_NAMES),
-    *_TOP_NAMES,
-)
-"""Features of a window: its course, its lines, the rhythm of all of it and of its part above 2 kHz;
-power from 7 to 13 and from 13 to 19 kHz re that below 7 kHz [dB], how far they change together, and
-power above 2 kHz re all [dB]."""
+WINDOW_NAMES = tuple(feature.name for feature in WINDOW_FEATURES)
+"""Of the columns of `WindowTable.features`, by `features.windows.declared.WINDOW_FEATURES`."""
 
 
 @dataclass(frozen=True, eq=False)
-class Page:
-    """What is known of a page.
+class WindowTable:
+    """Windows of some seconds of signal, and the frames that they are made of.
 
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        By `WINDOW_NAMES`; NaN where undefined.
+        By `WINDOW_NAMES`, each in its declared [unit]; NaN where undefined.
     level : ndarray of float32, shape (n_windows,)
         Power of each window [dB re the signal's unit].
     frames : ndarray of float32, shape (n_frames, n_columns + n_bands)
-        By `features.windows.frames.FRAME_COLUMNS`, then the bands, both re the signal's unit.
+        By `features.windows.frames.FRAME_COLUMNS`, then the bands, both re the signal's [unit].
     """
 
     features: NDArray[np.float32]
@@ -78,7 +69,7 @@ def window_count(n: int) -> int:
     return max(1, -(-(n - round(HOP * RATE)) // round(HOP * RATE)))
 
 
-def describe_page(
+def describe_windows(
     sound: NDArray[np.float32],
     high: NDArray[np.float32],
     top: NDArray[np.float32],
@@ -86,32 +77,32 @@ def describe_page(
     scale: float,
     windows: int,
     limit: float,
-) -> Page:
-    """Describe the windows that begin in a page.
+) -> WindowTable:
+    """Describe the windows that begin in some seconds of signal.
 
     Parameters
     ----------
     sound, high : ndarray of float32, shape (n,)
-        As `features.windows.working.Block` has them, with what follows the page as far as the last
-        window reaches and the recording goes.
+        As `features.windows.working.Block` has them, with what follows as far as the last window
+        reaches and the recording goes.
     top : ndarray of float32, shape (n_frames, 2)
-        As there.
+        As of `features.windows.working.Block` too.
     scale : float
         Unit of the three [unit of the signal].
     windows : int
-        How many begin in the page.
+        How many begin in them.
     limit : float
         Frequency up to which it is described [Hz].
 
     Returns
     -------
-    Page
+    WindowTable
 
     Examples
     --------
     >>> hiss = np.random.default_rng(0).normal(size=16_000).astype(np.float32)
     >>> nothing = np.full((100, 2), np.nan, dtype=np.float32)
-    >>> describe_page(hiss, hiss, nothing, scale=1.0, windows=3, limit=7e3).features.shape[0]
+    >>> describe_windows(hiss, hiss, nothing, scale=1.0, windows=3, limit=7e3).features.shape[0]
     3
     """
     n = sound.size
@@ -141,7 +132,7 @@ def describe_page(
     values = np.concatenate([frames.values, frames.bands], axis=1)
     values[:, 0] += unit
     values[:, len(FRAME_COLUMNS) :] += unit
-    return Page(features, (10.0 * np.log10(level + 1e-20) + unit).astype(np.float32), values)
+    return WindowTable(features, (10.0 * np.log10(level + 1e-20) + unit).astype(np.float32), values)
 
 
 def _tops(
@@ -152,7 +143,7 @@ def _tops(
 ) -> NDArray[np.float32]:
     per_frame = ENVELOPE_RATE // FRAME_RATE
     n = min(len(top), power.size // per_frame)
-    out = np.full((windows, len(_TOP_NAMES)), np.nan, dtype=np.float32)
+    out = np.full((windows, len(TOP_FEATURES)), np.nan, dtype=np.float32)
     hop, length = round(HOP * FRAME_RATE), round(LENGTH * FRAME_RATE)
     below = power[: n * per_frame].reshape(n, per_frame).mean(axis=1)
     high = blows[: n * per_frame].reshape(n, per_frame).mean(axis=1)
@@ -169,7 +160,7 @@ def _tops(
 
 
 def _top_features(rows: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return `_TOP_NAMES` from power below 7 kHz, above 2 kHz and in the two bands.
+    """Return `TOP_FEATURES` from power below 7 kHz, above 2 kHz and in the two bands.
 
     Rows are of shape (n_windows, 4, n_frames).
     """

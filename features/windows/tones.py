@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows
+from features.windows.declared import TONE_FEATURES
 from features.windows.harmonics import harmonic_features
 from features.windows.maxima import prominent_maxima
 from features.windows.spectra import BLOCK, FIRST, SPACING, line_power, window_spectra
@@ -33,25 +34,8 @@ _STRONG_DB = 18.0
 _STANDS_DB = 10.0
 """What a line stands above the floor, and above the saddle to the next [dB]."""
 
-TONE_NAMES = (
-    "line_count", "strong_line_count", "line_frequency", "line_share", "lines_share",
-    "second_line", "third_line", "line_prominence", "line_width", "fundamental",
-    "harmonic_share", "harmonic_count", "inharmonicity", "harmonic_gain", "below_line",
-    "above_line", "spectral_flatness", "spectral_slope", "lowest_line", "line_spacing_spread",
-    "weighted_above_1", "weighted_above_2", "weighted_above_4", "weighted_lines",
-)  # fmt: skip
-"""Of a window, in the order of `tone_features`.
-
-Lines within 30 dB and within 18 dB of the strongest; the frequency of the strongest [octave re
-1 kHz], the share of the power in it and in all lines; second and third re the first [dB]; how far
-the first stands above its surroundings [dB] and its width at half power [Hz]; the fundamental
-[octave re 100 Hz] that explains most of the power in lines, the share of the whole that lies at its
-harmonics, their number, their mean distance from multiples, and the share's excess over
-what evenly spread power would put there; power below and above the strongest line re the line
-[dB]; flatness [dB] and slope [dB an octave] of the spectrum; lowest line re the strongest
-[octave]; spread of the distances between lines [share of their mean]. A-weighted power above 1, 2
-and 4 kHz and in all lines re all [dB].
-"""
+TONE_NAMES = tuple(feature.name for feature in TONE_FEATURES)
+"""Of a window, in the order of `tone_features`."""
 
 
 def tone_features(
@@ -74,7 +58,7 @@ def tone_features(
     Returns
     -------
     ndarray of float32, shape (n_windows, n_names)
-        By `TONE_NAMES`.
+        By `TONE_NAMES`, each in its declared [unit].
 
     Examples
     --------

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.windows.arithmetic import ordered_sum
+from features.windows.declared import TRAJECTORY_FEATURES
 from features.windows.frames import BANDS
 
 if TYPE_CHECKING:
@@ -25,24 +26,8 @@ __all__ = ["TRAJECTORY_NAMES", "trajectory_features"]
 
 _BAND_NAMES = tuple(f"band_{i + 1}" for i in range(BANDS))
 
-TRAJECTORY_NAMES = (
-    "range", "peak_above_median", "loud_share", "fluctuation", "steepest_rise", "steepest_fall",
-    "trend", "flatness", "flatness_lowest", "centroid", "centroid_wander", "peak_frequency",
-    "peak_wander", "peak_drift", "peak_jump", "tone_share", "tonal_frames", "tone_second", "flux",
-    "voiced", "voiced_frames", "pitch", "pitch_wander", "pitch_drift", "together",
-    "tone_steady", *_BAND_NAMES,
-)  # fmt: skip
-"""Of a window, in the order of `trajectory_features`.
-
-Of the frames' level [dB]: 95th less 10th percentile, 95th less median, the share of frames within
-10 dB of the loudest, deviation, largest rise and fall from frame to frame, trend [dB/s]. Flatness
-[dB], its lowest; centroid [octave re 1 kHz] and its deviation; frequency of the strongest maximum,
-its deviation, drift [octave/s] and median jump [octave]; share of power in that maximum; frames
-where that is more than half; the next maximum [dB]; change between frames; how periodic, how many
-frames are, pitch [octave re 100 Hz], its deviation and drift; how far the bands rise and fall
-together (0 to 1); the longest run of frames whose maximum stays within a fiftieth of an octave
-[share]. Then power in half octaves from 156 Hz [dB re all].
-"""
+TRAJECTORY_NAMES = tuple(feature.name for feature in TRAJECTORY_FEATURES)
+"""Of a window, in the order of `trajectory_features`."""
 
 _LEAST_FRAMES = 3
 
@@ -66,7 +51,8 @@ def trajectory_features(
     Returns
     -------
     ndarray of float32, shape (n_windows, n_names)
-        By `TRAJECTORY_NAMES`; NaN where a window has fewer than three frames.
+        By `TRAJECTORY_NAMES`, each in its declared [unit]; NaN where a window has fewer than three
+        frames.
 
     Examples
     --------

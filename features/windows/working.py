@@ -55,7 +55,7 @@ class Block:
     sound : ndarray of float32, shape (n,)
         From 160 Hz to 7 kHz [share of `scale`].
     high : ndarray of float32, shape (n,)
-        Its part above 2 kHz.
+        Its part above 2 kHz [share of `scale`].
     top : ndarray of float32, shape (n_frames, 2)
         Power from 7 to 13 and from 13 to 19 kHz [share of `scale` squared]; NaN where the rate
         does not reach so far.
@@ -86,7 +86,7 @@ def working_block(samples: NDArray[np.float64], rate: float, useful: int) -> Blo
     Parameters
     ----------
     samples : ndarray, shape (round((useful + 1) * rate),)
-        With a margin of half a second on either side.
+        In any [unit], with a margin of half a second on either side.
     rate : float
         [Hz]
     useful : int

@@ -1,4 +1,4 @@
-"""Impulse responses from torque and pulse to acceleration and sound, and their application.
+"""The impulse responses from torque and pulse to acceleration and sound at one condition.
 
 Time domain, because simulated torques are signals without a period, and because a measured
 response can stand in for a modelled one once it is an impulse response too.
@@ -6,29 +6,27 @@ response can stand in for a modelled one once it is an impulse response too.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from scipy.fft import rfft
+
+from models.transfer_functions.filtering import convolve, transform_size
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-__all__ = ["FrequencyResponse", "Response", "convolve", "frequency_response", "radiate"]
+__all__ = ["ImpulseResponses", "radiate", "radiate_pulses"]
 
 Path = Literal[
     "torque_to_acceleration", "torque_to_pressure", "pulse_to_acceleration", "pulse_to_pressure"
 ]
 
-BLOCK = 2**18
-"""Samples convolved at a time, which bounds the memory for long signals."""
-
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class ImpulseResponses:
     """Impulse responses of structure and plate, for convolution with samples.
 
     Parameters
@@ -42,8 +40,9 @@ class Response:
 
     Examples
     --------
-    >>> pair = Response(48e3, np.array([0.0, 2.0]), np.zeros(2), np.zeros(2), np.zeros(2))
-    >>> pair.duration * 1e6
+    >>> none = np.zeros(2)
+    >>> pair = ImpulseResponses(48e3, np.array([0.0, 2.0]), none, none, none)
+    >>> pair.torque_to_acceleration.size / pair.rate * 1e6
     41.66...
     """
 
@@ -53,35 +52,11 @@ class Response:
     pulse_to_acceleration: NDArray[np.float64]
     pulse_to_pressure: NDArray[np.float64]
 
-    @property
-    def duration(self) -> float:
-        """Length [s]."""
-        return self.torque_to_pressure.size / self.rate
-
-
-@dataclass(frozen=True, eq=False)
-class FrequencyResponse:
-    """Spectra of a `Response`: output per unit of input at each frequency.
-
-    Parameters
-    ----------
-    frequency : ndarray, shape (n,)
-        [Hz]
-    torque_to_acceleration, torque_to_pressure : ndarray, shape (n,), complex
-        [m/s2 and Pa per Nm]
-    pulse_to_acceleration, pulse_to_pressure : ndarray, shape (n,), complex
-        [m/s2 and Pa per N]
-    """
-
-    frequency: NDArray[np.float64]
-    torque_to_acceleration: NDArray[np.complex128]
-    torque_to_pressure: NDArray[np.complex128]
-    pulse_to_acceleration: NDArray[np.complex128]
-    pulse_to_pressure: NDArray[np.complex128]
-
 
 def radiate(
-    response: Response, torque: NDArray[np.float64], pulse_force: NDArray[np.float64] | None = None
+    paths: ImpulseResponses,
+    torque: NDArray[np.float64],
+    pulse_force: NDArray[np.float64] | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Acceleration and sound pressure that torque and pulses cause.
 
@@ -90,9 +65,9 @@ def radiate(
 
     Parameters
     ----------
-    response : Response
+    paths : ImpulseResponses
     torque : ndarray, shape (n,)
-        Of the bushing on the clamp, sampled at the response's rate [Nm].
+        Of the bushing on the clamp, sampled at their rate [Nm].
     pulse_force : ndarray, shape (n,), optional
         Of the anchors on the plate [N].
 
@@ -103,112 +78,57 @@ def radiate(
 
     Examples
     --------
-    >>> echo = Response(48e3, np.array([0.0, 2.0]), np.array([0.5]), np.ones(1), np.ones(1))
+    >>> one = np.ones(1)
+    >>> echo = ImpulseResponses(48e3, np.array([0.0, 2.0]), 0.5 * one, one, one)
     >>> acceleration, pressure = radiate(echo, np.array([7.0, 8.0, 8.0]))
     >>> acceleration.round(9), pressure.round(9)
     (array([0., 0., 2.]), array([0. , 0.5, 0.5]))
     """
     change = torque - torque[:1]
-    acceleration = _along(response, "torque_to_acceleration", change)
-    pressure = _along(response, "torque_to_pressure", change)
+    acceleration = _along(paths, "torque_to_acceleration", change)
+    pressure = _along(paths, "torque_to_pressure", change)
     if pulse_force is not None and np.any(pulse_force):
-        acceleration += _along(response, "pulse_to_acceleration", pulse_force)
-        pressure += _along(response, "pulse_to_pressure", pulse_force)
+        struck, sounding = radiate_pulses(paths, pulse_force)
+        acceleration += struck
+        pressure += sounding
     return acceleration, pressure
 
 
-def frequency_response(response: Response, frequency: ArrayLike) -> FrequencyResponse:
-    """Spectra of the responses at given frequencies.
+def radiate_pulses(
+    paths: ImpulseResponses, pulse_force: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Acceleration and sound pressure that pulses cause, without those of the torque.
 
     Parameters
     ----------
-    response : Response
-    frequency : array_like, shape (n,)
-        [Hz]
+    paths : ImpulseResponses
+    pulse_force : ndarray, shape (n,)
+        Of the anchors on the plate, sampled at their rate [N].
 
     Returns
     -------
-    FrequencyResponse
+    acceleration, pressure : ndarray, shape (n,)
+        [m/s2] and [Pa]
 
     Examples
     --------
-    >>> echo = Response(48e3, np.array([0.0, 2.0]), np.array([0.5]), np.ones(1), np.ones(1))
-    >>> frequency_response(echo, [12e3]).torque_to_acceleration.round(6)  # a quarter turn late
-    array([0.-2.j])
+    >>> echo = ImpulseResponses(48e3, np.ones(1), np.ones(1), np.array([2.0]), np.array([0.0, 3.0]))
+    >>> acceleration, pressure = radiate_pulses(echo, np.array([1.0, 0.0]))
+    >>> acceleration.round(9), pressure.round(9)
+    (array([2., 0.]), array([0., 3.]))
     """
-    frequency = np.asarray(frequency, dtype=np.float64)
-    angle = 2 * np.pi * frequency / response.rate
-    return FrequencyResponse(
-        frequency,
-        _fourier_transform(response.torque_to_acceleration, angle),
-        _fourier_transform(response.torque_to_pressure, angle),
-        _fourier_transform(response.pulse_to_acceleration, angle),
-        _fourier_transform(response.pulse_to_pressure, angle),
+    return (
+        _along(paths, "pulse_to_acceleration", pulse_force),
+        _along(paths, "pulse_to_pressure", pulse_force),
     )
 
 
-def convolve(
-    signal: NDArray[np.float64],
-    impulse_response: NDArray[np.float64],
-    spectrum: NDArray[np.complex128] | None = None,
-) -> NDArray[np.float64]:
-    """Causal convolution by overlap-add, in blocks, so that long signals need little memory.
-
-    Parameters
-    ----------
-    signal : ndarray, shape (n,)
-    impulse_response : ndarray, shape (m,)
-    spectrum : ndarray, optional
-        Its transform, if kept from a signal of the same length.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        As long as the signal; what rings on after its end is dropped.
-
-    Examples
-    --------
-    >>> convolve(np.array([1.0, 0.0, 2.0]), np.array([3.0, 1.0])).round(9)
-    array([3., 1., 6.])
-    """
-    n, overlap = signal.size, impulse_response.size - 1
-    size = _transform_size(n, impulse_response.size)
-    step = size - overlap
-    if spectrum is None:
-        spectrum = rfft(impulse_response, size)
-    result = np.zeros(n)
-    for start in range(0, n, step):
-        block = irfft(rfft(signal[start : start + step], size) * spectrum, size)
-        end = min(start + size, n)
-        result[start:end] += block[: end - start]
-    return result
-
-
-def _along(response: Response, path: Path, signal: NDArray[np.float64]) -> NDArray[np.float64]:
-    impulse_response = getattr(response, path)
-    size = _transform_size(signal.size, impulse_response.size)
-    return convolve(signal, impulse_response, _spectrum(response, path, size))
+def _along(paths: ImpulseResponses, path: Path, signal: NDArray[np.float64]) -> NDArray[np.float64]:
+    impulse_response = getattr(paths, path)
+    size = transform_size(signal.size, impulse_response.size)
+    return convolve(signal, impulse_response, _spectrum(paths, path, size))
 
 
 @lru_cache(maxsize=16)
-def _spectrum(response: Response, path: Path, size: int) -> NDArray[np.complex128]:
-    spectrum: NDArray[np.complex128] = rfft(getattr(response, path), size)
-    return spectrum
-
-
-def _transform_size(signal: int, impulse_response: int) -> int:
-    size: int = next_fast_len(min(signal, BLOCK) + impulse_response - 1, real=True)
-    return size
-
-
-def _fourier_transform(
-    impulse_response: NDArray[np.float64], angle: NDArray[np.float64]
-) -> NDArray[np.complex128]:
-    """Sum of h[n] exp(-i angle n), in rows of samples and a sum over the rows."""
-    row = math.isqrt(impulse_response.size) + 1
-    rows = np.zeros((row, row))
-    rows.ravel()[: impulse_response.size] = impulse_response
-    within = np.exp(-1j * np.outer(np.arange(row), angle))
-    between = np.exp(-1j * np.outer(np.arange(row) * row, angle))
-    transform: NDArray[np.complex128] = np.sum(between * (rows @ within), axis=0)
-    return transform
+def _spectrum(paths: ImpulseResponses, path: Path, size: int) -> NDArray[np.complex128]:
+    return np.asarray(rfft(getattr(paths, path), size))

@@ -64,8 +64,7 @@ class RayleighIntegral:
         ndarray, shape (n_taps,) or (n_taps, n_distributions)
             [Pa per m/s2], the first one `delay` samples late.
         """
-        result: NDArray[np.float64] = self.matrix @ distribution
-        return result
+        return np.asarray(self.matrix @ distribution)
 
 
 def rayleigh_integral(
@@ -163,7 +162,4 @@ def rectangle_integral(
 
 def _middles(length: float) -> NDArray[np.float64]:
     n = int(np.ceil(length / GRID_STEP))
-    middles: NDArray[np.float64] = (np.arange(n, dtype=np.float64) + 0.5) * (
-        length / n
-    ) - length / 2
-    return middles
+    return np.asarray((np.arange(n, dtype=np.float64) + 0.5) * (length / n) - length / 2)

@@ -1,4 +1,4 @@
-"""From the torque in the bushing to what accelerometer and microphone record.
+"""The impulse responses of a rig: from torque to accelerometer and microphone.
 
 A chain of linear parts, put together once into four impulse responses: clamp and beams carry the
 torque to their anchors (`models.structure.beams`), the anchors drive the plate, and the plate
@@ -23,13 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.radiation.impulse_responses import (
-    FrequencyResponse,
-    Response,
-    convolve,
-    frequency_response,
-    radiate,
-)
+from models.radiation.impulse_responses import ImpulseResponses
 from models.rig import HIGHEST_PLATE_FREQUENCY, Beams, Microphone, Plate, Rig, damping_at
 from models.structure.beams import (
     ACCELERATION,
@@ -46,6 +40,7 @@ from models.structure.plate import (
     plate_modes,
     pressure_response,
 )
+from models.transfer_functions.filtering import convolve
 from models.transfer_functions.measured import with_measured
 
 if TYPE_CHECKING:
@@ -53,7 +48,7 @@ if TYPE_CHECKING:
 
     from models.structure.plate import PlateModes
 
-__all__ = ["FrequencyResponse", "Response", "frequency_response", "radiate", "response"]
+__all__ = ["anchor_drives", "first_mode_damping", "impulse_responses"]
 
 HIGHEST_BEAM_FREQUENCY = 40e3
 """Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""
@@ -65,13 +60,13 @@ FADE = 0.1
 """Last part of the responses, over which modes that still ring are faded out."""
 
 
-def response(
+def impulse_responses(
     rig: Rig,
     interference: float,
     support_stiffness: float,
     rate: float,
     seconds: float = 0.7,
-) -> Response:
+) -> ImpulseResponses:
     """Impulse responses of a rig at one operating condition.
 
     The first torsional mode has the damping that the lumped model leaves to the beams,
@@ -90,11 +85,11 @@ def response(
         Sampling rate of torque, pulse and outputs [Hz]. 96 kHz carries all modes; lower ones
         leave out those above 0.45 of the rate and lose accuracy above a quarter of it.
     seconds : float, optional
-        Length of the responses; modes that still ring at their end are faded out.
+        Length of the responses [s]; modes that still ring at their end are faded out.
 
     Returns
     -------
-    Response
+    ImpulseResponses
 
     Raises
     ------
@@ -114,7 +109,7 @@ def response(
     ...     plate=Plate(0.9, 0.6, 8e-3, 2.1e11, 7850.0, 0.3, 0.03, (0.08, 0.05)),
     ...     microphone=Microphone((0.1, 0.05, 0.7)),
     ... )
-    >>> chain = response(rig, 2.79e-4, 2214.0, 48e3, seconds=0.2)
+    >>> chain = impulse_responses(rig, 2.79e-4, 2214.0, 48e3, seconds=0.2)
     >>> chain.torque_to_pressure.shape
     (9600,)
     """
@@ -122,20 +117,58 @@ def response(
     if math.isinf(support_stiffness):
         bolted = _bolted_response(rig.beams.lever, rig.plate, rig.microphone, rate, n_samples)
         return with_measured(bolted, rig.measured, support_stiffness)
-    damping = (1 - rig.elastomer_damping_share) * damping_at(
-        rig.fit(interference), support_stiffness
-    )
     modelled = _beam_response(
         rig.beams,
         rig.plate,
         rig.microphone,
         support_stiffness,
         rig.clamp_inertia,
-        damping / (2 * math.sqrt(support_stiffness * rig.clamp_inertia)),
+        first_mode_damping(rig, interference, support_stiffness),
         rate,
         n_samples,
     )
     return with_measured(modelled, rig.measured, support_stiffness)
+
+
+def first_mode_damping(rig: Rig, interference: float, support_stiffness: float) -> float:
+    """Damping ratio of the first torsional mode of clamp and beams [-].
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        k_B [Nm/rad], finite.
+    """
+    damping = (1 - rig.elastomer_damping_share) * damping_at(
+        rig.fit(interference), support_stiffness
+    )
+    return damping / (2 * math.sqrt(support_stiffness * rig.clamp_inertia))
+
+
+def anchor_drives(modes: PlateModes, arm: float) -> NDArray[np.float64]:
+    """Drives of the plate by the right anchor's force and moment, the left one acting along.
+
+    Parameters
+    ----------
+    modes : PlateModes
+    arm : float
+        Distance of the anchors from the shaft's axis [m].
+
+    Returns
+    -------
+    ndarray, shape (n_modes, 2)
+        Modal force for a unit of each [1/sqrt(kg)] and [1/(m sqrt(kg))].
+    """
+    x, y = modes.plate.clamp_position
+    return np.stack(
+        [
+            modes.shape(x + arm, y) - modes.shape(x - arm, y),
+            modes.slope(x + arm, y) + modes.slope(x - arm, y),
+        ],
+        axis=1,
+    )
 
 
 @lru_cache(maxsize=16)
@@ -148,7 +181,7 @@ def _beam_response(
     damping_ratio: float,
     rate: float,
     n_samples: int,
-) -> Response:
+) -> ImpulseResponses:
     arm = beams.lever + beam_length(beams, support_stiffness)
     left, right = plate.clamp_position[0] - arm, plate.clamp_position[0] + arm
     if max(-left, right) >= plate.length / 2:
@@ -188,21 +221,13 @@ def _anchors_to_pressure(
 ) -> NDArray[np.float64]:
     """Pressure by the right anchor's force and moment, the left one acting along."""
     modes = _modes(plate, rate)
-    x, y = plate.clamp_position
-    drives = np.stack(
-        [
-            modes.shape(x + arm, y) - modes.shape(x - arm, y),
-            modes.slope(x + arm, y) + modes.slope(x - arm, y),
-        ],
-        axis=1,
-    )
-    return pressure_response(modes, drives, microphone, rate, n_samples)
+    return pressure_response(modes, anchor_drives(modes, arm), microphone, rate, n_samples)
 
 
 @lru_cache(maxsize=4)
 def _bolted_response(
     lever: float, plate: Plate, microphone: Microphone, rate: float, n_samples: int
-) -> Response:
+) -> ImpulseResponses:
     modes = _modes(plate, rate)
     x, y = plate.clamp_position
     moment = modes.slope([x], [y]).T
@@ -220,7 +245,7 @@ def _modes(plate: Plate, rate: float) -> PlateModes:
     return plate_modes(plate, min(HIGHEST_PLATE_FREQUENCY, BAND * rate))
 
 
-def _faded(rate: float, *responses: NDArray[np.float64]) -> Response:
+def _faded(rate: float, *responses: NDArray[np.float64]) -> ImpulseResponses:
     n_samples = responses[0].size
     end = round(FADE * n_samples)
     window = np.ones(n_samples)
@@ -228,4 +253,4 @@ def _faded(rate: float, *responses: NDArray[np.float64]) -> Response:
     faded = [window * impulse_response for impulse_response in responses]
     for impulse_response in faded:
         impulse_response.flags.writeable = False  # shared by all that ask for the same rig
-    return Response(rate, *faded)
+    return ImpulseResponses(rate, *faded)

@@ -1,4 +1,4 @@
-"""Sound power of the plate, and where the power of its drives goes.
+"""Sound power of the plate, and the balance of the power that is supplied to it.
 
 Radiated power follows from the plate's velocity spectrum over wavenumbers: only components slower
 than k = omega / c travel away. Over that disc the integral is smooth once k_x = k s and
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
+from models.radiation.unbaffled import unbaffled_power
 from models.single_thread import single_thread
 
 if TYPE_CHECKING:
@@ -72,11 +73,10 @@ class PowerFlow:
     def radiation_efficiency(self) -> NDArray[np.float64]:
         """Radiated power over that of a rigid piston of equal mean square velocity in plane waves.
 
-        Shape (n,).
+        [-], shape (n,).
         """
         plane = AIR_DENSITY * SOUND_SPEED * self.area * self.mean_square_velocity
-        efficiency: NDArray[np.float64] = self.radiated / plane
-        return efficiency
+        return np.asarray(self.radiated / plane)
 
 
 def power_flow(
@@ -85,6 +85,7 @@ def power_flow(
     spectrum: ArrayLike,
     frequency: ArrayLike,
     *,
+    baffled: bool = True,
     radiation_damping: bool = False,
 ) -> PowerFlow:
     """Steady-state powers under harmonic drives.
@@ -94,10 +95,14 @@ def power_flow(
     modes : PlateModes
     drives : ndarray, shape (n_modes, n_drives)
         As for `models.structure.plate.acceleration_model`.
-    spectrum : array_like, shape (n_drives,) or (n_drives, n)
-        Force [N] or moment [Nm] of each drive, complex, root mean square; all act together.
+    spectrum : array_like, shape (n_drives,), (n_drives, n) or (n_sets, n_drives, n)
+        Force [N] or moment [Nm] of each drive, complex, root mean square; all act together. Sets
+        know nothing of each other's phase, so that their powers add up.
     frequency : array_like, shape (n,)
         [Hz]
+    baffled : bool, optional
+        Whether the plate is part of a rigid baffle; else it stands free, which takes a hundred
+        times as long (`models.radiation.unbaffled`).
     radiation_damping : bool, optional
         Whether each mode also loses what it radiates alone at its own frequency. Dissipated and
         radiated power then add up to the supplied one, within 0.2 % over a wide band and 2 % in
@@ -120,23 +125,30 @@ def power_flow(
     """
     frequency = np.asarray(frequency, dtype=np.float64)
     given = np.asarray(spectrum, dtype=np.complex128)
-    forces = drives @ np.broadcast_to(
-        given if given.ndim == 2 else given[:, None], (drives.shape[1], frequency.size)
+    sets = np.broadcast_to(
+        given[:, None] if given.ndim == 1 else given,
+        (len(given) if given.ndim == 3 else 1, drives.shape[1], frequency.size),
     )
+    forces = drives @ sets  # (n_sets, n_modes, n)
     omega, natural = 2 * np.pi * frequency, 2 * np.pi * modes.frequencies[:, None]
     damped = with_radiation_damping(modes) if radiation_damping else modes
     total = damped.damping_ratios[:, None]
     velocity = (
         1j * omega * forces / modes.mass / (natural**2 - omega**2 + 2j * total * natural * omega)
     )
-    squares = np.abs(velocity) ** 2
+    squares = np.sum(np.abs(velocity) ** 2, axis=0)
     resistance = 2 * modes.damping_ratios[:, None] * natural * modes.mass
     return PowerFlow(
         frequency,
-        np.sum((forces.conj() * velocity).real, axis=0),
+        np.sum((forces.conj() * velocity).real, axis=(0, 1)),
         np.sum(resistance * squares, axis=0),
         np.array(
-            [radiated_power(modes, velocity[:, i], frequency[i]) for i in range(frequency.size)]
+            [
+                sum(radiated_power(modes, v, f) for v in fields)
+                if baffled
+                else unbaffled_power(modes, fields.T, f).sum()
+                for fields, f in zip(velocity.transpose(2, 0, 1), frequency.tolist(), strict=True)
+            ]
         ),
         np.sum(squares, axis=0) / 4,
         modes.plate.length * modes.plate.width,
@@ -155,6 +167,7 @@ def radiation_efficiency(modes: PlateModes, frequency: ArrayLike) -> NDArray[np.
     Returns
     -------
     ndarray, shape (n_modes, n)
+        [-]
 
     Notes
     -----
@@ -178,6 +191,7 @@ def radiation_efficiency(modes: PlateModes, frequency: ArrayLike) -> NDArray[np.
     return efficiencies
 
 
+@lru_cache(maxsize=4)
 def radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     """Loss factor of each mode by the sound of the upper side, at the mode's own frequency.
 
@@ -188,7 +202,7 @@ def radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n_modes,)
-        rho_0 c sigma / (omega rho h).
+        rho_0 c sigma / (omega rho h) [-].
 
     Examples
     --------
@@ -198,22 +212,19 @@ def radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     >>> float(radiation_loss(plate_modes(steel, 2e3)).max().round(5))  # beside 0.03
     0.00151
     """
-    return _radiation_loss(modes).copy()
-
-
-@lru_cache(maxsize=4)
-def _radiation_loss(modes: PlateModes) -> NDArray[np.float64]:
     omega = 2 * np.pi * modes.frequencies
     efficiencies = [
         _efficiencies(modes, slice(r, r + 1), float(omega[r])) for r in range(omega.size)
     ]
     plane = AIR_DENSITY * SOUND_SPEED / (omega * modes.plate.mass_per_area)
-    return plane * np.concatenate(efficiencies)
+    loss = plane * np.concatenate(efficiencies)
+    loss.flags.writeable = False  # shared by all that ask for it
+    return loss
 
 
 def with_radiation_damping(modes: PlateModes) -> PlateModes:
     """Modes that also lose what they radiate, for all that is computed from them."""
-    return replace(modes, damping_ratios=modes.damping_ratios + _radiation_loss(modes) / 2)
+    return replace(modes, damping_ratios=modes.damping_ratios + radiation_loss(modes) / 2)
 
 
 def radiated_power(modes: PlateModes, velocity: NDArray[np.complex128], frequency: float) -> float:
@@ -270,8 +281,7 @@ def _efficiencies(modes: PlateModes, some: slice, omega: float) -> NDArray[np.fl
             field = modes.products.combine(one_along, one_across, some)
             total += np.einsum("st,str->r", weights, field**2)
     area = modes.plate.length * modes.plate.width
-    efficiencies: NDArray[np.float64] = (k / np.pi) ** 2 * total / (area / 4)
-    return efficiencies
+    return np.asarray((k / np.pi) ** 2 * total / (area / 4))
 
 
 def _parities() -> Iterator[tuple[int, int]]:

@@ -1,4 +1,4 @@
-"""Sound power per one-third octave, as a sound power measurement states it.
+"""Sound power in one-third octaves, as a sound power measurement states it.
 
 Bands are those of base ten (IEC 61260-1). In each one the frequencies computed lie close enough for
 the narrowest resonance: half its width apart, which sums a resonance to half a percent.
@@ -45,7 +45,8 @@ class BandPower:
     supplied, dissipated, radiated : ndarray, shape (n_bands,)
         By the drives, in the plate, as sound of its upper side [W].
     radiation_efficiency : ndarray, shape (n_bands,)
-        Radiated power over that of plane waves of the same mean square velocity.
+        Radiated power over that of plane waves of the same mean square velocity [-]; NaN where
+        nothing moves.
     """
 
     centre: NDArray[np.float64]
@@ -56,9 +57,9 @@ class BandPower:
 
     @property
     def level(self) -> NDArray[np.float64]:
-        """Sound power level [dB re 1 pW], shape (n_bands,)."""
-        level: NDArray[np.float64] = 10 * np.log10(self.radiated / REFERENCE)
-        return level
+        """Sound power level [dB re 1 pW], shape (n_bands,); minus infinity for no power."""
+        with np.errstate(divide="ignore"):  # a band of no power
+            return np.asarray(10 * np.log10(self.radiated / REFERENCE))
 
 
 def third_octave_power(
@@ -68,6 +69,7 @@ def third_octave_power(
     *,
     low: float = 50.0,
     high: float = 10e3,
+    baffled: bool = True,
     radiation_damping: bool = False,
 ) -> BandPower:
     """Powers of the plate under steady drives, band by band.
@@ -78,12 +80,13 @@ def third_octave_power(
     drives : ndarray, shape (n_modes, n_drives)
         As for `models.structure.plate.acceleration_model`.
     density : callable, optional
-        Takes frequencies, shape (n,), to the complex spectra of all drives, shape (n_drives, n),
-        whose squared magnitude is a power spectral density [N2/Hz or (Nm)2/Hz]; phases between
-        drives count. Default: all drives in phase at 1 N2/Hz.
+        Takes frequencies, shape (n,), each a fixed ratio above the last, to the complex spectra of
+        all drives, shape (n_drives, n), whose squared magnitude is a power spectral density
+        [N2/Hz or (Nm)2/Hz]; phases between drives count. Or to several such sets that know nothing
+        of each other's phase, shape (n_sets, n_drives, n). Default: all drives in phase at 1 N2/Hz.
     low, high : float, optional
         Middles of the lowest and the highest band [Hz].
-    radiation_damping : bool, optional
+    baffled, radiation_damping : bool, optional
         As for `models.radiation.sound_power.power_flow`.
 
     Returns
@@ -118,15 +121,17 @@ def third_octave_power(
     edges = centre[:, None] * BAND ** (np.linspace(-0.5, 0.5, count + 1))
     frequency = np.sqrt(edges[:, 1:] * edges[:, :-1]).ravel()
     spectra = np.ones((drives.shape[1], frequency.size)) if density is None else density(frequency)
-    flow = power_flow(modes, drives, spectra, frequency, radiation_damping=radiation_damping)
+    flow = power_flow(
+        modes, drives, spectra, frequency, baffled=baffled, radiation_damping=radiation_damping
+    )
     width = np.diff(edges, axis=1)
 
     def in_bands(spectrum: NDArray[np.float64]) -> NDArray[np.float64]:
-        total: NDArray[np.float64] = np.sum(spectrum.reshape(width.shape) * width, axis=1)
-        return total
+        return np.asarray(np.sum(spectrum.reshape(width.shape) * width, axis=1))
 
     radiated = in_bands(flow.radiated)
     plane = AIR_DENSITY * SOUND_SPEED * flow.area * in_bands(flow.mean_square_velocity)
+    efficiency = np.divide(radiated, plane, out=np.full(centre.size, np.nan), where=plane > 0.0)
     return BandPower(
-        centre, in_bands(flow.supplied), in_bands(flow.dissipated), radiated, radiated / plane
+        centre, in_bands(flow.supplied), in_bands(flow.dissipated), radiated, efficiency
     )

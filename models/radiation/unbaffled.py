@@ -1,11 +1,11 @@
-"""What the plate radiates without its baffle, and so what assuming one costs.
+"""Sound power of a plate that stands free, by which the baffled model is judged.
 
 A plate that stands free has the opposite pressure behind it, and short-circuits about its edges
 what a baffle keeps apart. The pressure jump across it is found from the plate's own velocity: over
 wavenumbers jump = 2 rho_0 omega / k_z * velocity, but the velocity is known on the plate only, the
 jump everywhere else. Functions that fall to zero at the edges as the jump does, sqrt(1 - x^2) times
 Chebyshev polynomials, make that a small system of equations. It serves to judge the baffled model,
-not to replace it: no time signal is made from it.
+and bounds the sound power of a run from below: no time signal is made from it.
 
 Steel plate of 0.9 x 0.6 m and 10 mm, critical frequency 1.2 kHz, as many dB too loud in a baffle,
 per one-third octave, mean of four point forces:
@@ -107,16 +107,14 @@ def unbaffled_power(
                 matrix = (resistive - 1j * reactive).reshape(n, n) / np.pi**2
                 jump = solve(matrix, right, assume_a="sym")
                 power += np.sum((right.conj() * jump).real, axis=0)
-    one_side: NDArray[np.float64] = AIR_DENSITY * 2 * np.pi * frequency * power
-    return one_side
+    return np.asarray(AIR_DENSITY * 2 * np.pi * frequency * power)
 
 
 def _projected(basis: Basis, side: float, count: int) -> NDArray[np.float64]:
     """Integrals of the basis times the jump's functions, shape (n_basis, count)."""
     position, weight = roots_chebyu(8 * count + 200)
     functions = eval_chebyu(np.arange(count), position[:, None]) * weight[:, None] * (side / 2)
-    integrals: NDArray[np.float64] = basis.values(position * side / 2).T @ functions
-    return integrals
+    return np.asarray(basis.values(position * side / 2).T @ functions)
 
 
 def _pairs(
@@ -130,8 +128,7 @@ def _pairs(
     argument = np.maximum(wavenumber, 1e-9)[..., None] * (side / 2)
     signs = (-1.0) ** (n // 2)
     transforms = signs * np.pi * (n + 1) * jv(n + 1, argument) / argument * (side / 2)
-    pairs: NDArray[np.float64] = transforms[..., :, None] * transforms[..., None, :]
-    return pairs
+    return np.asarray(transforms[..., :, None] * transforms[..., None, :])
 
 
 def _disc(

@@ -177,9 +177,7 @@ def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:
 def _measured(tables: Any, folder: Path, where: str) -> tuple[MeasuredResponse, ...]:
     if tables is None:
         return ()
-    from models.transfer_functions.measured import (
-        measured_responses,  # brings numpy, which help does without
-    )
+    from models.rig_files.measured_file import measured_responses  # brings numpy, help does without
 
     return measured_responses(tables, folder, where)
 

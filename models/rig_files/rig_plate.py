@@ -36,6 +36,7 @@ class Plate:
     density : float
         [kg/m3]
     poisson_ratio : float
+        [-]
     loss_factor : float, or tuple of (float, float)
         Of all modes; or by frequency [Hz], in rising order: a power law between the entries, held
         outside them.
@@ -146,7 +147,7 @@ class Floor:
     position : float
         Where it cuts that axis [m].
     reflection : float
-        Pressure reflected over pressure arriving, -1 to 1.
+        Pressure reflected over pressure arriving, -1 to 1 [-].
 
     Raises
     ------

@@ -143,6 +143,7 @@ def deflection_row(fraction: float, length: float) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (2 n_nodes,)
+        [-] for deflections and [m] for slopes.
 
     Examples
     --------

@@ -120,7 +120,7 @@ def beam_structure(
     clamp_inertia : float
         J_C of the lumped model [kg m2].
     damping_ratio : float
-        Of the first torsional mode; the others have that of `beams`.
+        Of the first torsional mode [-]; the others have that of `beams`.
     highest_frequency : float
         Modes above it act on the anchors by their static part alone [Hz].
     stations : sequence of float, optional

@@ -98,8 +98,7 @@ def natural_frequencies(
 
     def determinant(wave: ArrayLike) -> NDArray[np.float64]:
         boundary = boundary_conditions(structure, wave_frequency(structure, wave), motion, 0.0).real
-        found: NDArray[np.float64] = np.linalg.det(boundary)
-        return found
+        return np.asarray(np.linalg.det(boundary))
 
     values = determinant(grid)
     (below,) = np.nonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
@@ -128,7 +127,7 @@ def mode_shape(
     Returns
     -------
     ndarray, shape (n,)
-        Scaled such that the largest magnitude is 1 and the first value is not negative.
+        [-], scaled such that the largest magnitude is 1 and the first value is not negative.
 
     Examples
     --------

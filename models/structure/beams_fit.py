@@ -1,4 +1,4 @@
-"""Anchors and clamp that give the modes which were measured.
+"""Fit of anchors and clamp to natural frequencies that were measured.
 
 Rigid anchors, assumption (5) of 3.1.1, put the first bending modes 22 and 42 % above 900 and
 1375 Hz. Here three numbers that the thesis does not give are fitted, the clamp's inertia and the

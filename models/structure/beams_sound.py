@@ -40,13 +40,12 @@ from models.errors import ParameterError
 from models.radiation.rayleigh import SOUND_SPEED, rayleigh_integral
 from models.structure.beams import ACCELERATION, beam_structure
 from models.structure.beams_stiffness import beam_length
-from models.structure.modal import acceleration_section, ringing_samples
+from models.structure.modal import add_ringing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Beams, Microphone
-    from models.structure.modal import ModalModel
 
 __all__ = ["beams_pressure", "strip_section"]
 
@@ -137,7 +136,11 @@ def beams_pressure(
                 rate,
             )
             taps = integral.taps(np.concatenate([moved, -moved]))
-            heard = _heard(model, taps, integral.delay, rate, n_samples)
+            heard = np.zeros_like(pressure)
+            add_ringing(
+                heard, model.frequencies, model.damping_ratios, model.inputs, taps, integral.delay,
+                rate,
+            )  # fmt: skip
             pressure += lfilter(zeros, poles, heard)
     return pressure
 
@@ -157,9 +160,10 @@ def strip_section(
     Returns
     -------
     far, near : ndarray, shape (3,)
-        Numerators: of the sound that falls as 1 / r, and of that which falls as 1 / r^2 and is to
-        be weighted with c / r.
+        Numerators: of the sound that falls as 1 / r [-], and of that which falls as 1 / r^2 and is
+        to be weighted with c / r [s].
     denominator : ndarray, shape (3,)
+        [-]
 
     Examples
     --------
@@ -178,24 +182,6 @@ def strip_section(
     return np.asarray(far), np.asarray(near), np.asarray(denominator)
 
 
-def _heard(
-    model: ModalModel, taps: NDArray[np.float64], delay: int, rate: float, n_samples: int
-) -> NDArray[np.float64]:
-    """Sum the modes' pressures, each known for an impulse of its acceleration."""
-    response = np.zeros((model.inputs.shape[1], n_samples))
-    for r, (frequency, ratio) in enumerate(
-        zip(model.frequencies, model.damping_ratios, strict=True)
-    ):
-        ringing = taps.shape[0] + ringing_samples(frequency, ratio, rate, n_samples)
-        end = min(delay + ringing, n_samples)
-        excitation = np.zeros(ringing)
-        excitation[: taps.shape[0]] = taps[:, r]
-        heard = lfilter(*acceleration_section(frequency, ratio, rate), excitation)
-        response[:, delay:end] += np.outer(model.inputs[r], heard[: end - delay])
-    return response
-
-
 def _middles(low: float, high: float) -> NDArray[np.float64]:
     n = math.ceil((high - low) / ELEMENT)
-    middles: NDArray[np.float64] = low + (np.arange(n) + 0.5) * (high - low) / n
-    return middles
+    return np.asarray(low + (np.arange(n) + 0.5) * (high - low) / n)

@@ -81,7 +81,7 @@ def boundary_conditions(
         [Hz]
     motion : RootMotion
     loss_factor : float
-        Of the beams.
+        Of the beams [-].
     scaled : bool, optional
         Whether the largest coefficient of each condition is made 1.
 
@@ -127,8 +127,7 @@ def boundary_conditions(
     rows = np.stack([*at_clamp, *at_anchor], axis=-2)
     if scaled:
         rows = rows / np.abs(rows).max(axis=-1, keepdims=True)
-    conditions: NDArray[np.complex128] = rows
-    return conditions
+    return np.asarray(rows)
 
 
 def waves_at(
@@ -142,8 +141,8 @@ def waves_at(
     ----------
     wave : ndarray, shape (...), complex
         Wavenumber times length.
-    position : float or ndarray, broadcast with `wave`
-        From 0 at the clamp to 1 at the anchor.
+    position : float or ndarray, shape (...)
+        From 0 at the clamp to 1 at the anchor [-]; broadcast with `wave`.
     derivative : int
 
     Returns
@@ -159,8 +158,7 @@ def waves_at(
     turned = forth + 0.5 * np.pi * derivative
     decay = (-1) ** derivative * np.exp(-forth)
     shapes = np.stack([np.cos(turned), np.sin(turned), decay, np.exp(-back)], axis=-1)
-    result: NDArray[np.complex128] = wave[..., None] ** derivative * shapes
-    return result
+    return np.asarray(wave[..., None] ** derivative * shapes)
 
 
 def wavenumber(
@@ -174,6 +172,7 @@ def wavenumber(
     frequency : array_like, shape (...)
         [Hz]
     loss_factor : float, optional
+        Of the beams [-].
 
     Returns
     -------

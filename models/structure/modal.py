@@ -20,7 +20,13 @@ from scipy.signal import lfilter
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["ModalModel", "acceleration_section", "displacement_section", "ringing_samples"]
+__all__ = [
+    "ModalModel",
+    "acceleration_section",
+    "add_ringing",
+    "displacement_section",
+    "ringing_samples",
+]
 
 DECAY_EXPONENT = 14.0
 """A mode is followed until it has decayed by exp(14), 122 dB."""
@@ -35,11 +41,13 @@ class ModalModel:
     frequencies, damping_ratios : ndarray, shape (n_modes,)
         Undamped natural frequencies [Hz] and fractions of critical damping.
     inputs : ndarray, shape (n_modes, n_inputs)
-        Modal force for a unit of each input, with mode shapes normalised to unit modal mass.
+        Modal force for a unit of each input [1/sqrt(kg) for a force], with mode shapes normalised
+        to unit modal mass.
     displacements, accelerations : ndarray, shape (n_outputs, n_modes)
-        What each output gathers from q and from q''.
+        What each output gathers from q and from q'' [unit of the output over that of each].
     feedthrough : ndarray, shape (n_outputs, n_inputs)
-        Instant part of the outputs, for what modes left out contribute statically.
+        Instant part of the outputs [unit of the output over that of the input], for what modes
+        left out contribute statically.
 
     Examples
     --------
@@ -70,18 +78,18 @@ class ModalModel:
         Returns
         -------
         ndarray, shape (n_outputs, n_inputs, n)
+            [unit of the output over that of the input]
         """
         omega = 2 * np.pi * np.asarray(frequency, dtype=np.float64)
         natural = 2 * np.pi * self.frequencies[:, None]
         q = 1 / (natural**2 - omega**2 + 2j * self.damping_ratios[:, None] * natural * omega)
-        response: NDArray[np.complex128] = (
+        return np.asarray(
             np.einsum("om,mi,mf->oif", self.displacements, self.inputs, q, optimize=True)
             - np.einsum(
                 "om,mi,mf->oif", self.accelerations, self.inputs, omega**2 * q, optimize=True
             )
             + self.feedthrough[:, :, None]
         )
-        return response
 
     def impulse_response(self, rate: float, n_samples: int) -> NDArray[np.float64]:
         """Give the outputs for a unit sample of each input, for convolution with samples.
@@ -95,6 +103,7 @@ class ModalModel:
         Returns
         -------
         ndarray, shape (n_outputs, n_inputs, n_samples)
+            [unit of the output over that of the input]
         """
         response = np.zeros((*self.feedthrough.shape, n_samples))
         response[:, :, 0] = self.feedthrough
@@ -123,13 +132,14 @@ def acceleration_section(
     frequency : float
         Undamped natural frequency [Hz], below half of `rate`.
     damping_ratio : float
+        [-]
     rate : float
         Sampling rate [Hz].
 
     Returns
     -------
     numerator, denominator : ndarray, shape (3,)
-        In rising powers of the unit delay.
+        [-], in rising powers of the unit delay.
 
     Examples
     --------
@@ -147,7 +157,8 @@ def displacement_section(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Digital filter from the modal force to q of a mode of unit modal mass.
 
-    Parameters and returns are those of `acceleration_section`.
+    Parameters and returns are those of `acceleration_section`, shapes (3,), the
+    numerator in [s2].
 
     Examples
     --------
@@ -158,6 +169,49 @@ def displacement_section(
     denominator = _poles(frequency, damping_ratio, rate)
     gain = denominator.sum() / (2 * np.pi * frequency) ** 2
     return gain * np.array([1.0, 10.0, 1.0]) / 12, denominator
+
+
+def add_ringing(
+    response: NDArray[np.float64],
+    frequencies: NDArray[np.float64],
+    damping_ratios: NDArray[np.float64],
+    inputs: NDArray[np.float64],
+    taps: NDArray[np.float64],
+    delay: int,
+    rate: float,
+) -> None:
+    """Add what modes radiate, each known for an impulse of its acceleration.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n_inputs, n_samples)
+        What is heard after a unit sample of each input; it is added to [unit of what is heard].
+    frequencies, damping_ratios : ndarray, shape (n_modes,)
+        [Hz] and [-]
+    inputs : ndarray, shape (n_modes, n_inputs)
+        Modal force for a unit of each input [1/sqrt(kg) for a force].
+    taps : ndarray, shape (n_taps, n_modes)
+        Filter from the acceleration q'' of each mode to what is heard [its unit over that of q''].
+    delay : int
+        Samples that pass before the first tap.
+    rate : float
+        Sampling rate [Hz].
+
+    Examples
+    --------
+    >>> heard, one = np.zeros((1, 8)), np.ones((1, 1))
+    >>> add_ringing(heard, np.array([100.0]), np.array([0.01]), one, one, 3, 8e3)
+    >>> heard[0, :4].round(2)
+    array([0., 0., 0., 1.])
+    """
+    n_samples = response.shape[1]
+    for r, (frequency, ratio) in enumerate(zip(frequencies, damping_ratios, strict=True)):
+        ringing = taps.shape[0] + ringing_samples(frequency, ratio, rate, n_samples)
+        end = min(delay + ringing, n_samples)
+        excitation = np.zeros(ringing)
+        excitation[: taps.shape[0]] = taps[:, r]
+        heard = lfilter(*acceleration_section(frequency, ratio, rate), excitation)
+        response[:, delay:end] += np.outer(inputs[r], heard[: end - delay])
 
 
 def ringing_samples(frequency: float, damping_ratio: float, rate: float, n_samples: int) -> int:

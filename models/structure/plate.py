@@ -18,10 +18,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy.signal import lfilter
 
 from models.radiation.rayleigh import rectangle_integral
-from models.structure.modal import ModalModel, acceleration_section, ringing_samples
+from models.structure.modal import ModalModel, add_ringing
 from models.structure.plate_basis import (
     Basis,
     LegendreBasis,
@@ -90,6 +89,7 @@ class PlateModes:
         Returns
         -------
         ndarray, shape (..., n_modes)
+            [1/sqrt(kg)]
         """
         return self._at(x, y, 0, 0)
 
@@ -164,8 +164,7 @@ def _damping_ratios(plate: Plate, frequencies: NDArray[np.float64]) -> NDArray[n
     if len(plate.loss_table) == 1:
         return np.full(frequencies.size, plate.loss_table[0][1] / 2)
     given, loss = np.log(plate.loss_table).T
-    ratios: NDArray[np.float64] = np.exp(np.interp(np.log(frequencies), given, loss)) / 2
-    return ratios
+    return np.asarray(np.exp(np.interp(np.log(frequencies), given, loss)) / 2)
 
 
 def acceleration_model(
@@ -177,8 +176,8 @@ def acceleration_model(
     ----------
     modes : PlateModes
     drives : ndarray, shape (n_modes, n_drives)
-        Work of a unit of each drive on the modes: `PlateModes.shape` at the point of a force,
-        `PlateModes.slope` at that of a moment, and sums of such.
+        Work of a unit of each drive on the modes [1/sqrt(kg) for a force]: `PlateModes.shape` at
+        the point of a force, `PlateModes.slope` at that of a moment, and sums of such.
     x, y : array_like, shape (n_points,)
         [m]
 
@@ -248,27 +247,11 @@ def pressure_response(
     for position, weight in microphone.images(modes.plate):
         taps, delay = _mode_taps(modes, position, rate)
         if delay < n_samples:
-            _add_rung(response, modes, drives, weight * taps, delay, rate)
+            add_ringing(
+                response, modes.frequencies, modes.damping_ratios, drives,
+                weight * taps / modes.mass, delay, rate,
+            )  # fmt: skip
     return response
-
-
-def _add_rung(
-    response: NDArray[np.float64],
-    modes: PlateModes,
-    drives: NDArray[np.float64],
-    taps: NDArray[np.float64],
-    delay: int,
-    rate: float,
-) -> None:
-    n_samples = response.shape[1]
-    for r in range(modes.frequencies.size):
-        frequency, ratio = float(modes.frequencies[r]), float(modes.damping_ratios[r])
-        ringing = taps.shape[0] + ringing_samples(frequency, ratio, rate, n_samples)
-        end = min(delay + ringing, n_samples)
-        excitation = np.zeros(ringing)
-        excitation[: taps.shape[0]] = taps[:, r] / modes.mass
-        heard = lfilter(*acceleration_section(frequency, ratio, rate), excitation)
-        response[:, delay:end] += np.outer(drives[r], heard[: end - delay])
 
 
 @lru_cache(maxsize=8)

@@ -1,4 +1,4 @@
-"""Functions that mode shapes of a rectangle are made of, and how they are put together.
+"""The functions that make up the mode shapes of a rectangle, and their products.
 
 A shape is a sum of products, one function of x times one of y. Simply supported plates need one
 product of sines a mode; other edges a sum over Legendre polynomials, which follow both waves and
@@ -33,7 +33,7 @@ class Basis(Protocol):
         """Values at x [m] from the middle, or first derivatives [1/m], shape (..., n)."""
 
     def transform(self, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Integral of even functions times cos(k x), odd ones times sin(k x) [m], (..., n)."""
+        """Integral of even ones times cos(k x), odd ones times sin(k x) [m]; shape (..., n)."""
 
 
 class Products(Protocol):
@@ -47,7 +47,9 @@ class Products(Protocol):
         Parameters
         ----------
         along : ndarray, shape (n, n_along)
+            Values of the functions along the plate [-].
         across : ndarray, shape (n or 1, m, n_across)
+            Values of those across it [-].
             For each of the n positions along the plate m positions across it.
         some : slice
             Of the modes.
@@ -55,6 +57,7 @@ class Products(Protocol):
         Returns
         -------
         ndarray, shape (n, m, n_some)
+            [-]
         """
 
     def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -75,23 +78,20 @@ class SineBasis:
     count: int
 
     def values(self, x: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
-        """Values, or first derivatives."""
+        """Values [-], or first derivatives [1/m], shape (..., n)."""
         half_turns = np.arange(1, self.count + 1) * np.pi
         argument = half_turns * (np.asarray(x, dtype=np.float64)[..., None] / self.length + 0.5)
         values = half_turns / self.length * np.cos(argument) if derivative else np.sin(argument)
         return np.asarray(values, dtype=np.float64)
 
     def transform(self, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Cosine or sine transforms."""
+        """Cosine or sine transforms [m], shape (..., n), at wavenumbers [rad/m]."""
         m = np.arange(1, self.count + 1)
         even = m % 2 == 1
         sign = np.where(m % 4 < 2, 1.0, -1.0)  # sin(m pi/2) of even ones, cos(m pi/2) of odd ones
         half = wavenumber[..., None] * (self.length / (2 * np.pi))
         near, far = np.sinc(m / 2 - half), np.sinc(m / 2 + half)
-        transforms: NDArray[np.float64] = (
-            sign * self.length / 2 * np.where(even, near + far, near - far)
-        )
-        return transforms
+        return np.asarray(sign * self.length / 2 * np.where(even, near + far, near - far))
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ class LegendreBasis:
     degree: int
 
     def values(self, x: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
-        """Values, or first derivatives."""
+        """Values [-], or first derivatives [1/m], shape (..., n)."""
         position = np.asarray(x, dtype=np.float64) * (2 / self.length)
         values = legvander(position, self.degree)
         if derivative:
@@ -116,7 +116,10 @@ class LegendreBasis:
         return np.asarray(values, dtype=np.float64)
 
     def transform(self, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Cosine or sine transforms: spherical Bessel functions, by quadrature."""
+        """Cosine or sine transforms [m], shape (..., n).
+
+        They are spherical Bessel functions, by quadrature.
+        """
         argument = wavenumber * (self.length / 2)
         nodes = int(self.degree + np.max(argument, initial=0.0)) + 2 * SPARE_NODES
         position, weighted = _weighted_legendre(16 * (nodes // 16 + 1), self.degree)
@@ -144,7 +147,7 @@ class SingleProducts:
     def combine(
         self, along: NDArray[np.float64], across: NDArray[np.float64], some: slice
     ) -> NDArray[np.float64]:
-        """Values of some modes."""
+        """Values of some modes [-], shape (n, m, n_some)."""
         return along[:, None, self.along[some]] * across[..., self.across[some]]
 
     def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -163,12 +166,10 @@ class SumsOfProducts:
     def combine(
         self, along: NDArray[np.float64], across: NDArray[np.float64], some: slice
     ) -> NDArray[np.float64]:
-        """Values of some modes."""
+        """Values of some modes [-], shape (n, m, n_some)."""
         lines = np.tensordot(along, self.coefficients[some], axes=(1, 1))
-        values: NDArray[np.float64] = across @ lines.swapaxes(1, 2)
-        return values
+        return np.asarray(across @ lines.swapaxes(1, 2))
 
     def weighted(self, amplitudes: NDArray[np.complex128]) -> NDArray[np.complex128]:
         """Amplitude of each product."""
-        products: NDArray[np.complex128] = np.tensordot(amplitudes, self.coefficients, axes=1)
-        return products
+        return np.asarray(np.tensordot(amplitudes, self.coefficients, axes=1))

@@ -44,7 +44,7 @@ class RitzModes:
     frequencies : ndarray, shape (n_modes,)
         [Hz], 0 for rigid-body motions.
     coefficients : ndarray, shape (n_modes, n_along, n_across)
-        Of Legendre polynomials in 2 x / length and 2 y / width.
+        [-], of Legendre polynomials in 2 x / length and 2 y / width.
     """
 
     frequencies: NDArray[np.float64]
@@ -76,6 +76,7 @@ def ritz_modes(
     edges : tuple of 4 texts
         At the smallest x, largest x, smallest y, largest y; each a key of `RESTRAINED`.
     poisson_ratio : float
+        [-]
     stiffness_per_mass : float
         D / (rho h), bending stiffness over mass per area [m4/s2].
     highest_frequency : float

@@ -18,7 +18,7 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["fixed_free_frequencies", "free_free_frequencies", "inertia_ratio"]
+__all__ = ["fixed_free_frequencies", "free_free_frequencies"]
 
 
 def free_free_frequencies(transit_time: float, n_modes: int = 3) -> NDArray[np.float64]:
@@ -59,7 +59,7 @@ def fixed_free_frequencies(
     transit_time : float
         l sqrt(rho / G) [s].
     ratio : float
-        Inertia of the shaft over that at its end.
+        Inertia of the shaft over that at its end [-].
     n_modes : int
 
     Returns
@@ -87,19 +87,6 @@ def fixed_free_frequencies(
     # Each branch of beta tan(beta) rises from zero to infinity, so it meets the ratio once.
     roots = [brentq(unbalance, n * math.pi, (n + 0.5) * math.pi) for n in range(n_modes)]
     return np.array(roots) / (2.0 * math.pi * transit_time)
-
-
-def inertia_ratio(frequency: float, transit_time: float) -> float:
-    """Ratio of inertias that gives a shaft held at one end a natural frequency [Hz], (A15).
-
-    Examples
-    --------
-    >>> round(inertia_ratio(1568.0, 1 / 16262), 4)
-    0.4197
-    """
-    _check(transit_time)
-    beta = 2.0 * math.pi * frequency * transit_time
-    return beta * math.tan(beta)
 
 
 def _check(transit_time: float) -> None:

@@ -29,6 +29,8 @@ from scipy.sparse.linalg import LinearOperator, cg
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from models.transfer_functions.transfer_function import TransferFunction
+
 __all__ = ["causal_impulse_response"]
 
 OUTSIDE = 1e-3
@@ -50,11 +52,7 @@ _FEWEST_ONSET_LINES = 6
 
 
 def causal_impulse_response(
-    frequency: NDArray[np.float64],
-    response: NDArray[np.complex128],
-    weight: NDArray[np.float64],
-    rate: float,
-    n_samples: int,
+    transfer: TransferFunction, rate: float, n_samples: int
 ) -> tuple[NDArray[np.float64], float]:
     """Impulse response that is nil before time zero, of a spectrum known in a band.
 
@@ -63,11 +61,8 @@ def causal_impulse_response(
 
     Parameters
     ----------
-    frequency : ndarray, shape (n,)
-        Rising [Hz], above 0.
-    response : ndarray, shape (n,), complex
-    weight : ndarray, shape (n,)
-        Trust in each line, from 0 to 1.
+    transfer : TransferFunction
+        Its lines lie above 0 Hz; each is trusted as far as its coherence goes.
     rate : float
         Sampling rate wanted [Hz]; more than twice the highest frequency.
     n_samples : int
@@ -76,21 +71,22 @@ def causal_impulse_response(
     Returns
     -------
     impulse_response : ndarray, shape (n_samples,)
-        For convolution with samples.
+        For convolution with samples [output unit / input unit].
     misfit : float
         Share of the lines' amplitude (weighted rms, relative to the envelope) that no causal
         response explains: what is noise, or truly before time zero.
 
     Examples
     --------
+    >>> from models.transfer_functions.transfer_function import TransferFunction
     >>> f = np.arange(10.0, 5001.0, 10.0)
-    >>> h, misfit = causal_impulse_response(f, 2 * f**2 * np.exp(-2j * np.pi * f * 1e-3),
-    ...                                     np.ones(f.size), 16e3, 800)
+    >>> late = TransferFunction(f, 2 * f**2 * np.exp(-2j * np.pi * f * 1e-3))
+    >>> h, misfit = causal_impulse_response(late, 16e3, 800)
     >>> int(np.argmax(np.abs(h))), misfit < 0.1
     (16, True)
     """
     finest = rate * MEMORY / n_samples
-    n_grid, lines, target, weights = _on_grid(frequency, response, weight, rate, finest)
+    n_grid, lines, target, weights = _on_grid(transfer, rate, finest)
     n = max(1, min(n_samples, int(MEMORY * n_grid)))
     inside = np.zeros(n_grid // 2 + 1)
     wanted = np.zeros(n_grid // 2 + 1, dtype=np.complex128)
@@ -122,16 +118,15 @@ def causal_impulse_response(
 
 
 def _on_grid(
-    frequency: NDArray[np.float64],
-    response: NDArray[np.complex128],
-    weight: NDArray[np.float64],
-    rate: float,
-    finest: float,
+    transfer: TransferFunction, rate: float, finest: float
 ) -> tuple[int, NDArray[np.intp], NDArray[np.complex128], NDArray[np.float64]]:
     """Lines on the grid of a transform: themselves where they fit it, else by cubic splines.
 
     `finest` is the spacing [Hz] beyond which interpolation gains nothing.
     """
+    frequency, response, weight = transfer.frequencies, transfer.response, transfer.coherence
+    if weight is None:
+        weight = np.ones(frequency.size)
     spacing = float(np.min(np.diff(frequency)))
     n_grid = round(rate / spacing)
     if n_grid <= _LARGEST_GRID:
@@ -175,8 +170,7 @@ def _minimum_phase(magnitude: NDArray[np.float64], n_grid: int) -> NDArray[np.co
     cepstrum = irfft(np.log(magnitude), n_grid)
     cepstrum[1 : (n_grid + 1) // 2] *= 2.0
     cepstrum[n_grid // 2 + 1 :] = 0.0
-    spectrum: NDArray[np.complex128] = np.exp(rfft(cepstrum))
-    return spectrum
+    return np.asarray(np.exp(rfft(cepstrum)))
 
 
 def _onset(

@@ -1,4 +1,4 @@
-"""Files of frequency response functions: NPZ, CSV and universal files, by their ending.
+"""Files of transfer functions: NPZ, CSV and universal files, by their ending.
 
 NPZ: ``frequency_hz``, ``response`` (complex), ``coherence`` (optional), ``input_unit``,
 ``output_unit``. CSV: the columns ``frequency_hz, real, imag``, and ``coherence`` where there is
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from models.errors import ParameterError
-from models.transfer_functions.transfer_function import Frf, check_frf, same_unit
+from models.transfer_functions.transfer_function import TransferFunction
 from models.transfer_functions.uff import (
     COHERENCE,
     FREQUENCY_RESPONSE,
@@ -26,6 +26,7 @@ from models.transfer_functions.uff import (
     read_uff_functions,
     write_uff_functions,
 )
+from models.transfer_functions.validation import check_transfer_function, same_unit
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,15 +34,21 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["FRF_ENDINGS", "check_frf_path", "read_frf", "write_frf", "write_frf_csv"]
+__all__ = [
+    "ENDINGS",
+    "check_transfer_function_path",
+    "read_transfer_function",
+    "write_transfer_function",
+    "write_transfer_function_csv",
+]
 
-FRF_ENDINGS = (".npz", ".csv", *UFF_ENDINGS)
+ENDINGS = (".npz", ".csv", *UFF_ENDINGS)
 """Endings of the formats that responses are read from and written to."""
 
 _COLUMNS = ("frequency_hz", "real", "imag")
 
 
-def check_frf_path(path: Path) -> None:
+def check_transfer_function_path(path: Path) -> None:
     """Refuse a path of no known format, or one whose library is not installed.
 
     Raises
@@ -51,21 +58,19 @@ def check_frf_path(path: Path) -> None:
     Examples
     --------
     >>> from pathlib import Path
-    >>> check_frf_path(Path("hammer.mat"))
+    >>> check_transfer_function_path(Path("hammer.mat"))
     Traceback (most recent call last):
     models.errors.ParameterError: hammer.mat: responses end in .npz, .csv, .uff or .unv
     """
     ending = path.suffix.lower()
-    if ending not in FRF_ENDINGS:
-        raise ParameterError(
-            f"{path}: responses end in {', '.join(FRF_ENDINGS[:-1])} or {FRF_ENDINGS[-1]}"
-        )
+    if ending not in ENDINGS:
+        raise ParameterError(f"{path}: responses end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
     if ending in UFF_ENDINGS:
         check_uff_library(path)
 
 
-def read_frf(path: Path, *, input_unit: str, output_unit: str) -> Frf:
-    """Read a frequency response function.
+def read_transfer_function(path: Path, *, input_unit: str, output_unit: str) -> TransferFunction:
+    """Read a transfer function.
 
     Parameters
     ----------
@@ -75,7 +80,7 @@ def read_frf(path: Path, *, input_unit: str, output_unit: str) -> Frf:
 
     Returns
     -------
-    Frf
+    TransferFunction
         In the units that the file names.
 
     Raises
@@ -90,32 +95,32 @@ def read_frf(path: Path, *, input_unit: str, output_unit: str) -> Frf:
     >>> f = np.arange(1.0, 11.0)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "beam.npz"
-    ...     write_frf(path, Frf(f, 1j * f, None, "N m", "m/s^2"))
-    ...     read_frf(path, input_unit="N m", output_unit="m/s^2").response[1]
+    ...     write_transfer_function(path, TransferFunction(f, 1j * f, None, "N m", "m/s^2"))
+    ...     read_transfer_function(path, input_unit="N m", output_unit="m/s^2").response[1]
     np.complex128(2j)
     """
-    check_frf_path(path)
+    check_transfer_function_path(path)
     ending = path.suffix.lower()
     try:
         if ending == ".npz":
-            frf = _read_npz(path)
+            transfer = _read_npz(path)
         elif ending == ".csv":
-            frf = _read_csv(path, input_unit, output_unit)
+            transfer = _read_csv(path, input_unit, output_unit)
         else:
-            frf = _read_uff(path, input_unit, output_unit)
+            transfer = _read_uff(path, input_unit, output_unit)
     except OSError as error:
         raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from None
-    return check_frf(frf)
+    return check_transfer_function(transfer)
 
 
-def write_frf(path: Path, frf: Frf) -> None:
-    """Write a frequency response function in the format of the ending.
+def write_transfer_function(path: Path, transfer: TransferFunction) -> None:
+    """Write a transfer function in the format of the ending.
 
     Parameters
     ----------
     path : Path
         A file that does not exist yet, in a folder that does.
-    frf : Frf
+    transfer : TransferFunction
 
     Raises
     ------
@@ -129,62 +134,68 @@ def write_frf(path: Path, frf: Frf) -> None:
     >>> f = np.arange(1.0, 11.0)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "torque_to_acceleration.npz"
-    ...     write_frf(path, Frf(f, 1j * f, None, "N m", "m/s^2"))
-    ...     read_frf(path, input_unit="N m", output_unit="m/s^2").spacing
+    ...     write_transfer_function(path, TransferFunction(f, 1j * f, None, "N m", "m/s^2"))
+    ...     read_transfer_function(path, input_unit="N m", output_unit="m/s^2").spacing
     1.0
     """
-    check_frf_path(path)
+    check_transfer_function_path(path)
     ending = path.suffix.lower()
     if ending == ".npz":
         arrays: dict[str, Any] = {
-            "frequency_hz": frf.frequency,
-            "response": frf.response,
-            "input_unit": np.array(frf.input_unit),
-            "output_unit": np.array(frf.output_unit),
+            "frequency_hz": transfer.frequencies,
+            "response": transfer.response,
+            "input_unit": np.array(transfer.input_unit),
+            "output_unit": np.array(transfer.output_unit),
         }
-        if frf.coherence is not None:
-            arrays["coherence"] = frf.coherence
+        if transfer.coherence is not None:
+            arrays["coherence"] = transfer.coherence
         np.savez(path, **arrays)
     elif ending == ".csv":
         with path.open("w", encoding="utf-8", newline="") as file:
-            write_frf_csv(file, frf)
+            write_transfer_function_csv(file, transfer)
     else:
         function = UffFunction(
             FREQUENCY_RESPONSE,
-            frf.frequency,
-            frf.response,
-            frf.output_unit,
-            frf.input_unit,
+            transfer.frequencies,
+            transfer.response,
+            transfer.output_unit,
+            transfer.input_unit,
             "frequency response",
         )
         functions = [function]
-        if frf.coherence is not None:
+        if transfer.coherence is not None:
             functions.append(
-                UffFunction(COHERENCE, frf.frequency, frf.coherence, "", "", "coherence")
+                UffFunction(
+                    COHERENCE, transfer.frequencies, transfer.coherence, "", "", "coherence"
+                )
             )
         write_uff_functions(path, functions)
 
 
-def write_frf_csv(file: TextIO, frf: Frf) -> None:
-    """Write a frequency response function as CSV to an open file.
+def write_transfer_function_csv(file: TextIO, transfer: TransferFunction) -> None:
+    """Write a transfer function as CSV to an open file.
 
     Examples
     --------
     >>> import sys
     >>> f = np.array([1.0, 2.0])
-    >>> write_frf_csv(sys.stdout, Frf(f, 1j * f, None, "N m", "m/s^2"))
+    >>> write_transfer_function_csv(sys.stdout, TransferFunction(f, 1j * f, None, "N m", "m/s^2"))
     frequency_hz,real,imag,coherence
     1.0,0.0,1.0,
     2.0,0.0,2.0,
     """
-    coherence = [""] * frf.frequency.size if frf.coherence is None else frf.coherence.tolist()
-    real, imag = frf.response.real.tolist(), frf.response.imag.tolist()
+    coherence = (
+        [""] * transfer.frequencies.size
+        if transfer.coherence is None
+        else transfer.coherence.tolist()
+    )
+    real, imag = transfer.response.real.tolist(), transfer.response.imag.tolist()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow([*_COLUMNS, "coherence"])
-    writer.writerows(zip(frf.frequency.tolist(), real, imag, coherence, strict=True))
+    writer.writerows(zip(transfer.frequencies.tolist(), real, imag, coherence, strict=True))
 
 
-def _read_npz(path: Path) -> Frf:
+def _read_npz(path: Path) -> TransferFunction:
     try:
         with np.load(path, allow_pickle=False) as file:
             held = {key: file[key] for key in file.files}
@@ -201,7 +212,7 @@ def _read_npz(path: Path) -> Frf:
             f"{path}: response has type {held['response'].dtype}; it must be complex"
         )
     coherence = held.get("coherence")
-    return Frf(
+    return TransferFunction(
         held["frequency_hz"].astype(np.float64),
         held["response"].astype(np.complex128),
         None if coherence is None else coherence.astype(np.float64),
@@ -218,7 +229,7 @@ def _unit(value: NDArray[np.generic], key: str, path: Path) -> str:
     return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
 
 
-def _read_csv(path: Path, input_unit: str, output_unit: str) -> Frf:
+def _read_csv(path: Path, input_unit: str, output_unit: str) -> TransferFunction:
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
@@ -236,7 +247,7 @@ def _read_csv(path: Path, input_unit: str, output_unit: str) -> Frf:
         position = header.index("coherence")
         if any(len(row) > position and row[position].strip() for row in rows[1:]):
             coherence = _column(rows, position, "coherence", path)
-    return Frf(
+    return TransferFunction(
         columns["frequency_hz"],
         columns["real"] + 1j * columns["imag"],
         coherence,
@@ -259,7 +270,7 @@ def _column(rows: list[list[str]], position: int, name: str, path: Path) -> NDAr
     return values
 
 
-def _read_uff(path: Path, input_unit: str, output_unit: str) -> Frf:
+def _read_uff(path: Path, input_unit: str, output_unit: str) -> TransferFunction:
     if not path.is_file():
         raise FileNotFoundError(2, "No such file or directory")
     functions = read_uff_functions(path)
@@ -277,7 +288,7 @@ def _read_uff(path: Path, input_unit: str, output_unit: str) -> Frf:
         for function in functions
         if function.kind == COHERENCE and np.array_equal(function.x, found.x)
     ]
-    return Frf(
+    return TransferFunction(
         found.x,
         found.y.astype(np.complex128),
         coherences[0].astype(np.float64) if len(coherences) == 1 else None,

@@ -62,7 +62,7 @@ class UffFunction:
     x : ndarray, shape (n,)
         Abscissa: time [s] or frequency [Hz].
     y : ndarray, shape (n,)
-        Ordinate, real or complex.
+        Ordinate, real or complex [`unit`].
     unit, denominator_unit : str
         Unit labels of the ordinate; empty where there are none.
     name : str

@@ -1,4 +1,4 @@
-"""What is told of a sound beside the sound: levels in the air, and in the file.
+"""Levels and sound quality of a recording, in the air and in the file that is written.
 
 Levels in the air are those of the recording before it is faded and resampled, so that they are
 the measurement's and a gain does not change them. Without a calibration there is no level in the
@@ -64,19 +64,19 @@ class Assessment:
         return self.levels.raised(20.0 * math.log10(reference / full_scale))
 
     def row(self, full_scale: float) -> dict[str, object]:
-        """Return cells by `COLUMNS`; those that are not known are left out."""
-        row: dict[str, object] = {"level_dbfs": _told(self.in_file(full_scale).level)}
+        """Return cells by `COLUMNS` at a full scale [Pa]; those that are not known are left out."""
+        row: dict[str, object] = {"level_dbfs": _rounded(self.in_file(full_scale).level)}
         if self.calibrated:
             row |= {
-                "level_db": _told(self.levels.level),
-                "level_dba": _told(self.levels.level_a),
-                "level_afmax_dba": _told(self.levels.level_af_max),
+                "level_db": _rounded(self.levels.level),
+                "level_dba": _rounded(self.levels.level_a),
+                "level_afmax_dba": _rounded(self.levels.level_af_max),
             }
             for band, level in self.levels.third_octaves.items():
-                row[f"third_octave_{band}_hz_db"] = _told(level)
+                row[f"third_octave_{band}_hz_db"] = _rounded(level)
         if self.quality is not None:
             for name, value in asdict(self.quality).items():
-                row[_QUALITY_COLUMNS[name]] = _told(value, 4)
+                row[_QUALITY_COLUMNS[name]] = _rounded(value, 4)
         return row
 
     def entry(self, full_scale: float) -> dict[str, object]:
@@ -86,10 +86,10 @@ class Assessment:
         levels, unit = self.levels, "db"
         if not self.calibrated:
             levels, unit = self.in_file(full_scale), "dbfs"
-            entry["level_dbfs_a"] = _told(levels.level_a)
-            entry["level_afmax_dbfs"] = _told(levels.level_af_max)
+            entry["level_dbfs_a"] = _rounded(levels.level_a)
+            entry["level_afmax_dbfs"] = _rounded(levels.level_af_max)
         entry[f"third_octaves_{unit}"] = {
-            band: _told(level) for band, level in levels.third_octaves.items()
+            band: _rounded(level) for band, level in levels.third_octaves.items()
         }
         return entry
 
@@ -106,16 +106,16 @@ class Assessment:
             measured = {k: v for k, v in levels.third_octaves.items() if not math.isnan(v)}
             listed = ", ".join(f"{band} Hz {level:.1f}" for band, level in measured.items())
             lines.append(f"one-third octaves in {unit}{re}: {listed or 'none is measured'}")
-        if (heard := self.quality) is not None:
+        if (found := self.quality) is not None:
             tone = "no prominent tone"
-            if not math.isnan(heard.tone_frequency):
+            if not math.isnan(found.tone_frequency):
                 tone = (
-                    f"tone at {heard.tone_frequency:.0f} Hz, prominence {heard.prominence:.1f} dB"
+                    f"tone at {found.tone_frequency:.0f} Hz, prominence {found.prominence:.1f} dB"
                 )
             lines.append(
-                f"loudness {heard.loudness:.2f} sone (N5 {heard.loudness_n5:.2f}, "
-                f"N10 {heard.loudness_n10:.2f}), sharpness {heard.sharpness:.2f} acum, "
-                f"roughness {heard.roughness:.2f} asper, {tone}"
+                f"loudness {found.loudness:.2f} sone (N5 {found.loudness_n5:.2f}, "
+                f"N10 {found.loudness_n10:.2f}), sharpness {found.sharpness:.2f} acum, "
+                f"roughness {found.roughness:.2f} asper, {tone}"
             )
         return lines
 
@@ -151,14 +151,14 @@ def assess(recording: Recording, *, quality: bool = False) -> Assessment:
     signal = recording[pressure_channel(recording).name]
     reference = REFERENCE_PRESSURE if recording.calibrated else 1.0
     levels = sound_levels(signal, recording.rate, reference=reference)
-    heard = None
+    measured = None
     if quality:
         if not recording.calibrated:
             raise ParameterError("sound quality needs a calibrated recording")
         at_rate = resampled(signal - signal.mean(), recording.rate, SOUND_QUALITY_RATE)
-        heard = sound_quality_of(at_rate, SOUND_QUALITY_RATE)
-    return Assessment(levels, recording.calibrated, heard)
+        measured = sound_quality_of(at_rate, SOUND_QUALITY_RATE)
+    return Assessment(levels, recording.calibrated, measured)
 
 
-def _told(value: float, digits: int = 2) -> float | None:
+def _rounded(value: float, digits: int = 2) -> float | None:
     return round(value, digits) if math.isfinite(value) else None

@@ -50,7 +50,7 @@ def write_audio(
     path : path-like
         ``squeal`` and ``squeal.wav`` are the same; parent folders are made.
     samples : ndarray, shape (n_samples,)
-        What `audible` gives.
+        As `noise.audio.sound.audible` gives them.
     rate : int
         Sampling rate [Hz].
     full_scale : float

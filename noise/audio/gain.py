@@ -1,4 +1,4 @@
-"""How loud a sound is written: one number, the value of a sample at full scale.
+"""Gain of a sound file: one number, the value of a sample at full scale.
 
 There are three ways to choose it. Calibrated: a listening room is set to so many pascals at full
 scale, and a sound that would clip there is refused. Common: one full scale for all sounds of a
@@ -73,15 +73,15 @@ def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float
 
     Parameters
     ----------
-    signals : iterable of ndarray
-        Sounds in the same unit.
+    signals : iterable of ndarray, shape (n_samples,)
+        Sounds [unit of the sound], the same for all.
     headroom_db : float
         How far below full scale the largest peak of all is put [dB].
 
     Returns
     -------
     float
-        Value of a full-scale sample, in the sounds' unit; 1 where all are silent.
+        Value of a full-scale sample [unit of the sound]; 1 where all are silent.
 
     Examples
     --------
@@ -94,7 +94,19 @@ def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float
 
 
 def least_full_scale(samples: NDArray[np.float64], bits: int) -> float:
-    """Smallest full scale at which none of the samples clips, rounded up to four digits.
+    """Smallest full scale at which no sample clips, rounded up to four digits.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n_samples,)
+        [unit of the sound]
+    bits : int
+        Of a sample in the file.
+
+    Returns
+    -------
+    float
+        [unit of the sound]
 
     Examples
     --------
@@ -105,7 +117,9 @@ def least_full_scale(samples: NDArray[np.float64], bits: int) -> float:
 
 
 def full_scale_without_clipping(peak: float) -> float:
-    """Smallest full scale that keeps a true peak below `CEILING`, rounded up to four digits.
+    """Smallest full scale [unit of the peak] that keeps a true peak below `CEILING`.
+
+    It is rounded up to four digits.
 
     Examples
     --------
@@ -121,6 +135,7 @@ def true_peak(samples: NDArray[np.float64], rate: float) -> float:
     Parameters
     ----------
     samples : ndarray, shape (n_samples,)
+        [unit of the sound]
     rate : float
         Sampling rate [Hz].
 
@@ -149,7 +164,7 @@ def loudness(samples: NDArray[np.float64], rate: int) -> float:
     Parameters
     ----------
     samples : ndarray, shape (n_samples,)
-        In fractions of full scale.
+        Over full scale [-].
     rate : int
         Sampling rate [Hz].
 
@@ -197,7 +212,7 @@ def matched_loudness(loudest: Sequence[float]) -> float:
     Returns
     -------
     float
-        `TARGET_LOUDNESS`, or less where a sound's true peak would exceed `TARGET_TRUE_PEAK`.
+        [LUFS]: `TARGET_LOUDNESS`, or less where a true peak would exceed `TARGET_TRUE_PEAK`.
 
     Examples
     --------
@@ -215,18 +230,18 @@ def matched_full_scale(
     Parameters
     ----------
     sound : ndarray, shape (n_samples,)
-        In any unit.
+        [unit of the sound]
     rate : int
         Sampling rate [Hz].
     target : float
         [LUFS]
     start : float, optional
-        Full scale that is nearly right; by default the largest sample.
+        Full scale that is nearly right [unit of the sound]; by default the largest sample.
 
     Returns
     -------
     float
-        In the unit of the sound.
+        [unit of the sound]
 
     Raises
     ------

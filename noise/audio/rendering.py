@@ -1,7 +1,8 @@
-"""From recordings to audio files that belong together.
+"""Audio files of a set of recordings, whose gains belong together.
 
-Twice over: first every sound is measured, then the gain is chosen that suits them all, then each
-is written. What is kept between is a few numbers a sound, so that a set may be larger than memory.
+It takes two passes: first every sound is measured, then the gain is chosen that suits them all,
+then each is written. What is kept between is a few numbers a sound, so that a set may be larger
+than memory.
 """
 
 from __future__ import annotations
@@ -48,14 +49,14 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Survey:
-    """What has to be known of a sound before it is written.
+    """Peak, loudness and levels of a sound, measured before it is written.
 
     Parameters
     ----------
     name : str
     calibrated : bool
     true_peak : float
-        In the sound's unit.
+        [unit of the sound]
     loudness : float or None
         With the true peak at full scale [LUFS]; None where it was not asked for.
     parts : tuple of Part
@@ -125,8 +126,8 @@ def survey(
     >>> of.calibrated, round(of.true_peak, 3)
     (True, 1.0)
     """
-    sequel = back_to_back(recordings, rate, gap=gap, fade=fade)
-    peak = true_peak(sequel.samples, rate)
+    joined = back_to_back(recordings, rate, gap=gap, fade=fade)
+    peak = true_peak(joined.samples, rate)
     assessments, untold = [], []
     for recording in recordings:
         try:
@@ -139,9 +140,9 @@ def survey(
     first = recordings[0]
     reached = None
     if loudness:
-        reached = _loudness_at_full_scale(first.name, sequel.samples, rate, peak)
+        reached = _loudness_at_full_scale(first.name, joined.samples, rate, peak)
     return Survey(
-        first.name, first.calibrated, peak, reached, sequel.parts, tuple(assessments), tuple(untold)
+        first.name, first.calibrated, peak, reached, joined.parts, tuple(assessments), tuple(untold)
     )
 
 
@@ -191,12 +192,12 @@ def render(
     ...     render(target, runs, of, FullScale(2.0, "calibrated")).summary
     'true peak -6.0 dBTP, loudness -9.0 LUFS'
     """
-    sequel = back_to_back(recordings, rate, gap=gap, fade=fade)
+    joined = back_to_back(recordings, rate, gap=gap, fade=fade)
     value = full_scale.value
     if full_scale.target is not None:  # the gate of the loudness has moved with the gain
-        value = matched_full_scale(sequel.samples, rate, full_scale.target, start=value)
+        value = matched_full_scale(joined.samples, rate, full_scale.target, start=value)
         value = max(value, of.true_peak / CEILING)
-    fractions = sequel.samples / value
+    fractions = joined.samples / value
     file: dict[str, object] = {
         "gain": full_scale.gain,
         "full_scale_Pa": value if of.calibrated else None,
@@ -217,11 +218,11 @@ def render(
     made = {**file, "dither": "triangular" if dithered else None}
     write_audio(
         path,
-        sequel.samples,
+        joined.samples,
         rate,
         full_scale=value,
         bits=bits,
-        recording=sequel.recording,
+        recording=joined.recording,
         dither=np.random.default_rng(seed) if dithered else None,
         about={"render": made, "parts": entries},
     )

@@ -1,4 +1,4 @@
-"""Recordings behind one another in one sound: A and B of a comparison, or several runs.
+"""Several recordings joined into one sound: A and B of a comparison, or several runs.
 
 All parts have the same gain, each is faded by itself, and there is silence between them. What is
 said of the whole is what holds for every part.
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["GAP", "Part", "Sequel", "back_to_back"]
+__all__ = ["GAP", "JoinedSound", "Part", "back_to_back"]
 
 GAP = 0.5
 """Silence between two parts [s]."""
@@ -37,7 +37,7 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Sequel:
+class JoinedSound:
     """A sound of one or more recordings.
 
     Parameters
@@ -57,7 +57,7 @@ class Sequel:
 
 def back_to_back(
     recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
-) -> Sequel:
+) -> JoinedSound:
     """Put the sounds of recordings behind one another, at the same gain.
 
     Parameters
@@ -73,7 +73,7 @@ def back_to_back(
 
     Returns
     -------
-    Sequel
+    JoinedSound
 
     Raises
     ------
@@ -111,7 +111,7 @@ def back_to_back(
         recordings[0].calibrated,
         recordings[0].name,
     )
-    return Sequel(samples, whole, tuple(parts))
+    return JoinedSound(samples, whole, tuple(parts))
 
 
 def check_same_calibration(recordings: Sequence[Recording]) -> None:

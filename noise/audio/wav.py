@@ -64,7 +64,7 @@ def wav_bytes(
     Parameters
     ----------
     fractions : ndarray, shape (n_samples,)
-        In fractions of full scale; none may clip.
+        Over full scale [-]; none may clip.
     rate : int
         Sampling rate [Hz].
     bits : int

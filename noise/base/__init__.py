@@ -1,1 +1,1 @@
-"""What every part of the program uses: whole files, tables, progress."""
+"""Foundations of every part of the program: whole files, tables, models, trees, progress."""

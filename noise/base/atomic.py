@@ -1,10 +1,10 @@
-"""Files that appear whole or not at all.
+"""Writing of files that appear whole or not at all.
 
 A batch that is killed half-way must not leave half a file that a later run, or another program,
 takes for a result. So every output is written under another name beside its target, on the same
 volume, and moved over it in one step of the file system. The passing name starts with a dot, which
 folder walks leave out, and ends as the target does, because many writers choose their format by
-that ending.
+that ending. A target that cannot be written is refused before the work whose result it is to hold.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["atomic"]
+__all__ = ["atomic", "check_target"]
 
 
 @contextmanager
@@ -63,6 +63,39 @@ def atomic(target: str | Path) -> Iterator[Path]:
         raise ParameterError(f"{target}: cannot be written ({reason})") from error
     finally:
         _remove(temporary)
+
+
+def check_target(path: Path, option: str = "--out") -> None:
+    """Refuse a file, or folder, that cannot be made because of what stands above it.
+
+    Parameters
+    ----------
+    path : Path
+    option : str
+        Of the command line, that names it.
+
+    Raises
+    ------
+    ParameterError
+        The nearest folder above `path` that exists is none, or may not be written to.
+
+    Examples
+    --------
+    >>> check_target(Path("new") / "folder" / "table.csv")
+    """
+    try:
+        above = next(parent for parent in path.absolute().parents if parent.exists())
+    except OSError as error:
+        raise ParameterError(f"{option} {path}: cannot be written ({error.strerror})") from None
+    if not above.is_dir():
+        raise ParameterError(f"{option} {path}: {above} is a file, not a folder")
+    from tempfile import TemporaryFile
+
+    try:
+        with TemporaryFile(dir=above):  # what counts is not the permission but whether it works
+            pass
+    except OSError:
+        raise ParameterError(f"{option} {path}: the folder {above} may not be written to") from None
 
 
 def _remove(path: Path) -> None:

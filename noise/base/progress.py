@@ -1,4 +1,4 @@
-"""What the program says while it works: brief lines and one bar, all on standard error.
+"""Messages and progress bar while the program works, all on standard error.
 
 Standard output belongs to results. The bar is drawn on a terminal only; in a log file there is one
 line that says what is being done. Lines and bar do not tread on each other, and a standard error

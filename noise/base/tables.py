@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError, not_installed
+from models.errors import ParameterError, RecordingError, not_installed
 from noise.base.atomic import atomic
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Cell = bool | int | float | str | None
 
-__all__ = ["TABLE_ENDINGS", "check_table_path", "write_table"]
+__all__ = ["TABLE_ENDINGS", "check_table_path", "read_table", "write_table"]
 
 TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
@@ -112,6 +112,55 @@ def write_table(
         # Names of files may hold what no UTF-8 can: it is written as a backslash and its code.
         with temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
             (_write_csv if ending == ".csv" else _write_json_lines)(file, columns, cells)
+
+
+def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
+    r"""Read a table as it stands: cells of CSV are text.
+
+    Parameters
+    ----------
+    path : Path
+        Format by its ending.
+
+    Returns
+    -------
+    columns : list of str
+        Those that the file names before its rows, which JSON Lines does not.
+    rows : list of dict
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read, or is no table.
+    ParameterError
+        The library that reads the format is not installed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "labels.csv"
+    ...     _ = path.write_text("file,label\nrun07.wav,creak\n")
+    ...     read_table(path)
+    (['file', 'label'], [{'file': 'run07.wav', 'label': 'creak'}])
+    """
+    check_table_path(path)
+    try:
+        if path.suffix.lower() == ".parquet":
+            from pyarrow import parquet
+
+            table = parquet.read_table(path)
+            return list(table.column_names), table.to_pylist()
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            if path.suffix.lower() == ".jsonl":
+                return [], [json.loads(line) for line in file if line.strip()]
+            reader = csv.DictReader(file)
+            rows = [{str(column): value for column, value in row.items()} for row in reader]
+            return list(reader.fieldnames or ()), rows
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, csv.Error) as error:
+        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
 
 
 def _cell(value: object) -> Cell:

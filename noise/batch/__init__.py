@@ -5,10 +5,8 @@ is the same, byte for byte, as that of one process that nobody disturbed.
 """
 
 from noise.batch.identity import file_digest, file_identity
-from noise.batch.jobs import find_jobs
 from noise.batch.journal import Journal, journal_path, open_journal
-from noise.batch.run import perform_all
-from noise.batch.work import Done, Job, Work
+from noise.batch.work import Done, Job, Work, find_jobs, perform_all
 
 __all__ = [
     "Done",

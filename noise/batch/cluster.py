@@ -128,7 +128,7 @@ def _client(scheduler: str) -> Any:
             client.close()
             raise ParameterError(
                 f"--scheduler {scheduler}: worker {worker} has no bushing-noise, or another "
-                f"version; install the same one there"
+                f"version of it, or of numpy and the like; install the same ones there"
             )
     return client
 

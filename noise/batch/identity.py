@@ -1,28 +1,35 @@
-"""Whether a result still holds: of which file it is, and which program made it.
+"""Identity of a result: of which file it is, and which program made it.
 
 A file is known by its size and the time it was last written, as `make` and `rsync` know it, and a
-recording's sidecar counts as part of it. The program is known by its own files and the version of
-the array library: a number from the package's version alone would stay the same while someone
-works on the program.
+recording's sidecar counts as part of it. The program is known by the content of its sources and
+models, and by the versions of the libraries that compute: its own version would stay the same while
+someone works on it. What Python and numba put beside the sources does not count, since it changes
+with every command that compiles and never what comes out.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import os
 from functools import lru_cache
-from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.recordings.sidecar import find_sidecar
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from noise.batch.work import Work
 
 __all__ = ["file_digest", "file_identity", "program_identity", "work_identity"]
 
 _PACKAGES = ("models", "sim", "features", "noise")
+_LIBRARIES = ("librosa", "numba", "numpy", "scikit-learn", "scipy", "soundfile")
+"""What the numbers come from. Readers of loggers' files are not among them: to install one is no
+reason to do all recordings again, and what it could not read before was not kept."""
 
 
 def file_identity(path: Path) -> list[int] | None:
@@ -48,25 +55,33 @@ def file_digest(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=1)  # a process goes on with the program that it has loaded
 def program_identity() -> str:
-    """Digest of all files of the program, and of numpy's version.
+    """Digest of the program's sources and models, and of the libraries' versions.
 
     Examples
     --------
     >>> len(program_identity())
     64
     """
-    import numpy as np
+    return _digest(Path(__file__).parents[2])
 
-    digest = hashlib.sha256(np.__version__.encode())
-    for package in _PACKAGES:
-        folder = Path(str(import_module(package).__file__)).parent
-        for path in sorted(folder.rglob("*")):
-            if path.is_file() and path.suffix != ".pyc":
-                digest.update(f"{package}/{path.relative_to(folder).as_posix()}\n".encode())
-                digest.update(file_digest(path).encode())
+
+def _digest(root: Path) -> str:
+    digest = hashlib.sha256()
+    for library in _LIBRARIES:
+        digest.update(f"{library} {version(library)}\n".encode())
+    for path in sorted(_sources(root)):
+        digest.update(f"{path.relative_to(root).as_posix()} {file_digest(path)}\n".encode())
     return digest.hexdigest()
+
+
+def _sources(root: Path) -> Iterator[Path]:
+    """Go through sources and models, passing over what is hidden or was compiled from them."""
+    for package in _PACKAGES:
+        for folder, inner, names in os.walk(root / package):
+            inner[:] = [name for name in inner if name != "__pycache__"]
+            yield from (Path(folder, name) for name in names if not name.startswith("."))
 
 
 def work_identity(work: Work) -> str:

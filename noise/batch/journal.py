@@ -22,7 +22,7 @@ from noise.batch.identity import file_identity, work_identity
 from noise.batch.work import Done
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from io import FileIO
     from pathlib import Path
 
@@ -44,6 +44,11 @@ class Journal:
         """Return what came of a recording, None where it is still to be done."""
         entry = self._entries.get(_key(job))
         return entry[1] if entry is not None and entry[0] == file_identity(job.path) else None
+
+    def known(self, jobs: Sequence[Job]) -> dict[int, Done]:
+        """Return what came of those recordings that are done, by their index."""
+        found = {job.index: self.find(job) for job in jobs}
+        return {index: done for index, done in found.items() if done is not None}
 
     def add(self, job: Job, identity: list[int] | None, done: Done) -> None:
         """Keep what came of a recording; `identity` is the file's from before it was read."""

@@ -1,5 +1,6 @@
-"""The classifier of noises, and all that it is trained on."""
+"""The classifier of noises as it is used: from features of windows to probabilities of labels."""
 
-from noise.classifier.model import LABELS, Classifier, load_classifier
+from noise.base.label_names import LABELS
+from noise.classifier.model import Classifier, load_classifier
 
 __all__ = ["LABELS", "Classifier", "load_classifier"]

@@ -1,4 +1,4 @@
-"""The classifier: features of windows in, probabilities of the five labels out.
+"""Classifier of noises: features of windows in, probabilities of the five labels out.
 
 Trained on simulation alone, it ships with the package (``data/classifier.npz``); how it is
 trained is the business of `noise.training.classifier.fit`.
@@ -6,32 +6,55 @@ trained is the business of `noise.training.classifier.fit`.
 
 from __future__ import annotations
 
-import json
-import zipfile
-from dataclasses import asdict, dataclass, fields
-from functools import lru_cache
-from importlib import resources
-from pathlib import Path
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.errors import ParameterError
-from noise.base.atomic import atomic
-from noise.classifier.calibration import Calibration
-from noise.classifier.trees import Trees
+from noise.base.label_names import LABELS
+from noise.base.model_file import ModelKind, load_model, save_model
+from noise.base.trees import BoostedTrees
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
-__all__ = ["LABELS", "Classifier", "load_classifier"]
+__all__ = ["Calibration", "Classifier", "has_more_than_sound", "load_classifier"]
 
-LABELS = ("creak", "squawk", "squeal", "none", "unknown")
-"""The labels, in the order of all tables of probabilities."""
+_KIND = ModelKind(
+    "classifier", 2, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
+)
 
-_FORMAT = 2
+_FLOOR = 1e-3
+"""Share of the votes that no few hundred trees can tell less than [-]."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What makes votes probabilities.
+
+    Parameters
+    ----------
+    sharpness : float
+        Exponent [-]: above 1 it makes them more certain.
+    weights : tuple of float
+        Of the labels [-].
+
+    Examples
+    --------
+    >>> Calibration(2.0, (1.0, 1.0, 1.0))(np.array([[0.5, 0.25, 0.25]])).round(2).tolist()
+    [[0.67, 0.17, 0.17]]
+    """
+
+    sharpness: float
+    weights: tuple[float, ...]
+
+    def __call__(self, votes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return probabilities, each row of which sums to 1."""
+        p = (votes + _FLOOR) ** self.sharpness * np.array(self.weights)
+        return np.asarray(p / p.sum(axis=1, keepdims=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +65,7 @@ class Classifier:
     ----------
     feature_names : tuple of str
         Features in the order of the trees; of `noise.labels.windows.FEATURE_NAMES`.
-    trees : Trees
+    trees : BoostedTrees
     calibrations : pair of Calibration
         For sound alone, and for sound with what else was measured.
     card : mapping
@@ -57,7 +80,7 @@ class Classifier:
     """
 
     feature_names: tuple[str, ...]
-    trees: Trees
+    trees: BoostedTrees
     calibrations: tuple[Calibration, Calibration]
     card: Mapping[str, object]
 
@@ -69,12 +92,12 @@ class Classifier:
         Parameters
         ----------
         features : ndarray, shape (n_windows, n_features)
-            By `feature_names`; NaN where missing.
+            By `feature_names` [unit of each feature]; NaN where missing.
 
         Returns
         -------
         ndarray, shape (n_windows, 5)
-            Each row sums to 1.
+            [-]; each row sums to 1.
         """
         votes = self.trees.probabilities(features)
         alone, among_others = (calibration(votes) for calibration in self.calibrations)
@@ -82,26 +105,29 @@ class Classifier:
         return np.where(more[:, None], among_others, alone)
 
     def save(self, path: str | Path) -> None:
-        """Write the classifier into an NPZ file, whole or not at all."""
-        arrays = {field.name: getattr(self.trees, field.name) for field in fields(Trees)}
+        """Write the classifier into an NPZ file, whole or not at all.
+
+        Raises
+        ------
+        ParameterError
+            The file cannot be written.
+        """
         header = {
-            "format": _FORMAT,
             "labels": LABELS,
             "feature_names": self.feature_names,
             "calibrations": [asdict(calibration) for calibration in self.calibrations],
             "card": dict(self.card),
         }
-        with atomic(path) as temporary, temporary.open("wb") as file:
-            np.savez_compressed(file, header=np.array(json.dumps(header)), **arrays)
+        save_model(path, _KIND, header, self.trees.arrays())
 
     def _repr_html_(self) -> str:
-        from noise.classifier.card import card_html
+        from noise.base.model_display import model_display
 
         facts = [
             ["labels", ", ".join(LABELS)],
             ["features", f"{len(self.feature_names)} of windows"],
         ]
-        return card_html("Classifier", facts, self.card)
+        return model_display("Classifier", facts, self.card)
 
 
 def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> NDArray[np.bool_]:
@@ -139,44 +165,16 @@ def load_classifier(path: str | Path | None = None) -> Classifier:
     >>> load_classifier().classes
     ('creak', 'squawk', 'squeal', 'none', 'unknown')
     """
-    return _shipped() if path is None else _load(Path(path))
+    return load_model(path, _KIND, _built)
 
 
-@lru_cache(maxsize=1)
-def _shipped() -> Classifier:
-    with resources.as_file(resources.files("noise.classifier") / "data" / "classifier.npz") as path:
-        return _load(path)
-
-
-def _load(path: Path) -> Classifier:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            header = json.loads(str(file["header"]))
-            trees = Trees(**{field.name: file[field.name] for field in fields(Trees)})
-        trees.check()
-        highest = int(trees.feature.max(initial=-1))
-        if highest >= len(header["feature_names"]) or trees.base.shape != (len(LABELS),):
-            raise ValueError("its trees ask for features or labels that it does not name")
-        calibrations = header["calibrations"]
-        if header["format"] != _FORMAT or tuple(header["labels"]) != LABELS:
-            raise ParameterError(
-                f"classifier {path}: of format {header['format']!r}, expected {_FORMAT}; "
-                f"make it again with `bushing-noise train --out {path.name}`"
-            )
-        return Classifier(
-            feature_names=tuple(header["feature_names"]),
-            trees=trees,
-            calibrations=(_calibration(calibrations[0]), _calibration(calibrations[1])),
-            card=header["card"],
-        )
-    except FileNotFoundError:
-        raise ParameterError(f"classifier {path}: no such file") from None
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-        if isinstance(error, ParameterError):
-            raise
-        raise ParameterError(
-            f"classifier {path}: no file that `bushing-noise train` wrote ({error})"
-        ) from None
+def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Classifier:
+    trees = BoostedTrees.of_arrays(arrays)
+    trees.check(len(header["feature_names"]))
+    sound, all_channels = (_calibration(stored) for stored in header["calibrations"])
+    if tuple(header["labels"]) != LABELS or trees.base.shape != (len(LABELS),):
+        raise ValueError("its labels are others")
+    return Classifier(tuple(header["feature_names"]), trees, (sound, all_channels), header["card"])
 
 
 def _calibration(stored: Mapping[str, Any]) -> Calibration:

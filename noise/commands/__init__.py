@@ -24,7 +24,13 @@ class Command(Protocol):
         ...
 
     def run(self, options: Namespace) -> int:
-        """Do the work; return 0 where all is done, 1 where inputs were refused."""
+        """Do the work; return 0 where all is done, 1 where inputs were refused.
+
+        Raises
+        ------
+        BushingNoiseError
+            Options contradict each other, or nothing can be done with what they name.
+        """
         ...
 
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import signal
 import threading
-from argparse import ArgumentTypeError
 from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, write_table
-from noise.commands.targets import check_target
+from noise.commands.options import refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -56,7 +56,7 @@ def add_batch(parser: ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
-        type=_count,
+        type=whole_number(1),
         default=1,
         metavar="N",
         help="processes that share the work (default: 1); the table is the same",
@@ -112,12 +112,12 @@ def run_batch(
     kept = nullcontext() if options.out is None else open_journal(
         options.out, work, fresh=options.fresh
     )  # fmt: skip
-    with kept as journal, _told_to_end():
+    with kept as journal, _termination_as_interrupt():
         try:
-            for job, done in _course(options, work, jobs, journal):
+            for job, done in _progress(options, work, jobs, journal):
                 outcomes[job.index] = done
                 if done.error is not None:
-                    say(f"bushing-noise: refused: {_naming(job.path, done.error)}")
+                    refuse(done.error, job.path)
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
         there = [done for done in outcomes if done is not None]
@@ -138,30 +138,24 @@ def run_batch(
     return stopped or int(refused > 0)
 
 
-def _course(
+def _progress(
     options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal | None
 ) -> Iterator[tuple[Job, Done]]:
     """First what earlier calls did, then the rest as it is done."""
-    from noise.batch import file_identity, perform_all
+    from noise.batch import perform_all
 
-    left = []
-    for job in jobs:
-        done = None if journal is None else journal.find(job)
-        if done is None:
-            left.append(job)
-        else:
-            yield job, done
-    if len(left) < len(jobs):
-        say(f"{len(jobs) - len(left)} of {counted(len(jobs), 'recording')} are done already")
+    known = {} if journal is None else journal.known(jobs)
+    left = [job for job in jobs if job.index not in known]
+    yield from ((job, known[job.index]) for job in jobs if job.index in known)
+    if known:
+        say(f"{len(known)} of {counted(len(jobs), 'recording')} are done already")
     if not left:
         return
-    identities = {job.index: file_identity(job.path) for job in left}
-    advancing = perform_all(work, left, workers=options.workers, scheduler=options.scheduler)
+    advancing = perform_all(
+        work, left, workers=options.workers, scheduler=options.scheduler, journal=journal
+    )
     with closing(advancing):
-        for job, done in track(advancing, work.doing, total=len(left)):
-            yield job, done
-            if journal is not None:
-                journal.add(job, identities[job.index], done)
+        yield from track(advancing, work.doing, total=len(left))
 
 
 def _write(
@@ -190,7 +184,7 @@ class _Terminated(KeyboardInterrupt):
 
 
 @contextmanager
-def _told_to_end() -> Iterator[None]:
+def _termination_as_interrupt() -> Iterator[None]:
     def end(*_: object) -> None:
         raise _Terminated
 
@@ -206,13 +200,3 @@ def _told_to_end() -> Iterator[None]:
 
 def _exit_code(interrupt: KeyboardInterrupt) -> int:
     return _TERMINATED if isinstance(interrupt, _Terminated) else _INTERRUPTED
-
-
-def _count(text: str) -> int:
-    if not text.strip().isdecimal() or int(text) == 0:
-        raise ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
-    return int(text)
-
-
-def _naming(path: Path, message: str) -> str:
-    return message if path.name in message else f"{path}: {message}"

@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
 from noise.base.progress import say
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -37,9 +35,7 @@ def configure(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Run the demonstration."""
-    if options.out.exists() and not options.out.is_dir():
-        raise ParameterError(f"--out {options.out}: is a file; name a folder")
-    check_target(options.out)
+    opt.check_folder(options.out)
     say(f"writing the demonstration into {options.out}")
     from noise.demo import run_demo
 

@@ -5,15 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
 from noise.base.progress import say
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-
-    from noise.diagnosis.outcome import Diagnosis
 
 __all__ = ["configure", "run"]
 
@@ -54,15 +50,14 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Diagnose and write."""
     if options.out is not None:
-        if options.out.is_file():
-            raise ParameterError(f"--out {options.out}: is a file; name a folder")
-        check_target(options.out / "report.html")
+        opt.check_folder(options.out, file="report.html")
     say("preparing")
     from models.rig_files.rig_file import load_rig
-    from noise.commands.user_effects import effect_library
+    from noise.base.user_effects import effect_library
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import diagnose_case
     from noise.diagnosis.outcome import as_json
+    from noise.diagnosis.text.sentences import answer, closed_sentence, finding_of
 
     library = effect_library(options.effects)
     case = read_case(options.data, load_rig(options.rig))
@@ -81,16 +76,9 @@ def run(options: Namespace) -> int:
         write_diagnosis(options.out, diagnosis)
         print(options.out / "report.html")
         print(options.out / "diagnosis.json")
-    say(_sentence(diagnosis))
+    for sentence in answer(diagnosis):
+        say(sentence)
+    finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
+    if finding is not None and finding.closed is not None:
+        say(closed_sentence(finding))
     return 1 if case.refused else 0
-
-
-def _sentence(diagnosis: Diagnosis) -> str:
-    if not diagnosis.verdict:
-        return f"no gap beyond what repeats differ by (p = {diagnosis.p_value:.2g})"
-    named = ", ".join(
-        f"{name} ({diagnosis.probabilities.get(name, 0.0):.0%})" for name in diagnosis.verdict
-    )
-    closed = next((e.closed for e in diagnosis.effects if e.name == diagnosis.verdict[0]), None)
-    how_far = "" if closed is None else f"; it closes {closed:.0%} of the gap held out"
-    return f"verdict: {named}{how_far}"

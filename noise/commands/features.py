@@ -1,4 +1,4 @@
-"""``bushing-noise features``: recordings into a table of features."""
+"""``bushing-noise features``: recordings into a table of features, of all of each or by windows."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from noise.commands.batch import add_batch, check_batch, run_batch
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
+    from collections.abc import Iterator
     from pathlib import Path
 
     from models.recording import Recording
+    from noise.recordings.blocks import RecordingBlocks
 
 __all__ = ["Featuring", "configure", "run"]
 
@@ -27,11 +29,19 @@ def configure(parser: ArgumentParser) -> None:
         "column error."
     )
     add_batch(parser)
-    parser.add_argument(
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
         "--pitch",
         action="store_true",
-        help="add the course of the pitch: median [Hz], range [octaves] and share of the time "
-        "that has one, of the first pressure channel (about one second a second of sound)",
+        help="add the pitch over time: median [Hz], range [octaves] and share of the time that has "
+        "one, of the first pressure channel (about one second a second of sound)",
+    )
+    what.add_argument(
+        "--windows",
+        action="store_true",
+        help="one row a window of half a second, every quarter of a second, with start and end in "
+        "seconds and what the classifier of `bushing-noise label` is given of it, in the units "
+        "that features.WINDOW_FEATURES and, for the torque, features.FEATURES state",
     )
     opt.add_full_scale(parser)
     opt.add_seed(parser, "taken by all commands; features use no random numbers")
@@ -42,22 +52,37 @@ def run(options: Namespace) -> int:
     check_batch(options)
     from noise.batch import find_jobs
 
-    work = Featuring(options.full_scale, options.pitch)
+    work = Featuring(options.full_scale, options.pitch, options.windows)
     return run_batch(options, work, find_jobs(options.paths))
 
 
 @dataclass(frozen=True)
 class Featuring:
-    """A `noise.batch.Work`: the features of a recording."""
+    """A `noise.batch.Work`: the features of a recording, or of each of its windows.
+
+    Parameters
+    ----------
+    full_scale : float, optional
+        Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    pitch : bool
+        Whether the pitch over time is added.
+    windows : bool
+        Whether windows are described as the classifier is given them, not recordings.
+    """
 
     full_scale: float | None = None
     pitch: bool = False
+    windows: bool = False
 
     doing = "analysing"
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """File, features and reason of a refusal."""
+        """File, of windows also channel and time as in a label table; features; a refusal."""
+        if self.windows:
+            from noise.labels.windows import FEATURE_NAMES
+
+            return ("file", "channel", "start_s", "end_s", *FEATURE_NAMES, "error")
         from features import recording_feature_names
 
         pitch = _PITCH_COLUMNS if self.pitch else ()
@@ -68,17 +93,46 @@ class Featuring:
         import noise.recordings  # noqa: F401
 
     def identity(self) -> dict[str, float | None]:
-        """Return the options that decide the rows."""
+        """Return the options that decide the rows, beside the columns."""
         return {"full_scale": self.full_scale}
 
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
-        """Return the row of a recording, and whether it is calibrated."""
-        from features import recording_features
+        """Return the rows of a recording, and whether it is calibrated."""
         from noise.recordings import read_recording
+
+        if self.windows:
+            from noise.labels.labelling import names_no_channels
+            from noise.labels.windows import tracks
+            from noise.recordings.blocks import RecordingBlocks, open_blocks
+
+            with open_blocks(path, full_scale=self.full_scale) as opened:
+                read = opened or read_recording(path, full_scale=self.full_scale)
+                blocks = RecordingBlocks.of(read)
+                found = tracks(blocks, per_track=names_no_channels(path))
+                rows = [row for channel, track in found for row in _windows(path, channel, track)]
+                return [{"file": name, **row} for row in rows], blocks.calibrated
+        from features import recording_features
 
         recording = read_recording(path, full_scale=self.full_scale)
         pitch = _pitch(recording) if self.pitch else {}
         return [{"file": name, **recording_features(recording), **pitch}], recording.calibrated
+
+
+def _windows(path: Path, channel: str, blocks: RecordingBlocks) -> Iterator[dict[str, object]]:
+    """Yield the rows of the windows of one channel or of all that a recording names."""
+    from features.windows.table import HOP, LENGTH
+    from models.errors import ParameterError
+    from noise.labels.windows import FEATURE_NAMES, can_be_described, describe
+
+    if not can_be_described(blocks):
+        raise ParameterError(
+            f"{path}: has no channel of pressure, acceleration or torque sampled at 1000 Hz or "
+            "more, so that no window can be described"
+        )
+    for i, values in enumerate(describe(blocks).features):
+        end = min(i * HOP + LENGTH, blocks.n_samples / blocks.rate)
+        named = dict(zip(FEATURE_NAMES, values.tolist(), strict=True))
+        yield {"channel": channel, "start_s": i * HOP, "end_s": round(end, 6), **named}
 
 
 def _pitch(recording: Recording) -> dict[str, float]:

@@ -10,22 +10,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
-from noise.base.atomic import atomic
+from noise.base.atomic import atomic, check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, write_table
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
-    from features.modal.hammer import Hit, TransferEstimate
+    from features.modal.hammer import Hit
     from features.modal.modal_fit import Modes
-    from models.transfer_functions.transfer_function import Frf
+    from models.transfer_functions.transfer_function import TransferFunction
 
 __all__ = ["configure", "run"]
 
-_ESTIMATORS = ("H1", "H2", "Hv")
 _DEFAULT_COHERENCE = 0.8
 _MOST_BANDS = 8
 
@@ -84,7 +82,7 @@ def configure(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--estimator",
         type=_estimator,
-        default=_ESTIMATORS[0],
+        default="H1",
         metavar="H1|H2|Hv",
         help="H1 for noise in the response, H2 for noise in the force, Hv for both (default: H1)",
     )
@@ -119,32 +117,41 @@ def run(options: Namespace) -> int:
     say(f"{counted(len(hits), 'hit')} averaged, {refused} refused")
     if not hits:
         return 1
-    from features.modal.hammer import transfer_estimate
+    from features.modal.hammer import estimate_transfer_function
 
-    estimate = transfer_estimate(hits)
-    frf = _chosen(estimate, options, unit)
-    _tell_coherence(frf, options.coherence)
+    transfer = estimate_transfer_function(
+        hits,
+        estimator=options.estimator,
+        input_unit="N" if options.arm is None else "N m",
+        output_unit=unit,
+        name=f"response of {counted(len(hits), 'hit')}",
+    )
+    _tell_coherence(transfer, options.coherence)
     modes = None
     if options.modes is not None:
         from features.modal.modal_fit import fit_modes
+        from models.transfer_functions.coherence import trusted_band
 
         say("fitting modes")
-        low, high = options.band or _default_band(frf)
-        modes = fit_modes(frf.frequency, frf.response, low=low, high=high, coherence=frf.coherence)
-        modes = _trusted(modes, frf, options.coherence)
+        low, high = options.band or trusted_band(transfer)
+        modes = fit_modes(
+            transfer.frequencies, transfer.response,
+            low=low, high=high, coherence=transfer.coherence,
+        )  # fmt: skip
+        modes = _trusted(modes, transfer, options.coherence)
         say(f"{counted(modes.frequency.size, 'mode')} from {low:.5g} to {high:.5g} Hz")
-    _write(options, frf, modes)
+    _write(options, transfer, modes)
     return 1 if refused else 0
 
 
 def _check(options: Namespace) -> None:
-    from models.transfer_functions.files import check_frf_path
+    from models.transfer_functions.files import check_transfer_function_path
 
     for path in options.hits:
         if not path.exists():
             raise ParameterError(f"{path}: there is no such file")
     if options.out is not None:
-        check_frf_path(options.out)
+        check_transfer_function_path(options.out)
         check_target(options.out)
     if options.modes is not None:
         check_table_path(options.modes)
@@ -174,7 +181,7 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
                     f"{path}: its response is in {unit}, that of {hits[0].name} in {units[0]}"
                 )
         except RecordingError as error:
-            say(f"bushing-noise: refused: {error}")
+            opt.refuse(error)
             refused += 1
             continue
         hits.append(hit)
@@ -189,26 +196,13 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
     return hits, units[0] if units else "", refused
 
 
-def _chosen(estimate: TransferEstimate, options: Namespace, unit: str) -> Frf:
-    from models.transfer_functions.transfer_function import Frf
-
-    return Frf(
-        estimate.frequency,
-        {"H1": estimate.h1, "H2": estimate.h2, "Hv": estimate.hv}[options.estimator],
-        estimate.coherence if estimate.n_hits > 1 else None,
-        "N" if options.arm is None else "N m",
-        unit,
-        f"response of {counted(estimate.n_hits, 'hit')}",
-    )
-
-
-def _tell_coherence(frf: Frf, least: float) -> None:
-    if frf.coherence is None:
+def _tell_coherence(transfer: TransferFunction, least: float) -> None:
+    if transfer.coherence is None:
         note("a single hit has no coherence; hit at least three times to see what can be trusted")
         return
-    from models.transfer_functions.transfer_function import bands_below
+    from models.transfer_functions.coherence import bands_below
 
-    bands = bands_below(frf, least)
+    bands = bands_below(transfer, least)
     if not bands:
         say(f"coherence is {least:g} or more throughout")
         return
@@ -220,43 +214,38 @@ def _tell_coherence(frf: Frf, least: float) -> None:
     note(f"coherence below {least:g}, not to be trusted: {told}{more}")
 
 
-def _default_band(frf: Frf) -> tuple[float, float]:
-    from models.transfer_functions.transfer_function import trusted_band
-
-    return trusted_band(frf)
-
-
-def _write(options: Namespace, frf: Frf, modes: Modes | None) -> None:
+def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) -> None:
     """All outputs, whole or not at all."""
-    from models.transfer_functions.files import write_frf, write_frf_csv
+    from models.transfer_functions.files import write_transfer_function, write_transfer_function_csv
 
     with ExitStack() as outputs:
         if options.out is not None:
-            write_frf(outputs.enter_context(atomic(options.out)), frf)
+            write_transfer_function(outputs.enter_context(atomic(options.out)), transfer)
         if modes is not None:
             table = outputs.enter_context(atomic(options.modes))
-            write_table(table, _MODE_COLUMNS, _mode_rows(modes, frf))
+            write_table(table, _MODE_COLUMNS, _mode_rows(modes, transfer))
     if options.out is None and options.modes is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file with --out")
-        write_frf_csv(sys.stdout, frf)
+        write_transfer_function_csv(sys.stdout, transfer)
     for path in (options.out, options.modes):
         if path is not None:
             print(path)
 
 
-def _trusted(modes: Modes, frf: Frf, least: float) -> Modes:
+def _trusted(modes: Modes, transfer: TransferFunction, least: float) -> Modes:
     """Leave out modes where the coherence says that the response is not to be trusted."""
     import numpy as np
 
-    if frf.coherence is None:
+    if transfer.coherence is None:
         return modes
     # A resonance's own dip, or that of the notch beside it, is narrow.
+    lines, coherence = transfer.frequencies, transfer.coherence
     smooth = np.array(
         [
-            np.median(frf.coherence[np.abs(frf.frequency - f) <= 0.02 * f])
-            if np.any(np.abs(frf.frequency - f) <= 0.02 * f)
-            else np.interp(f, frf.frequency, frf.coherence)
+            np.median(coherence[np.abs(lines - f) <= 0.02 * f])
+            if np.any(np.abs(lines - f) <= 0.02 * f)
+            else np.interp(f, lines, coherence)
             for f in modes.frequency
         ]
     )
@@ -273,10 +262,12 @@ def _trusted(modes: Modes, frf: Frf, least: float) -> Modes:
     )
 
 
-def _mode_rows(modes: Modes, frf: Frf) -> list[dict[str, object]]:
+def _mode_rows(modes: Modes, transfer: TransferFunction) -> list[dict[str, object]]:
     import numpy as np
 
-    coherence = np.full(frf.frequency.size, np.nan) if frf.coherence is None else frf.coherence
+    lines, coherence = transfer.frequencies, transfer.coherence
+    if coherence is None:
+        coherence = np.full(lines.size, np.nan)
     (residues,) = modes.residues
     return [
         dict(zip(_MODE_COLUMNS, row, strict=True))
@@ -286,7 +277,7 @@ def _mode_rows(modes: Modes, frf: Frf) -> list[dict[str, object]]:
             residues.real,
             residues.imag,
             np.abs(residues) / (2 * np.pi * modes.frequency * modes.damping_ratio),
-            np.interp(modes.frequency, frf.frequency, coherence),
+            np.interp(modes.frequency, lines, coherence),
             modes.orders,
             strict=True,
         )
@@ -294,10 +285,12 @@ def _mode_rows(modes: Modes, frf: Frf) -> list[dict[str, object]]:
 
 
 def _estimator(text: str) -> str:
-    for known in _ESTIMATORS:
+    from features.modal.hammer import ESTIMATORS
+
+    for known in ESTIMATORS:
         if text.lower() == known.lower():
             return known
-    raise ArgumentTypeError(f"is {text!r}, expected {', '.join(_ESTIMATORS)}")
+    raise ArgumentTypeError(f"is {text!r}, expected {', '.join(ESTIMATORS)}")
 
 
 def _channel(text: str) -> str:

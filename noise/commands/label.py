@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.atomic import check_target
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands import options as opt
 from noise.commands.batch import add_batch, check_batch, run_batch
-from noise.commands.targets import check_target
 from noise.pictures.files import check_picture_path
 
 if TYPE_CHECKING:
@@ -105,8 +105,8 @@ def _check_exports(options: Namespace) -> None:
 
 def _from_tables(options: Namespace) -> int:
     """Join label tables, and write what was asked for."""
-    from noise.labels.reading import read_label_table
-    from noise.labels.table import COLUMNS
+    from noise.labels.labelling import COLUMNS
+    from noise.labels.table import read_label_table
 
     if options.out is None and options.map is None and options.audacity is None:
         raise ParameterError(

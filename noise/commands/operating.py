@@ -1,4 +1,4 @@
-"""From the options of an operating condition to the simulated run."""
+"""Operating condition from the options of a command, as arguments of the simulation."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.base.progress import note, say
-from noise.commands import options as opt
-from noise.commands.user_effects import effect_library
+from noise.base.user_effects import effect_library
+from noise.commands import condition_options as opt
+from noise.commands.options import number_or_none
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -19,61 +20,24 @@ if TYPE_CHECKING:
 
     from models.rig import LawSpec, Rig
     from sim.effects.effect import Effect
-    from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-__all__ = ["CONDITION_OPTIONS", "given_options", "is_long", "run_arguments", "simulated_run"]
-
-CONDITION_OPTIONS = (
-    "speed",
-    "oscillate",
-    "interference",
-    "support_stiffness",
-    "material",
-    "temperature",
-    "seconds",
-    "effect",
-    "effects",
-    "rig",
-    "converter",
-)
-"""What `noise.commands.options.add_condition` adds, as attributes of the options."""
-
-
-def given_options(options: Namespace) -> list[str]:
-    """Return the options of a condition that were given, as they are typed."""
-    return [
-        "--" + name.replace("_", "-")
-        for name in CONDITION_OPTIONS
-        if getattr(options, name) is not None
-    ]
-
-
-def simulated_run(options: Namespace, rate: float) -> Run:
-    """Simulate the run that the options of a condition describe.
-
-    Parameters and errors are those of `run_arguments`.
-    """
-    from sim.run import simulate
-
-    return simulate(**run_arguments(options, rate))
+__all__ = ["is_long", "run_arguments"]
 
 
 def is_long(arguments: Mapping[str, Any]) -> bool:
     """Whether a run is better written in blocks than held in memory."""
     from sim.effects.effect import activated
-    from sim.motion_blocks import whole_run_effects
+    from sim.long_run import whole_run_effects
+    from sim.run import LONGEST_RUN
 
     effects = activated(arguments["rig"].effects, arguments["library"])
     seconds = arguments["seconds"]
-    return bool(seconds > _MOST_SECONDS or (seconds > _LONG and not whole_run_effects(effects)))
+    return bool(seconds > LONGEST_RUN or (seconds > _LONG and not whole_run_effects(effects)))
 
 
 _LONG = 60.0
 """Longer runs are written in blocks, unless an effect needs them whole [s]."""
-
-_MOST_SECONDS = 600.0
-"""What can be held in memory at all."""
 
 
 def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:
@@ -239,7 +203,7 @@ def _read_log(path: Path) -> tuple[list[float], list[float]]:
             cells = [cell.strip() for cell in row]
             if not any(cells):
                 continue
-            if header_possible and not any(map(_is_number, cells)):
+            if header_possible and all(number_or_none(cell) is None for cell in cells):
                 header_possible = False
                 if not {"time_s", "speed_rad_s"} <= set(cells):
                     raise ParameterError(
@@ -258,11 +222,3 @@ def _read_log(path: Path) -> tuple[list[float], list[float]]:
             time.append(moment)
             speed.append(value)
     return time, speed
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

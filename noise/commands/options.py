@@ -1,69 +1,43 @@
 """Options that several commands share, and the texts that they take.
 
 A text that cannot be used is refused while the call is read, by a message that names the option.
-An option that is not given is None: whether it was given matters where two sources of the same
-value meet, such as ``--rig`` and ``--material``.
 """
 
 from __future__ import annotations
 
 import math
 from argparse import ArgumentTypeError
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.condition import FIXED
+from models.errors import ParameterError
+from noise.base.atomic import check_target
+from noise.base.progress import say
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser
     from collections.abc import Callable
 
-    from models.rig import LawSpec
-
 __all__ = [
-    "DEFAULT_INTERFERENCE_MM",
-    "DEFAULT_MATERIAL",
-    "DEFAULT_SECONDS",
-    "DEFAULT_SUPPORT_STIFFNESS",
-    "DEFAULT_TEMPERATURE",
-    "Ramp",
-    "Swing",
-    "add_condition",
-    "add_full_scale",
-    "add_seed",
-    "number",
-]
-
-DEFAULT_INTERFERENCE_MM = 0.279
-DEFAULT_SUPPORT_STIFFNESS = 2214.0  # Nm/rad
-DEFAULT_MATERIAL = "fluorocarbon"
-DEFAULT_TEMPERATURE = 23.0  # degree Celsius
-DEFAULT_SECONDS = 1.0
-
-_ABSOLUTE_ZERO = -273.15  # degree Celsius
-
-
-@dataclass(frozen=True)
-class Ramp:
-    """``--speed 0..10``: from one speed to another [rad/s] over the run."""
-
-    start: float
-    end: float
-
-
-@dataclass(frozen=True)
-class Swing:
-    """``--oscillate 15,2``: amplitude [degree] and frequency [Hz]."""
-
-    amplitude: float
-    frequency: float
+    "add_full_scale", "add_seed", "check_folder", "number", "number_or_none", "refuse",
+    "whole_number",
+]  # fmt: skip
 
 
 def number(
     above: float = -math.inf, *, least: float = -math.inf, most: float = math.inf
 ) -> Callable[[str], float]:
     """Return a parser of finite numbers larger than `above`, from `least` up to `most`.
+
+    Parameters
+    ----------
+    above, least, most : float
+        In the unit of the option, such as [mm].
+
+    Returns
+    -------
+    callable
+        Of the text of an option; raises ArgumentTypeError where it is no such number.
 
     Examples
     --------
@@ -83,11 +57,49 @@ def number(
     return parse
 
 
+def whole_number(least: int, *, more: str = "") -> Callable[[str], int]:
+    """Return a parser of whole numbers from `least` on; `more` ends what it says it expected.
+
+    Examples
+    --------
+    >>> whole_number(1)("2")
+    2
+    """
+
+    def parse(text: str) -> int:
+        if not text.strip().isdecimal() or int(text) < least:
+            raise ArgumentTypeError(
+                f"is {text!r}, expected a whole number of {least} or more{more}"
+            )
+        return int(text)
+
+    return parse
+
+
+def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
+    """Refuse a folder of results that cannot be made, or `file` not in it, before the work.
+
+    Raises
+    ------
+    ParameterError
+        It is a file, or cannot be written to.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ParameterError(f"{option} {folder}: is a file; name a folder")
+    check_target(folder / file, option)
+
+
+def refuse(error: object, name: str | Path = "") -> None:
+    """Say that an input is refused, and why; `name` stands before what does not name it."""
+    named = f"{name}: " if Path(name).name not in str(error) else ""
+    say(f"bushing-noise: refused: {named}{error}")
+
+
 def add_seed(parser: ArgumentParser, use: str) -> None:
     """Add ``--seed``, which all commands take; `use` says what it is for."""
     parser.add_argument(
         "--seed",
-        type=_whole_number,
+        type=whole_number(0),
         default=0,
         metavar="N",
         help=f"{use} (a whole number; default: 0)",
@@ -105,154 +117,22 @@ def add_full_scale(parser: ArgumentParser) -> None:
     )
 
 
-def add_condition(parser: ArgumentParser) -> None:
-    """Add the options that describe an operating condition of the rig."""
-    group = parser.add_argument_group(
-        "operating condition", "Exactly one of --speed and --oscillate is needed."
-    )
-    group.add_argument(
-        "--speed",
-        type=_speed,
-        metavar="V",
-        help="speed of the shaft in rad/s, of either sign; A..B is a ramp from A to B over the "
-        "run; the name of a CSV file is a log with the columns time_s, speed_rad_s",
-    )
-    group.add_argument(
-        "--oscillate",
-        type=_swing,
-        metavar="DEG,HZ",
-        help="the shaft swings by +-DEG degrees, HZ times a second, instead of turning",
-    )
-    group.add_argument(
-        "--interference",
-        type=number(above=0.0, most=10.0),
-        metavar="MM",
-        help=f"interference fit in mm (default: {DEFAULT_INTERFERENCE_MM:g})",
-    )
-    group.add_argument(
-        "--support-stiffness",
-        type=_support_stiffness,
-        metavar="K",
-        help="torsional stiffness of the beams in Nm/rad, or fixed for the clamp bolted to the "
-        f"baseplate (default: {DEFAULT_SUPPORT_STIFFNESS:g})",
-    )
-    group.add_argument(
-        "--material",
-        metavar="NAME",
-        help=f"elastomer, one of {', '.join(_materials())}; case does not matter "
-        f"(default: that of --rig, else {DEFAULT_MATERIAL})",
-    )
-    group.add_argument(
-        "--temperature",
-        type=number(least=_ABSOLUTE_ZERO),
-        metavar="C",
-        help="ambient temperature in degree Celsius; recorded, but the shipped materials do not "
-        f"depend on it (default: {DEFAULT_TEMPERATURE:g})",
-    )
-    group.add_argument(
-        "--seconds",
-        type=number(above=0.0, most=20000.0),
-        metavar="S",
-        help=f"length of the recording in s (default: {DEFAULT_SECONDS:g})",
-    )
-    group.add_argument(
-        "--effect",
-        type=_effect,
-        action="append",
-        metavar="NAME[:KEY=VALUE,...]",
-        help="what the model includes beyond its friction law, such as slip_pulse:amplitude=20 "
-        "(in N); replaces the rig's effect of the same name; may be given several times "
-        "(default: the effects of rig and material)",
-    )
-    group.add_argument(
-        "--effects",
-        type=Path,
-        metavar="FILE.py",
-        help="Python file that defines effects of your own, for --effect and the rig file to "
-        "name; the file is run",
-    )
-    group.add_argument(
-        "--rig",
-        type=Path,
-        metavar="RIG.toml",
-        help="rig file to use instead of the rig that is shipped",
-    )
-    group.add_argument(
-        "--converter",
-        action="store_true",
-        default=None,
-        help="pass the samples through the rig's 12-bit converter, which hides quiet sounds and "
-        "clips loud ones (default: no)",
-    )
-
-
 def _finite(text: str) -> float:
-    value = _number_or_none(text)
+    value = number_or_none(text)
     if value is None or not math.isfinite(value):
         raise ArgumentTypeError(f"is {text!r}, expected a number")
     return value
 
 
-def _number_or_none(text: str) -> float | None:
+def number_or_none(text: str) -> float | None:
+    """Read a number, which may be infinite [-]; None where the text is none.
+
+    Examples
+    --------
+    >>> number_or_none("0.279"), number_or_none("fast")
+    (0.279, None)
+    """
     try:
         return float(text)
     except ValueError:
         return None
-
-
-def _whole_number(text: str) -> int:
-    if not text.strip().isdecimal():
-        raise ArgumentTypeError(f"is {text!r}, expected a whole number of 0 or more")
-    return int(text)
-
-
-def _speed(text: str) -> float | Ramp | Path:
-    start, dots, end = text.partition("..")
-    if dots and _number_or_none(start) is not None and _number_or_none(end) is not None:
-        return Ramp(_finite(start), _finite(end))
-    if _number_or_none(text) is not None:
-        return _finite(text)
-    if not Path(text).is_file():
-        raise ArgumentTypeError(
-            f"is {text!r}, expected a number in rad/s, a ramp such as 0..10, or a CSV file that "
-            "exists"
-        )
-    return Path(text)
-
-
-def _swing(text: str) -> Swing:
-    parts = [_number_or_none(part) for part in text.split(",")]
-    if len(parts) == 2:
-        amplitude, frequency = parts
-        if amplitude is not None and frequency is not None:
-            finite = math.isfinite(amplitude) and math.isfinite(frequency)
-            if finite and amplitude > 0.0 and frequency > 0.0:
-                return Swing(amplitude, frequency)
-    raise ArgumentTypeError(f"is {text!r}, expected degrees and Hz, both above 0, such as 15,2")
-
-
-def _support_stiffness(text: str) -> float:
-    if text.strip().lower() == "fixed":
-        return FIXED
-    try:
-        return number(above=0.0)(text)
-    except ArgumentTypeError:
-        raise ArgumentTypeError(
-            f"is {text!r}, expected a number above 0 in Nm/rad, or fixed"
-        ) from None
-
-
-def _effect(text: str) -> LawSpec:
-    from models.errors import ParameterError
-    from models.rig_files.rig_file import parse_spec
-
-    try:
-        return parse_spec(text)
-    except ParameterError:
-        raise ArgumentTypeError(f"is {text!r}, expected NAME or NAME:key=value,key=value") from None
-
-
-def _materials() -> tuple[str, ...]:
-    from models.rig_files.rig_file import material_names
-
-    return material_names()

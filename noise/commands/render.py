@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
+from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
 from noise.commands import options as opt
-from noise.commands.targets import check_target
+from noise.commands.condition_options import add_condition
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -120,7 +121,7 @@ def configure(parser: ArgumentParser) -> None:
         "needs the extra sound-quality, and some seconds a second of sound",
     )
     opt.add_full_scale(parser)
-    opt.add_condition(parser)
+    add_condition(parser)
     opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
 
 
@@ -173,8 +174,7 @@ def _folder(options: Namespace, sources: list[Source]) -> Path | None:
             f"--out {named}: {counted(len(sources), 'sound')} are no single file; name a folder, "
             "or put them into one with --ab"
         )
-    if named.exists() and not named.is_dir():
-        raise ParameterError(f"--out {named}: is a file; name a folder")
+    opt.check_folder(named)
     return named
 
 
@@ -228,7 +228,7 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
             if folder is None and not isinstance(error, RecordingError):
                 raise
             refused[plan.name] = str(error)
-            say(f"bushing-noise: refused: {_naming(plan.name, str(error))}")
+            opt.refuse(error, plan.name)
     scales = full_scales(
         surveys, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
@@ -292,7 +292,3 @@ def _notes(options: Namespace, plans: list[_Plan], surveys: dict[str, Survey]) -
     )
     if short and options.seconds is None:
         note("a sound of 2 to 10 s is easier to judge by ear; --seconds simulates for longer")
-
-
-def _naming(name: str, message: str) -> str:
-    return message if Path(name).name in message else f"{name}: {message}"

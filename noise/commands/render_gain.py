@@ -1,4 +1,4 @@
-"""Which gain the options of ``render`` ask for, and whether the sounds can have it."""
+"""Gain of the sounds of a set, as the options of ``render`` ask for it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``render`` is given: recordings, folders of them, rig files, conditions in quotes.
+"""Inputs of ``render``: recordings, folders of them, rig files, conditions in quotes.
 
 A rig file and a condition are simulated; they take what they do not say themselves from the
 options of the call, so that two designs meet the same condition, with the same random numbers.
@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from models.errors import ParameterError
-from noise.commands import options as opt
-from noise.commands.operating import CONDITION_OPTIONS, given_options, run_arguments
+from noise.commands.condition_options import CONDITION_OPTIONS, add_condition, given_options
+from noise.commands.operating import run_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -142,7 +142,7 @@ def _simulated(text: str, options: Namespace) -> Source:
             raise ParameterError(f"--rig {options.rig} and {text} are both rig files; give one")
         return _source(Path(text).stem, _over(options, {"rig": Path(text)}))
     parser = _ConditionParser(text)
-    opt.add_condition(parser)
+    add_condition(parser)
     try:
         words = shlex.split(text)
     except ValueError as error:

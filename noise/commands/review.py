@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -104,7 +104,7 @@ def run(options: Namespace) -> int:
         seed=options.seed,
     )
     for refusal in made.refused:
-        say(f"bushing-noise: refused: {refusal.name}: {refusal.reason}")
+        opt.refuse(f"{refusal.name}: {refusal.reason}")
     if made.shortened is not None:
         note(
             f"sounds are cut to {made.shortened:.3g} s to keep to {options.megabytes:g} MB; "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,11 +9,9 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.base.progress import say
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable
 
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
@@ -108,7 +105,11 @@ def configure(parser: ArgumentParser) -> None:
     )
     shared = parser.add_mutually_exclusive_group()
     shared.add_argument(
-        "--workers", type=_workers, default=-1, metavar="N", help="threads (default: one a core)"
+        "--workers",
+        type=opt.whole_number(1),
+        default=-1,
+        metavar="N",
+        help="threads (default: one a core)",
     )
     shared.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
@@ -119,14 +120,12 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
-        if options.out.is_file():
-            raise ParameterError(f"--out {options.out}: is a file; name a folder")
-        check_target(options.out / "map.csv")
+        opt.check_folder(options.out, file="map.csv")
     say("preparing")
     import numpy as np
 
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
-    from noise.screening.tables.tables import summary_lines
+    from noise.screening.tables.summary import summary_lines
 
     simulations = options.simulations or DEFAULT_SIMULATIONS
     found = screen(
@@ -151,31 +150,25 @@ def run(options: Namespace) -> int:
 
 
 def _given(options: Namespace) -> Use:
-    from noise.screening.design.design import SPEED_STEP, Use
-    from noise.screening.design.tolerances import ABSOLUTE_ZERO
-    from noise.screening.map.axes import text_values
+    from noise.screening.design import axis_values as axes
+    from noise.screening.design.design import Use
 
-    def read(option: str, text: str | None, **more: object) -> tuple[float, ...]:
-        values: Callable[..., tuple[float, ...]] = text_values
-        return () if text is None else values(text, option, **more)
-
-    fits = read("--interference", options.interference)
+    fits = axes.axis_values(options.interference, "--interference")
     if fits and fits[-1] > 10.0:
         raise ParameterError(f"--interference is {fits[-1]:g} mm; it must be at most 10")
+    stiffness = axes.axis_values(options.support_stiffness, "--support-stiffness", axes.SUPPORT)
     return Use(
-        speed=read("--speed", options.speed, step=SPEED_STEP),
+        speed=axes.axis_values(options.speed, "--speed", axes.SPEED),
         interference=tuple(1e-3 * fit for fit in fits),
-        support_stiffness=read("--support-stiffness", options.support_stiffness, fixed=True),
-        temperature=read(
-            "--temperature", options.temperature, points=3, low=ABSOLUTE_ZERO, open_low=False
-        ),
+        support_stiffness=stiffness,
+        temperature=axes.axis_values(options.temperature, "--temperature", axes.TEMPERATURE),
         swinging=None if options.oscillate is None else _swinging(options.oscillate),
     )
 
 
 def _swinging(text: str) -> Swinging:
-    from noise.screening.design.design import FREQUENCY_STEP, Swinging
-    from noise.screening.map.axes import text_values
+    from noise.screening.design.axis_values import FREQUENCY, text_values
+    from noise.screening.design.design import Swinging
 
     degrees, comma, frequency = text.partition(",")
     if not comma:
@@ -183,9 +176,7 @@ def _swinging(text: str) -> Swinging:
             f"--oscillate is {text!r}, expected degrees and Hz, such as 15,2 or 15,0.5..4"
         )
     (amplitude,) = text_values(degrees, "--oscillate")[:1]
-    return Swinging(
-        math.radians(amplitude), text_values(frequency, "--oscillate", step=FREQUENCY_STEP)
-    )
+    return Swinging(math.radians(amplitude), text_values(frequency, "--oscillate", FREQUENCY))
 
 
 def _write(folder: Path, found: Screening) -> None:
@@ -193,17 +184,9 @@ def _write(folder: Path, found: Screening) -> None:
     from noise.pictures.files import write_picture
     from noise.pictures.screening import plot_screen
     from noise.screening.design.design_files import copy_design_file
-    from noise.screening.tables import parts_tables as parts, tables
+    from noise.screening.tables.tables import screening_tables
 
-    contents = {
-        "map.csv": (tables.MAP_COLUMNS, tables.map_rows(found)),
-        "critical_speeds.csv": (tables.CRITICAL_COLUMNS, tables.critical_rows(found)),
-        "designs.csv": (tables.DESIGN_COLUMNS, tables.design_rows(found)),
-    }
-    if any(one.robustness is not None for one in found.statistics):
-        contents["sensitivities.csv"] = (parts.SENSITIVITY_COLUMNS, parts.sensitivity_rows(found))
-        contents["advice.csv"] = (parts.ADVICE_COLUMNS, parts.advice_rows(found))
-    for name, (columns, rows) in contents.items():
+    for name, (columns, rows) in screening_tables(found).items():
         write_table(folder / name, columns, rows)
         print(folder / name)
     for name, path in found.files:
@@ -221,14 +204,4 @@ def _write(folder: Path, found: Screening) -> None:
 def _simulations(text: str) -> float:
     if text.strip().lower() == "all":
         return math.inf
-    if not text.strip().isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(
-            f"is {text!r}, expected a whole number of 1 or more, or all"
-        )
-    return int(text)
-
-
-def _workers(text: str) -> int:
-    if not text.strip().isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
-    return int(text)
+    return opt.whole_number(1, more=", or all")(text)

@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.atomic import atomic
+from noise.base.atomic import atomic, check_target
 from noise.base.progress import say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, write_table
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -49,7 +48,7 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Compute and write the table, or draw the figures, or both."""
     if options.plots is not None:
-        _check_folder(options.plots)
+        opt.check_folder(options.plots, "--plots", file="figure-5.3.png")
     if options.out is not None or options.plots is None:
         _write_table(options.out)
     if options.plots is not None:
@@ -87,12 +86,6 @@ def _draw(folder: Path) -> None:
         path = folder / f"{name}.png"
         write_picture(path, figure)
         print(path)
-
-
-def _check_folder(folder: Path) -> None:
-    if folder.is_file():
-        raise ParameterError(f"--plots {folder}: is a file; name a folder")
-    check_target(folder / "figure-5.3.png", "--plots")
 
 
 def _check(out: Path | None, *, is_page: bool) -> None:

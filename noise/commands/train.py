@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from argparse import ArgumentTypeError
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
+from noise.base.atomic import check_target
 from noise.base.progress import counted, say, track
 from noise.commands import options as opt
-from noise.commands.targets import check_target
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -56,7 +55,7 @@ def configure(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--samples",
-        type=_count,
+        type=opt.whole_number(1),
         metavar="N",
         help="simulated samples to learn from (default: 4300); fewer are quicker and know less",
     )
@@ -135,7 +134,7 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
         samples += found
         refusals += [*unread, *unlearned]
     for line in refusals:
-        say(f"bushing-noise: refused: {line}")
+        opt.refuse(line)
     if not samples:
         raise ParameterError(
             f"--add {', '.join(map(str, folders))}: holds no recording with a label that can be "
@@ -170,9 +169,3 @@ def _own_scores(card: object) -> str:
         f"{counted(card['files'], 'file')} learned from, {held} held out; of the windows held out "
         f"{card['accuracy_before']:.0%} right without the others, {card['accuracy_after']:.0%} with"
     )
-
-
-def _count(text: str) -> int:
-    if not text.strip().isdecimal() or int(text) == 0:
-        raise ArgumentTypeError(f"is {text!r}, expected a whole number of 1 or more")
-    return int(text)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.recordings import find_recordings, read_recording
@@ -136,14 +136,14 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     if support is None:
         raise ParameterError("states no support_stiffness_Nm_rad, of which there may be several")
     known = [m.support_stiffness for m in rig.measured]
-    if known and not any(math.isclose(support, k, rel_tol=_SAME) for k in known):
+    if known and not any(same_support(support, k) for k in known):
         raise ParameterError(
             f"support_stiffness_Nm_rad = {support:g} has no measured_response in the rig file; "
             f"it has {', '.join(f'{k:g}' for k in known)}"
         )
     return replace(
         recording,
-        condition=replace(
-            condition, speed=speed, interference=interference, support_stiffness=support
+        condition=KnownCondition(
+            speed, interference, support, condition.material, condition.temperature
         ),
     )

@@ -10,12 +10,10 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.causes.equivalence import equivalent_pairs, next_measurement
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.causes.verdict import verdict_of
+from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
 from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.fit.fits import with_fits
 from noise.diagnosis.gap.floor import case_gap
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
 from sim.effects import EFFECTS
@@ -93,7 +91,11 @@ def diagnose_case(
         differences=differences(table, posterior),
     )
     if not quick:
-        diagnosis = with_fits(case, diagnosis, table, posterior, library, known, seed, tell)
+        from noise.diagnosis.fit.fits import (
+            add_fits,  # loads the classifier; no part of a quick answer
+        )
+
+        diagnosis = add_fits(case, diagnosis, table, posterior, library, known, seed, tell)
     return replace(diagnosis, seconds=time.perf_counter() - started)
 
 

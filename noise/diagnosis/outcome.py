@@ -1,10 +1,10 @@
-"""What a diagnosis says, as plain data: for the report, for `diagnosis.json`, for a notebook."""
+"""Outcome of a diagnosis as plain data: for the report, for `diagnosis.json`, for a notebook."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -12,17 +12,29 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from models.recording import Recording
-    from noise.diagnosis.evidence.contact_course import ContactCourses
+    from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
 __all__ = [
+    "ROLES",
     "Diagnosis",
     "EffectFinding",
-    "Heard",
     "Illustration",
+    "LabelsAndLevels",
     "Location",
     "StageFinding",
     "as_json",
+    "from_json",
 ]
+
+
+ROLES = ("measured", "before", "after")
+"""What is compared: the recording, the nominal model, and the model with what was found."""
+
+_FIGURES = (
+    "gap_before", "gap_recalibrated", "gap_after", "gap_floor", "closed", "closed_low",
+    "closed_high", "closed_by_effect",
+)  # fmt: skip
+"""Of an effect."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +44,9 @@ class StageFinding:
     Parameters
     ----------
     gap : float
-        In units of what repeats differ by.
+        In units of what repeats differ by [-].
     share : float
-        Of the whole gap.
+        Of the whole gap [-].
     p_value : float
         Of so large a difference between repeats, corrected for the number of looks.
     """
@@ -59,6 +71,7 @@ class Location:
     conditions : str
         In which it shows, such as ``speed_rad_s >= 2.5``, or ``all``.
     p_value : float
+        [-]
     """
 
     stage: str
@@ -77,13 +90,13 @@ class EffectFinding:
     ----------
     name, stage : str
     probability : float
-        That it is at work, alone or with others.
+        That it is at work, alone or with others [-].
     parameters : mapping of str to float or str
-        As fitted; empty where it was not.
+        As fitted; empty where it was not [unit of the parameter].
     strength : (float, float), optional
         90 % interval of the parameter that switches it off.
     gap_before, gap_recalibrated, gap_after, gap_floor : float, optional
-        On recordings that no fit has seen; None where it was not fitted.
+        On recordings that no fit has seen; None where it was not fitted, in floors [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional
         Shares of the closable gap, with a 90 % interval; None where there is nothing to close.
     """
@@ -104,16 +117,20 @@ class EffectFinding:
 
 
 @dataclass(frozen=True)
-class Heard:
+class LabelsAndLevels:
     """What the user hears of it, of one held-out recording: label and level [dB(A)]."""
 
     recording: str
-    label_measured: str
-    label_before: str
+    label_measured: str | None
+    label_before: str | None
     label_after: str | None
-    level_measured: float
-    level_before: float
+    level_measured: float | None
+    level_before: float | None
     level_after: float | None
+
+    def of(self, role: str) -> tuple[str | None, float | None]:
+        """Return label and level [dB(A)] of ``measured``, ``before`` or ``after``."""
+        return getattr(self, f"label_{role}"), getattr(self, f"level_{role}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +141,7 @@ class Illustration:
     measured: Recording
     before: Recording
     after: Recording | None
-    contacts: Mapping[str, ContactCourses] = field(default_factory=dict)
+    contacts: Mapping[str, FrictionCurves] = field(default_factory=dict)
     """The friction torque of each, by ``measured``, ``before`` and ``after``."""
 
 
@@ -146,19 +163,19 @@ class Diagnosis:
     effects : tuple of EffectFinding
         The most probable first; ``parameters`` and ``unknown`` are not among them.
     probabilities : mapping of str to float
-        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work.
+        Of ``none``, ``parameters``, ``unknown`` and of each effect being at work [-].
     parameters : mapping of str to (float, float)
         90 % interval of each rig parameter, relative to the rig file.
     next_measurement : str
     held_out : tuple of str
         Recordings that no fit has seen.
     gap, floor, p_value : float
-        Of the case as a whole, before anything was fitted.
+        Of the case as a whole, before anything was fitted [-].
     seconds : float
-        That it took.
+        That it took [s].
     notes : tuple of str
         What is missing and what that costs; channels in bad health.
-    heard : tuple of Heard
+    labels_and_levels : tuple of LabelsAndLevels
     illustrations : tuple of Illustration
     differences : tuple of Location
         Every stage, channel, band and phase with its p-value, corrected for the number of looks;
@@ -186,7 +203,7 @@ class Diagnosis:
     p_value: float
     seconds: float
     notes: tuple[str, ...] = ()
-    heard: tuple[Heard, ...] = ()
+    labels_and_levels: tuple[LabelsAndLevels, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
 
@@ -245,21 +262,71 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "p_value": _rounded(diagnosis.p_value),
         "heard": [
             {
-                "recording": h.recording,
-                "label": {
-                    "measured": h.label_measured, "before": h.label_before, "after": h.label_after,
-                },
-                "level_dba": {
-                    "measured": _rounded(h.level_measured, 1),
-                    "before": _rounded(h.level_before, 1),
-                    "after": _rounded(h.level_after, 1),
-                },
+                "recording": heard.recording,
+                "label": {role: heard.of(role)[0] for role in ROLES},
+                "level_dba": {role: _rounded(heard.of(role)[1], 1) for role in ROLES},
             }
-            for h in diagnosis.heard
+            for heard in diagnosis.labels_and_levels
         ],
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
     }  # fmt: skip
+
+
+def from_json(data: Mapping[str, Any]) -> Diagnosis:
+    """Return the diagnosis that ``diagnosis.json`` holds, without its illustrations.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError, AttributeError
+        The data are those of no diagnosis.
+
+    Examples
+    --------
+    >>> nothing = Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0)
+    >>> from_json(as_json(nothing)).gap
+    0.9
+    """
+    return Diagnosis(
+        verdict=tuple(data["verdict"]),
+        equivalent=tuple((one, other) for one, other in data["equivalent"]),
+        location=None if data["location"] is None else _location_from(data["location"]),
+        stages={
+            name: StageFinding(*(_number(found[key]) for key in ("gap", "share", "p_value")))
+            for name, found in data.get("stages", {}).items()
+        },
+        effects=tuple(
+            EffectFinding(
+                each["name"],
+                each["stage"],
+                _number(each["probability"]),
+                dict(each.get("parameters") or {}),
+                cast("tuple[float, float] | None", tuple(each.get("strength") or ()) or None),
+                *(each.get(name) for name in _FIGURES),
+            )
+            for each in data["effects"]
+        ),
+        probabilities={name: _number(p) for name, p in data["probabilities"].items()},
+        parameters={
+            name: (_number(low), _number(high)) for name, (low, high) in data["parameters"].items()
+        },
+        next_measurement=str(data.get("next_measurement") or ""),
+        held_out=tuple(data.get("held_out") or ()),
+        gap=_number(data.get("gap")),
+        floor=_number(data.get("gap_floor")),
+        p_value=_number(data.get("p_value")),
+        seconds=_number(data.get("seconds")),
+        notes=tuple(map(str, data.get("notes") or ())),
+        labels_and_levels=tuple(
+            LabelsAndLevels(
+                one["recording"],
+                *(one["label"].get(role) for role in ROLES),
+                *(one["level_dba"].get(role) for role in ROLES),
+            )
+            for one in data.get("heard") or ()
+        ),
+        differences=tuple(map(_location_from, data.get("map") or ())),
+    )
 
 
 def _location(place: Location) -> dict[str, Any]:
@@ -273,6 +340,14 @@ def _location(place: Location) -> dict[str, Any]:
     }
 
 
+def _location_from(place: Mapping[str, Any]) -> Location:
+    low, high = map(_number, place["band_hz"])
+    return Location(
+        place["stage"], tuple(place["channels"]), (low, high), place["phase"],
+        place["conditions"], _number(place["p_value"]),
+    )  # fmt: skip
+
+
 def _effect(effect: EffectFinding) -> dict[str, Any]:
     return {
         "name": effect.name,
@@ -283,17 +358,15 @@ def _effect(effect: EffectFinding) -> dict[str, Any]:
             for name, value in effect.parameters.items()
         },
         "strength": None if effect.strength is None else [_rounded(x) for x in effect.strength],
-        **{
-            name: _rounded(getattr(effect, name))
-            for name in (
-                "gap_before", "gap_recalibrated", "gap_after", "gap_floor", "closed", "closed_low",
-                "closed_high", "closed_by_effect",
-            )
-        },
-    }  # fmt: skip
+        **{name: _rounded(getattr(effect, name)) for name in _FIGURES},
+    }
 
 
 def _rounded(value: float | None, digits: int = 4) -> float | None:
     if value is None or not math.isfinite(value):
         return None
     return round(float(value), digits)
+
+
+def _number(value: object) -> float:
+    return float(cast("float", value)) if value is not None else math.nan

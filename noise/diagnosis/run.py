@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.rig_files.rig_file import load_rig
+from noise.base.user_effects import effect_library
 from noise.diagnosis.case import read_case
 from noise.diagnosis.diagnose import diagnose_case
 from noise.diagnosis.outcome import as_json
@@ -19,7 +20,12 @@ __all__ = ["diagnose", "diagnosis_json"]
 
 
 def diagnose(
-    data: str | Path | Sequence[str | Path], rig: str | Path, *, quick: bool = False, seed: int = 0
+    data: str | Path | Sequence[str | Path],
+    rig: str | Path,
+    *,
+    quick: bool = False,
+    effects: str | Path | Sequence[str | Path] = (),
+    seed: int = 0,
 ) -> Diagnosis:
     """Diagnose recordings against the simulator.
 
@@ -31,6 +37,9 @@ def diagnose(
         Rig file.
     quick : bool
         Whether to give the first answer alone, without fits.
+    effects : path or sequence of paths
+        Python files that define effects of the user's own, fitted beside the probable ones, and
+        known by their names where the rig file lists them. They are run.
     seed : int
         Of simulated repeats and bootstraps.
 
@@ -41,7 +50,7 @@ def diagnose(
     Raises
     ------
     ParameterError
-        Rig file or recordings cannot be used.
+        Rig file, recordings or effects cannot be used.
 
     Examples
     --------
@@ -53,8 +62,13 @@ def diagnose(
     Traceback (most recent call last):
     models.errors.ParameterError: ...
     """
-    paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
-    return diagnose_case(read_case(paths, load_rig(rig)), quick=quick, seed=seed)
+    library = effect_library(_paths(effects))
+    case = read_case(_paths(data), load_rig(rig))
+    return diagnose_case(case, quick=quick, library=library, seed=seed)
+
+
+def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
+    return [Path(given)] if isinstance(given, str | Path) else [Path(path) for path in given]
 
 
 def diagnosis_json(data: Path, rig: Path, *, quick: bool = False) -> dict[str, Any]:

@@ -1,5 +1,5 @@
-"""Conditions that were not logged, inferred from the signal, and all that it is trained on."""
+"""The inference of conditions that were not logged, as it is used on labelled segments."""
 
-from noise.inference.model import Inference, Inferred, Interval, load_inference
+from noise.inference.model import Inference, Inferred, Interval, infer_stretch, load_inference
 
-__all__ = ["Inference", "Inferred", "Interval", "load_inference"]
+__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference"]

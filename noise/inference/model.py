@@ -1,52 +1,65 @@
-"""Conditions inferred from a segment, with intervals that cover 90 %, or nothing.
+"""Inference of conditions from a segment, with intervals that cover 90 %, or nothing.
 
-A quantile forest gives what is asked for as a distribution. Where to cut its tails is read off
-recordings that no tree has seen, one cut for each set of channels, of calibration and of other
-conditions that are logged (split conformal prediction on the levels of the distribution: V.
-Chernozhukov, K. Wuethrich, Y. Zhu, *Distributional conformal prediction*, PNAS 118, 2021); so the
-bolted clamp, which is a place by itself, needs no treatment of its own. Where some of the channels
-tell more by themselves than all together, as the torque does of the interference, those are asked.
-An interval hardly narrower than what is known beforehand tells nothing, and is none.
+A quantile forest gives what is asked for as a distribution. How much of it lies outside of the
+interval is calibrated on recordings that no tree has seen, for each set of channels, of calibration
+and of other conditions that are logged (split conformal prediction on the levels of the
+distribution: V. Chernozhukov, K. Wuethrich, Y. Zhu, *Distributional conformal prediction*, PNAS
+118, 2021); so the bolted clamp, which is a point by itself, needs no treatment of its own. Where
+some of the channels give a narrower interval than all together, as the torque does for the
+interference, only those count. An interval hardly narrower than what is known beforehand is none.
 
-What the intervals hold for is written down in `noise.training.inference.population`.
+The population that the intervals hold for is that of `noise.training.inference.population`.
 """
 
 from __future__ import annotations
 
-import json
-import zipfile
-from dataclasses import dataclass, fields
-from functools import lru_cache
-from importlib import resources
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import ParameterError
+from features.registry import recording_features
 from models.html_table import html_table
-from noise.base.atomic import atomic
-from noise.inference.described import KINDS, described, n_described, of_subset, subset_of
-from noise.inference.quantile_forest import QuantileForest
-from noise.inference.quantities import QUANTITIES, places, value_at
+from noise.base.model_file import ModelKind, load_model, save_model
+from noise.base.trees import QuantileForest
+from noise.inference.inputs import (
+    KINDS,
+    LONGEST,
+    MATERIAL,
+    QUANTITIES,
+    RATES,
+    SHORTEST,
+    n_segment_features,
+    of_channels,
+    others_of,
+    scaled,
+    segment_features,
+    subset_of,
+    unscaled,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from pathlib import Path
+    from typing import Any
 
     from numpy.typing import NDArray
 
     from models.condition import Condition
+    from noise.recordings.blocks import RecordingBlocks
 
-__all__ = ["TELLING", "Inference", "Inferred", "Interval", "load_inference", "others_of"]
+__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference"]
 
-TELLING = 0.8
-"""An interval as wide as this share of the one known beforehand, or wider, tells nothing."""
+_NARROWER = 0.8
+"""An interval as wide as this share of the one known beforehand, or wider, is none [-]."""
 
 _UNITS = {
     "speed": (1.0, "rad/s"), "interference": (1e3, "mm"), "support_stiffness": (1.0, "Nm/rad"),
 }  # fmt: skip
-_FORMAT = 1
-_ARRAYS = tuple(field.name for field in fields(QuantileForest))
+_KIND = ModelKind(
+    "model of conditions", 1, "bushing-noise train --inference",
+    ("noise.inference", "conditions.npz"),
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -56,9 +69,9 @@ class Interval:
     Parameters
     ----------
     value : float
-        As likely too high as too low.
+        As likely too high as too low [rad/s], [m] or [Nm/rad].
     low, high : float
-        Bounds of 90 %; the bolted clamp is ``math.inf``.
+        Bounds of 90 %, in the same unit; the bolted clamp is ``math.inf``.
 
     Examples
     --------
@@ -94,7 +107,7 @@ class Inferred(dict[str, Interval]):
 
 @dataclass(frozen=True, eq=False)
 class Inference:
-    """Quantile forests for the three conditions, and where to cut their tails.
+    """Quantile forests for the three conditions, with calibrated intervals.
 
     Parameters
     ----------
@@ -103,11 +116,12 @@ class Inference:
     forests : tuple of QuantileForest
         One for each of `QUANTITIES`.
     prior : ndarray of float32, shape (3, n)
-        Values of the population, which join those of the leaves: nothing in it is ruled out.
-    asked : ndarray of int16, shape (3, 8, 2, 4)
+        Values of the population [on the scale of each quantity], which join those of the leaves:
+        nothing in it is ruled out.
+    used : ndarray of int16, shape (3, 8, 2, 4)
         By quantity, subset of channels, calibrated or not, and others that are logged: the part
-        of the subset that is looked at.
-    cuts : ndarray of int16, shape (3, 8, 2, 4, 4)
+        of the subset that counts, as `noise.inference.inputs.subset_of` numbers it.
+    outside : ndarray of int16, shape (3, 8, 2, 4, 4)
         Likewise, how many of the lowest and highest values lie outside, first over all
         recordings, by which it is decided whether there is an interval, then over those for which
         there is. -1 where there is never one.
@@ -123,8 +137,8 @@ class Inference:
     names: tuple[str, ...]
     forests: tuple[QuantileForest, ...]
     prior: NDArray[np.float32]
-    asked: NDArray[np.int16]
-    cuts: NDArray[np.int16]
+    used: NDArray[np.int16]
+    outside: NDArray[np.int16]
     card: Mapping[str, object]
 
     def infer(
@@ -160,23 +174,25 @@ class Inference:
         >>> load_inference().infer({}, Condition(), kinds=["angle"], calibrated=True)
         {}
         """
-        known = places(logged)
+        known = scaled(logged)
         table = np.array([[features.get(name, np.nan) for name in self.names]])
         found = Inferred()
         for index, name in enumerate(QUANTITIES):
             if not np.isnan(known[index]):
                 continue
             case = (index, subset_of(kinds), int(calibrated), others_of(known, index))
-            cuts = self.cuts[case]
-            if cuts[0] < 0:
+            outside = self.outside[case]
+            if outside[0] < 0:
                 continue
-            looked_at = of_subset(table, self.names, int(self.asked[case]))
-            values = self.distribution(index, described(looked_at, self.names, known[None, :]))
-            if not self.telling(index, values, cuts)[0]:
+            table_of_used = of_channels(table, self.names, int(self.used[case]))
+            values = self.distribution(
+                index, segment_features(table_of_used, self.names, known[None, :])
+            )
+            if not self.is_narrow(index, values, outside)[0]:
                 continue
-            low, high = values[0, cuts[2]], values[0, -1 - cuts[3]]
+            low, high = values[0, outside[2]], values[0, -1 - outside[3]]
             middle = min(max(values[0, values.shape[1] // 2], low), high)
-            found[name] = Interval(*(value_at(name, float(at)) for at in (middle, low, high)))
+            found[name] = Interval(*(unscaled(name, float(at)) for at in (middle, low, high)))
         return found
 
     def distribution(self, index: int, x: NDArray[np.float64]) -> NDArray[np.float32]:
@@ -186,58 +202,45 @@ class Inference:
         ----------
         index : int
             Of the quantity.
-        x : ndarray, shape (n, n_described)
+        x : ndarray, shape (n, n_segment_features)
+            [unit of each feature]
 
         Returns
         -------
-        ndarray, shape (n, n_values)
+        ndarray of float32, shape (n, n_values)
+            [on the scale of the quantity]
         """
         pooled = self.forests[index].pooled(x)
         prior = np.broadcast_to(self.prior[index], (len(x), self.prior.shape[1]))
         return np.sort(np.concatenate([pooled, prior], axis=1), axis=1)
 
-    def telling(
-        self, index: int, values: NDArray[np.float32], cuts: NDArray[np.int16]
+    def is_narrow(
+        self, index: int, values: NDArray[np.float32], outside: NDArray[np.int16]
     ) -> NDArray[np.bool_]:
         """Whether distributions, shape (n, n_values), are narrower than the population's."""
         low, high = np.quantile(self.prior[index], [0.05, 0.95])
-        width = values[:, -1 - cuts[1]] - values[:, cuts[0]]
-        return np.asarray(width < TELLING * (high - low))
+        width = values[:, -1 - outside[1]] - values[:, outside[0]]
+        return np.asarray(width < _NARROWER * (high - low))
 
     def _repr_html_(self) -> str:
-        from noise.classifier.card import card_html
+        from noise.base.model_display import model_display
 
-        return card_html("Inference of " + ", ".join(QUANTITIES), [], self.card)
+        return model_display("Inference of " + ", ".join(QUANTITIES), [], self.card)
 
     def save(self, path: str | Path) -> None:
-        """Write the model into an NPZ file, whole or not at all."""
-        header = {"format": _FORMAT, "names": self.names, "card": dict(self.card)}
-        arrays = {
-            f"{name}_{array}": getattr(forest, array)
-            for name, forest in zip(QUANTITIES, self.forests, strict=True)
-            for array in _ARRAYS
-        }
-        with atomic(path) as temporary, temporary.open("wb") as file:
-            np.savez_compressed(
-                file,
-                header=np.array(json.dumps(header)),
-                prior=self.prior,
-                asked=self.asked,
-                cuts=self.cuts,
-                **arrays,
-            )
+        """Write the model into an NPZ file, whole or not at all.
 
-
-def others_of(known: NDArray[np.float64], index: int) -> int:
-    """Return which of the other two quantities are logged, as a number from 0 to 3.
-
-    Examples
-    --------
-    >>> others_of(np.array([np.nan, 0.279, np.nan]), 0)
-    1
-    """
-    others = np.delete(known, index)
-    return sum(1 << bit for bit, place in enumerate(others) if not np.isnan(place))
+        Raises
+        ------
+        ParameterError
+            The file cannot be written.
+        """
+        arrays: dict[str, NDArray[Any]] = {
+            "prior": self.prior, "asked": self.used, "cuts": self.outside
+        }  # fmt: skip
+        for quantity, forest in zip(QUANTITIES, self.forests, strict=True):
+            arrays |= {f"{quantity}_{name}": array for name, array in forest.arrays().items()}
+        save_model(path, _KIND, {"names": self.names, "card": dict(self.card)}, arrays)
 
 
 def load_inference(path: str | Path | None = None) -> Inference:
@@ -262,36 +265,63 @@ def load_inference(path: str | Path | None = None) -> Inference:
     >>> load_inference().card["seed"]
     0
     """
-    return _shipped() if path is None else _load(Path(path))
+    return load_model(path, _KIND, _built)
 
 
-@lru_cache(maxsize=1)
-def _shipped() -> Inference:
-    with resources.as_file(resources.files("noise.inference") / "data" / "conditions.npz") as path:
-        return _load(path)
+def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Inference:
+    names = tuple(header["names"])
+    forests = []
+    for quantity in QUANTITIES:
+        prefix = f"{quantity}_"
+        of_one = {k.removeprefix(prefix): a for k, a in arrays.items() if k.startswith(prefix)}
+        forests.append(QuantileForest.of_arrays(of_one))
+        forests[-1].check(n_segment_features(names))
+    prior, used, outside = arrays["prior"], arrays["asked"], arrays["cuts"]
+    cases = (len(QUANTITIES), 1 << len(KINDS), 2, 4)
+    if prior.shape[:1] != cases[:1] or used.shape != cases or outside.shape != (*cases, 4):
+        raise ValueError("its arrays do not fit together")
+    return Inference(names, tuple(forests), prior, used, outside, header["card"])
 
 
-def _load(path: Path) -> Inference:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            header = json.loads(str(file["header"]))
-            if header["format"] != _FORMAT:
-                raise ValueError(f"format {header['format']!r}, expected {_FORMAT}")
-            names = tuple(header["names"])
-            forests = tuple(
-                QuantileForest(**{array: file[f"{name}_{array}"] for array in _ARRAYS})
-                for name in QUANTITIES
-            )
-            prior, asked, cuts = file["prior"], file["asked"], file["cuts"]
-        for forest in forests:
-            forest.check(n_described(names))
-        cases = (len(QUANTITIES), 1 << len(KINDS), 2, 4)
-        if prior.shape[:1] != cases[:1] or asked.shape != cases or cuts.shape != (*cases, 4):
-            raise ValueError("its arrays do not fit together")
-        return Inference(names, forests, prior, asked, cuts, header["card"])
-    except FileNotFoundError:
-        raise ParameterError(f"{path}: no such file") from None
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-        raise ParameterError(
-            f"{path}: no model of conditions that `bushing-noise train` wrote ({error})"
-        ) from None
+def infer_stretch(
+    blocks: RecordingBlocks, first: int, last: int, logged: Condition, inference: Inference
+) -> Inferred:
+    """Infer what is not logged of a stretch that creaks, squawks or squeals.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+    first, last : int
+        The stretch from sample `first` up to `last`; of a longer one than 1 s the middle counts.
+    logged : Condition
+    inference : Inference
+
+    Returns
+    -------
+    Inferred
+        As `Inference.infer` gives it; nothing where the recording is none of those that the
+        intervals hold for: shorter, sampled more slowly, or of another material.
+
+    Examples
+    --------
+    >>> from models.condition import Condition
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from noise.inference import load_inference
+    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> from sim.run import simulate
+    >>> run = simulate(load_material_rig("fluorocarbon"), 1.0, interference=0.381e-3)
+    >>> blocks = RecordingBlocks.of(run.recording)
+    >>> found = infer_stretch(blocks, 0, blocks.n_samples, Condition(), load_inference())
+    >>> found["interference"].low < 0.381e-3 < found["interference"].high
+    True
+    """
+    kinds = [kind for kind in KINDS if blocks.first(kind) is not None]
+    if not kinds or blocks.rate < min(RATES) or last - first < SHORTEST * blocks.rate:
+        return Inferred()
+    if (logged.material or MATERIAL).lower() != MATERIAL:
+        return Inferred()
+    spare = max(0, last - first - round(LONGEST * blocks.rate))
+    middle = blocks.cut(first + spare // 2, last - (spare - spare // 2))
+    return inference.infer(
+        recording_features(middle), logged, kinds=kinds, calibrated=blocks.calibrated
+    )

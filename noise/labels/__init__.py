@@ -1,16 +1,1 @@
 """Labels in time, and the table that links them to operating conditions."""
-
-from noise.labels.segments import Segment, file_label, label_recording
-from noise.labels.table import COLUMNS, error_row, label_rows
-from noise.labels.table_display import LabelTable, Segments
-
-__all__ = [
-    "COLUMNS",
-    "LabelTable",
-    "Segment",
-    "Segments",
-    "error_row",
-    "file_label",
-    "label_recording",
-    "label_rows",
-]

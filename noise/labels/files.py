@@ -1,20 +1,19 @@
-"""Many recordings labelled in one call, as a notebook makes it."""
+"""Recordings labelled in one call, as a notebook makes it."""
 
 from __future__ import annotations
 
-from contextlib import closing
+from contextlib import closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.batch import find_jobs, perform_all
+from noise.base.tables import check_table_path
+from noise.batch import find_jobs, open_journal, perform_all
 from noise.labels.labelling import Labelling
-from noise.labels.table_display import LabelTable
+from noise.labels.table import LabelTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from noise.batch import Done
 
 __all__ = ["label"]
 
@@ -25,6 +24,8 @@ def label(
     classifier: str | Path | None = None,
     inference: str | Path | None = None,
     full_scale: float | None = None,
+    out: str | Path | None = None,
+    fresh: bool = False,
     workers: int = 1,
     scheduler: str | None = None,
 ) -> LabelTable:
@@ -38,6 +39,12 @@ def label(
         Files that ``bushing-noise train`` made; by default those that are shipped.
     full_scale : float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    out : path, optional
+        File for the table: .csv, .jsonl or .parquet. As with ``bushing-noise label --out``, a
+        journal beside it keeps each recording that is done: whichever of the two is called next
+        with the same table goes on where the last call ended, however it ended.
+    fresh : bool
+        Whether to do all recordings again, whatever earlier calls with the same `out` did.
     workers : int
         Processes that share the work; with more than one, a script needs
         ``if __name__ == "__main__":`` around the call.
@@ -47,12 +54,13 @@ def label(
     Returns
     -------
     LabelTable
-        A list of one dict a segment, by `noise.labels.COLUMNS`, in the order of the files.
+        A list of one dict a segment, by `noise.labels.labelling.COLUMNS`, in the files' order.
 
     Raises
     ------
     ParameterError
-        A path does not exist, there are no recordings, or a model or the cluster cannot be used.
+        A path does not exist, there are no recordings, a model or the cluster cannot be used,
+        or the table cannot be written.
 
     Examples
     --------
@@ -68,19 +76,27 @@ def label(
     """
     if workers < 1:
         raise ParameterError(f"workers = {workers} must be 1 or more")
+    check_table_path(out)
     given = [paths] if isinstance(paths, str | Path) else paths
     jobs = find_jobs([Path(path) for path in given])
     work = Labelling(_absolute(classifier), _absolute(inference), full_scale)
     work.prepare()
-    outcomes: dict[int, Done] = {}
-    with closing(perform_all(work, jobs, workers=workers, scheduler=scheduler)) as advancing:
-        for job, done in advancing:
-            outcomes[job.index] = done
-    return LabelTable(
-        dict(zip(work.columns, row, strict=True))
-        for index in sorted(outcomes)
-        for row in outcomes[index].rows
-    )
+    kept = nullcontext() if out is None else open_journal(Path(out), work, fresh=fresh)
+    with kept as journal:
+        outcomes = {} if journal is None else journal.known(jobs)
+        left = [job for job in jobs if job.index not in outcomes]
+        performed = perform_all(work, left, workers=workers, scheduler=scheduler, journal=journal)
+        with closing(performed):
+            for job, done in performed:
+                outcomes[job.index] = done
+        table = LabelTable(
+            dict(zip(work.columns, row, strict=True))
+            for index in sorted(outcomes)
+            for row in outcomes[index].rows
+        )
+        if out is not None:
+            table.write(out)
+    return table
 
 
 def _absolute(path: str | Path | None) -> Path | None:

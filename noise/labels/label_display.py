@@ -1,50 +1,175 @@
-"""How the labels look, in every picture and on every page.
-
-A label is shown by a colour that no eye takes for another's, by a pattern and by two letters: a
-projector washes colours out, a printer drops them, and one man in twelve does not see them.
-"""
+"""Display of labels: bars over time, tables in HTML."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
-from noise.classifier.model import LABELS
+from models.drawing import axes_or_new
+from models.errors import ParameterError
+from models.html_table import html_table
+from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 
-__all__ = ["DARK_LABELS", "LABEL_COLOURS", "LABEL_LOOKS", "Look"]
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.axes import Axes
+
+    from noise.labels.segments import Segment
+
+__all__ = [
+    "MOST_TRACKS",
+    "draw_tracks",
+    "segments_html",
+    "table_html",
+]
 
 
-class Look(NamedTuple):
-    """Of one label.
+MOST_TRACKS = 40
+"""Rows that a picture has room for."""
+
+_HEIGHT = 0.7
+_NAMED = 0.08
+"""A bar as long as this share of the axis has room for its label."""
+
+
+def draw_tracks(
+    tracks: Mapping[str, Sequence[tuple[float, float, str]]], ax: Axes | None = None
+) -> Axes:
+    """Draw labels over time.
 
     Parameters
     ----------
-    colour : str
-        Of an area.
-    line : str
-        Of its pattern and of its outline.
-    pattern : str
-        ``stripes``, ``dots``, ``lines``, ``plain`` or ``crosses``.
-    mark : str
-        Where there is no room for the label itself.
+    tracks : mapping of str to sequence of (float, float, str)
+        Start [s], end [s] and label of each stretch, by the name of its row; the first of them is
+        on top, and no more than `MOST_TRACKS` are drawn.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ParameterError
+        Nothing is labelled.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> axes = draw_tracks({"run07": [(0.0, 1.0, "creak")]}, Figure().subplots())
+    >>> axes.get_xlabel(), [text.get_text() for text in axes.get_legend().get_texts()]
+    ('Time [s]', ['creak'])
     """
+    from matplotlib.patches import Patch
 
-    colour: str
-    line: str
-    pattern: str
-    mark: str
+    stretches = [stretch for of_one in tracks.values() for stretch in of_one]
+    if not stretches:
+        raise ParameterError("nothing is labelled, so there is nothing to draw")
+    longest = max(end for _, end, _ in stretches)
+    shown = dict(list(tracks.items())[:MOST_TRACKS])
+    with axes_or_new(ax) as axes:
+        for row, of_one in enumerate(shown.values()):
+            for start, end, label in of_one:
+                axes.broken_barh(
+                    [(start, end - start)], (row - _HEIGHT / 2, _HEIGHT),
+                    facecolor=LABEL_COLOURS[label], edgecolor="#444444", linewidth=0.6,
+                )  # fmt: skip
+                if end - start >= _NAMED * longest:
+                    axes.text(
+                        (start + end) / 2, row, label, ha="center", va="center", fontsize=9.0,
+                        color="white" if label in DARK_LABELS else "#222222",
+                    )  # fmt: skip
+        axes.set_yticks(range(len(shown)), list(shown))
+        axes.set_ylim(len(shown) - 0.5, -0.5)
+        axes.set_xlim(0.0, longest)
+        axes.set_xlabel("Time [s]")
+        axes.grid(visible=False)
+        if len(tracks) > MOST_TRACKS:
+            axes.set_title(f"{MOST_TRACKS} of {len(tracks)}", loc="left")
+        found = {label for _, _, label in stretches}
+        axes.legend(
+            handles=[
+                Patch(facecolor=colour, edgecolor="#444444", label=label)
+                for label, colour in LABEL_COLOURS.items()
+                if label in found
+            ],
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.0),
+            ncols=len(found),
+        )
+    return axes
 
 
-LABEL_LOOKS = {
-    "creak": Look("#d55e00", "#7a3600", "stripes", "Cr"),
-    "squawk": Look("#e69f00", "#7d5600", "dots", "Sk"),
-    "squeal": Look("#b5478a", "#6b1f4e", "lines", "Sl"),
-    "none": Look("#c3d4df", "#6f8596", "plain", "\N{EN DASH}"),
-    "unknown": Look("#f6f6f6", "#55606b", "crosses", "?"),
-}
-"""By label; vermilion and orange are those of Okabe and Ito (Color universal design, 2008)."""
+def segments_html(segments: Sequence[Segment]) -> str:
+    """Return the labelled segments of a recording as a table in HTML.
 
-DARK_LABELS = ("creak", "squeal")
-"""On whose colours text is white."""
+    Examples
+    --------
+    >>> from noise.labels.segments import Segment
+    >>> creak = Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)
+    >>> "78.0 dB" in segments_html([creak])
+    True
+    """
+    rows = [
+        [
+            one.label,
+            f"{one.start:.2f} to {one.end:.2f} s",
+            one.channel,
+            f"{100 * one.probabilities[one.label]:.0f} %",
+            "" if one.frequency is None else f"{one.frequency:.4g} Hz",
+            _level(one.level, one.level_dbfs),
+        ]
+        for one in segments
+    ]
+    header = ["label", "time", "channel", "probability", "frequency", "level"]
+    return html_table("Labelled segments", rows, header=header)
 
-LABEL_COLOURS = {label: LABEL_LOOKS[label].colour for label in LABELS}
-"""Of areas."""
+
+def table_html(table: Sequence[Mapping[str, object]]) -> str:
+    """Return a label table as a table in HTML.
+
+    Examples
+    --------
+    >>> rows = [{"file": "b.wav", "label": None, "error": "is empty"}]
+    >>> "refused: is empty" in table_html(rows)
+    True
+    """
+    rows = [
+        [
+            str(row["file"]),
+            str(row["label"] or f"refused: {row['error']}"),
+            _time(row.get("start_s"), row.get("end_s")),
+            _level(row.get("level_db"), row.get("level_dbfs")),
+            _condition(row, "speed_rad_s", "rad/s"),
+            _condition(row, "interference_mm", "mm"),
+            _condition(row, "support_stiffness_Nm_rad", "Nm/rad"),
+        ]
+        for row in table
+    ]
+    header = ["file", "label", "time", "level", "speed", "interference", "support stiffness"]
+    return html_table(f"Labels of {len({row['file'] for row in table})} files", rows,
+                      header=header)  # fmt: skip
+
+
+def _time(start: object, end: object) -> str:
+    if isinstance(start, float) and isinstance(end, float):
+        return f"{start:.2f} to {end:.2f} s"
+    return ""
+
+
+def _level(level: object, level_dbfs: object) -> str:
+    if isinstance(level, float):
+        return f"{level:.1f} dB"
+    return f"{level_dbfs:.1f} dBFS" if isinstance(level_dbfs, float) else ""
+
+
+def _condition(row: Mapping[str, object], column: str, unit: str) -> str:
+    """Return a condition with its bounds where it is inferred."""
+    value, low, high = (row.get(f"{column}{part}") for part in ("", "_low", "_high"))
+    if not isinstance(value, float):
+        return ""
+    words = f"{value:.4g} {unit}"
+    if isinstance(low, float) and isinstance(high, float):
+        words += f" ({low:.4g} to {high:.4g})"
+    return words

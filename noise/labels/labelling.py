@@ -1,27 +1,65 @@
-"""Labelling as work that is done with each recording of a batch, here or in other processes."""
+"""Labelling of recordings: a row for each segment, linked to the condition it was recorded at.
+
+What was logged stands as it is. What was not is inferred where there is a noise to tell it, with
+the bounds of an interval of 90 %; the material is never. The work on a recording can be done here
+or in other processes.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from noise.base.label_names import LABELS
 from noise.batch.identity import file_digest
 from noise.classifier import load_classifier
-from noise.inference import load_inference
 from noise.labels.segments import label_recording
-from noise.labels.table import COLUMNS, label_rows
 from noise.recordings import read_recording
-from noise.recordings.blocks import open_blocks
+from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.sidecar import find_sidecar, read_sidecar
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from noise.classifier import Classifier
-    from noise.inference import Inference
+    from numpy.typing import NDArray
 
-__all__ = ["Labelling"]
+    from models.condition import Condition
+    from models.recording import Recording
+    from noise.classifier import Classifier
+    from noise.inference import Inference, Interval
+    from noise.labels.segments import Segment
+
+__all__ = ["COLUMNS", "Labelling", "label_rows", "names_no_channels"]
+
+_SPEED_BLOCK = 0.02
+"""Length over which the angle is averaged before its slope is taken [s]."""
+
+_BLOCKS_AT_ONCE = 500
+"""How many of them are read together."""
+
+_TELLING_LABELS = ("creak", "squawk", "squeal")
+"""Noises that tell of the condition that made them."""
+
+_CONDITIONS = {
+    "speed_rad_s": "speed",
+    "interference_mm": "interference",
+    "support_stiffness_Nm_rad": "support_stiffness",
+}
+"""Columns, and the fields of a condition that they hold."""
+
+COLUMNS = (
+    "file", "channel", "start_s", "end_s", "label",
+    *(f"p_{label}" for label in LABELS),
+    "frequency_hz", "level_db", "level_dbfs", "calibrated",
+    *(f"{name}{part}" for name in _CONDITIONS for part in ("", "_low", "_high", "_source")),
+    "material", "material_source", "error",
+)  # fmt: skip
+"""Columns of the table, all of them always there."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +91,7 @@ class Labelling:
         return COLUMNS
 
     def prepare(self) -> None:
-        """Load the classifier, and what infers conditions."""
+        """Load the classifier and, where the user names one, what infers conditions."""
         _ = self._loaded, self._inference
 
     def identity(self) -> dict[str, str | float | None]:
@@ -69,7 +107,7 @@ class Labelling:
         """Return the rows of a recording, and whether it is calibrated."""
         with open_blocks(path, full_scale=self.full_scale) as blocks:
             recording = blocks or read_recording(path, full_scale=self.full_scale)
-            segments = label_recording(recording, self._loaded, per_track=_names_no_channels(path))
+            segments = label_recording(recording, self._loaded, per_track=names_no_channels(path))
             rows = label_rows(name, recording, segments, self._inference)
             return rows, recording.calibrated
 
@@ -78,7 +116,12 @@ class Labelling:
         return load_classifier(self.classifier)
 
     @cached_property
-    def _inference(self) -> Inference:
+    def _inference(self) -> Inference | None:
+        # The shipped one is loaded by the first noise whose condition is not logged.
+        if self.inference is None:
+            return None
+        from noise.inference import load_inference
+
         return load_inference(self.inference)
 
     def __getstate__(self) -> dict[str, object]:
@@ -90,7 +133,142 @@ class Labelling:
         }
 
 
-def _names_no_channels(path: Path) -> bool:
+def names_no_channels(path: Path) -> bool:
     """Whether it is a plain sound file, whose tracks stand for themselves."""
     sidecar = find_sidecar(path)
     return sidecar is None or read_sidecar(sidecar).channels is None
+
+
+def label_rows(
+    name: str,
+    recording: Recording | RecordingBlocks,
+    segments: list[Segment],
+    inference: Inference | None = None,
+) -> list[dict[str, object]]:
+    """Return one row for each segment.
+
+    Parameters
+    ----------
+    name : str
+        File as found, relative to the folder named.
+    recording : Recording or RecordingBlocks
+        Where the shaft's speed was recorded, each segment gets its mean over that segment.
+    segments : list of Segment
+    inference : Inference, optional
+        By which conditions that were not logged are inferred; by default the one that is shipped.
+
+    Returns
+    -------
+    list of dict
+        By `COLUMNS`; a condition's source is ``logged``, ``inferred`` or ``missing``, and it has
+        bounds where it is inferred. An inferred speed is a magnitude. The bolted clamp's support
+        stiffness is ``inf``.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> from noise.labels.segments import Segment
+    >>> turning = Recording(np.array([[0.0, 1.0, 2.0, 3.0]]), 2.0, (Channel("angle"),))
+    >>> part = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
+    >>> row, = label_rows("run07.wav", turning, [part])
+    >>> row["speed_rad_s"], row["speed_rad_s_source"], row["material_source"]
+    (2.0, 'logged', 'missing')
+    """
+    blocks = RecordingBlocks.of(recording)
+    return [_row(name, blocks, segment, inference) for segment in segments]
+
+
+def _row(
+    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
+) -> dict[str, object]:
+    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
+    row: dict[str, object] = {
+        **dict.fromkeys(COLUMNS),
+        "file": name,
+        "channel": segment.channel,
+        "start_s": round(segment.start, 6),
+        "end_s": round(segment.end, 6),
+        "label": segment.label,
+        **{f"p_{label}": round(p, 6) for label, p in segment.probabilities.items()},
+        "frequency_hz": _rounded(segment.frequency, 2),
+        "level_db": _rounded(segment.level, 2),
+        "level_dbfs": _rounded(segment.level_dbfs, 2),
+        "calibrated": blocks.calibrated,
+        "material": condition.material,
+        "material_source": "logged" if condition.material else "missing",
+    }
+    inferred = _inferred(blocks, segment, condition, inference)
+    for column, field in _CONDITIONS.items():
+        value = _in_unit(column, getattr(condition, field))
+        row[column] = value
+        row[f"{column}_source"] = "missing" if value is None else "logged"
+        if value is None and field in inferred:
+            interval = inferred[field]
+            row[column] = _in_unit(column, interval.value)
+            row[f"{column}_low"] = _in_unit(column, interval.low)
+            row[f"{column}_high"] = _in_unit(column, interval.high)
+            row[f"{column}_source"] = "inferred"
+    return row
+
+
+def _inferred(
+    blocks: RecordingBlocks, segment: Segment, logged: Condition, inference: Inference | None
+) -> dict[str, Interval]:
+    """Infer what is not logged of a segment whose label tells of it."""
+    unknown = any(getattr(logged, field) is None for field in _CONDITIONS.values())
+    if not unknown or segment.label not in _TELLING_LABELS:
+        return {}
+    from noise.inference import infer_stretch, load_inference
+
+    if segment.channel != "all":
+        blocks = blocks.track(int(segment.channel) - 1)
+    first = round(segment.start * blocks.rate)
+    last = min(round(segment.end * blocks.rate), blocks.n_samples)
+    return infer_stretch(blocks, first, last, logged, inference or load_inference())
+
+
+def _in_unit(column: str, value: float | None) -> float | None:
+    """Return a value in the unit of its column."""
+    millimetres = value is not None and column.endswith("_mm")
+    return _rounded(1e3 * value if millimetres and value is not None else value, 6)
+
+
+def _segment_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
+    """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set.
+
+    Its magnitude where the shaft swings to and fro, whose mean speed is nothing.
+    """
+    first = round(segment.start * blocks.rate)
+    last = min(round(segment.end * blocks.rate), blocks.n_samples)
+    block = max(1, round(_SPEED_BLOCK * blocks.rate))
+    pieces = blocks.pieces(first, last, _BLOCKS_AT_ONCE * block)
+    speed, angle = blocks.first("speed"), blocks.first("angle")
+    if blocks.calibrated and speed is not None:
+        return _mean_speed(piece.samples[speed] for piece in pieces)
+    if blocks.calibrated and angle is not None and last - first > block:
+        if last - first < 3 * block:
+            time = np.arange(last - first) / blocks.rate
+            return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
+        # Means of blocks first: the difference of single samples would be that of their noise.
+        means = [_block_means(piece.samples[angle], block) for piece in pieces]
+        return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
+    return blocks.condition.speed
+
+
+def _block_means(signal: NDArray[np.float64], block: int) -> NDArray[np.float64]:
+    whole = signal[: signal.size // block * block].reshape(-1, block)
+    return np.asarray(whole.mean(axis=1))
+
+
+def _mean_speed(pieces: Iterable[NDArray[np.float64]]) -> float:
+    n, total, travelled = 0, 0.0, 0.0
+    for speed in pieces:
+        n += speed.size
+        total += float(np.sum(speed))
+        travelled += float(np.sum(np.abs(speed)))
+    mean, magnitude = total / n, travelled / n
+    return mean if abs(mean) > 0.9 * magnitude else magnitude
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    return None if value is None or math.isnan(value) else round(value, digits)

@@ -1,4 +1,4 @@
-"""The level of any part of a recording, from what is summed up in cells while it is read once."""
+"""Levels of any part of a recording, from sums over cells of 10 ms while it is read once."""
 
 from __future__ import annotations
 
@@ -60,7 +60,8 @@ class CellLevels:
         begin, end : int
             Samples of the whole signal.
         samples : ndarray, shape (n,)
-            What is at hand, from sample `start` on: the cells have to end in it.
+            What is at hand [unit of the signal], from sample `start` on: the cells have to end in
+            it.
         start : int
         """
         first, last = np.searchsorted(self.edges[:-1], (begin, end)).tolist()
@@ -99,7 +100,23 @@ class CellLevels:
 def sound_levels(
     rms_db: float | None, *, calibrated: bool, full_scale: float
 ) -> tuple[float | None, float | None]:
-    """Return level [dB re 20 uPa], ``None`` where not calibrated, and level re full scale [dB].
+    """Return the level re 20 uPa and the level re full scale.
+
+    Parameters
+    ----------
+    rms_db : float or None
+        Root mean square of the samples [dB re their unit]; ``None`` for digital zero.
+    calibrated : bool
+        Whether their unit is the pascal.
+    full_scale : float
+        Sample that is full scale [Pa]; it counts where they are calibrated.
+
+    Returns
+    -------
+    level : float or None
+        [dB re 20 uPa]; ``None`` where not calibrated.
+    level_dbfs : float or None
+        [dB re full scale]
 
     Examples
     --------

@@ -9,28 +9,31 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.registry import KINDS
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
-from noise.classifier.model import LABELS
-from noise.labels.boundaries import change_points
-from noise.labels.frequencies import segment_frequency
+from noise.base.label_names import LABELS
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
-from noise.labels.table_display import Segments
-from noise.labels.viterbi import named_course
-from noise.labels.windows import FEATURE_NAMES, describe
+from noise.labels.segmentation import change_points, labelled_stretches
+from noise.labels.windows import (
+    FEATURE_NAMES,
+    can_be_described,
+    describe,
+    segment_frequency,
+    tracks,
+)
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from models.recording import Recording
     from noise.classifier import Classifier
     from noise.labels.windows import Described
 
-__all__ = ["Segment", "file_label", "label_recording"]
+__all__ = ["Segment", "Segments", "file_label", "label_recording"]
 
 _SILENT_LEVEL = 10.0
 """Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""
@@ -40,9 +43,6 @@ _SILENT_LEVEL_DBFS = -90.0
 
 _SURELY = 6.0
 """What is louder than silence by so much in its described part needs no second look [dB]."""
-
-_LEAST_RATE = 1000.0
-"""A recording sampled more slowly shows nothing of a noise [Hz]."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Segment:
     label : str
         The most probable of `noise.classifier.LABELS`.
     probabilities : mapping of str to float
-        Of all labels; mean over the segment's windows.
+        Of all labels [-]; mean over the segment's windows.
     frequency : float or None
         Slip frequency of a creak or squawk, strongest line of others [Hz]; ``None`` where there
         is none.
@@ -81,6 +81,46 @@ class Segment:
     frequency: float | None
     level: float | None
     level_dbfs: float | None
+
+
+class Segments(list[Segment]):
+    """Labelled segments of a recording, in order of time, track by track.
+
+    Examples
+    --------
+    >>> found = Segments([Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)])
+    >>> found[0].label, "152 Hz" in found._repr_html_()
+    ('creak', True)
+    """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the labels over time, one row a track.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            There are none.
+        """
+        from noise.labels.label_display import draw_tracks
+
+        tracks: dict[str, list[tuple[float, float, str]]] = {}
+        for one in self:
+            tracks.setdefault(one.channel, []).append((one.start, one.end, one.label))
+        return draw_tracks(tracks, ax)
+
+    def _repr_html_(self) -> str:
+        from noise.labels.label_display import segments_html
+
+        return segments_html(self)
 
 
 def label_recording(
@@ -110,14 +150,8 @@ def label_recording(
     >>> [segment.label for segment in label_recording(silent, load_classifier())]
     ['none']
     """
-    blocks = RecordingBlocks.of(recording)
-    if per_track and len(blocks.channels) > 1:
-        return Segments(
-            segment
-            for row in range(len(blocks.channels))
-            for segment in _label(blocks.track(row), classifier, str(row + 1))
-        )
-    return Segments(_label(blocks, classifier, "all"))
+    found = tracks(RecordingBlocks.of(recording), per_track=per_track)
+    return Segments(seg for name, track in found for seg in _label(track, classifier, name))
 
 
 def file_label(segments: list[Segment]) -> Segment:
@@ -132,6 +166,11 @@ def file_label(segments: list[Segment]) -> Segment:
     -------
     Segment
 
+    Raises
+    ------
+    ValueError
+        There are none.
+
     Examples
     --------
     >>> short = Segment("all", 0.0, 1.0, "creak", {}, None, None, None)
@@ -144,30 +183,24 @@ def file_label(segments: list[Segment]) -> Segment:
 
 
 def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
-    if blocks.rate < _LEAST_RATE or all(blocks.first(kind) is None for kind in KINDS):
+    if not can_be_described(blocks):
         return [_nothing_to_tell(blocks, channel)]
     found = describe(blocks)
     columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
     probabilities = classifier.predict_proba(found.features[:, columns])
     silent = _silent_windows(blocks, found)
     probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    edges, _ = named_course(probabilities)
+    edges, _ = labelled_stretches(probabilities)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     last_cell = found.cells.count
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
+    parts = zip(pairwise(edges.tolist()), pairwise(limits), strict=True)
     return [
         _segment(
-            blocks,
-            found,
-            channel,
-            (first, last),
-            (begin, end),
-            probabilities[first:last].mean(axis=0),
+            blocks, found, channel, windows, cells, probabilities[slice(*windows)].mean(axis=0)
         )
-        for (first, last), (begin, end) in zip(
-            pairwise(edges.tolist()), pairwise(limits), strict=True
-        )
-        if end > begin
+        for windows, cells in parts
+        if cells[1] > cells[0]
     ]
 
 
@@ -207,14 +240,7 @@ def _segment(
 ) -> Segment:
     label = LABELS[int(probabilities.argmax())]
     edges = found.cells.edges[list(cells)] / blocks.rate
-    row = blocks.first("pressure")
-    level, level_dbfs = None, None
-    if row is not None:
-        level, level_dbfs = sound_levels(
-            found.cells.rms_db(*cells),
-            calibrated=blocks.calibrated,
-            full_scale=blocks.channels[row].full_scale,
-        )
+    level, level_dbfs = _levels(blocks, found.cells, *cells)
     return Segment(
         channel=channel,
         start=float(edges[0]),
@@ -231,15 +257,10 @@ def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
     """Return the segment of a recording that no noise can be told from."""
     levels = CellLevels(blocks.rate, blocks.n_samples)
     row = blocks.first("pressure")
-    level, level_dbfs = None, None
     if row is not None:
         # Few samples a second, so few in all.
         levels.add(0, blocks.n_samples, blocks.read(0, blocks.n_samples)[row], 0)
-        level, level_dbfs = sound_levels(
-            levels.rms_db(0, levels.count),
-            calibrated=blocks.calibrated,
-            full_scale=blocks.channels[row].full_scale,
-        )
+    level, level_dbfs = _levels(blocks, levels, 0, levels.count)
     certain = np.eye(len(LABELS))[LABELS.index("unknown")].tolist()
     return Segment(
         channel=channel,
@@ -251,3 +272,15 @@ def _nothing_to_tell(blocks: RecordingBlocks, channel: str) -> Segment:
         level=level,
         level_dbfs=level_dbfs,
     )
+
+
+def _levels(
+    blocks: RecordingBlocks, cells: CellLevels, first: int, last: int
+) -> tuple[float | None, float | None]:
+    """Levels of the pressure in cells `first` up to `last`; none where there is no pressure."""
+    row = blocks.first("pressure")
+    if row is None:
+        return None, None
+    full_scale = blocks.channels[row].full_scale
+    rms = cells.rms_db(first, last)
+    return sound_levels(rms, calibrated=blocks.calibrated, full_scale=full_scale)

@@ -1,193 +1,196 @@
-"""The label table: one row a segment, linked to the condition it was recorded at.
+"""The label table: one row a segment, written, shown and read in any of its formats.
 
-What was logged stands as it is. What was not is inferred where there is a noise to tell it, with
-the bounds of an interval of 90 %; the material is never.
+A table of one's own making will do as well, as long as it has the columns ``file`` and ``label``;
+the others of the label table are empty where it has none.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from noise.classifier import LABELS
-from noise.inference import load_inference
-from noise.inference.segments import infer_stretch
-from noise.recordings.blocks import RecordingBlocks
+from models.errors import RecordingError
+from noise.base.label_names import LABELS
+from noise.base.tables import check_table_path, read_table, write_table
+from noise.labels.labelling import COLUMNS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Mapping
+    from pathlib import Path
 
-    from numpy.typing import NDArray
+    from matplotlib.axes import Axes
 
-    from models.condition import Condition
-    from models.recording import Recording
-    from noise.inference import Inference, Interval
-    from noise.labels.segments import Segment
+__all__ = ["LabelTable", "cell_number", "read_label_table"]
 
-__all__ = ["COLUMNS", "error_row", "label_rows"]
-
-_SPEED_BLOCK = 0.02
-"""Length over which the angle is averaged before its slope is taken [s]."""
-
-_BLOCKS_AT_ONCE = 500
-"""How many of them are read together."""
-
-_TELLING_LABELS = ("creak", "squawk", "squeal")
-"""Noises that tell of the condition that made them."""
-
-_CONDITIONS = {
-    "speed_rad_s": "speed",
-    "interference_mm": "interference",
-    "support_stiffness_Nm_rad": "support_stiffness",
-}
-"""Columns, and the fields of a condition that they hold."""
-
-COLUMNS = (
-    "file", "channel", "start_s", "end_s", "label",
-    *(f"p_{label}" for label in LABELS),
-    "frequency_hz", "level_db", "level_dbfs", "calibrated",
-    *(f"{name}{part}" for name in _CONDITIONS for part in ("", "_low", "_high", "_source")),
-    "material", "material_source", "error",
-)  # fmt: skip
-"""Columns of the table, all of them always there."""
+_TEXTS = {
+    "file", "channel", "label", "material", "error",
+    *(column for column in COLUMNS if column.endswith("_source")),
+}  # fmt: skip
+_NEEDED = ("file", "label")
+_SUPPORT = "support_stiffness_Nm_rad"
 
 
-def label_rows(
-    name: str,
-    recording: Recording | RecordingBlocks,
-    segments: list[Segment],
-    inference: Inference | None = None,
-) -> list[dict[str, object]]:
-    """Return one row for each segment.
+class LabelTable(list[dict[str, object]]):
+    """The label table of recordings: one row a segment, by `COLUMNS`.
+
+    A table of pandas or polars is made of it as of any list of dictionaries.
+
+    Examples
+    --------
+    >>> row = {"file": "run07.wav", "label": "creak", "start_s": 0.0, "end_s": 1.0, "error": None}
+    >>> LabelTable([row, {"file": "b.wav", "label": None, "error": "is empty"}]).refused
+    {'b.wav': 'is empty'}
+    """
+
+    @property
+    def refused(self) -> dict[str, str]:
+        """Why files could not be read, by file."""
+        return {str(row["file"]): str(row["error"]) for row in self if row.get("error")}
+
+    def write(self, path: str | Path) -> None:
+        """Write the table, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            Ends in .csv, .jsonl or .parquet.
+
+        Raises
+        ------
+        ParameterError
+            No table can be written there.
+        """
+        check_table_path(path)
+        write_table(path, COLUMNS, self)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the labels over time, one row a file.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        ParameterError
+            Nothing is labelled.
+        """
+        from noise.labels.label_display import draw_tracks
+
+        tracks: dict[str, list[tuple[float, float, str]]] = {}
+        for row in self:
+            start, end, label = row["start_s"], row["end_s"], row["label"]
+            if isinstance(start, float) and isinstance(end, float) and isinstance(label, str):
+                track = "" if row["channel"] == "all" else f", track {row['channel']}"
+                tracks.setdefault(f"{row['file']}{track}", []).append((start, end, label))
+        return draw_tracks(tracks, ax)
+
+    def _repr_html_(self) -> str:
+        from noise.labels.label_display import table_html
+
+        return table_html(self)
+
+
+def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict[str, object]]:
+    r"""Read a label table.
 
     Parameters
     ----------
-    name : str
-        File as found, relative to the folder named.
-    recording : Recording or RecordingBlocks
-        Where the shaft's speed was recorded, each segment gets its mean over that segment.
-    segments : list of Segment
-    inference : Inference, optional
-        By which conditions that were not logged are inferred; by default the one that is shipped.
+    path : Path
+        CSV, JSON Lines or Parquet, by its ending.
+    refusals : list of str, optional
+        Takes one line for each row that cannot be used, which is left out; without it, such a row
+        is an error.
 
     Returns
     -------
     list of dict
-        By `COLUMNS`; a condition's source is ``logged``, ``inferred`` or ``missing``, and it has
-        bounds where it is inferred. An inferred speed is a magnitude. The bolted clamp's support
-        stiffness is ``inf``.
+        By `noise.labels.labelling.COLUMNS`; the bolted clamp's support stiffness is ``inf``.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read, or is no label table.
+    ParameterError
+        The library that reads the format is not installed.
 
     Examples
     --------
-    >>> from models.recording import Channel, Recording
-    >>> from noise.labels.segments import Segment
-    >>> turning = Recording(np.array([[0.0, 1.0, 2.0, 3.0]]), 2.0, (Channel("angle"),))
-    >>> part = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
-    >>> row, = label_rows("run07.wav", turning, [part])
-    >>> row["speed_rad_s"], row["speed_rad_s_source"], row["material_source"]
-    (2.0, 'logged', 'missing')
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "labels.csv"
+    ...     _ = path.write_text("file,label,speed_rad_s\nrun07.wav,creak,5.0\n")
+    ...     row, = read_label_table(path)
+    >>> row["label"], row["speed_rad_s"], row["material"]
+    ('creak', 5.0, None)
     """
-    blocks = RecordingBlocks.of(recording)
-    return [_row(name, blocks, segment, inference) for segment in segments]
+    columns, rows = read_table(path)
+    missing = [column for column in _NEEDED if column not in columns]
+    if missing and path.suffix.lower() == ".csv":
+        raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
+    checked = []
+    for number, row in enumerate(rows, 1):
+        try:
+            checked.append(_checked(row, f"{path}: row {number}"))
+        except RecordingError as error:
+            if refusals is None:
+                raise
+            refusals.append(str(error))
+    return checked
 
 
-def error_row(name: str, message: str) -> dict[str, object]:
-    """Return the row of a file that cannot be read."""
-    return {**dict.fromkeys(COLUMNS), "file": name, "error": message}
+def _checked(row: object, where: str) -> dict[str, object]:
+    if not isinstance(row, dict) or any(column not in row for column in _NEEDED):
+        raise RecordingError(f"{where} lacks {' or '.join(_NEEDED)}, so this is no label table")
+    checked = {column: _value(row, column, where) for column in COLUMNS}
+    if checked["label"] not in (*LABELS, None):
+        known = ", ".join(LABELS)
+        raise RecordingError(f"{where} has label {checked['label']!r}, expected {known}")
+    source = checked[f"{_SUPPORT}_source"]
+    stiff = [_SUPPORT] if source in ("logged", "inferred") else []
+    stiff += [f"{_SUPPORT}_low", f"{_SUPPORT}_high"] if source == "inferred" else []
+    for column in stiff:
+        if checked[column] is None:
+            checked[column] = math.inf  # which JSON cannot write
+    return checked
 
 
-def _row(
-    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
-) -> dict[str, object]:
-    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
-    row: dict[str, object] = {
-        **dict.fromkeys(COLUMNS),
-        "file": name,
-        "channel": segment.channel,
-        "start_s": round(segment.start, 6),
-        "end_s": round(segment.end, 6),
-        "label": segment.label,
-        **{f"p_{label}": round(p, 6) for label, p in segment.probabilities.items()},
-        "frequency_hz": _rounded(segment.frequency, 2),
-        "level_db": _rounded(segment.level, 2),
-        "level_dbfs": _rounded(segment.level_dbfs, 2),
-        "calibrated": blocks.calibrated,
-        "material": condition.material,
-        "material_source": "logged" if condition.material else "missing",
-    }
-    inferred = _inferred(blocks, segment, condition, inference)
-    for column, field in _CONDITIONS.items():
-        value = _in_unit(column, getattr(condition, field))
-        row[column] = value
-        row[f"{column}_source"] = "missing" if value is None else "logged"
-        if value is None and field in inferred:
-            interval = inferred[field]
-            row[column] = _in_unit(column, interval.value)
-            row[f"{column}_low"] = _in_unit(column, interval.low)
-            row[f"{column}_high"] = _in_unit(column, interval.high)
-            row[f"{column}_source"] = "inferred"
-    return row
+def _value(row: Mapping[str, object], column: str, where: str) -> object:
+    value = row.get(column)
+    if value is None or value == "":
+        return None
+    if column in _TEXTS:
+        return str(value)
+    if column == "calibrated":
+        return value in (True, "true", "True")
+    return cell_number(row, column, where)
 
 
-def _inferred(
-    blocks: RecordingBlocks, segment: Segment, logged: Condition, inference: Inference | None
-) -> dict[str, Interval]:
-    """Infer what is not logged of a segment whose label tells of it."""
-    unknown = any(getattr(logged, field) is None for field in _CONDITIONS.values())
-    if not unknown or segment.label not in _TELLING_LABELS:
-        return {}
-    if segment.channel != "all":
-        blocks = blocks.track(int(segment.channel) - 1)
-    first = round(segment.start * blocks.rate)
-    last = min(round(segment.end * blocks.rate), blocks.n_samples)
-    return infer_stretch(blocks, first, last, logged, inference or load_inference())
+def cell_number(row: Mapping[str, object], column: str, where: str) -> float | None:
+    """Read the number of a cell of a table, in the unit of its column [-]; None for an empty one.
 
+    Raises
+    ------
+    RecordingError
+        It is no number; the message names where it stands.
 
-def _in_unit(column: str, value: float | None) -> float | None:
-    """Return a value in the unit of its column."""
-    millimetres = value is not None and column.endswith("_mm")
-    return _rounded(1e3 * value if millimetres and value is not None else value, 6)
-
-
-def _segment_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
-    """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set.
-
-    Its magnitude where the shaft swings to and fro, whose mean speed is nothing.
+    Examples
+    --------
+    >>> row = {"speed_rad_s": "5", "level_db": ""}
+    >>> [cell_number(row, column, "labels.csv: row 1") for column in row]
+    [5.0, None]
     """
-    first = round(segment.start * blocks.rate)
-    last = min(round(segment.end * blocks.rate), blocks.n_samples)
-    block = max(1, round(_SPEED_BLOCK * blocks.rate))
-    pieces = blocks.pieces(first, last, _BLOCKS_AT_ONCE * block)
-    speed, angle = blocks.first("speed"), blocks.first("angle")
-    if blocks.calibrated and speed is not None:
-        return _mean_speed(piece.samples[speed] for piece in pieces)
-    if blocks.calibrated and angle is not None and last - first > block:
-        if last - first < 3 * block:
-            time = np.arange(last - first) / blocks.rate
-            return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
-        # Means of blocks first: the difference of single samples would be that of their noise.
-        means = [_block_means(piece.samples[angle], block) for piece in pieces]
-        return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
-    return blocks.condition.speed
-
-
-def _block_means(signal: NDArray[np.float64], block: int) -> NDArray[np.float64]:
-    whole = signal[: signal.size // block * block].reshape(-1, block)
-    return np.asarray(whole.mean(axis=1))
-
-
-def _mean_speed(pieces: Iterable[NDArray[np.float64]]) -> float:
-    n, total, travelled = 0, 0.0, 0.0
-    for speed in pieces:
-        n += speed.size
-        total += float(np.sum(speed))
-        travelled += float(np.sum(np.abs(speed)))
-    mean, magnitude = total / n, travelled / n
-    return mean if abs(mean) > 0.9 * magnitude else magnitude
-
-
-def _rounded(value: float | None, digits: int) -> float | None:
-    return None if value is None or math.isnan(value) else round(value, digits)
+    value = row.get(column)
+    if value is None or value == "":
+        return None
+    try:
+        number = float(str(value))
+    except ValueError:
+        raise RecordingError(f"{where} has {column} {value!r}, expected a number") from None
+    return None if math.isnan(number) else number

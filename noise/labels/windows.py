@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
-from features.named.prepared import ACOUSTIC_KINDS
-from features.registry import feature_names, feature_vector
-from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_page, window_count
+from features.named.prepared import ACOUSTIC_KINDS, prepare
+from features.named.torque_features import TORQUE_FEATURES
+from features.windows.declared import WINDOW_FEATURES
+from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_windows, window_count
 from features.windows.working import FRAME_RATE, MARGIN, RATE, block_length, working_block
 from models.errors import ParameterError
 from noise.labels.levels import CellLevels
@@ -26,22 +27,41 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from features.windows.table import Page
+    from features.windows.table import WindowTable
     from features.windows.working import Block
     from noise.recordings.blocks import RecordingBlocks
 
-__all__ = ["FEATURE_NAMES", "Described", "describe"]
-
-_TORQUE_NAMES = feature_names("torque")
+__all__ = [
+    "FEATURE_NAMES",
+    "Described",
+    "can_be_described",
+    "describe",
+    "segment_frequency",
+    "tracks",
+]
 
 FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
-    *(f"torque_{name}" for name in _TORQUE_NAMES),
+    *(f"torque_{feature.name}" for feature in TORQUE_FEATURES),
 )
 """Of a window of a recording; NaN for the kinds of channel that it does not have."""
 
+_KINDS = (*ACOUSTIC_KINDS, "torque")
+
+_LEAST_RATE = 1000.0
+"""A recording sampled more slowly shows nothing of a noise [Hz]."""
+
 _FADE = 0.01
 """The ends of a recording are faded in and out [s]: cut hum would click."""
+
+_PERIODIC = 0.3
+"""Least autocorrelation of an envelope for its period to be that of slips."""
+
+_LEAST_BLOWS = math.log2(3.0 / 10.0)
+"""Fewer blows a second tell no rate [octave re 10 Hz]."""
+
+_COLUMN = {name: i for i, name in enumerate(FEATURE_NAMES)}
+_DECLARED = {feature.name: feature for feature in WINDOW_FEATURES}
 
 _BLOCKS_A_PAGE = 2
 
@@ -55,11 +75,11 @@ class Described:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        By `FEATURE_NAMES`.
+        By `FEATURE_NAMES` [unit of each feature].
     level : ndarray, shape (n_windows,)
         Power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
     frames : ndarray of float32, shape (n_frames, n)
-        Of that channel, as `features.windows.table.Page` has them.
+        Of that channel, as `features.windows.table.WindowTable` has them.
     cells : CellLevels
         Of that channel, all frequencies.
     """
@@ -68,6 +88,27 @@ class Described:
     level: NDArray[np.float32]
     frames: NDArray[np.float32]
     cells: CellLevels
+
+
+def can_be_described(blocks: RecordingBlocks) -> bool:
+    """Whether a recording has a channel that noises show in, sampled fast enough."""
+    return blocks.rate >= _LEAST_RATE and any(blocks.first(kind) is not None for kind in _KINDS)
+
+
+def tracks(blocks: RecordingBlocks, *, per_track: bool) -> Iterator[tuple[str, RecordingBlocks]]:
+    """Yield what is described on its own, with its name in the column ``channel``.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+    per_track : bool
+        Whether each channel stands for itself, as the tracks of a plain sound file do.
+    """
+    if per_track and len(blocks.channels) > 1:
+        for row in range(len(blocks.channels)):
+            yield str(row + 1), blocks.track(row)
+    else:
+        yield "all", blocks
 
 
 def describe(blocks: RecordingBlocks) -> Described:
@@ -91,7 +132,7 @@ def describe(blocks: RecordingBlocks) -> Described:
     >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]
     (True, 97)
     """
-    rows = {kind: blocks.first(kind) for kind in (*ACOUSTIC_KINDS, "torque")}
+    rows = {kind: blocks.first(kind) for kind in _KINDS}
     channels = {kind: row for kind, row in rows.items() if row is not None}
     heard = next(iter(channels.values()))
     acoustic = [row for kind, row in channels.items() if kind in ACOUSTIC_KINDS]
@@ -136,7 +177,7 @@ class _Reader:
         for first in range(0, count, a_page):
             yield first, min(a_page, count - first)
 
-    def page(self, row: int, first: int, windows: int) -> Page:
+    def page(self, row: int, first: int, windows: int) -> WindowTable:
         """Describe a page of a channel."""
         number = round(first * HOP) // self._useful
         start = number * self._useful * RATE
@@ -156,13 +197,8 @@ class _Reader:
             )
         )
         frames = math.ceil(size * FRAME_RATE / RATE)
-        return describe_page(
-            sound[:size],
-            high[:size],
-            top[:frames],
-            scale=scale,
-            windows=windows,
-            limit=self._limit,
+        return describe_windows(
+            sound[:size], high[:size], top[:frames], scale=scale, windows=windows, limit=self._limit
         )
 
     def _block(self, number: int) -> dict[int, Block]:
@@ -202,15 +238,81 @@ def _torque(
     blocks: RecordingBlocks, row: int | None, first: int, windows: int
 ) -> NDArray[np.float32]:
     """Features of the torque in the windows of a page."""
-    out = np.full((windows, len(_TORQUE_NAMES)), np.nan, dtype=np.float32)
+    out = np.full((windows, len(TORQUE_FEATURES)), np.nan, dtype=np.float32)
     if row is None:
         return out
     for i in range(windows):
         start = round((first + i) * HOP * blocks.rate)
         end = min(start + round(LENGTH * blocks.rate), blocks.n_samples)
         try:
-            found = feature_vector(blocks.read(start, end)[row], blocks.rate, "torque")
+            signal = prepare(blocks.read(start, end)[row], blocks.rate, "torque")
+            out[i] = [feature(signal) for feature in TORQUE_FEATURES]
         except ParameterError:  # too short to be described
             continue
-        out[i] = list(found.values())
     return out
+
+
+def segment_frequency(features: NDArray[np.float32], label: str) -> float | None:
+    """Return slip frequency of creak and squawk, else of the strongest line [Hz].
+
+    Parameters
+    ----------
+    features : ndarray of float32, shape (n_windows, n_features)
+        Of the segment's windows, by `FEATURE_NAMES` [unit of each feature].
+    label : str
+
+    Returns
+    -------
+    float or None
+        [Hz], of the torque where there is one; ``None`` for ``none``, or where nothing is found.
+
+    Examples
+    --------
+    >>> features = np.full((2, len(FEATURE_NAMES)), np.nan, dtype=np.float32)
+    >>> features[:, FEATURE_NAMES.index("pressure_line_frequency")] = 1.0
+    >>> features[:, FEATURE_NAMES.index("pressure_line_count")] = 1.0
+    >>> segment_frequency(features, "squeal")
+    2000.0
+    """
+    if label == "none":
+        return None
+    slips = label in ("creak", "squawk")
+    torque = _median(features, "torque_fundamental" if slips else "torque_line_frequency")
+    if torque is not None:
+        return torque
+    for kind in ("pressure", "acceleration"):
+        found = None
+        if label == "creak":
+            found = _blow_rate(features, kind)
+        if slips and found is None:
+            found = _frequency(features, kind, "fundamental")
+        if found is None:
+            counted = features[features[:, _COLUMN[f"{kind}_line_count"]] > 0]
+            found = _frequency(counted, kind, "line_frequency")
+        if found is not None:
+            return found
+    return None
+
+
+def _blow_rate(features: NDArray[np.float32], kind: str) -> float | None:
+    """Rate of a creak's blows [Hz], of their period where most windows have one."""
+    for part in ("high_", ""):
+        strength = features[:, _COLUMN[f"{kind}_{part}period_strength"]]
+        periodic = features[strength > _PERIODIC]
+        if 2 * len(periodic) > len(features):
+            return _frequency(periodic, kind, f"{part}period_rate")
+    rate = features[:, _COLUMN[f"{kind}_high_blow_rate"]]
+    return _frequency(features[rate > _LEAST_BLOWS], kind, "high_blow_rate")
+
+
+def _frequency(features: NDArray[np.float32], kind: str, name: str) -> float | None:
+    """Median of a window feature that counts in octaves [Hz]."""
+    octave = _median(features, f"{kind}_{name}")
+    return None if octave is None else _DECLARED[name].hertz(octave)
+
+
+def _median(features: NDArray[np.float32], name: str) -> float | None:
+    """Median of what is known of a column, in the column's unit."""
+    values = features[:, _COLUMN[name]]
+    values = values[np.isfinite(values)]
+    return float(np.median(values)) if values.size else None

@@ -1,7 +1,4 @@
-"""What all pictures of several panels have in common: their width, title, legend and colours.
-
-Style, thinning and frequency axes are those of everything that draws, in `models.drawing`.
-"""
+"""Figures of several panels: their common width, title, legend and colours of models."""
 
 from __future__ import annotations
 
@@ -9,40 +6,12 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from models.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    STYLE,
-    VERMILION,
-    frequency_axis,
-    levels,
-    padded,
-    styled,
-    thinned,
-)
+from models.drawing import BLUE, GREEN, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
 
-__all__ = [
-    "BLUE",
-    "GREEN",
-    "GREY",
-    "MODEL_COLOURS",
-    "ORANGE",
-    "STYLE",
-    "VERMILION",
-    "WIDTH",
-    "frequency_axis",
-    "legend_below",
-    "levels",
-    "new_figure",
-    "padded",
-    "styled",
-    "thinned",
-]
+__all__ = ["MODEL_COLOURS", "WIDTH", "legend_below", "new_figure"]
 
 MODEL_COLOURS = {
     "listing": GREEN,

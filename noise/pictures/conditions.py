@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 from matplotlib.patches import Patch, Rectangle
 
+from models.drawing import styled
 from models.errors import ParameterError
-from noise.classifier import LABELS
-from noise.labels.label_display import DARK_LABELS, LABEL_COLOURS
-from noise.pictures.axes import new_figure, styled
-from noise.pictures.speeds import support_words
+from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
+from noise.base.label_names import LABELS
+from noise.pictures.axes import new_figure
+from noise.pictures.titles import place_title
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -79,7 +80,7 @@ def plot_conditions(places: Sequence[Place], *, title: str) -> Figure:
                 axes.set_axis_off()
                 continue
             material, support = panels[number]
-            axes.set_title(_panel_title(material, support))
+            axes.set_title(place_title(material, support))
             for place in places:
                 if (place.material, place.support_stiffness) == panels[number]:
                     at = speeds.index(place.speed), fits.index(place.interference)
@@ -106,15 +107,6 @@ def _along(ranges: Iterable[Range | None]) -> list[Range | None]:
     different = set(ranges)
     known = sorted(found for found in different if found is not None)
     return [*known, *([None] if None in different else [])]
-
-
-def _panel_title(material: str | None, support: Range | None) -> str:
-    named = "material not known" if material is None else material
-    if support is None:
-        return f"{named}, support not known"
-    if support.low == support.high:
-        return f"{named}, {support_words(support.low)}"
-    return f"{named}, {support.low:.4g} to {support.high:.4g} Nm/rad"
 
 
 def _draw(axes: Axes, place: Place, at: tuple[int, int], row_height: float) -> None:

@@ -73,10 +73,8 @@ def write_picture(path: str | Path, figure: Figure) -> None:
     """
     path = Path(path)
     check_picture_path(path)
-    import matplotlib.style
-
-    from noise.pictures.axes import STYLE
+    from models.drawing import styled
 
     ending = path.suffix.lower()
-    with matplotlib.style.context(["default", STYLE]), atomic(path) as temporary:
+    with styled(), atomic(path) as temporary:
         figure.savefig(temporary, format=ending[1:], metadata=_NOTHING_BUT_THE_PICTURE[ending])

@@ -1,4 +1,4 @@
-"""What the thesis measured on the fluorocarbon, as its pictures are drawn beside the simulation.
+"""Measurements of the thesis on the fluorocarbon, as they are drawn beside the simulation.
 
 The curves of its figures are lost. What its tables and text say of them is what can be drawn:
 levels of torque, critical speeds, first torsional modes, and the lines it names.

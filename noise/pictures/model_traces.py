@@ -1,4 +1,4 @@
-"""The same condition in three models: the thesis's program, its equations exactly, the calibrated.
+"""Traces of one condition in three models: the thesis's listing, its equations, the calibrated one.
 
 Slips are compared by laying them over each other, so each trace knows when its slips begin: where
 stick ends, or, in a contact that creeps, where the torque starts to drop.
@@ -12,18 +12,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.slip_drops import torque_slips
-from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, rig_of
-from sim.analysis.critical_damping import with_damping
+from models.errors import ParameterError
+from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, motion
 from sim.analysis.thesis_listing import STEP
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Trace", "exact_trace", "listing_trace", "model_traces"]
+__all__ = ["SHOWN", "Trace", "exact_trace", "listing_trace", "model_traces"]
+
+SHOWN = 0.08
+"""How much of a settled run is shown over time [s]."""
 
 _RATE = 100e3
 """Of the exact and the calibrated traces [Hz]: a slip lasts half a millisecond."""
@@ -36,11 +35,11 @@ class Trace:
     Parameters
     ----------
     name : str
-    time : ndarray
+    time : ndarray, shape (n,)
         [s]
-    torque, displacement, sliding_speed : ndarray
+    torque, displacement, sliding_speed : ndarray, shape (n,)
         In the elastomer [Nm], of its surface [rad], of the shaft over it [rad/s].
-    clamp_speed : ndarray or None
+    clamp_speed : ndarray or None, shape (n,)
         [rad/s]; the listing does not write it.
     slips : ndarray, shape (n_slips,)
         When slips begin [s].
@@ -67,6 +66,29 @@ class Trace:
             slips=self.slips[(self.slips >= start) & (self.slips < end)] - start,
         )
 
+    def middle(self, seconds: float) -> Trace:
+        """Return so many seconds of the settled run [s], from its middle on."""
+        start = 0.5 * float(self.time[-1])
+        return self.during(start, start + seconds)
+
+    @property
+    def clamp_acceleration(self) -> NDArray[np.float64]:
+        """Acceleration of the clamp [rad/s^2].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [rad/s^2]
+
+        Raises
+        ------
+        ParameterError
+            The model does not write the clamp's speed.
+        """
+        if self.clamp_speed is None:
+            raise ParameterError(f"{self.name}: does not tell the clamp's speed")
+        return np.asarray(np.gradient(self.clamp_speed, self.time))
+
     def settled_slip(self) -> float:
         """When the first slip of the last half begins [s]; the middle of the run if none does."""
         middle = 0.5 * float(self.time[-1])
@@ -88,6 +110,12 @@ def model_traces(case: Case, seconds: float = 0.5) -> tuple[Trace, ...]:
 
 def listing_trace(case: Case, seconds: float = 0.5) -> Trace:
     """Run the thesis's program.
+
+    Parameters
+    ----------
+    case : Case
+    seconds : float
+        Length of the run [s].
 
     Examples
     --------
@@ -111,6 +139,12 @@ def listing_trace(case: Case, seconds: float = 0.5) -> Trace:
 def exact_trace(case: Case, seconds: float = 0.5) -> Trace:
     """Run the thesis's equations, solved exactly.
 
+    Parameters
+    ----------
+    case : Case
+    seconds : float
+        Length of the run [s].
+
     Examples
     --------
     >>> trace = exact_trace(Case(7.5, 0.279, 3745.0, damping=0.05), 0.1)
@@ -121,29 +155,18 @@ def exact_trace(case: Case, seconds: float = 0.5) -> Trace:
 
 
 def _simulated(material: str, case: Case, seconds: float, name: str) -> Trace:
-    rig = rig_of(material)
-    if case.damping is not None and material == THESIS:
-        rig = with_damping(rig, case.damping)
-    motion = simulate_motion(
-        rig,
-        ConstantSpeed(case.speed),
-        interference=case.interference,
-        support_stiffness=case.support_stiffness,
-        seconds=seconds,
-        rate=_RATE,
-        effects=activated(rig.effects, EFFECTS),
-    )
-    time = np.arange(motion.torque.size, dtype=np.float64) / _RATE
+    run = motion(material, case, seconds, _RATE)
+    time = np.arange(run.torque.size, dtype=np.float64) / _RATE
     if material == THESIS:
-        slips = time[1:][motion.stuck[:-1] & ~motion.stuck[1:]]
+        slips = time[1:][run.stuck[:-1] & ~run.stuck[1:]]
     else:
-        slips = torque_slips(motion.torque, _RATE).times
+        slips = torque_slips(run.torque, _RATE).times
     return Trace(
         name=name,
         time=time,
-        torque=motion.torque,
-        displacement=motion.interface_angle,
-        sliding_speed=motion.sliding_speed,
-        clamp_speed=motion.clamp_speed,
+        torque=run.torque,
+        displacement=run.interface_angle,
+        sliding_speed=run.sliding_speed,
+        clamp_speed=run.clamp_speed,
         slips=slips,
     )

@@ -1,4 +1,4 @@
-"""One run in one picture: what moved, how it slipped, and what could be heard of it.
+"""Picture of one run: what moved, how it slipped, and what could be heard of it.
 
 Time histories and phase planes show the motion as it was computed, which no sensor sees;
 autospectra show what the sensors recorded, up to half the sampling rate. A linear axis would hide
@@ -13,18 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.spectra import autospectrum
-from noise.pages.traces import KINDS
-from noise.pictures.axes import (
-    BLUE,
-    GREY,
-    ORANGE,
-    frequency_axis,
-    levels,
-    new_figure,
-    padded,
-    styled,
-    thinned,
-)
+from models.drawing import BLUE, GREY, ORANGE, frequency_axis, levels, padded, styled, thinned
+from noise.pictures.axes import new_figure
+from noise.pictures.channel_kinds import KINDS
 from noise.pictures.window import Window, run_window
 from sim.run_display import torque_curves
 

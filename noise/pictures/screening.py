@@ -15,10 +15,10 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from models.drawing import axes_or_new
-from noise.labels.label_display import LABEL_COLOURS
-from noise.pictures.axes import new_figure, styled
-from noise.pictures.speeds import support_words
+from models.drawing import axes_or_new, styled
+from noise.base.label_looks import LABEL_COLOURS
+from noise.pictures.axes import new_figure
+from noise.pictures.titles import support_words
 from sim.analysis.regime import Regime
 
 if TYPE_CHECKING:

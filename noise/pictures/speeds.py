@@ -6,22 +6,14 @@ the rate of the slips and the strongest line of the torque. What the thesis meas
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
+from models.drawing import BLUE, GREEN, GREY, VERMILION, styled
 from models.errors import ParameterError
-from noise.pictures.axes import (
-    BLUE,
-    GREEN,
-    GREY,
-    MODEL_COLOURS,
-    VERMILION,
-    legend_below,
-    new_figure,
-    styled,
-)
+from noise.pictures.axes import MODEL_COLOURS, legend_below, new_figure
 from noise.pictures.measured import FIRST_MODE, FITS, LINES, MEAN_TORQUE, V_CRIT1, V_CRIT2
+from noise.pictures.titles import support_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,7 +23,7 @@ if TYPE_CHECKING:
 
     from noise.pictures.sweep import SweptTorque
 
-__all__ = ["plot_sweep", "plot_torque_of_fits", "support_words"]
+__all__ = ["plot_sweep", "plot_torque_of_fits"]
 
 _MEASURED = "black"
 _SPEEDS = (1.0, 13.0)
@@ -49,7 +41,7 @@ def plot_sweep(
         By the name of the model, all over the same supports.
     title : str
     interference_mm : float, optional
-        Fit whose measurements of the fluorocarbon are drawn as well; none by default.
+        Fit whose measurements of the fluorocarbon are drawn as well [mm]; none by default.
 
     Returns
     -------
@@ -149,17 +141,6 @@ def plot_torque_of_fits(
         axes[0].set_ylabel("Torque [Nm]")
         legend_below(figure, columns=3)
     return figure
-
-
-def support_words(support_stiffness: float) -> str:
-    """Name a support for a title.
-
-    Examples
-    --------
-    >>> support_words(2214.0), support_words(math.inf)
-    ('2214 Nm/rad', 'clamp fixed')
-    """
-    return "clamp fixed" if math.isinf(support_stiffness) else f"{support_stiffness:g} Nm/rad"
 
 
 def _draw_torque(axes: Axes, sweep: SweptTorque, i: int, name: str, colour: str) -> None:

@@ -47,11 +47,11 @@ class SweptTorque:
         [rad/s]
     support_stiffness : tuple of float, length n_supports
         [Nm/rad]
-    mean, low, high : ndarray
+    mean, low, high : ndarray, shape (n_supports, n_speeds)
         Mean torque, and the lowest and highest [Nm].
-    slip_frequency : ndarray
+    slip_frequency : ndarray, shape (n_supports, n_speeds)
         Slips, or periods of the torque, a second [Hz]; NaN where it does not oscillate.
-    strongest_line : ndarray
+    strongest_line : ndarray, shape (n_supports, n_speeds)
         Of the torque [Hz]; NaN likewise.
     """
 

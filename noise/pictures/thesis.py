@@ -1,4 +1,4 @@
-"""The pictures of the thesis that can be drawn: which figures there are, and what each shows.
+"""Pictures of the thesis that can be drawn: which figures there are, and what each shows.
 
 Its Figures 5.3 and 5.14 to 5.18 are measurements, 6.1 to 6.10 simulations; here all are simulated
 by the program that it lists, where that can, by its equations exactly, and by the calibrated
@@ -9,18 +9,24 @@ the text has 3745 Nm/rad, of 5.16(b) as well.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.condition import FIXED
-from noise.pictures.comparison import plot_torque_and_clamp, plot_torque_and_spectrum
 from noise.pictures.measured import FITS
 from noise.pictures.model_traces import exact_trace, listing_trace, model_traces
-from noise.pictures.slips import plot_damping, plot_slip_histories, plot_slip_orbits
-from noise.pictures.spectra import SpectraColumn, plot_spectra
-from noise.pictures.speeds import plot_sweep, plot_torque_of_fits, support_words
+from noise.pictures.slips import (
+    plot_damping,
+    plot_slip_histories,
+    plot_slip_orbits,
+    plot_torque_and_clamp,
+)
+from noise.pictures.spectra import SpectraColumn, plot_spectra, plot_torque_and_spectrum
+from noise.pictures.speeds import plot_sweep, plot_torque_of_fits
 from noise.pictures.sweep import sweep_torque
+from noise.pictures.titles import support_words
 from noise.thesis.runs import (
     CALIBRATED,
     LONG,
@@ -49,6 +55,7 @@ _SUPPORTS = (LONG, SHORT, FIXED)
 _SLOW = Case(1.0, 0.279, LONG)
 _FAST = Case(10.0, 0.279, LONG)
 _LARGE = Case(1.0, 0.381, SHORT)
+_DAMPED = Case(7.5, 0.279, SHORT)
 _HIGHEST_DAMPING = 0.1
 """At which nothing sticks in Figure 6.10 [Nm s/rad]."""
 
@@ -63,9 +70,11 @@ def thesis_pictures() -> Iterator[tuple[str, Figure]]:
     figure : matplotlib.figure.Figure
     """
     yield from _sweeps()
-    for name, draw in _SPECTRA.items():
-        yield name, draw()
-    yield from _slips()
+    for number, (what, columns) in _SPECTRA.items():
+        title = f"Figure {number}: torque with increasing {what}"
+        yield f"figure-{number}", plot_spectra(columns, title=title)
+    for number, title, draw in _slips():
+        yield f"figure-{number}", draw(title=f"Figure {number}: {title}")
 
 
 def _sweeps() -> Iterator[tuple[str, Figure]]:
@@ -78,21 +87,12 @@ def _sweeps() -> Iterator[tuple[str, Figure]]:
         ]
         for name, material in (("constant torque", THESIS), ("calibrated", CALIBRATED))
     }
-    yield (
-        "figure-5.3",
-        plot_torque_of_fits(
-            sweeps, title="Figure 5.3: torque against speed, fluorocarbon, clamp fixed"
-        ),
-    )
+    title = "Figure 5.3: torque against speed, fluorocarbon, clamp fixed"
+    yield "figure-5.3", plot_torque_of_fits(sweeps, title=title)
     for i, fit in enumerate(FITS):
-        yield (
-            f"speeds-{fit:g}mm",
-            plot_sweep(
-                {name: of_fits[i] for name, of_fits in sweeps.items()},
-                title=f"Torque and frequency against speed, fluorocarbon, {fit:g} mm",
-                interference_mm=fit,
-            ),
-        )
+        of_fit = {name: of_fits[i] for name, of_fits in sweeps.items()}
+        title = f"Torque and frequency against speed, fluorocarbon, {fit:g} mm"
+        yield f"speeds-{fit:g}mm", plot_sweep(of_fit, title=title, interference_mm=fit)
 
 
 def _by_speed(
@@ -115,75 +115,53 @@ def _by_support(fit: float, speed: float, mark: str) -> SpectraColumn:
     return SpectraColumn(title, cases, tuple(map(support_words, _SUPPORTS)))
 
 
-_SPECTRA: dict[str, Callable[[], Figure]] = {
-    "figure-5.14": lambda: plot_spectra(
-        [_by_speed(0.279, LONG, (1.0, 2.5, 5.0, 7.5))],
-        title="Figure 5.14: torque with increasing speed",
-    ),
-    "figure-5.15": lambda: plot_spectra(
-        [_by_fit(LONG, "(a) "), _by_fit(FIXED, "(b) ")],
-        title="Figure 5.15: torque with increasing interference",
-    ),
-    "figure-5.16": lambda: plot_spectra(
+_SPECTRA = {
+    "5.14": ("speed", [_by_speed(0.279, LONG, (1.0, 2.5, 5.0, 7.5))]),
+    "5.15": ("interference", [_by_fit(LONG, "(a) "), _by_fit(FIXED, "(b) ")]),
+    "5.16": (
+        "speed",
         [
             _by_speed(0.178, LONG, (1.0, 2.5, 4.0), "(a) "),
             _by_speed(0.178, FIXED, (1.0, 2.5, 4.0), "(b) "),
         ],
-        title="Figure 5.16: torque with increasing speed",
     ),
-    "figure-5.17": lambda: plot_spectra(
-        [_by_speed(0.279, FIXED, (1.0, 2.5, 5.0, 7.5))],
-        title="Figure 5.17: torque with increasing speed",
-    ),
-    "figure-5.18": lambda: plot_spectra(
+    "5.17": ("speed", [_by_speed(0.279, FIXED, (1.0, 2.5, 5.0, 7.5))]),
+    "5.18": (
+        "stiffness of the support",
         [_by_support(0.178, 2.5, "(a) "), _by_support(0.279, 7.5, "(b) ")],
-        title="Figure 5.18: torque with increasing stiffness of the support",
     ),
 }
+"""Figures of spectra: what increases, and the columns."""
 
 N_PICTURES = 1 + len(FITS) + len(_SPECTRA) + 10
 """How many `thesis_pictures` yields."""
 
 
-def _slips() -> Iterator[tuple[str, Figure]]:
-    slow = model_traces(_SLOW, 1.0)
-    about_a_slip = [_about_a_slip(trace, 0.014) for trace in slow]
+def _slips() -> Iterator[tuple[str, str, Callable[..., Figure]]]:
+    """Yield the number of a figure, its title and what draws it with a title."""
+    slow, fast = model_traces(_SLOW, 1.0), model_traces(_FAST)
     cycles = [_about_a_slip(trace, 0.05) for trace in slow]
-    onset = [trace.during(0.0, 0.02) for trace in model_traces(_FAST)]
-    decay = [trace.during(0.0, 0.1) for trace in model_traces(_FAST)]
-    from_rest, settled = "Time from rest [ms]", "Time [ms]"
-    yield (
-        "figure-6.1",
-        plot_slip_histories(
-            about_a_slip, title=f"Figure 6.1: slips at {_SLOW}", time_label=settled, peak_speed=24.0
-        ),
-    )
-    title = f"Figure 6.2: torque against sliding speed at {_SLOW}"
-    yield "figure-6.2", plot_slip_orbits(cycles, title=title, phase_plane=False)
-    title = f"Figure 6.3: phase plane at {_SLOW}"
-    yield "figure-6.3", plot_slip_orbits(cycles, title=title, phase_plane=True)
-    yield (
-        "figure-6.4",
-        plot_slip_histories(
-            onset, title=f"Figure 6.4: from rest at {_FAST}", time_label=from_rest, peak_speed=18.0
-        ),
-    )
-    title = f"Figure 6.5: torque against sliding speed at {_FAST}, from rest"
-    yield "figure-6.5", plot_slip_orbits(decay, title=title, phase_plane=False)
-    title = f"Figure 6.6: phase plane at {_FAST}, from rest"
-    yield "figure-6.6", plot_slip_orbits(decay, title=title, phase_plane=True)
-    yield (
-        "figure-6.7",
-        plot_slip_histories(
-            [_about_a_slip(trace, 0.025) for trace in model_traces(_LARGE)],
-            title=f"Figure 6.7: slips at {_LARGE}", time_label=settled, peak_speed=45.0,
-        ),
-    )  # fmt: skip
-    title = f"Figure 6.8: torque over time and its autospectrum at {_SLOW}"
-    yield "figure-6.8", plot_torque_and_spectrum(slow, title=title)
-    title = f"Figure 6.9: torque and acceleration of the clamp at {_SLOW}"
-    yield "figure-6.9", plot_torque_and_clamp(slow, title=title)
-    yield "figure-6.10", _damping()
+    decay = [trace.during(0.0, 0.1) for trace in fast]
+    histories = partial(plot_slip_histories, time_label="Time [ms]")
+    against_speed = partial(plot_slip_orbits, phase_plane=False)
+    phase_plane = partial(plot_slip_orbits, phase_plane=True)
+    part = [_about_a_slip(trace, 0.014) for trace in slow]
+    yield "6.1", f"slips at {_SLOW}", partial(histories, part, peak_speed=24.0)
+    yield "6.2", f"torque against sliding speed at {_SLOW}", partial(against_speed, cycles)
+    yield "6.3", f"phase plane at {_SLOW}", partial(phase_plane, cycles)
+    part = [trace.during(0.0, 0.02) for trace in fast]
+    onset = partial(histories, part, peak_speed=18.0, time_label="Time from rest [ms]")
+    yield "6.4", f"from rest at {_FAST}", onset
+    title = f"torque against sliding speed at {_FAST}, from rest"
+    yield "6.5", title, partial(against_speed, decay)
+    yield "6.6", f"phase plane at {_FAST}, from rest", partial(phase_plane, decay)
+    part = [_about_a_slip(trace, 0.025) for trace in model_traces(_LARGE)]
+    yield "6.7", f"slips at {_LARGE}", partial(histories, part, peak_speed=45.0)
+    title = f"torque over time and its autospectrum at {_SLOW}"
+    yield "6.8", title, partial(plot_torque_and_spectrum, slow)
+    title = f"torque and acceleration of the clamp at {_SLOW}"
+    yield "6.9", title, partial(plot_torque_and_clamp, slow)
+    yield "6.10", f"phase plane by damping, {_DAMPED}", partial(plot_damping, _damping())
 
 
 def _about_a_slip(trace: Trace, seconds: float) -> Trace:
@@ -192,8 +170,9 @@ def _about_a_slip(trace: Trace, seconds: float) -> Trace:
     return trace.during(start, start + seconds)
 
 
-def _damping() -> Figure:
-    case = Case(7.5, 0.279, SHORT)
+def _damping() -> dict[str, dict[str, Trace]]:
+    """Run both models below, at and above their critical damping."""
+    case = _DAMPED
     exact = critical_damping(
         rig_of(THESIS),
         case.speed,
@@ -212,13 +191,10 @@ def _damping() -> Figure:
         ("equations, exact", exact_trace, exact),
     ):
         orbits = {}
-        for words, damping in (
-            ("0.05 Nm s/rad", 0.05),
-            ("critical", critical),
-            ("0.1 Nm s/rad", 0.1),
-        ):
+        dampings = {"0.05 Nm s/rad": 0.05, "critical": critical, "0.1 Nm s/rad": 0.1}
+        for words, damping in dampings.items():
             trace = trace_of(replace(case, damping=damping))
             first = float(trace.slips[0])
             orbits[f"$c_E$: {words}"] = trace.during(first - 2e-4, first + 2e-3)
         panels[f"{name}: critical {critical:.4f} Nm s/rad"] = orbits
-    return plot_damping(panels, title=f"Figure 6.10: phase plane by damping, {case}")
+    return panels

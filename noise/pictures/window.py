@@ -1,4 +1,4 @@
-"""Which part of a run is shown enlarged: a few slips, where the run is at its liveliest.
+"""Window of a run that is shown enlarged: a few slips, where the run is at its liveliest.
 
 At constant speed any part is as good, and the middle is taken. A shaft that swings or runs up is
 quiet for most of the time; there it is the part about the largest acceleration of the beam.
@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.harmonics import analyse_harmonics
-from features.kernels.slip_drops import torque_slips
+from features.kernels import slip_drops
 from sim.analysis.regime import LEAST_OSCILLATION
 
 if TYPE_CHECKING:
@@ -92,7 +91,7 @@ def repetition_rate(torque: NDArray[np.floating], rate: float) -> float | None:
     Returns
     -------
     float or None
-        None where the torque does not oscillate, or not regularly.
+        [Hz]; None where the torque does not oscillate, or not regularly.
 
     Examples
     --------
@@ -104,11 +103,7 @@ def repetition_rate(torque: NDArray[np.floating], rate: float) -> float | None:
     """
     if torque.size < _LEAST_SAMPLES or not oscillates(torque):
         return None
-    slips = torque_slips(torque, rate)
-    if np.isfinite(slips.mean_interval):
-        return 1.0 / slips.mean_interval
-    period = analyse_harmonics(torque, rate).fundamental
-    return float(period) if np.isfinite(period) else None
+    return slip_drops.repetition_rate(torque, rate)
 
 
 def oscillates(torque: NDArray[np.floating]) -> bool:

@@ -20,10 +20,9 @@ import soundfile
 
 from models.errors import RecordingError
 from models.recording import Channel, Recording
-from noise.recordings.files import MIN_SAMPLES
-from noise.recordings.formats.bext import bext_description, missing_bytes
+from noise.recordings.files import MIN_SAMPLES, READERS, RawSamples
+from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes
 from noise.recordings.meaning import check_finite, describe
-from noise.recordings.readers import READERS, RawSamples
 
 if TYPE_CHECKING:
     import os
@@ -41,7 +40,6 @@ _LARGE = 64 << 20
 _CHUNK = 8 << 20
 """What is read at once [byte of 64-bit samples]."""
 
-_DENSEST = 8192  # samples a byte, as for reading the whole
 _EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
 """Formats of the sound library that can be entered at any sample."""
 
@@ -182,7 +180,7 @@ def _opened(path: Path) -> Any:
         sound = soundfile.SoundFile(path)
         n = int(sound.frames)
         size = 8 * n * int(sound.channels)
-        possible = MIN_SAMPLES <= n <= _DENSEST * path.stat().st_size
+        possible = MIN_SAMPLES <= n <= DENSEST * path.stat().st_size
         if size >= _LARGE and possible and sound.format != "MP3":
             return sound
         sound.close()

@@ -1,37 +1,96 @@
 """Recordings on disk: samples in one file and, where more is known, a sidecar of the same stem.
 
-What the samples of a file mean is decided in `noise.recordings.meaning`, once for all formats.
+A format is an ending and the function that reads it. Readers are named, not imported: a format
+whose library is an optional extra costs nothing until a file of it turns up, and a further format
+is one file and one entry here. A reader returns what the file says and nothing more; what the
+samples mean is decided in `noise.recordings.meaning`, once for all formats.
 """
 
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import Recording
-from noise.base.atomic import atomic
-from noise.recordings.formats.float_wav import write_float_wav
 from noise.recordings.meaning import check_finite, chosen_rows, describe
-from noise.recordings.readers import READERS, read_raw
-from noise.recordings.sidecar import sidecar_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
+    from numpy.typing import NDArray
 
-__all__ = [
-    "MIN_SAMPLES",
-    "find_recordings",
-    "read_recording",
-    "write_recording",
-]
+    from models.recording import Channel
+
+__all__ = ["MIN_SAMPLES", "READERS", "RawSamples", "find_recordings", "read_recording"]
 
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
+
+_SOUND = "noise.recordings.formats.sound_file:read_sound_file"
+_LOGGER = "noise.recordings.formats.isolated:read_isolated"
+_UNIVERSAL = "noise.recordings.formats.universal_file:read_universal_file"
+
+READERS = {
+    ".aif": _SOUND,
+    ".aiff": _SOUND,
+    ".flac": _SOUND,
+    ".h5": _LOGGER,
+    ".hdf5": _LOGGER,
+    ".mdf": _LOGGER,
+    ".mf4": _LOGGER,
+    ".mp3": _SOUND,
+    ".oga": _SOUND,
+    ".ogg": _SOUND,
+    ".opus": _SOUND,
+    ".rf64": _SOUND,
+    ".tdms": _LOGGER,
+    ".uff": _UNIVERSAL,
+    ".unv": _UNIVERSAL,
+    ".wav": _SOUND,
+}
+"""Ending in lower case -> reader, as ``module:function``."""
+
+
+@dataclass(frozen=True, eq=False)
+class RawSamples:
+    """What a file holds, before anyone says what it means.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n_channels, n_samples)
+        As stored: over full scale [-] where `fractional`.
+    rate : float
+        Sampling rate [Hz].
+    fractional : bool
+        Whether samples are coded as fractions of a full scale (integers, lossy formats) and not
+        as floating-point values of their own.
+    description, comment : str
+        Free text in the file, where meters and engineers note a calibration.
+    channels : tuple of (Channel or None), optional
+        Where the file itself says what it measures: one a row of `samples`, which are in the
+        channels' units; None for a row that is no channel of ours, as the file has it.
+    condition : Condition
+        As far as the file itself tells it.
+    unclear : str
+        Why the file's own words do not settle what it measures, where they do not: the error,
+        unless a sidecar names the channels.
+    """
+
+    samples: NDArray[np.float64]
+    rate: float
+    fractional: bool
+    description: str = ""
+    comment: str = ""
+    channels: tuple[Channel | None, ...] | None = None
+    condition: Condition = field(default_factory=Condition)
+    unclear: str = ""
 
 
 def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = None) -> Recording:
@@ -40,7 +99,7 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     Parameters
     ----------
     path : path-like
-        File with one of the endings of `noise.recordings.readers.READERS`. A sidecar is the file
+        File with one of the endings of `READERS`. A sidecar is the file
         of the same stem with the ending ``.json``. Without one each track is a pressure channel (an
         acceleration channel where a meter says so).
     full_scale : float, optional
@@ -64,6 +123,7 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     >>> import tempfile
     >>> from models.condition import Condition
     >>> from models.recording import Channel, Recording
+    >>> from noise.recordings import write_recording
     >>> samples, channels = np.full((1, 480), 30.0), (Channel("torque"),)
     >>> torque = Recording(samples, 48e3, channels, Condition(speed=5.0))
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -72,7 +132,7 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     ('run07.wav', 30.0, 5.0)
     """
     path = Path(path)
-    raw = chosen_rows(path, read_raw(path))
+    raw = chosen_rows(path, _read_raw(path))
     channels, condition, calibrated = describe(path, raw, full_scale)
     n_samples = raw.samples.shape[1]
     if n_samples < MIN_SAMPLES:
@@ -82,49 +142,6 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
             row *= channel.full_scale
     check_finite(path, raw.samples, raw.rate, channels)
     return Recording(raw.samples, raw.rate, channels, condition, calibrated, path.name)
-
-
-def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
-    """Write a recording as 32-bit float WAV with its sidecar, both whole or not at all.
-
-    Parameters
-    ----------
-    path : path-like
-        ``run07`` and ``run07.wav`` are the same; parent folders are made.
-    recording : Recording
-        Its samples are written as they are, so full scale of the file written is one unit.
-
-    Returns
-    -------
-    Path
-        The WAV file.
-
-    Raises
-    ------
-    ParameterError
-        The recording cannot be written there, or could not be read back.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from models.recording import Channel, Recording
-    >>> silence = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = write_recording(Path(folder) / "runs" / "none", silence)
-    ...     sorted(file.name for file in Path(folder).glob("runs/*"))
-    ['none.json', 'none.wav']
-    """
-    target = _wav_path(Path(path))
-    _check_writable(target, recording)
-    text = sidecar_text(recording)
-    # The sidecar is moved into place first: samples are never seen without what they mean.
-    with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
-        try:
-            write_float_wav(wav, recording.samples, int(recording.rate))
-        except ParameterError as error:
-            raise ParameterError(f"{target}: {error}") from error
-        sidecar.write_text(text, encoding="utf-8")
-    return target
 
 
 def find_recordings(
@@ -182,28 +199,24 @@ def _inside(folder: Path) -> Iterable[tuple[Path, str]]:
             yield path, relative.as_posix()
 
 
-def _wav_path(path: Path) -> Path:
-    ending = path.suffix.lower()
-    if not path.name:
-        raise ParameterError(f"{str(path)!r} names no file to write a recording to")
-    if ending == ".wav":
-        return path
-    if ending in READERS or ending == ".json":
-        raise ParameterError(f"{path}: recordings are written as WAV; end the name in .wav")
-    return path.with_name(path.name + ".wav")
-
-
-def _check_writable(target: Path, recording: Recording) -> None:
-    shape, rate = recording.samples.shape, recording.rate
-    if shape[1] < MIN_SAMPLES:
-        raise ParameterError(f"{target}: {shape[1]} samples, expected at least {MIN_SAMPLES}")
-    if not (1 <= rate < 1 << 31 and float(rate).is_integer()):
-        raise ParameterError(
-            f"{target}: the sampling rate is {rate!r} Hz, but WAV holds whole hertz only"
-        )
-    largest = float(np.finfo(np.float32).max)
-    for channel, row in zip(recording.channels, recording.samples, strict=True):
-        if not (row.min() >= -largest and row.max() <= largest):  # so that NaN is caught as well
-            raise ParameterError(
-                f"{target}: channel {channel.name!r} holds samples that are not finite in 32 bits"
-            )
+def _read_raw(path: Path) -> RawSamples:
+    """Read a file with the reader of its ending."""
+    try:
+        if path.is_dir():
+            raise RecordingError(f"{path}: is a folder, not a recording")
+        if not path.exists():
+            raise RecordingError(f"{path}: there is no such file")
+        if not path.is_file():
+            raise RecordingError(f"{path}: is no regular file")
+        if path.stat().st_size == 0:
+            raise RecordingError(f"{path}: is empty (0 bytes)")
+        if path.suffix.lower() not in READERS:
+            known = ", ".join(READERS)
+            raise RecordingError(f"{path}: has no ending of a recording; known are {known}")
+        module, _, function = READERS[path.suffix.lower()].partition(":")
+        reader: Callable[[Path], RawSamples] = getattr(import_module(module), function)
+        return reader(path)
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from error
+    except MemoryError as error:
+        raise RecordingError(f"{path}: needs more memory than there is") from error

@@ -1,4 +1,4 @@
-"""What the samples of a file mean: channels, condition, and what a sample of 1.0 is worth.
+"""Channels, condition and calibration of a file's samples: what a sample of 1.0 is worth.
 
 The worth is decided per channel by the first of these that says something:
 
@@ -11,19 +11,26 @@ The worth is decided per channel by the first of these that says something:
 Unless every channel has its value the recording is not calibrated: its samples stay fractions of
 full scale, and levels can be told in dBFS alone. Half a calibration would only invite comparing
 what cannot be compared.
+
+A WAV file has no field for calibration, so meters put it into the name of the file
+(``..._FS129.9dB(PK)_00.wav``) or its description (``0dBFS = 109.7 dBSPL``,
+``0dBFS = 2.40 mps2``). A stated level is that of the *peak* at full scale, so the sample 1.0 is
+worth 20 uPa * 10^(L/20). The names say ``PK``, and the maker of these meters scales samples by that
+same formula with the level of the description (NTi Audio, XL2 manual on WAV recording and support
+note on scaling WAV files). Reading it as the rms of a full-scale sine would be 3 dB higher.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import fields, replace
+import re
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError, RecordingError
-from models.recording import Channel
-from noise.recordings.formats.full_scale import stated_full_scale
+from models.recording import REFERENCE_PRESSURE, Channel
 from noise.recordings.sidecar import Sidecar, find_sidecar, read_sidecar
 
 if TYPE_CHECKING:
@@ -32,9 +39,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.condition import Condition
-    from noise.recordings.readers import RawSamples
+    from noise.recordings.files import RawSamples
 
-__all__ = ["check_finite", "chosen_rows", "describe"]
+__all__ = ["FullScale", "check_finite", "chosen_rows", "describe", "stated_full_scale"]
+
+_NUMBER = r"(-?\d{1,3}(?:[.,]\d{1,6})?)"
+_IN_NAME = re.compile(rf"(?<![a-z0-9])FS\s*{_NUMBER}\s*dB[\s_(-]*PK(?![a-z0-9])", re.I | re.A)
+_PRESSURE = re.compile(rf"0\s*dB\s*FS\s*=\s*{_NUMBER}\s*dB\s*SPL(?![a-z0-9])", re.I | re.A)
+_ACCELERATION = re.compile(
+    rf"0\s*dB\s*FS\s*=\s*{_NUMBER}\s*(?:mps2|m/s(?:\^?2|²))(?![a-z0-9])", re.I | re.A
+)
 
 
 def chosen_rows(path: Path, raw: RawSamples) -> RawSamples:
@@ -88,7 +102,7 @@ def describe(
     Examples
     --------
     >>> from pathlib import Path
-    >>> from noise.recordings.readers import RawSamples
+    >>> from noise.recordings.files import RawSamples
     >>> raw = RawSamples(np.empty((1, 0)), 48e3, fractional=True)
     >>> channels, _, calibrated = describe(Path("nowhere.wav"), raw, 2.0)
     >>> channels[0].name, channels[0].full_scale, calibrated
@@ -118,7 +132,18 @@ def check_finite(
     channels: tuple[Channel, ...],
     start: int = 0,
 ) -> None:
-    """Refuse samples that are no numbers; the first of them is sample `start` of the file.
+    """Refuse samples that are no numbers.
+
+    Parameters
+    ----------
+    path : Path
+    samples : ndarray, shape (n_channels, n_samples)
+        [units of the channels]
+    rate : float
+        Sampling rate [Hz].
+    channels : tuple of Channel
+    start : int
+        Number of the first sample in the file.
 
     Raises
     ------
@@ -171,3 +196,53 @@ def _interpret(
         return channels, False
     pairs = zip(channels, values, strict=True)
     return tuple(replace(channel, full_scale=value) for channel, value in pairs), True
+
+
+@dataclass(frozen=True)
+class FullScale:
+    """The value of a full-scale sample.
+
+    Parameters
+    ----------
+    kind : str
+        ``"pressure"`` or ``"acceleration"``, as in `models.recording.CHANNEL_UNITS`.
+    value : float
+        [Pa] or [m/s^2].
+    """
+
+    kind: str
+    value: float
+
+
+def stated_full_scale(text: str) -> FullScale | None:
+    """Find the value of full scale in a description, a comment or the name of a file.
+
+    Parameters
+    ----------
+    text : str
+        Anything at all.
+
+    Returns
+    -------
+    FullScale or None
+        None where the text states nothing.
+
+    Examples
+    --------
+    >>> stated_full_scale("2019-10-17_SLM_012_Audio_FS94.0dB(PK)_00.wav")
+    FullScale(kind='pressure', value=1.002...)
+    >>> stated_full_scale("Vibration: 0dBFS = 2.40 mps2 Time Zone: UTC-09:00 (DST)")
+    FullScale(kind='acceleration', value=2.4)
+    >>> stated_full_scale("rainy, some traffic") is None
+    True
+    """
+    for pattern in (_IN_NAME, _PRESSURE):
+        if level := pattern.search(text):
+            return FullScale("pressure", REFERENCE_PRESSURE * 10 ** (_number(level) / 20))
+    if (value := _ACCELERATION.search(text)) and _number(value) > 0:
+        return FullScale("acceleration", _number(value))
+    return None
+
+
+def _number(match: re.Match[str]) -> float:
+    return float(match[1].replace(",", "."))

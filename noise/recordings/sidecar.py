@@ -41,7 +41,7 @@ class Sidecar:
     channels : tuple of Channel, optional
         In the order of the file; None where the sidecar names none.
     scales : tuple of float or None
-        Units per full scale, one a channel; None where not given.
+        One a channel [unit of the channel per full scale]; None where not given.
     condition : Condition
     calibrated : bool, optional
         None where the sidecar does not say.

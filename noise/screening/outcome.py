@@ -1,4 +1,4 @@
-"""What a screen found, as one object that shows itself and draws its maps."""
+"""Result of a screening, which shows itself in a notebook and draws its maps."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Screening:
     files : tuple of (str, Path)
         Files that designs were read from, by the names that the screen calls them.
     seconds, statistics_seconds : float
-        How long the maps took, and risk and robustness.
+        How long the maps took, and risk and robustness [s].
 
     Examples
     --------
@@ -75,7 +75,13 @@ class Screening:
         return tuple((one.design, why) for one in self.statistics for why in one.failed)
 
     def statistics_of(self, design: str, environment: str = DRY) -> Statistics:
-        """Risk and robustness of a design in an environment."""
+        """Risk and robustness of a design in an environment.
+
+        Raises
+        ------
+        ParameterError
+            There is no such design, or not in this environment.
+        """
         for one in self.statistics:
             if (one.design, one.environment) == (design, environment):
                 return one

@@ -1,4 +1,4 @@
-"""Designs before tooling: which noise each makes where, how far its use is from it, which is best.
+"""Screening of bushing designs: maps of their noise, margins, risk numbers and a ranking.
 
 Each design is mapped in each environment, at constant speed and, where it says so or the caller
 does, swinging to and fro; then graded, and its parts are looked at. A design that cannot be
@@ -17,7 +17,7 @@ import numpy as np
 from models.errors import BushingNoiseError, ParameterError
 from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.design.environments import DRY, environment, in_environment
-from noise.screening.map.batches import judging
+from noise.screening.map.batches import batch_evaluator
 from noise.screening.map.grid import grid_of
 from noise.screening.map.mapping import map_design
 from noise.screening.outcome import Screening
@@ -28,7 +28,7 @@ from noise.screening.ranking.ranking import standings
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from noise.screening.map.batches import Judge
+    from noise.screening.map.batches import Evaluator
     from noise.screening.map.mapping import DesignMap
 
 __all__ = ["DEFAULT_SIMULATIONS", "screen"]
@@ -97,7 +97,7 @@ def screen(
     started = time.perf_counter()
     if not designs:
         raise ParameterError("there is no design to screen")
-    surroundings = [environment(name) for name in dict.fromkeys(environments)]
+    in_environments = [environment(name) for name in dict.fromkeys(environments)]
     if loudness:
         from features.sound_quality import check_available
 
@@ -106,20 +106,22 @@ def screen(
     refused: list[tuple[str, str]] = []
     screened: dict[str, Design] = {}
     files: list[tuple[str, Path]] = []
-    with judging(workers=workers, scheduler=scheduler) as judge:
+    with batch_evaluator(workers=workers, scheduler=scheduler) as evaluate:
         for one in designs:
             called = one.name if isinstance(one, Design) else str(one)
             try:
                 design = one if isinstance(one, Design) else load_design(one)
-                design = _renamed(design, set(screened))
+                design = _with_name_of_its_own(design, set(screened))
                 found: list[DesignMap] = []
                 outside = _outside(design, given)
                 if outside:
                     progress(f"{design.name}: {outside}")
-                for where in surroundings:
+                for where in in_environments:
                     progress(f"mapping {design.name}, {where.name}")
                     found += [
-                        _mapped(design, given, where.name, swinging, judge, simulations, loudness)
+                        _mapped(
+                            design, given, where.name, swinging, evaluate, simulations, loudness
+                        )
                         for swinging in _motions(design, given)
                     ]
             except BushingNoiseError as error:
@@ -160,7 +162,7 @@ def screen(
     )
 
 
-def _renamed(design: Design, taken: set[str]) -> Design:
+def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
     """Two designs of one name are told apart by a number."""
     name, number = design.name, 2
     while name in taken:
@@ -192,13 +194,13 @@ def _mapped(
     given: Use | None,
     where: str,
     swinging: Swinging | None,
-    judge: Judge,
+    evaluate: Evaluator,
     simulations: int | None,
     loudness: bool,
 ) -> DesignMap:
     rig = in_environment(design.rig, environment(where))
     grid = grid_of(design, given, where=where, swinging=swinging)
-    found = map_design(rig, grid, judge, design=design.name, environment=where, most=simulations)
+    found = map_design(rig, grid, evaluate, design=design.name, environment=where, most=simulations)
     if loudness:
         from noise.screening.map.loudness import with_loudness
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from noise.thesis.row import Column, Row, between, number
 from sim.acquisition import CONVERTER_GAIN
 from sim.analysis.thesis_listing import STEP
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["converter", "lengths"]
 
@@ -21,34 +25,25 @@ _PRINTED_ERROR = 0.625e-3
 _REFERENCE_PRESSURE = 20e-6
 
 
-def converter() -> list[Row]:
+def converter() -> Iterator[Row]:
     """One bit of the converter, in volts and in each channel's unit."""
-    rows = [
-        Row(
-            "converter_bit", "12 bit over +-1.25 V", "mV", number(1e3 * _PRINTED_ERROR),
-            exact=1e3 * _BIT,
-        )
-    ]  # fmt: skip
+    error = number(1e3 * _PRINTED_ERROR)
+    yield Row("converter_bit", "12 bit over +-1.25 V", "mV", error, exact=1e3 * _BIT)
     for channel, gain in CONVERTER_GAIN.items():
         printed = _PRINTED_ERROR * gain
-        rows.append(
-            Row(
-                "converter_bit", f"{channel}, 0.625 mV at {gain:g} {_UNITS[channel]}/V",
-                _UNITS[channel], number(printed, f"{printed:.3g}"), exact=_BIT * gain, digits=3,
-            )
+        yield Row(
+            "converter_bit", f"{channel}, 0.625 mV at {gain:g} {_UNITS[channel]}/V",
+            _UNITS[channel], number(printed, f"{printed:.3g}"), exact=_BIT * gain, digits=3,
         )  # fmt: skip
     gain = CONVERTER_GAIN["pressure"]
     printed_level, level = (
         20.0 * math.log10(volts * gain / math.sqrt(2.0) / _REFERENCE_PRESSURE)
         for volts in (_PRINTED_ERROR, _BIT)
     )
-    rows.append(
-        Row(
-            "converter_bit", "level of a sine of one bit", "dB",
-            number(printed_level, f"{printed_level:.1f}"), exact=level, digits=3,
-        )
+    yield Row(
+        "converter_bit", "level of a sine of one bit", "dB",
+        number(printed_level, f"{printed_level:.1f}"), exact=level, digits=3,
     )  # fmt: skip
-    return rows
 
 
 def lengths() -> list[Row]:

@@ -15,7 +15,7 @@ import numpy as np
 from noise.thesis.row import Row, number
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 __all__ = ["potentiometer", "torque_cell", "transducers"]
 
@@ -74,35 +74,30 @@ def potentiometer() -> list[Row]:
     ]  # fmt: skip
 
 
-def torque_cell() -> list[Row]:
+def torque_cell() -> Iterator[Row]:
     """Appendix C."""
     torque = 5.0 * np.arange(-8, 9)
     up, down = torque >= 0.0, torque <= 0.0
     voltage = np.array(_TORQUE_CELL)
-    rows = []
     for name, side, equation, offset in (
         ("positive", up, "(C3)", "0.4222"),
         ("negative", down, "(C5)", "0.0000"),
     ):
         fitted = _regression(torque[side].tolist(), voltage[side].tolist())
         where = f"{equation}, {name} torque, Table C1"
-        rows += [
-            Row(
-                "torque_cell_offset", where, "mV", number(float(offset), offset),
-                exact=fitted[0], scale=abs(fitted[0]), tolerance=1e-3,
-            ),
-            Row(
-                "torque_cell_slope", where, "mV/Nm", number(12.19),
-                exact=fitted[1], tolerance=0.002,
-            ),
-            Row(
-                "torque_cell_correlation", where, "1", number(0.9999),
-                exact=fitted[2], tolerance=1e-4, digits=5,
-            ),
-        ]  # fmt: skip
+        yield Row(
+            "torque_cell_offset", where, "mV", number(float(offset), offset),
+            exact=fitted[0], scale=abs(fitted[0]), tolerance=1e-3,
+        )  # fmt: skip
+        yield Row(
+            "torque_cell_slope", where, "mV/Nm", number(12.19), exact=fitted[1], tolerance=0.002
+        )
+        yield Row(
+            "torque_cell_correlation", where, "1", number(0.9999),
+            exact=fitted[2], tolerance=1e-4, digits=5,
+        )  # fmt: skip
     slope = _regression(torque[up].tolist(), voltage[up].tolist())[1]
-    rows.append(Row("torque_cell_gain", "Appendix C", "Nm/V", number(82.0), exact=1e3 / slope))
-    return rows
+    yield Row("torque_cell_gain", "Appendix C", "Nm/V", number(82.0), exact=1e3 / slope)
 
 
 def transducers() -> list[Row]:

@@ -1,4 +1,4 @@
-"""Where stick and vibration end: Tables 5.1 and 5.2, and what the thesis simulated (6.3.1).
+"""Critical speeds of Tables 5.1 and 5.2, and stick-slip as the thesis simulated it (6.3.1).
 
 The thesis simulated at 1, 2.5, 5, 7.5 and 10 rad/s, so "stick-slip through 5 rad/s" admits an end
 anywhere below 7.5. There the end of the first unbroken range counts, islands above it do not.
@@ -6,7 +6,8 @@ anywhere below 7.5. There the end of the first unbroken range counts, islands ab
 
 from __future__ import annotations
 
-from math import inf, isinf
+from math import inf, isinf, nan
+from typing import TYPE_CHECKING
 
 from models.condition import FIXED
 from noise.thesis.row import Column, Published, Row, above, below, between, number
@@ -16,13 +17,17 @@ from noise.thesis.runs import (
     SHORT,
     THESIS,
     Case,
+    both,
     listing_stick_share,
     rig_of,
     stick_share,
 )
 from sim.analysis.critical_damping import with_damping
-from sim.analysis.critical_speeds import SPEEDS, critical_speeds, stick_slip_ranges
+from sim.analysis.critical_speeds import SPEEDS, critical_speeds, stick_slip_ranges, unbroken_ranges
 from sim.analysis.regime import LEAST_STICK
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["MEASURED", "contradiction", "simulated", "transitions"]
 
@@ -44,32 +49,27 @@ _TRANSITIONS = {
 MEASURED = tuple(Case(1.0, *place) for place in _TRANSITIONS)
 
 
-def transitions(case: Case) -> list[Row]:
+def transitions(case: Case) -> Iterator[Row]:
     """V_crit1, V_crit2, and the quasi-harmonic regime between them."""
     place = case.interference, case.support_stiffness
     exact, calibrated = (critical_speeds(rig_of(m), *place) for m in (THESIS, CALIBRATED))
-    listing = None if case.fixed else _last(_listing_ranges(case))
+    listing = nan if case.fixed else _last(_listing_ranges(case))
     published = _TRANSITIONS[case.interference_mm, case.support_stiffness]
     where = case.place()
-    rows = [
-        _row("v_crit1", where, published[0], listing, exact.v_crit1, calibrated.v_crit1),
-        _row("v_crit2", where, published[1], None, exact.v_crit2, calibrated.v_crit2),
-    ]
+    yield _row("v_crit1", where, published[0], listing, exact.v_crit1, calibrated.v_crit1)
+    yield _row("v_crit2", where, published[1], nan, exact.v_crit2, calibrated.v_crit2)
     if case.interference_mm == 0.279:
         printed = published[1].low - published[0].low
-        rows.append(
-            Row(
-                "quasi_harmonic_range", case.place(), "rad/s", number(printed),
-                exact=exact.v_crit2 - exact.v_crit1,
-                calibrated=calibrated.v_crit2 - calibrated.v_crit1, measured=True,
-                tolerance=2.0 * _STEP / printed, digits=3,
-            )
+        yield Row(
+            "quasi_harmonic_range", where, "rad/s", number(printed),
+            exact=exact.v_crit2 - exact.v_crit1,
+            calibrated=calibrated.v_crit2 - calibrated.v_crit1, measured=True,
+            tolerance=2.0 * _STEP / printed, digits=3,
         )  # fmt: skip
-    return rows
 
 
 def _row(
-    item: str, place: str, published: Published, listing: float | None, exact: float,
+    item: str, place: str, published: Published, listing: float, exact: float,
     calibrated: float,
 ) -> Row:  # fmt: skip
     finite = published.high if isinf(published.low) else published.low
@@ -80,9 +80,8 @@ def _row(
     )  # fmt: skip
 
 
-def simulated() -> list[Row]:
+def simulated() -> Iterator[Row]:
     """Stick-slip as 6.3.1 reports it of the simulation."""
-    rows = []
     first: dict[float, tuple[float, float]] = {}
     for case, published in (
         (Case(1.0, 0.279, LONG), between(7.5, 10.0, "7.5, not 10")),
@@ -94,37 +93,28 @@ def simulated() -> list[Row]:
         listing, exact = _first(_listing_ranges(case)), _first(_exact_ranges(case))
         if case.interference_mm == 0.279:
             first[case.support_stiffness] = (listing, exact)
-        rows.append(
-            Row(
-                "simulated_stick_slip", f"{case.place()}, end of first range", "rad/s", published,
-                listing=listing, exact=exact, limit=SPEEDS[-1],
-            )
+        yield Row(
+            "simulated_stick_slip", f"{case.place()}, end of first range", "rad/s", published,
+            listing=listing, exact=exact, limit=SPEEDS[-1],
         )  # fmt: skip
     ratios = [b / a for a, b in zip(first[LONG], first[SHORT], strict=True)]
-    rows.append(
-        Row(
-            "simulated_stick_slip_ratio", "0.279 mm, 3745 over 2214 Nm/rad", "1", below(1.0),
-            listing=ratios[0], exact=ratios[1], digits=3,
-        )
+    yield Row(
+        "simulated_stick_slip_ratio", "0.279 mm, 3745 over 2214 Nm/rad", "1", below(1.0),
+        listing=ratios[0], exact=ratios[1], digits=3,
     )  # fmt: skip
-    return rows
 
 
-def contradiction() -> list[Row]:
+def contradiction() -> Iterator[Row]:
     """0.178 mm at 1 rad/s: quasi-harmonic in Table 5.1, stick-slip in 5.2.1."""
     case = Case(1.0, 0.178, LONG)
-    shares = [stick_share(material, case) for material in (THESIS, CALIBRATED)]
-    return [
-        Row(
-            "stick_share", f"{case}, {where}", "1", Published(word, side.low, side.high),
-            exact=shares[0], calibrated=shares[1], judged=Column.CALIBRATED, measured=True,
-            digits=2,
-        )
-        for where, word, side in (
-            ("Table 5.1", "slides", below(LEAST_STICK)),
-            ("5.2.1", "sticks", above(LEAST_STICK)),
-        )
-    ]  # fmt: skip
+    for where, published in (
+        ("Table 5.1", below(LEAST_STICK, "slides")),
+        ("5.2.1", above(LEAST_STICK, "sticks")),
+    ):
+        yield Row(
+            "stick_share", f"{case}, {where}", "1", published, **both(stick_share, case),
+            judged=Column.CALIBRATED, measured=True, digits=2,
+        )  # fmt: skip
 
 
 def _exact_ranges(case: Case) -> tuple[tuple[float, float], ...]:
@@ -135,14 +125,8 @@ def _exact_ranges(case: Case) -> tuple[tuple[float, float], ...]:
 
 
 def _listing_ranges(case: Case) -> tuple[tuple[float, float], ...]:
-    ranges: list[tuple[float, float]] = []
-    stuck_before = False
-    for speed in SPEEDS:
-        sticks = listing_stick_share(case.at(speed), _SECONDS) > LEAST_STICK
-        if sticks:
-            ranges.append((ranges.pop()[0] if stuck_before else speed, speed))
-        stuck_before = sticks
-    return tuple(ranges)
+    shares = (listing_stick_share(case.at(speed), _SECONDS) for speed in SPEEDS)
+    return unbroken_ranges(SPEEDS, (share > LEAST_STICK for share in shares))
 
 
 def _first(ranges: tuple[tuple[float, float], ...]) -> float:

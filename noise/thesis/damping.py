@@ -1,8 +1,11 @@
-"""The damping that ends stick-slip (6.3.2), and what Table 5.5 has to do with Table 5.1."""
+"""Damping that ends stick-slip (6.3.2), and that of Table 5.5, which must not."""
 
 from __future__ import annotations
 
-from noise.thesis.row import Column, Published, Row, above, below, number
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from noise.thesis.row import Column, Row, above, below, number
 from noise.thesis.runs import (
     CALIBRATED,
     LONG,
@@ -16,6 +19,9 @@ from noise.thesis.runs import (
 from sim.analysis.critical_damping import critical_damping, largest_sticking
 from sim.analysis.regime import LEAST_STICK
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 __all__ = ["critical", "measured"]
 
 _CASE = Case(7.5, 0.279, SHORT)
@@ -26,33 +32,29 @@ _TOLERANCE = 1e-5
 _SECONDS = 1.0
 
 
-def critical() -> list[Row]:
+def critical() -> Iterator[Row]:
     """Critical damping at 7.5 rad/s, and stick on either side of it."""
     listing = _listing_limit(_CASE)
     exact, calibrated = _limit(THESIS, _CASE), _limit(CALIBRATED, _CASE)
-    rows = [
-        Row(
+    for printed, where, digits in ((0.7599, "", 4), (0.76, "; figure 6.10", 3)):
+        yield Row(
             "critical_damping", f"{_CASE}{where}", "Nm s/rad", number(printed),
             listing=listing, exact=exact, calibrated=calibrated, judged=Column.LISTING,
             meant=number(printed / 10.0), tolerance=0.001, limit=_HIGHEST, digits=digits,
-        )
-        for printed, where, digits in ((0.7599, "", 4), (0.76, "; figure 6.10", 3))
-    ]  # fmt: skip
-    for damping, published in ((0.05, above(LEAST_STICK)), (0.1, below(LEAST_STICK))):
-        case = Case(7.5, 0.279, SHORT, damping)
-        sticks = "sticks" if damping == 0.05 else "slides"
-        rows.append(
-            Row(
-                "stick_share", str(case), "1", Published(sticks, published.low, published.high),
-                listing=listing_stick_share(case), exact=stick_share(THESIS, case), digits=2,
-            )
         )  # fmt: skip
-    return rows
+    for damping, published in (
+        (0.05, above(LEAST_STICK, "sticks")),
+        (0.1, below(LEAST_STICK, "slides")),
+    ):
+        case = replace(_CASE, damping=damping)
+        yield Row(
+            "stick_share", str(case), "1", published,
+            listing=listing_stick_share(case), exact=stick_share(THESIS, case), digits=2,
+        )  # fmt: skip
 
 
-def measured() -> list[Row]:
+def measured() -> Iterator[Row]:
     """Damping of Table 5.5, which must not end stick-slip at the speeds where it was measured."""
-    rows = []
     for interference, support, printed, speed in (
         (0.279, LONG, 0.105, 4.5),
         (0.279, SHORT, 0.085, 2.6),
@@ -60,14 +62,11 @@ def measured() -> list[Row]:
         (0.381, SHORT, 0.080, 13.0),
     ):
         case = Case(speed, interference, support)
-        rows.append(
-            Row(
-                "damping", f"{case}: stick-slip needs less than what is computed", "Nm s/rad",
-                Published(f"{printed:g}", printed, float("inf")), listing=_listing_limit(case),
-                exact=_limit(THESIS, case), limit=_HIGHEST, digits=3,
-            )
+        yield Row(
+            "damping", f"{case}: stick-slip needs less than what is computed", "Nm s/rad",
+            above(printed, f"{printed:g}"), listing=_listing_limit(case),
+            exact=_limit(THESIS, case), limit=_HIGHEST, digits=3,
         )  # fmt: skip
-    return rows
 
 
 def _limit(material: str, case: Case) -> float:
@@ -85,7 +84,7 @@ def _limit(material: str, case: Case) -> float:
 def _listing_limit(case: Case) -> float:
     def sticks(damping: float) -> bool:
         # Below any damping that matters; the listing takes none of zero.
-        at = Case(case.speed, case.interference_mm, case.support_stiffness, max(damping, 1e-9))
+        at = replace(case, damping=max(damping, 1e-9))
         return listing_stick_share(at, _SECONDS) > LEAST_STICK
 
     return largest_sticking(sticks, _HIGHEST, _TOLERANCE)

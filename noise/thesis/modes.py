@@ -21,6 +21,8 @@ from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, str
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from models.rig import Beams
@@ -42,27 +44,17 @@ _HIGHEST = 12e3
 _MODE_TOLERANCE = 0.05
 
 
-def torsional_modes() -> list[Row]:
+def torsional_modes() -> Iterator[Row]:
     """First torsional mode of the lumped model, measured 250 and 310 Hz (5.2.2)."""
-    rows = []
     for support, measured in ((LONG, 250.0), (SHORT, 310.0)):
         for state, stuck in (("sliding", False), ("stuck", True)):
-            exact, calibrated = (
-                float(
-                    lumped_bushing(rig_of(material), 0.279e-3, support).natural_frequencies(
-                        stuck=stuck
-                    )[0]
-                )
-                for material in (THESIS, CALIBRATED)
-            )
-            rows.append(
-                Row(
-                    "first_torsional_mode", f"{Case(1.0, 0.279, support).place()}, {state}", "Hz",
-                    number(measured), exact=exact, calibrated=calibrated, measured=True,
-                    tolerance=_MODE_TOLERANCE,
-                )
+            bushings = (lumped_bushing(rig_of(m), 0.279e-3, support) for m in (THESIS, CALIBRATED))
+            exact, calibrated = (float(b.natural_frequencies(stuck=stuck)[0]) for b in bushings)
+            yield Row(
+                "first_torsional_mode", f"{Case(1.0, 0.279, support).place()}, {state}", "Hz",
+                number(measured), exact=exact, calibrated=calibrated, measured=True,
+                tolerance=_MODE_TOLERANCE,
             )  # fmt: skip
-    return rows
 
 
 def clamp_on_beams(beams: Beams, length: float) -> ClampOnBeams:
@@ -74,6 +66,17 @@ def clamp_on_beams(beams: Beams, length: float) -> ClampOnBeams:
 
 def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
     """Modes of beams of one length [m] with the clamp on the bushing, rigidly anchored [Hz].
+
+    Parameters
+    ----------
+    beams : Beams
+    length : float
+        [m]
+
+    Returns
+    -------
+    ndarray, shape (n_modes,)
+        Rising [Hz].
 
     Examples
     --------
@@ -88,42 +91,34 @@ def clamp_modes(beams: Beams, length: float) -> NDArray[np.float64]:
     return np.sort(np.concatenate(found))
 
 
-def beam_modes() -> list[Row]:
+def beam_modes() -> Iterator[Row]:
     """Modes that 3.1.1 computes and 5.2.2 measures."""
     beams = rig_of(THESIS).beams
     long, short = clamp_modes(beams, 0.123), clamp_modes(beams, 0.092)
-    rows = [
-        Row(
-            "beam_mode", "12.3 cm, lowest of 140-2100 Hz", "Hz", number(140.0),
-            exact=float(long[0]), tolerance=_MODE_TOLERANCE,
-        ),
-        Row(
-            "beam_mode", "9.2 cm, highest of 140-2100 Hz", "Hz", number(2100.0),
-            exact=float(short[3]), tolerance=_MODE_TOLERANCE,
-        ),
-    ]  # fmt: skip
+    for text, printed, mode in (
+        ("12.3 cm, lowest of 140-2100 Hz", 140.0, long[0]),
+        ("9.2 cm, highest of 140-2100 Hz", 2100.0, short[3]),
+    ):
+        yield Row(
+            "beam_mode", text, "Hz", number(printed), exact=float(mode), tolerance=_MODE_TOLERANCE
+        )
     for text, support, modes, measured, k in (
         ("12.3 cm, first torsional", LONG, long, 250.0, 1),
         ("9.2 cm, first torsional", SHORT, short, 310.0, 1),
         ("12.3 cm, first bending", LONG, long, 900.0, 2),
         ("9.2 cm, first bending", SHORT, short, 1375.0, 2),
     ):
-        rows.append(
-            Row(
-                "beam_mode", text, "Hz", number(measured), exact=float(modes[k]),
-                calibrated=_shipped_mode(support, k - 1), measured=True,
-                tolerance=_MODE_TOLERANCE,
-            )
+        yield Row(
+            "beam_mode", text, "Hz", number(measured), exact=float(modes[k]),
+            calibrated=_shipped_mode(support, k - 1), measured=True,
+            tolerance=_MODE_TOLERANCE,
         )  # fmt: skip
     for measured in (4500.0, 6000.0):
         nearest = float(long[np.abs(long - measured).argmin()])
-        rows.append(
-            Row(
-                "beam_mode", f"12.3 cm, nearest to {measured:g} Hz", "Hz", number(measured),
-                exact=nearest, measured=True, tolerance=_MODE_TOLERANCE,
-            )
+        yield Row(
+            "beam_mode", f"12.3 cm, nearest to {measured:g} Hz", "Hz", number(measured),
+            exact=nearest, measured=True, tolerance=_MODE_TOLERANCE,
         )  # fmt: skip
-    return rows
 
 
 def _shipped_mode(support: float, index: int) -> float:

@@ -1,4 +1,4 @@
-"""The table as a page of Markdown, with what its columns and verdicts mean."""
+"""Page of Markdown with the table and the meaning of its columns and verdicts."""
 
 from __future__ import annotations
 

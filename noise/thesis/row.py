@@ -1,4 +1,4 @@
-"""One published number beside the computed ones, and what is to be said of it.
+"""Row of the table: one published number beside the computed ones, and the verdict on it.
 
 The verdict follows from numbers alone, by the tolerance that a row states: nobody's opinion is in
 it. A row says which of its columns is judged. What was measured is judged on the calibrated column
@@ -15,15 +15,8 @@ from enum import Enum
 __all__ = ["COLUMNS", "Column", "Published", "Row", "above", "below", "between", "number"]
 
 COLUMNS = (
-    "item",
-    "condition",
-    "unit",
-    "published",
-    "listing",
-    "exact",
-    "calibrated",
-    "verdict",
-)
+    "item", "condition", "unit", "published", "listing", "exact", "calibrated", "verdict",
+)  # fmt: skip
 
 _OFF_AT_MOST = 0.25
 """A value that is further off fails."""
@@ -45,7 +38,7 @@ class Published:
     ----------
     text : str
     low, high : float
-        Equal for a number.
+        In the unit of the row [-]; equal for a number.
     """
 
     text: str
@@ -68,22 +61,22 @@ class Published:
 
 
 def number(value: float, text: str | None = None) -> Published:
-    """Return a published number."""
+    """Return a published number, in the unit of its row [-]."""
     return Published(f"{value:g}" if text is None else text, value, value)
 
 
-def below(limit: float) -> Published:
-    """Return a published upper limit."""
-    return Published(f"< {limit:g}", -math.inf, limit)
+def below(limit: float, text: str | None = None) -> Published:
+    """Return a published upper limit, in the unit of its row [-]."""
+    return Published(f"< {limit:g}" if text is None else text, -math.inf, limit)
 
 
-def above(limit: float) -> Published:
-    """Return a published lower limit."""
-    return Published(f"> {limit:g}", limit, math.inf)
+def above(limit: float, text: str | None = None) -> Published:
+    """Return a published lower limit, in the unit of its row [-]."""
+    return Published(f"> {limit:g}" if text is None else text, limit, math.inf)
 
 
 def between(low: float, high: float, text: str | None = None) -> Published:
-    """Return a published range."""
+    """Return a published range, in the unit of its row [-]."""
     return Published(f"{low:g} to {high:g}" if text is None else text, low, high)
 
 
@@ -95,8 +88,8 @@ class Row:
     ----------
     item, condition, unit : str
     published : Published
-    listing, exact, calibrated : float, optional
-        Computed values; infinite is beyond `limit`.
+    listing, exact, calibrated : float
+        Computed values, in the unit `unit` [-]; infinite is beyond `limit`, NaN is none.
     judged : Column
         Which of them the verdict is on.
     tolerance : float
@@ -107,11 +100,12 @@ class Row:
     meant : Published, optional
         What must have been meant, if the print is wrong.
     as_printed : float, optional
-        What a formula gives as it is printed, where `exact` is what it gives put right.
+        What a formula gives as it is printed, where `exact` is what it gives put right; in the
+        unit `unit` [-].
     scale : float, optional
         What deviations are relative to, where the published value is zero.
     limit : float, optional
-        The last value tried, where a search may end without a result.
+        The last value tried, where a search may end without a result; in the unit `unit` [-].
     digits : int
         Significant digits that are shown.
     """
@@ -120,9 +114,9 @@ class Row:
     condition: str
     unit: str
     published: Published
-    listing: float | None = None
-    exact: float | None = None
-    calibrated: float | None = None
+    listing: float = math.nan
+    exact: float = math.nan
+    calibrated: float = math.nan
     judged: Column = Column.EXACT
     tolerance: float = 0.01
     measured: bool = False
@@ -145,12 +139,8 @@ class Row:
         ...     judged=Column.LISTING, meant=number(0.07599)).verdict
         'misprint'
         """
-        value = {
-            Column.LISTING: self.listing,
-            Column.EXACT: self.exact,
-            Column.CALIBRATED: self.calibrated,
-        }[self.judged]
-        if value is None:
+        value = getattr(self, self.judged.value)
+        if math.isnan(value):
             return "not checkable"
         word = self._word(value, self.published)
         if word == "holds":
@@ -160,7 +150,11 @@ class Row:
             word = "misprint"
         elif word == "fails" and self.measured and self.judged is not Column.CALIBRATED:
             word = "refuted"
-        if self.measured and self.judged is not Column.CALIBRATED and self.calibrated is not None:
+        if (
+            self.measured
+            and self.judged is not Column.CALIBRATED
+            and not math.isnan(self.calibrated)
+        ):
             calibrated = self._word(self.calibrated, self.meant or self.published)
             if calibrated != "holds":
                 word += f"; calibrated {calibrated}"
@@ -174,19 +168,12 @@ class Row:
 
     def cells(self) -> dict[str, str]:
         """Return the row as texts by column; a value that there is none of is empty."""
-        return {
-            "item": self.item,
-            "condition": self.condition,
-            "unit": self.unit,
-            "published": self.published.text,
-            "listing": self._shown(self.listing),
-            "exact": self._shown(self.exact),
-            "calibrated": self._shown(self.calibrated),
-            "verdict": self.verdict,
-        }
+        computed = map(self._shown, (self.listing, self.exact, self.calibrated))
+        cells = (self.item, self.condition, self.unit, self.published.text, *computed, self.verdict)
+        return dict(zip(COLUMNS, cells, strict=True))
 
-    def _shown(self, value: float | None) -> str:
-        if value is None:
+    def _shown(self, value: float) -> str:
+        if math.isnan(value):
             return ""
         if math.isinf(value):
             return f"> {self.limit:g}"

@@ -10,35 +10,34 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
-from features.kernels.harmonics import analyse_harmonics
+from features.kernels import slip_drops
 from features.kernels.lines import find_lines
-from features.kernels.slip_drops import torque_slips
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
 from models.rig_files.rig_file import load_material_rig
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime
 from sim.analysis.thesis_listing import STEP, run_listing
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from models.rig import Rig
     from sim.analysis.thesis_listing import ListingRun
     from sim.motion import Motion
 
 __all__ = [
-    "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "acceleration", "listing_peak_speed",
-    "listing_run", "listing_slip_frequency", "listing_stick_share", "mean_torque", "motion",
-    "oscillation", "peak_speed", "repetition_rate", "rig_of", "slip_frequency", "stick_share",
-    "strongest_line", "strongest_share", "third_over_second",
+    "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "acceleration", "both",
+    "listing_peak_speed", "listing_run", "listing_slip_frequency", "listing_stick_share",
+    "mean_torque", "motion", "oscillation", "peak_speed", "repetition_rate", "rig_of",
+    "slip_frequency", "stick_share", "strongest_line", "strongest_share", "third_over_second",
 ]  # fmt: skip
 
 THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
@@ -71,6 +70,7 @@ class Case:
     speed : float
         [rad/s]
     interference_mm : float
+        [mm]
     support_stiffness : float
         [Nm/rad]
     damping : float, optional
@@ -93,7 +93,7 @@ class Case:
         return self.support_stiffness == FIXED
 
     def at(self, speed: float) -> Case:
-        """Return the case at another speed."""
+        """Return the case at another speed [rad/s]."""
         return replace(self, speed=speed)
 
     def place(self) -> str:
@@ -112,6 +112,24 @@ class Case:
         return f"{self.place()}, {self.speed:g} rad/s"
 
 
+class Both(TypedDict):
+    """Values of the columns of these names."""
+
+    exact: float
+    calibrated: float
+
+
+def both(found: Callable[[str, Case], float], case: Case) -> Both:
+    """Compute a number of a case with the thesis's equations and with the calibrated material.
+
+    Examples
+    --------
+    >>> both(lambda material, case: float(len(material)), Case(1.0))
+    {'exact': 19.0, 'calibrated': 12.0}
+    """
+    return {"exact": found(THESIS, case), "calibrated": found(CALIBRATED, case)}
+
+
 @cache
 def rig_of(material: str) -> Rig:
     """Return the bench with a bushing of a material."""
@@ -119,8 +137,18 @@ def rig_of(material: str) -> Rig:
 
 
 @lru_cache(maxsize=4)
-def motion(material: str, case: Case) -> Motion:
-    """Simulate a case from rest; another damping is for the thesis's material alone."""
+def motion(material: str, case: Case, seconds: float | None = None, rate: float = RATE) -> Motion:
+    """Simulate a case from rest; another damping is for the thesis's material alone.
+
+    Parameters
+    ----------
+    material : str
+    case : Case
+    seconds : float, optional
+        Length of the run [s]; by default what mean slip rates need.
+    rate : float
+        Of the output [Hz].
+    """
     rig = rig_of(material)
     if case.damping is not None and material == THESIS:
         rig = with_damping(rig, case.damping)
@@ -129,9 +157,8 @@ def motion(material: str, case: Case) -> Motion:
         ConstantSpeed(case.speed),
         interference=case.interference,
         support_stiffness=case.support_stiffness,
-        seconds=_SECONDS.get(material, _OTHER_SECONDS),
-        rate=RATE,
-        effects=activated(rig.effects, EFFECTS),
+        seconds=seconds or _SECONDS.get(material, _OTHER_SECONDS),
+        rate=rate,
     )
 
 
@@ -140,7 +167,7 @@ def _settled(run: Motion) -> Motion:
 
 
 def oscillation(material: str, case: Case) -> float:
-    """Return the standard deviation of the torque over its mean, once the run has settled."""
+    """Return the standard deviation of the torque over its mean [-], once the run has settled."""
     torque = _settled(motion(material, case)).torque
     return float(torque.std() / abs(torque.mean()))
 
@@ -160,13 +187,13 @@ def peak_speed(material: str, case: Case) -> float:
     return float(motion(material, case).sliding_speed.max())
 
 
-def strongest_line(material: str, case: Case) -> float | None:
-    """Frequency of the strongest line of the torque [Hz]."""
+def strongest_line(material: str, case: Case) -> float:
+    """Frequency of the strongest line of the torque [Hz]; NaN where there is none."""
     if oscillation(material, case) <= LEAST_OSCILLATION:
-        return None
+        return math.nan
     torque = _settled(motion(material, case)).torque
     lines = find_lines(autospectrum(torque, RATE), low=_LINES[0], high=_LINES[1])
-    return float(lines.frequency[0]) if lines.frequency.size else None
+    return float(lines.frequency[0]) if lines.frequency.size else math.nan
 
 
 def strongest_share(material: str, case: Case) -> float:
@@ -185,32 +212,29 @@ def acceleration(material: str, case: Case) -> float:
     return float(np.std(run.recording["acceleration"]))
 
 
-def slip_frequency(material: str, case: Case) -> float | None:
-    """Slips a second [Hz]; none where the contact does not stick."""
+def slip_frequency(material: str, case: Case) -> float:
+    """Slips a second [Hz]; NaN where the contact does not stick."""
     if friction_regime(motion(material, case)) is not Regime.STICK_SLIP:
-        return None
+        return math.nan
     return repetition_rate(material, case)
 
 
-def repetition_rate(material: str, case: Case) -> float | None:
-    """Slips a second, or periods of the torque where nothing slips suddenly [Hz]."""
+def repetition_rate(material: str, case: Case) -> float:
+    """Slips a second, or periods of the torque where nothing slips suddenly [Hz]; NaN for none."""
     if oscillation(material, case) <= LEAST_OSCILLATION:
-        return None
+        return math.nan
     run = _settled(motion(material, case))
     if rig_of(material).friction.name == "coulomb":
         return _rate_of_ends(run.stuck, RATE)
-    slips = torque_slips(run.torque, RATE)
-    if math.isfinite(slips.mean_interval):
-        return 1.0 / slips.mean_interval
-    period = analyse_harmonics(run.torque, RATE).fundamental
-    return period if math.isfinite(period) else None
+    found = slip_drops.repetition_rate(run.torque, RATE)
+    return math.nan if found is None else found
 
 
-def third_over_second(material: str, case: Case) -> float | None:
-    """Amplitude of the third harmonic of the slip frequency over that of the second."""
+def third_over_second(material: str, case: Case) -> float:
+    """Amplitude of the third harmonic of the slip frequency over that of the second [-]."""
     slips = slip_frequency(material, case)
-    if slips is None:
-        return None
+    if math.isnan(slips):
+        return math.nan
     found = autospectrum(_settled(motion(material, case)).torque, RATE)
     second, third = (
         float(found.density[np.abs(found.frequency - k * slips) < _NEAR].max()) for k in (2, 3)
@@ -219,7 +243,14 @@ def third_over_second(material: str, case: Case) -> float | None:
 
 
 def listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
-    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute."""
+    """Run the thesis's listing; the clamp must not be fixed, which it cannot compute.
+
+    Parameters
+    ----------
+    case : Case
+    seconds : float
+        Length of the run [s].
+    """
     fit = rig_of(THESIS).fit(case.interference)
     damping = fit.damping[case.support_stiffness] if case.damping is None else case.damping
     return run_listing(
@@ -233,10 +264,10 @@ def listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
     )
 
 
-def listing_slip_frequency(case: Case) -> float | None:
-    """Slips a second of the listing [Hz]."""
+def listing_slip_frequency(case: Case) -> float:
+    """Slips a second of the listing [Hz]; NaN where nothing slips, and for a fixed clamp."""
     if case.fixed:
-        return None
+        return math.nan
     stuck = listing_run(case).stuck
     return _rate_of_ends(stuck[stuck.size // 4 :], 1.0 / STEP)
 
@@ -252,6 +283,6 @@ def listing_peak_speed(case: Case) -> float:
     return float(-listing_run(case).relative_speed.min())
 
 
-def _rate_of_ends(stuck: np.ndarray[tuple[int], np.dtype[np.bool_]], rate: float) -> float | None:
+def _rate_of_ends(stuck: np.ndarray[tuple[int], np.dtype[np.bool_]], rate: float) -> float:
     ends = np.flatnonzero(stuck[:-1] & ~stuck[1:])
-    return float((ends.size - 1) * rate / (ends[-1] - ends[0])) if ends.size > 1 else None
+    return float((ends.size - 1) * rate / (ends[-1] - ends[0])) if ends.size > 1 else math.nan

@@ -12,6 +12,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from models.condition import FIXED
 from noise.thesis.row import Column, Row, above, below, between, number
 from noise.thesis.runs import (
@@ -20,6 +22,7 @@ from noise.thesis.runs import (
     SHORT,
     THESIS,
     Case,
+    both,
     listing_slip_frequency,
     repetition_rate,
     slip_frequency,
@@ -28,7 +31,7 @@ from noise.thesis.runs import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 __all__ = [
     "BOUNDED",
@@ -58,131 +61,91 @@ _RISE = (10.0, 25.0)
 """For each 2.5 rad/s at 0.381 mm [Hz]."""
 
 
-def bounded(case: Case, speeds: Sequence[float]) -> list[Row]:
+def bounded(case: Case, speeds: Sequence[float]) -> Iterator[Row]:
     """Slip frequency at speeds of the vibration study, below the first torsional mode."""
-    return [
-        Row(
+    for at in (case.at(speed) for speed in speeds):
+        yield Row(
             "slip_frequency", str(at), "Hz", below(_MODES[case.support_stiffness]),
-            listing=listing_slip_frequency(at), exact=slip_frequency(THESIS, at),
-            calibrated=slip_frequency(CALIBRATED, at), measured=True, digits=3,
-        )
-        for at in (case.at(speed) for speed in speeds)
-    ]  # fmt: skip
+            listing=listing_slip_frequency(at), **both(slip_frequency, at), measured=True, digits=3,
+        )  # fmt: skip
 
 
-def rising() -> list[Row]:
+def rising() -> Iterator[Row]:
     """Rise of the slip frequency from one speed to the next at 0.381 mm."""
     case = Case(1.0, 0.381, LONG, _UNDAMPED)
-    listing, exact, calibrated = (
-        [found(case.at(speed)) for speed in _SPEEDS]
-        for found in (
-            listing_slip_frequency,
-            lambda at: slip_frequency(THESIS, at),
-            lambda at: slip_frequency(CALIBRATED, at),
-        )
+    of_speeds = [case.at(speed) for speed in _SPEEDS]
+    listing = np.diff([listing_slip_frequency(at) for at in of_speeds]).tolist()
+    exact, calibrated = (
+        np.diff([slip_frequency(material, at) for at in of_speeds]).tolist()
+        for material in (THESIS, CALIBRATED)
     )
-    rows = []
     for i, (low, high) in enumerate(pairwise(_SPEEDS)):
         steps = (high - low) / 2.5
-        rows.append(
-            Row(
-                "slip_frequency_rise", f"{case.place()}, {low:g} to {high:g} rad/s", "Hz",
-                between(_RISE[0] * steps, _RISE[1] * steps),
-                listing=_rise(listing, i), exact=_rise(exact, i), calibrated=_rise(calibrated, i),
-                measured=True, digits=3,
-            )
+        yield Row(
+            "slip_frequency_rise", f"{case.place()}, {low:g} to {high:g} rad/s", "Hz",
+            between(_RISE[0] * steps, _RISE[1] * steps),
+            listing=listing[i], exact=exact[i], calibrated=calibrated[i], measured=True, digits=3,
         )  # fmt: skip
-    return rows
 
 
-def _rise(frequencies: list[float | None], i: int) -> float | None:
-    low, high = frequencies[i], frequencies[i + 1]
-    return None if low is None or high is None else high - low
-
-
-def at_fixed_clamp() -> list[Row]:
+def at_fixed_clamp() -> Iterator[Row]:
     """Classical stick-slip, and the one peak at the lowest interference."""
     classical = Case(1.0, 0.279, FIXED)
     exact, calibrated = (slip_frequency(material, classical) for material in (THESIS, CALIBRATED))
-    rows = [
-        Row(
+    for factor, frequency, harmonic in (
+        (1, 155.0, ""),
+        (4, 620.0, ", fourth harmonic"),
+        (6, 930.0, ", sixth harmonic"),
+    ):
+        yield Row(
             "slip_frequency", f"{classical}{harmonic}", "Hz", number(frequency),
-            exact=None if exact is None else factor * exact,
-            calibrated=None if calibrated is None else factor * calibrated,
+            exact=factor * exact, calibrated=factor * calibrated,
             measured=True, tolerance=0.02, digits=3,
-        )
-        for factor, frequency, harmonic in (
-            (1, 155.0, ""),
-            (4, 620.0, ", fourth harmonic"),
-            (6, 930.0, ", sixth harmonic"),
-        )
-    ]  # fmt: skip
+        )  # fmt: skip
     for speed in (1.0, 2.5):
         case = Case(speed, 0.178, FIXED)
-        rows.append(
-            Row(
-                "strongest_line", str(case), "Hz", number(1250.0),
-                exact=strongest_line(THESIS, case), calibrated=strongest_line(CALIBRATED, case),
-                measured=True, tolerance=0.05,
-            )
+        yield Row(
+            "strongest_line", str(case), "Hz", number(1250.0), **both(strongest_line, case),
+            measured=True, tolerance=0.05,
         )  # fmt: skip
-    return rows
 
 
-def harmonics() -> list[Row]:
+def harmonics() -> Iterator[Row]:
     """Which harmonics of the slip frequency stand out in the torque (5.2.1)."""
-    rows = []
     for speed in (1.0, 2.5):
         case = Case(speed, 0.279, LONG)
-        rows.append(
-            Row(
-                "third_over_second_harmonic", str(case), "1", above(1.0),
-                exact=third_over_second(THESIS, case),
-                calibrated=third_over_second(CALIBRATED, case), measured=True, digits=2,
-            )
+        yield Row(
+            "third_over_second_harmonic", str(case), "1", above(1.0),
+            **both(third_over_second, case), measured=True, digits=2,
         )  # fmt: skip
     for speed in (5.0, 7.5):
         case = Case(speed, 0.279, LONG)
-        rows.append(
-            Row(
-                "strongest_harmonic", str(case), "1", number(4.0),
-                exact=_strongest_harmonic(THESIS, case),
-                calibrated=_strongest_harmonic(CALIBRATED, case),
-                judged=Column.CALIBRATED, measured=True, tolerance=0.1, digits=2,
-            )
+        yield Row(
+            "strongest_harmonic", str(case), "1", number(4.0), **both(_strongest_harmonic, case),
+            judged=Column.CALIBRATED, measured=True, tolerance=0.1, digits=2,
         )  # fmt: skip
     slow, fast = (strongest_line(CALIBRATED, Case(v, 0.279, LONG)) for v in (5.0, 7.5))
-    rows.append(
-        Row(
-            "strongest_line_ratio", f"{Case(7.5, 0.279, LONG)} over 5 rad/s", "1", number(1.0),
-            calibrated=None if slow is None or fast is None else fast / slow,
-            judged=Column.CALIBRATED, measured=True, tolerance=0.05, digits=3,
-        )
+    yield Row(
+        "strongest_line_ratio", f"{Case(7.5, 0.279, LONG)} over 5 rad/s", "1", number(1.0),
+        calibrated=fast / slow,
+        judged=Column.CALIBRATED, measured=True, tolerance=0.05, digits=3,
     )  # fmt: skip
-    return rows
 
 
-def _strongest_harmonic(material: str, case: Case) -> float | None:
-    line, slips = strongest_line(material, case), repetition_rate(material, case)
-    return None if line is None or slips is None else line / slips
+def _strongest_harmonic(material: str, case: Case) -> float:
+    return strongest_line(material, case) / repetition_rate(material, case)
 
 
-def falling_with_interference() -> list[Row]:
+def falling_with_interference() -> Iterator[Row]:
     """Slip frequency at one interference over that at the next lower one."""
-    rows = []
     for low, high in ((0.178, 0.279), (0.279, 0.381)):
         for support in (LONG, FIXED):
             before, after = Case(1.0, low, support), Case(1.0, high, support)
-            rows.append(
-                Row(
-                    "slip_frequency_ratio", f"{after}, over that at {low:g} mm", "1", below(1.0),
-                    exact=_ratio(THESIS, after, before),
-                    calibrated=_ratio(CALIBRATED, after, before), measured=True, digits=3,
-                )
+            exact, calibrated = (
+                slip_frequency(material, after) / slip_frequency(material, before)
+                for material in (THESIS, CALIBRATED)
+            )
+            yield Row(
+                "slip_frequency_ratio", f"{after}, over that at {low:g} mm", "1", below(1.0),
+                exact=exact, calibrated=calibrated, measured=True, digits=3,
             )  # fmt: skip
-    return rows
-
-
-def _ratio(material: str, after: Case, before: Case) -> float | None:
-    a, b = slip_frequency(material, after), slip_frequency(material, before)
-    return None if a is None or b is None else a / b

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from models.structure.beams_stiffness import torsional_stiffness
 from models.structure.shaft import fixed_free_frequencies, free_free_frequencies
 from noise.thesis.row import Row, number
 from noise.thesis.runs import LONG, SHORT, THESIS, rig_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["LENGTHS", "MEASURED", "STATIC_TOLERANCE", "beams", "series", "shaft"]
 
@@ -25,52 +30,41 @@ _TRANSIT_TIME, _INERTIA_RATIO = 1 / 16262, 0.4201
 """Of the shaft: the two numbers that give the six of Table 3.1."""
 
 
-def beams() -> list[Row]:
+def beams() -> Iterator[Row]:
     """Equations (4.11) and (4.12)."""
     beam = rig_of(THESIS).beams
-    rows = [
-        Row(
-            "second_moment_of_area", "beam of 25.4 x 3.175 mm", "m4", number(6.7746e-11),
-            exact=beam.width * beam.thickness**3 / 12, tolerance=1e-4, digits=5,
-        )
-    ]  # fmt: skip
+    yield Row(
+        "second_moment_of_area", "beam of 25.4 x 3.175 mm", "m4", number(6.7746e-11),
+        exact=beam.width * beam.thickness**3 / 12, tolerance=1e-4, digits=5,
+    )  # fmt: skip
     for printed, length in LENGTHS.items():
-        rows.append(
-            Row(
-                "support_stiffness", f"(4.11), {100 * length:g} cm", "Nm/rad", number(printed),
-                exact=torsional_stiffness(beam, length), tolerance=0.001, digits=5,
-            )
+        yield Row(
+            "support_stiffness", f"(4.11), {100 * length:g} cm", "Nm/rad", number(printed),
+            exact=torsional_stiffness(beam, length), tolerance=0.001, digits=5,
         )  # fmt: skip
-    return rows
 
 
-def series() -> list[Row]:
+def series() -> Iterator[Row]:
     """Tables 5.3 and 5.4, and the sign in (3.1)."""
-    rows, errors = [], []
+    errors = []
     for interference, by_support in MEASURED.items():
         k_e = rig_of(THESIS).fit(1e-3 * interference).elastomer_stiffness
         for k_b, (measured, error) in by_support.items():
             theory = 1.0 / (1.0 / k_b + 1.0 / k_e)
             where = f"{interference:g} mm, {k_b:g} Nm/rad"
-            rows.append(
-                Row(
-                    "effective_stiffness", f"{where}, static; sign of (3.1)", "Nm/rad",
-                    number(measured), exact=theory, as_printed=1.0 / (1.0 / k_b - 1.0 / k_e),
-                    tolerance=STATIC_TOLERANCE, scale=theory,
-                )
+            yield Row(
+                "effective_stiffness", f"{where}, static; sign of (3.1)", "Nm/rad",
+                number(measured), exact=theory, as_printed=1.0 / (1.0 / k_b - 1.0 / k_e),
+                tolerance=STATIC_TOLERANCE, scale=theory,
             )  # fmt: skip
-            errors.append(
-                Row(
-                    "effective_stiffness_error", where, "%", number(error),
-                    exact=100.0 * abs(theory - measured) / theory, tolerance=0.02,
-                )
-            )  # fmt: skip
-    return rows + errors
+            off = 100.0 * abs(theory - measured) / theory
+            errors.append((where, number(error), off))
+    for where, printed, off in errors:
+        yield Row("effective_stiffness_error", where, "%", printed, exact=off, tolerance=0.02)
 
 
-def shaft() -> list[Row]:
+def shaft() -> Iterator[Row]:
     """Table 3.1, from two numbers."""
-    rows = []
     for ends, printed, computed in (
         (
             "fixed-free", (1568.0, 8462.0, 16433.0),
@@ -79,10 +73,7 @@ def shaft() -> list[Row]:
         ("free-free", (8131.0, 16262.0, 24393.0), free_free_frequencies(_TRANSIT_TIME)),
     ):  # fmt: skip
         for mode, (frequency, exact) in enumerate(zip(printed, computed, strict=True), start=1):
-            rows.append(
-                Row(
-                    "shaft_torsion", f"{ends}, mode {mode}", "Hz", number(frequency),
-                    exact=float(exact), tolerance=0.001, digits=5,
-                )
+            yield Row(
+                "shaft_torsion", f"{ends}, mode {mode}", "Hz", number(frequency),
+                exact=float(exact), tolerance=0.001, digits=5,
             )  # fmt: skip
-    return rows

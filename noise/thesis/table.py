@@ -1,4 +1,4 @@
-"""The whole table: groups of rows in their order."""
+"""Groups of rows of the table, in their order."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GROUPS", "thesis_rows"]
 
-GROUPS: tuple[Callable[[], list[Row]], ...] = (
+GROUPS: tuple[Callable[[], Iterable[Row]], ...] = (
     calibrations.potentiometer,
     calibrations.torque_cell,
     calibrations.transducers,
@@ -62,7 +62,7 @@ GROUPS: tuple[Callable[[], list[Row]], ...] = (
 """All groups, in the order of the table."""
 
 
-def thesis_rows(groups: Iterable[Callable[[], list[Row]]]) -> list[Row]:
+def thesis_rows(groups: Iterable[Callable[[], Iterable[Row]]]) -> list[Row]:
     """Compute the rows of groups.
 
     Examples

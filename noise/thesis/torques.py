@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from models.condition import FIXED
@@ -12,6 +14,7 @@ from noise.thesis.runs import (
     SHORT,
     THESIS,
     Case,
+    both,
     listing_peak_speed,
     listing_run,
     mean_torque,
@@ -22,6 +25,9 @@ from noise.thesis.runs import (
 )
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.run import simulate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["creak", "first_slip", "friction", "peaks", "silicone"]
 
@@ -34,8 +40,7 @@ def peaks() -> list[Row]:
     return [
         Row(
             "peak_sliding_speed", str(case), "rad/s", number(published),
-            listing=listing_peak_speed(case), exact=peak_speed(THESIS, case),
-            calibrated=peak_speed(CALIBRATED, case), digits=3,
+            listing=listing_peak_speed(case), **both(peak_speed, case), digits=3,
         )
         for speed, published in ((1.0, 24.0), (10.0, 18.0))
         for case in (Case(speed, 0.279, LONG), Case(speed, 0.279, SHORT))
@@ -55,8 +60,7 @@ def first_slip() -> list[Row]:
         ),
         Row(
             "peak_sliding_speed", f"{case}, all slips", "rad/s", number(45.0),
-            listing=listing_peak_speed(case), exact=peak_speed(THESIS, case),
-            calibrated=peak_speed(CALIBRATED, case), digits=3,
+            listing=listing_peak_speed(case), **both(peak_speed, case), digits=3,
         ),
     ]  # fmt: skip
 
@@ -70,72 +74,59 @@ def _first_peak(
     return float(sliding[start : start + length].max())
 
 
-def friction() -> list[Row]:
+def friction() -> Iterator[Row]:
     """Mean torque: hardly a function of speed, doubled and tripled by interference."""
-    rows = [
-        Row(
-            "mean_torque", f"{Case(1.0, interference, FIXED)}", "Nm", number(published),
-            exact=mean_torque(THESIS, Case(1.0, interference, FIXED)),
-            calibrated=mean_torque(CALIBRATED, Case(1.0, interference, FIXED)),
+    for interference, published in ((0.178, 4.0), (0.279, 8.0), (0.381, 30.0)):
+        case = Case(1.0, interference, FIXED)
+        yield Row(
+            "mean_torque", str(case), "Nm", number(published), **both(mean_torque, case),
             judged=Column.CALIBRATED, measured=True, tolerance=0.1, digits=3,
-        )
-        for interference, published in ((0.178, 4.0), (0.279, 8.0), (0.381, 30.0))
-    ]  # fmt: skip
-    for interference in (0.178, 0.279, 0.381):
-        spans = []
-        for material in (THESIS, CALIBRATED):
-            means = [mean_torque(material, Case(v, interference, FIXED)) for v in _SPEEDS]
-            spans.append(max(means) / min(means))
-        rows.append(
-            Row(
-                "mean_torque_ratio", f"{interference:g} mm, fixed clamp, largest over smallest, "
-                "1 to 13 rad/s", "1", number(1.0, "little variation"), exact=spans[0],
-                calibrated=spans[1], judged=Column.CALIBRATED, measured=True, tolerance=0.1,
-                digits=3,
-            )
         )  # fmt: skip
-    return rows
+    for interference in (0.178, 0.279, 0.381):
+        yield Row(
+            "mean_torque_ratio", f"{interference:g} mm, fixed clamp, largest over smallest, "
+            "1 to 13 rad/s", "1", number(1.0, "little variation"),
+            **both(_span, Case(1.0, interference, FIXED)), judged=Column.CALIBRATED,
+            measured=True, tolerance=0.1, digits=3,
+        )  # fmt: skip
 
 
-def silicone() -> list[Row]:
+def _span(material: str, case: Case) -> float:
+    """Largest over smallest mean torque of all speeds."""
+    means = [mean_torque(material, case.at(speed)) for speed in _SPEEDS]
+    return max(means) / min(means)
+
+
+def silicone() -> Iterator[Row]:
     """PDMS: no vibration from 0.25 to 17 rad/s, torque about tripled."""
-    rows = []
     for interference in (0.254, 0.381):
         for support in (LONG, FIXED):
             cases = [Case(v, interference, support) for v in _SILICONE_SPEEDS]
             place = f"PDMS, {cases[0].place()}"
             means = [mean_torque("PDMS", case) for case in (cases[0], cases[-1])]
-            rows += [
-                Row(
-                    "oscillation", f"{place}, 0.25 to 17 rad/s", "1", below(LEAST_OSCILLATION),
-                    calibrated=round(max(oscillation("PDMS", case) for case in cases), 9),
-                    judged=Column.CALIBRATED, measured=True, digits=1,
-                ),
-                Row(
-                    "mean_torque_ratio", f"{place}, 17 over 0.25 rad/s", "1",
-                    number(3.0, "nearly 3"), calibrated=means[1] / means[0],
-                    judged=Column.CALIBRATED, measured=True, tolerance=0.05, digits=3,
-                ),
-            ]  # fmt: skip
-    return rows
+            yield Row(
+                "oscillation", f"{place}, 0.25 to 17 rad/s", "1", below(LEAST_OSCILLATION),
+                calibrated=round(max(oscillation("PDMS", case) for case in cases), 9),
+                judged=Column.CALIBRATED, measured=True, digits=1,
+            )  # fmt: skip
+            yield Row(
+                "mean_torque_ratio", f"{place}, 17 over 0.25 rad/s", "1",
+                number(3.0, "nearly 3"), calibrated=means[1] / means[0],
+                judged=Column.CALIBRATED, measured=True, tolerance=0.05, digits=3,
+            )  # fmt: skip
 
 
 def creak() -> list[Row]:
     """Peak pressure of the creak falls by about 25 % with the stiffer support (5.2.3)."""
-    peak = {
-        support: float(
-            np.abs(
-                simulate(
-                    rig_of(CALIBRATED), 1.0, interference=0.381e-3, support_stiffness=support
-                ).pressure
-            ).max()
-        )
+    runs = (
+        simulate(rig_of(CALIBRATED), 1.0, interference=0.381e-3, support_stiffness=support)
         for support in (LONG, SHORT)
-    }
+    )
+    long, short = (float(np.abs(run.pressure).max()) for run in runs)
     return [
         Row(
             "peak_pressure_ratio", "0.381 mm, 1 rad/s, 3745 over 2214 Nm/rad", "1", number(0.75),
-            calibrated=peak[SHORT] / peak[LONG], judged=Column.CALIBRATED, measured=True,
+            calibrated=short / long, judged=Column.CALIBRATED, measured=True,
             tolerance=0.1, digits=2,
         )
     ]  # fmt: skip

@@ -1,1 +1,1 @@
-"""What a rig does over many runs: regimes, critical speeds, stability, sweeps."""
+"""Analysis over many runs: regimes, critical speeds, stability, sweeps, sound power."""

@@ -1,4 +1,4 @@
-"""The damping that just ends stick-slip, found by root search (6.3.2 does it by hand).
+"""Damping that just ends stick-slip, found by root search (6.3.2 does it by hand).
 
 Whether the contact sticks is yes or no, so the root is bracketed and halved. It need not be the
 only change: a little less damping can end stick-slip again where the clamp's phase is unlucky.
@@ -111,7 +111,7 @@ def largest_sticking(sticks: Callable[[float], bool], highest: float, tolerance:
     Returns
     -------
     float
-        0 if `sticks` is nowhere true, ``inf`` if it is at `highest`.
+        [Nm s/rad]; 0 if `sticks` is nowhere true, ``inf`` if it is at `highest`.
 
     Raises
     ------

@@ -12,35 +12,37 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from sim.analysis.regime import Regime, friction_regime
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
+from sim.timing import REGIME_RATE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from models.rig import Rig
+    from sim.motion import Motion
 
 __all__ = [
     "SPEEDS",
     "CriticalSpeeds",
     "critical_speeds",
+    "falls_below",
+    "motion_from_rest",
     "regime_at",
     "stick_slip_ranges",
+    "unbroken_ranges",
 ]
 
 SPEEDS = tuple(0.25 * i for i in range(1, 53))
 """From 0.25 to 13 rad/s, the range of the measurements."""
 
 _SECONDS = 1.0
-_RATE = 15e3
-"""Of the output [Hz]; it resolves stick, and the solution does not depend on it."""
 
 
 @dataclass(frozen=True)
@@ -139,15 +141,40 @@ def regime_at(
     'stick-slip'
     """
     return friction_regime(
-        simulate_motion(
-            rig,
-            ConstantSpeed(speed),
-            interference=interference,
-            support_stiffness=support_stiffness,
-            seconds=seconds,
-            rate=_RATE,
-            effects=activated(rig.effects, EFFECTS),
-        )
+        motion_from_rest(rig, speed, interference, support_stiffness, seconds=seconds)
+    )
+
+
+def motion_from_rest(
+    rig: Rig,
+    speed: float,
+    interference: float,
+    support_stiffness: float,
+    *,
+    seconds: float = _SECONDS,
+) -> Motion:
+    """Run a rig from rest at constant speed, as regimes are judged by.
+
+    Parameters, with their units, and errors are as for `regime_at`.
+
+    Returns
+    -------
+    Motion
+        At 15 kHz.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> motion_from_rest(load_material_rig("PDMS"), 1.0, 0.279e-3, 2214.0).torque.shape
+    (15000,)
+    """
+    return simulate_motion(
+        rig,
+        ConstantSpeed(speed),
+        interference=interference,
+        support_stiffness=support_stiffness,
+        seconds=seconds,
+        rate=REGIME_RATE,
     )
 
 
@@ -188,16 +215,63 @@ def stick_slip_ranges(
     ((3.0, 3.5), (5.0, 5.5))
     """
     _check(speeds)
-    ranges: list[tuple[float, float]] = []
-    stuck_before = False
-    for speed in speeds:
+
+    def sticks(speed: float) -> bool:
         regime = regime_at(rig, speed, interference, support_stiffness, seconds=seconds)
-        sticks = regime is Regime.STICK_SLIP
-        if sticks:
-            start = ranges.pop()[0] if stuck_before else speed
-            ranges.append((start, speed))
-        stuck_before = sticks
+        return regime is Regime.STICK_SLIP
+
+    return unbroken_ranges(speeds, map(sticks, speeds))
+
+
+def unbroken_ranges(
+    speeds: Iterable[float], happens: Iterable[bool]
+) -> tuple[tuple[float, float], ...]:
+    """Return the first and last speed of every unbroken range in which something happens [rad/s].
+
+    Parameters
+    ----------
+    speeds : iterable of float
+        Rising [rad/s].
+    happens : iterable of bool
+        At each of them.
+
+    Examples
+    --------
+    >>> unbroken_ranges((1.0, 2.0, 3.0, 4.0), (True, True, False, True))
+    ((1.0, 2.0), (4.0, 4.0))
+    """
+    ranges = []
+    for it_happens, together in groupby(zip(happens, speeds, strict=True), itemgetter(0)):
+        if it_happens:
+            inside = [speed for _, speed in together]
+            ranges.append((inside[0], inside[-1]))
     return tuple(ranges)
+
+
+def falls_below(
+    limit: float, speed: float, value: float, next_speed: float, next_value: float
+) -> float:
+    """Interpolate where a measure falls below its limit, on logarithmic scales [rad/s].
+
+    A measure that falls below a tenth of the limit counts as a tenth of it.
+
+    Parameters
+    ----------
+    limit : float
+        Such as `sim.analysis.regime.LEAST_STICK` [-].
+    speed, next_speed : float
+        [rad/s]
+    value, next_value : float
+        Of the measure there, above the limit and below it [-].
+
+    Examples
+    --------
+    >>> round(falls_below(0.01, 4.0, 0.02, 8.0, 0.005), 3)
+    5.657
+    """
+    after = max(next_value, 0.1 * limit)
+    share = math.log(value / limit) / math.log(value / after)
+    return float(speed * (next_speed / speed) ** share)
 
 
 def _check(speeds: Sequence[float]) -> None:

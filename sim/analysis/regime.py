@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from sim.motion import Motion
 
-__all__ = ["LEAST_OSCILLATION", "LEAST_STICK", "Regime", "friction_regime"]
+__all__ = ["LEAST_OSCILLATION", "LEAST_STICK", "Regime", "friction_regime", "stick_and_oscillation"]
 
 LEAST_STICK = 0.02
 """Stick-slip: the contact sticks for more than this share of the time."""
@@ -45,8 +46,37 @@ def friction_regime(motion: Motion) -> Regime:
     >>> friction_regime(simulate(load_material_rig("PDMS"), 5.0, seconds=0.1).motion).value
     'steady sliding'
     """
-    last = motion.since(motion.torque.size // 2)
-    mean = abs(float(np.mean(last.torque)))
-    if float(np.std(last.torque)) <= LEAST_OSCILLATION * mean:
+    stick, oscillation = stick_and_oscillation(motion)
+    if oscillation <= LEAST_OSCILLATION:
         return Regime.STEADY_SLIDING
-    return Regime.STICK_SLIP if float(np.mean(last.stuck)) > LEAST_STICK else Regime.QUASI_HARMONIC
+    return Regime.STICK_SLIP if stick > LEAST_STICK else Regime.QUASI_HARMONIC
+
+
+def stick_and_oscillation(motion: Motion) -> tuple[float, float]:
+    """Measure what the regimes are told by, on the last half of a motion.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    stick : float
+        Share of the time in which the contact sticks [-].
+    oscillation : float
+        Standard deviation of the torque over its mean [-]; infinite where that is zero.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> stick, oscillation = stick_and_oscillation(
+    ...     simulate(load_material_rig("PDMS"), 5.0, seconds=0.1).motion
+    ... )
+    >>> stick < LEAST_STICK, oscillation < LEAST_OSCILLATION
+    (True, True)
+    """
+    last = motion.since(motion.torque.size // 2)
+    deviation, mean = float(np.std(last.torque)), abs(float(np.mean(last.torque)))
+    oscillation = deviation / mean if mean > 0.0 else math.inf if deviation > 0.0 else 0.0
+    return float(np.mean(last.stuck)), oscillation

@@ -58,9 +58,9 @@ class Stability:
 
     Parameters
     ----------
-    growth : ndarray
+    growth : ndarray, shape (...)
         Largest real part of an eigenvalue [1/s]; positive where the vibration grows.
-    frequency : ndarray
+    frequency : ndarray, shape (...)
         Of that vibration [Hz].
     """
 
@@ -125,7 +125,7 @@ def steady_sliding(
     systems = packed_systems(rig, fit, support)
     acting = activated(rig.effects, library)
     contacts = _contacts(contact_hooks(acting, np.random.default_rng(0)), systems, v)
-    state = law.state(coefficients)
+    state = law.state()
     matrices = np.zeros((v.size, 4 + state.size, 4 + state.size))
     compiled: Any = linearised
     compiled(

@@ -1,4 +1,4 @@
-"""Thousands of operating conditions in one call, on all cores.
+"""Sweep over thousands of operating conditions in one call, on all cores.
 
 The plain model (true stick, constant torques, constant speed) needs nothing of Python between its
 runs: whole chunks of runs are one compiled call each. All other laws, effects and ways of turning

@@ -1,7 +1,7 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-calls
 # mypy: allow-untyped-decorators, no-warn-return-any
 # ruff: noqa: ANN001
-"""What a sweep keeps of each run: a few numbers, so that thousands of runs need no memory.
+"""Features that a sweep keeps of each run: a few numbers, so that thousands of runs need no memory.
 
 The plain model is solved in blocks that stay in the processor's cache; its slips and sticks are
 the solver's own. Elsewhere a run is in stick as `sim.motion.Motion.stuck` defines it, and a slip
@@ -115,6 +115,7 @@ def motion_features(motion: Motion) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (8,)
+        In the units of `FEATURES` [Hz, Nm, rad/s and -].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The lumped model at many conditions at once: `sim.bushing.lumped_bushing` over arrays.
+"""Lumped model at many conditions at once: `sim.bushing.lumped_bushing` over arrays.
 
 A sweep of the plain model takes a few microseconds a run, and building its numbers one by one
 takes longer. Between the given fits everything is linear in the interference, and at each of them

@@ -1,4 +1,4 @@
-"""What a sweep found: features by name, with the conditions that they belong to.
+"""Result of a sweep: features by name, with the conditions that they belong to.
 
 It is the dictionary of arrays that programs take, and knows beside it what a table or a picture of
 them needs.
@@ -44,7 +44,7 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
 
     Parameters
     ----------
-    features : mapping of str to ndarray
+    features : mapping of str to ndarray, shape (...)
         By `sim.analysis.sweep.FEATURES`.
     conditions : mapping of str to ndarray
         Of the same shape: ``rig``, ``speed`` [rad/s] or how the shaft turned, ``interference`` [m]

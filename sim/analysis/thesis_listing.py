@@ -1,4 +1,4 @@
-"""The program of the thesis's Appendix F, line by line, errors included.
+"""Program of the thesis's Appendix F, line by line, errors included.
 
 The published simulations came from it, so what it gives is what they can be compared with; the
 equations that it means to solve are solved exactly by `sim.solvers.stick_slip`. Every statement
@@ -43,19 +43,19 @@ _CLAMP_INERTIA, _ELASTOMER_INERTIA = 1 / 1200, 1 / 65000
 
 @dataclass(frozen=True, eq=False)
 class ListingRun:
-    """What the program writes, one row a step; all arrays have shape (n,).
+    """What the program writes, one row a step.
 
     Parameters
     ----------
-    time : ndarray
+    time : ndarray, shape (n,)
         [s]
-    torque : ndarray
+    torque : ndarray, shape (n,)
         In the elastomer, of the row before (lines 320 and 650) [Nm].
-    interface_angle, interface_speed : ndarray
+    interface_angle, interface_speed : ndarray, shape (n,)
         Of the bushing's surface [rad], [rad/s].
-    relative_speed : ndarray
+    relative_speed : ndarray, shape (n,)
         Of the bushing's surface less the shaft's [rad/s]; negative while it slips.
-    stuck : ndarray of bool
+    stuck : ndarray of bool, shape (n,)
         Which of the two loops wrote the row.
     """
 

@@ -1,4 +1,4 @@
-"""What a rig does beyond its friction law, one effect a file.
+"""Effects: all that a rig does beyond its friction law, one effect a file.
 
 A new effect is a file with an ``EFFECT`` that is named as the file is; a user's own is a file
 anywhere, read by `load_effects`.

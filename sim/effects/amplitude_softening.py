@@ -19,48 +19,29 @@ torque rises with the departure everywhere as s <= 0.8.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import ELASTOMER_TORQUE, HOOK_SIGNATURE, STIFFNESS, TWIST
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
 __all__ = ["EFFECT"]
-
-_FORMS = ("rational", "exponential", "quadratic")
-
-
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
-    return np.array(
-        [_FORMS.index(form), values["share"], values["twist"], values["averaging_time"]]
-    )
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):
     mean = state[0]
     departure = context[TWIST] - mean
-    state_rates[0] = departure / values[3]
-    x = abs(departure) / values[2]
-    if values[0] == 0.0:
+    state_rates[0] = departure / values[2]
+    x = abs(departure) / values[1]
+    if values[3] == 0.0:
         g = x / (1.0 + x)
-    elif values[0] == 1.0:
+    elif values[3] == 1.0:
         g = -math.expm1(-x)
     else:
         g = x * x / (1.0 + x * x)
-    lost = values[1] * g * contact[STIFFNESS]
+    lost = values[0] * g * contact[STIFFNESS]
     contact[STIFFNESS] -= lost
     contact[ELASTOMER_TORQUE] += lost * mean
 
@@ -68,7 +49,7 @@ def _contact(context, values, state, state_rates, contact):
 EFFECT = Effect(
     name="amplitude_softening",
     stage=Stage.FRICTION,
-    forms=_FORMS,
+    forms=("rational", "exponential", "quadratic"),
     parameters={
         "share": Parameter(0.3, "", 0.0, 0.8, "s: of the stiffness lost at large amplitude"),
         "twist": Parameter(4e-3, "rad", 1e-5, 1.0, "theta_r: amplitude over which it is lost"),
@@ -76,7 +57,6 @@ EFFECT = Effect(
     },
     strength="share",
     contact=_contact,
-    pack=_pack,
     n_states=1,
 )
 """Stiffness of the elastomer that falls with the amplitude of its twist."""

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
-from sim.channel_level import channel_level
+from sim.channels import channel_level
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 

@@ -18,11 +18,12 @@ At amount zero there is none of them. The torque is what it was: the contact doe
 With the clamp bolted to the baseplate there are no beams, and nothing changes. The defaults of r
 and m are assumed: a third of the first torsional mode's constant, half of a beam's mass.
 
->>> from models.radiation.impulse_responses import Response
+>>> from models.radiation.impulse_responses import ImpulseResponses
 >>> none, one = np.zeros(1), np.ones(1)
 >>> values = {"amount": 1.0, "frequency": 4500.0, "damping_ratio": 0.01, "constant": 2.0,
 ...           "anchor_mass": 0.04}
->>> rung = _chain(Response(96e3, none, none, one, one), "single", values, np.random.default_rng(0))
+>>> plain = ImpulseResponses(96e3, none, none, one, one)
+>>> rung = _chain(plain, "single", values, np.random.default_rng(0))
 >>> tone = np.exp(-2j * np.pi * 4500.0 / 96e3 * np.arange(rung.torque_to_acceleration.size))
 >>> round(float(abs(rung.torque_to_acceleration @ tone)), 1)  # constant / (2 zeta)
 100.0
@@ -36,12 +37,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import fftconvolve
 
-from sim.chain import HIGHEST_SHARE, resonance, total
+from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
@@ -55,7 +56,9 @@ _HIGHEST = 20e3
 _LONGEST_LADDER = 12
 
 
-def _chain(paths: Response, form: str, values: Values, _rng: np.random.Generator) -> Response:
+def _chain(
+    paths: ImpulseResponses, form: str, values: Values, _rng: np.random.Generator
+) -> ImpulseResponses:
     if not np.any(paths.pulse_to_acceleration):
         return paths  # the clamp is bolted down
     accelerations, forces = [paths.torque_to_acceleration], []
@@ -68,11 +71,11 @@ def _chain(paths: Response, form: str, values: Values, _rng: np.random.Generator
         forces.append(values["anchor_mass"] * constant * resonance([0.0, 0.0, 1.0], *mode))
     if not forces:
         return paths
-    heard = fftconvolve(total(forces), paths.pulse_to_pressure)
+    heard = fftconvolve(padded_sum(forces), paths.pulse_to_pressure)
     return replace(
         paths,
-        torque_to_acceleration=total(accelerations),
-        torque_to_pressure=total([paths.torque_to_pressure, heard]),
+        torque_to_acceleration=padded_sum(accelerations),
+        torque_to_pressure=padded_sum([paths.torque_to_pressure, heard]),
     )
 
 

@@ -1,4 +1,4 @@
-"""Channels that do not share one clock.
+"""Delay of channels that do not share one clock.
 
 A channel reads x(t - d(t)), with D the delay times the channel's share:
 
@@ -32,6 +32,7 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 from scipy.signal import lfilter
 
+from sim.channels import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -48,15 +49,11 @@ _DEGREE = 5
 def _sensors(
     signals: Signals, rate: float, form: str, values: Values, rng: np.random.Generator
 ) -> Signals:
-    read = {}
-    for name, signal in signals.items():
-        delay = values["delay"] * values.get(name.partition("_")[0], 0.0)
-        if delay == 0.0:
-            read[name] = signal
-        else:
-            course = _course(signal.size, form, values["bandwidth"] / rate, rng)
-            read[name] = _late(signal, delay * rate * course)
-    return read
+    def delayed(signal: NDArray[np.float64], delay: float) -> NDArray[np.float64]:
+        course = _course(signal.size, form, values["bandwidth"] / rate, rng)
+        return _late(signal, delay * rate * course)
+
+    return change_channels(signals, values, "delay", delayed)
 
 
 def _course(n: int, form: str, bandwidth: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -84,10 +81,7 @@ EFFECT = Effect(
     parameters={
         "delay": Parameter(1e-4, "s", 0.0, 0.05, "constant, at the end, or rms; by the form"),
         "bandwidth": Parameter(30.0, "Hz", 0.1, 500.0, "3 dB corner of the jitter"),
-        "acceleration": Parameter(1.0, "", -1.0, 1.0, "share of the delay on accelerations"),
-        "pressure": Parameter(1.0, "", -1.0, 1.0, "share of the delay on pressures"),
-        "torque": Parameter(0.0, "", -1.0, 1.0, "share of the delay on torques"),
-        "angle": Parameter(0.0, "", -1.0, 1.0, "share of the delay on angles"),
+        **channel_shares("delay", acceleration=1.0, pressure=1.0, torque=0.0, angle=0.0),
     },
     strength="delay",
     sensors=_sensors,

@@ -1,4 +1,4 @@
-"""An amplifier that runs out of voltage before the signal has reached its peak.
+"""Clipping: an amplifier runs out of voltage before the signal has reached its peak.
 
 With the largest magnitude M of a channel and the magnitude m of its mean, the peak is read as
 M - a (M - m), in every form, so that one amount means one overload whatever the form, the level
@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import brentq
 
+from sim.channels import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -40,14 +41,14 @@ __all__ = ["EFFECT"]
 def _sensors(
     signals: Signals, _rate: float, form: str, values: Values, _rng: np.random.Generator
 ) -> Signals:
-    read = {}
-    for name, signal in signals.items():
-        amount = values["amount"] * values.get(name.partition("_")[0], 0.0)
-        read[name] = _clipped(signal, form, amount) if amount > 0.0 and signal.any() else signal
-    return read
+    return change_channels(
+        signals, values, "amount", lambda signal, amount: _clipped(signal, form, amount)
+    )
 
 
 def _clipped(signal: NDArray[np.float64], form: str, amount: float) -> NDArray[np.float64]:
+    if not signal.any():
+        return signal
     peak = float(signal[np.argmax(np.abs(signal))])
     cut = amount * (1.0 - abs(float(np.mean(signal)) / peak))
     if form == "soft":
@@ -71,9 +72,7 @@ EFFECT = Effect(
     forms=("hard", "soft", "asymmetric"),
     parameters={
         "amount": Parameter(0.3, "", 0.0, 0.95, "share of the peak above the mean that is cut off"),
-        "acceleration": Parameter(1.0, "", 0.0, 1.0, "share of the amount on accelerations"),
-        "pressure": Parameter(1.0, "", 0.0, 1.0, "share of the amount on pressures"),
-        "torque": Parameter(1.0, "", 0.0, 1.0, "share of the amount on torques"),
+        **channel_shares("amount", low=0.0, acceleration=1.0, pressure=1.0, torque=1.0),
     },
     strength="amount",
     sensors=_sensors,

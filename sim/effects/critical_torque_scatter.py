@@ -1,4 +1,4 @@
-r"""No two sticks break at the same torque.
+r"""Scatter of the critical torque: no two sticks break at the same torque.
 
 .. math::
     T_{crit} = T_{kin} + (T_{crit,0} - T_{kin}) \max(0, 1 + s z_i)
@@ -22,22 +22,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from sim.contact import (
-    CRITICAL,
-    HOOK_SIGNATURE,
-    KINETIC,
-    SLIDING_SPEED,
-    STICK_TIME,
-    STICKS,
-    TIME,
-)
+from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED, STICKS, slipless
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
+
+    from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
 
@@ -46,7 +38,7 @@ _N_DRAWS = 4096
 _HEADER = 1
 
 
-def _pack(form: str, values: Mapping[str, float], rng: np.random.Generator) -> NDArray[np.float64]:
+def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.float64]:
     if form == "uniform":
         z = rng.uniform(-math.sqrt(3.0), math.sqrt(3.0), _N_DRAWS)
     else:
@@ -64,8 +56,7 @@ def _pack(form: str, values: Mapping[str, float], rng: np.random.Generator) -> N
 def _contact(context, values, state, state_rates, contact):
     sticks, patches = context[STICKS], state[0] / values[0]
     speed = abs(context[SLIDING_SPEED])
-    # Not yet slipped since the start, or a law that knows no slips.
-    unslipped = sticks == 0.0 and context[STICK_TIME] == context[TIME]
+    unslipped = slipless(context)
     state_rates[0] = speed if unslipped else 0.0
     place = patches if unslipped else sticks
     i = int(place)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import LawSpec
     from sim.motion import Motion
     from sim.parameters import Parameter
@@ -35,7 +35,9 @@ DriveFunction = Callable[
 ]
 ForceFunction = Callable[["Motion", str, Values], "NDArray[np.float64]"]
 SensorFunction = Callable[[Signals, float, str, Values, "np.random.Generator"], Signals]
-ChainFunction = Callable[["Response", str, Values, "np.random.Generator"], "Response"]
+ChainFunction = Callable[
+    ["ImpulseResponses", str, Values, "np.random.Generator"], "ImpulseResponses"
+]
 PackFunction = Callable[[str, Values, "np.random.Generator"], "NDArray[np.float64]"]
 
 
@@ -67,7 +69,8 @@ class Effect:
     contact : compiled function, optional
         Changes the contact while the motion is solved, by `sim.contact.HOOK_SIGNATURE`.
     pack : callable, optional
-        ``pack(form, values, rng)``: the numbers that `contact` reads.
+        ``pack(form, values, rng)``: the numbers that `contact` reads. By default the values of all
+        parameters in their order, and after them the place of the form among `forms`.
     n_states : int
         Inner states of `contact`, zero at the start.
     force : callable, optional
@@ -121,6 +124,15 @@ class ActiveEffect:
     def is_off(self) -> bool:
         """Whether its strength is zero."""
         return self.values[self.effect.strength] == 0.0
+
+    def packed(self, rng: np.random.Generator) -> NDArray[np.float64]:
+        """Return the numbers that its compiled function reads, shape (n,), units by the effect."""
+        effect = self.effect
+        if effect.pack is not None:
+            return effect.pack(self.form, self.values, rng)
+        import numpy as np
+
+        return np.array([*self.values.values(), effect.forms.index(self.form)])
 
 
 def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list[ActiveEffect]:

@@ -32,9 +32,9 @@ from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
+
+    from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
 
@@ -63,11 +63,7 @@ def _half_space(area: float) -> NDArray[np.float64]:
     return np.asarray(weights / (area * (_STEEL_EFFUSIVITY + _RUBBER_EFFUSIVITY)))
 
 
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
+def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.float64]:
     area = values["area"]
     if form == "lumped":
         rates = np.array([1.0 / values["time_constant"]])

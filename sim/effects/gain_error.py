@@ -1,4 +1,4 @@
-"""A channel whose sensitivity is not what it is taken for.
+"""Gain error: a channel whose sensitivity is not what it is taken for.
 
 With e the error times the channel's share:
 
@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import butter, lfilter, lfilter_zi
 
+from sim.channels import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -42,17 +43,13 @@ __all__ = ["EFFECT"]
 def _sensors(
     signals: Signals, rate: float, form: str, values: Values, _rng: np.random.Generator
 ) -> Signals:
-    read = {}
-    for name, signal in signals.items():
-        error = values["error"] * values.get(name.partition("_")[0], 0.0)
-        if error == 0.0:
-            read[name] = signal
-        else:
-            read[name] = signal + error * _misread(signal, form, values["corner"] / rate)
-    return read
+    def misread(signal: NDArray[np.float64], error: float) -> NDArray[np.float64]:
+        return signal + error * _excess(signal, form, values["corner"] / rate)
+
+    return change_channels(signals, values, "error", misread)
 
 
-def _misread(signal: NDArray[np.float64], form: str, corner: float) -> NDArray[np.float64]:
+def _excess(signal: NDArray[np.float64], form: str, corner: float) -> NDArray[np.float64]:
     """Return what is read too much at an error of one; `corner` in cycles a sample."""
     if form == "drift":
         return signal * np.linspace(0.0, 1.0, signal.size)
@@ -70,10 +67,7 @@ EFFECT = Effect(
     parameters={
         "error": Parameter(0.1, "", -0.9, 2.0, "relative error of the gain"),
         "corner": Parameter(1e3, "Hz", 10.0, 20e3, "of the shelf"),
-        "acceleration": Parameter(1.0, "", -1.0, 1.0, "share of the error on accelerations"),
-        "pressure": Parameter(1.0, "", -1.0, 1.0, "share of the error on pressures"),
-        "torque": Parameter(1.0, "", -1.0, 1.0, "share of the error on torques"),
-        "angle": Parameter(0.0, "", -1.0, 1.0, "share of the error on angles"),
+        **channel_shares("error", acceleration=1.0, pressure=1.0, torque=1.0, angle=0.0),
     },
     strength="error",
     sensors=_sensors,

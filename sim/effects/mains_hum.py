@@ -1,4 +1,4 @@
-"""What cables pick up from the mains.
+"""Mains hum: the disturbance that cables pick up from the mains.
 
 A periodic signal c h(2 pi f t + phi) is added to each channel, where f is the frequency of the
 mains, c the channel's rms, and phi the generator's, as every cable lies its own way. All forms
@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.channel_level import channel_level
+from sim.channels import channel_level
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 

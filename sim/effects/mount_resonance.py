@@ -1,4 +1,4 @@
-"""A sensor on a soft mount moves by itself.
+"""Resonance of a sensor on a soft mount, which moves by itself.
 
 With G(s) = s**2 / (s**2 + 2 zeta omega s + omega**2), the reading is H(s) times the true signal:
 
@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
+from sim.channels import change_channels, channel_shares
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -54,15 +55,11 @@ _SEEN = 0.45
 def _sensors(
     signals: Signals, rate: float, form: str, values: Values, _rng: np.random.Generator
 ) -> Signals:
-    read = {}
-    for name, signal in signals.items():
-        amount = values["amount"] * values.get(name.partition("_")[0], 0.0)
-        if amount == 0.0:
-            read[name] = signal
-        else:
-            lost = _lost(signal, form, values["frequency"] / rate, values["damping_ratio"])
-            read[name] = signal - amount * lost
-    return read
+    def read(signal: NDArray[np.float64], amount: float) -> NDArray[np.float64]:
+        lost = _lost(signal, form, values["frequency"] / rate, values["damping_ratio"])
+        return signal - amount * lost
+
+    return change_channels(signals, values, "amount", read)
 
 
 def _lost(
@@ -102,9 +99,7 @@ EFFECT = Effect(
         "amount": Parameter(1.0, "", 0.0, 1.0, "participation of the mount in what is read"),
         "frequency": Parameter(6e3, "Hz", 200.0, 30e3, "of the sensor on its mount"),
         "damping_ratio": Parameter(0.03, "", 1e-3, 1.0, "of that resonance"),
-        "acceleration": Parameter(1.0, "", 0.0, 1.0, "share of the amount on accelerations"),
-        "pressure": Parameter(0.0, "", 0.0, 1.0, "share of the amount on pressures"),
-        "torque": Parameter(0.0, "", 0.0, 1.0, "share of the amount on torques"),
+        **channel_shares("amount", low=0.0, acceleration=1.0, pressure=0.0, torque=0.0),
     },
     strength="amount",
     sensors=_sensors,

@@ -23,34 +23,17 @@ Limits: s = 0 is true stick; s -> 1 never breaks, but passes into sliding at T_c
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CREEP, CRITICAL, HOOK_SIGNATURE, SHAFT_SPEED, TORQUE
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
 __all__ = ["EFFECT"]
-
-_FORMS = ("power", "exponential", "mindlin")
 
 _MOST = 0.999
 """Of r, so that the creep rises with a slope that the integration can follow."""
-
-
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
-    return np.array([_FORMS.index(form), values["share"], values["exponent"]])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
@@ -58,19 +41,19 @@ def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
     if context[TORQUE] * context[SHAFT_SPEED] <= 0.0:
         return
     r = min(abs(context[TORQUE]) / contact[CRITICAL], 1.0)
-    if values[0] == 0.0:
-        f = r ** values[2]
-    elif values[0] == 1.0:
-        f = math.expm1(values[2] * r) / math.expm1(values[2])
+    if values[2] == 0.0:
+        f = r ** values[1]
+    elif values[2] == 1.0:
+        f = math.expm1(values[1] * r) / math.expm1(values[1])
     else:
         f = 1.0 - (1.0 - _MOST * r) ** (1.0 / 3.0)
-    contact[CREEP] += values[1] * f * (1.0 - contact[CREEP])
+    contact[CREEP] += values[0] * f * (1.0 - contact[CREEP])
 
 
 EFFECT = Effect(
     name="partial_slip",
     stage=Stage.FRICTION,
-    forms=_FORMS,
+    forms=("power", "exponential", "mindlin"),
     parameters={
         "share": Parameter(
             0.5,
@@ -83,6 +66,5 @@ EFFECT = Effect(
     },
     strength="share",
     contact=_contact,
-    pack=_pack,
 )
 """Gradual release of the contact during stick."""

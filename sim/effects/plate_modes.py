@@ -15,10 +15,11 @@ each of peak 1, so that amount a = 1 doubles the sound at a lonely resonance (6 
 
 At amount zero there is none of them.
 
->>> from models.radiation.impulse_responses import Response
+>>> from models.radiation.impulse_responses import ImpulseResponses
 >>> one = np.ones(1)
 >>> values = {"amount": 1.0, "frequency": 1000.0, "damping_ratio": 0.015, "spacing": 400.0}
->>> rung = _chain(Response(96e3, one, one, one, one), "single", values, np.random.default_rng(0))
+>>> plain = ImpulseResponses(96e3, one, one, one, one)
+>>> rung = _chain(plain, "single", values, np.random.default_rng(0))
 >>> tone = np.exp(-2j * np.pi * 1000.0 / 96e3 * np.arange(rung.torque_to_pressure.size))
 >>> round(float(abs(rung.torque_to_pressure @ tone)), 3)
 2.0
@@ -30,14 +31,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.chain import HIGHEST_SHARE, resonance, through, total
+from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
@@ -46,7 +47,9 @@ _HIGHEST = 16e3
 """[Hz], as for the plate's own modes."""
 
 
-def _chain(paths: Response, form: str, values: Values, rng: np.random.Generator) -> Response:
+def _chain(
+    paths: ImpulseResponses, form: str, values: Values, rng: np.random.Generator
+) -> ImpulseResponses:
     frequencies, senses = _resonances(form, values, rng)
     taps = [np.ones(1)]
     for frequency, sense in zip(frequencies.tolist(), senses.tolist(), strict=True):
@@ -55,7 +58,7 @@ def _chain(paths: Response, form: str, values: Values, rng: np.random.Generator)
         damping = values["damping_ratio"]
         ringing = resonance([0.0, 2.0 * damping, 0.0], frequency, damping, paths.rate)
         taps.append(values["amount"] * sense * ringing)
-    return through(paths, total(taps)) if len(taps) > 1 else paths
+    return filter_pressure(paths, padded_sum(taps)) if len(taps) > 1 else paths
 
 
 def _resonances(

@@ -15,10 +15,11 @@ alpha = 1 - exp(-0.161 V / (T S)) (Eyring 1930, J. Acoust. Soc. Am. 1, 217), at 
 Levels are relative to the direct sound as it is, which neither its directivity nor its distance in
 the rig changes: `distance` is the room's own. At amount zero there is no room.
 
->>> from models.radiation.impulse_responses import Response
+>>> from models.radiation.impulse_responses import ImpulseResponses
 >>> one = np.ones(1)
 >>> values = {name: parameter.default for name, parameter in EFFECT.parameters.items()}
->>> heard = _chain(Response(96e3, one, one, one, one), "floor", values, np.random.default_rng(0))
+>>> plain = ImpulseResponses(96e3, one, one, one, one)
+>>> heard = _chain(plain, "floor", values, np.random.default_rng(0))
 >>> float(heard.torque_to_pressure[0]), int(heard.torque_to_pressure[1:].argmax()) + 1
 (1.0, 503)
 """
@@ -31,14 +32,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.radiation.rayleigh import SOUND_SPEED
-from sim.chain import through
+from sim.chain import filter_pressure
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
@@ -53,7 +54,9 @@ _EARLY = 0.1
 """Reflections of the shoebox are followed so long after the direct sound [s]."""
 
 
-def _chain(paths: Response, form: str, values: Values, rng: np.random.Generator) -> Response:
+def _chain(
+    paths: ImpulseResponses, form: str, values: Values, rng: np.random.Generator
+) -> ImpulseResponses:
     if form == "diffuse":
         reflections = _tail(values, paths.rate, rng)
     else:
@@ -61,7 +64,7 @@ def _chain(paths: Response, form: str, values: Values, rng: np.random.Generator)
         reflections = _echoes(length - values["distance"], gain, paths.rate)
     reflections *= values["amount"]
     reflections[0] += 1.0
-    return through(paths, reflections)
+    return filter_pressure(paths, reflections)
 
 
 def _surface(values: Values) -> tuple[float, float, float]:

@@ -32,9 +32,9 @@ from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
+
+    from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
 
@@ -44,11 +44,7 @@ _HIGHEST = 2.0 * math.pi * 8e3
 """[rad/s]"""
 
 
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
+def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.float64]:
     stiffness = 1.0 / values["compliance"]
     inertia = max(values["inertia"], stiffness / _HIGHEST**2)
     damping = 2.0 * values["damping_ratio"] * math.sqrt(stiffness * inertia)

@@ -1,4 +1,4 @@
-"""The shaft does not turn evenly.
+"""Fluctuation of the shaft's speed: it does not turn evenly.
 
 The speed becomes Omega(t) (1 + d q(t)), where d is the depth and q has the rms of a sine of
 amplitude one, whatever the form, so that one depth means one degree of irregularity; that of a

@@ -20,65 +20,37 @@ Limits: s = 0 is the plain model; s = 1 breaks at T_kin at once and at T_crit af
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
-from sim.contact import (
-    CRITICAL,
-    HOOK_SIGNATURE,
-    KINETIC,
-    SLIDING_SPEED,
-    STICK_TIME,
-    STICKS,
-    TIME,
-)
+from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED, STICK_TIME, slipless
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
 __all__ = ["EFFECT"]
-
-_FORMS = ("exponential", "logarithmic", "power")
-
-
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
-    return np.array(
-        [_FORMS.index(form), values["share"], values["ageing_time"], values["renewal_angle"]]
-    )
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):
     stick_time, own_age = max(context[STICK_TIME], 0.0), max(state[0], 0.0)
-    # Not yet slipped since the start, or a law that knows no slips.
-    unslipped = context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]
+    unslipped = slipless(context)
     age = own_age if unslipped else stick_time
-    renewal = 1.0 - abs(context[SLIDING_SPEED]) * own_age / values[3]
+    renewal = 1.0 - abs(context[SLIDING_SPEED]) * own_age / values[2]
     state_rates[0] = renewal if unslipped else 0.0
-    x = age / values[2]
-    if values[0] == 0.0:
+    x = age / values[1]
+    if values[3] == 0.0:
         f = -math.expm1(-x)
-    elif values[0] == 1.0:
+    elif values[3] == 1.0:
         f = min(math.log1p(x) / math.log(11.0), 1.0)
     else:
         f = 1.0 - 1.0 / math.sqrt(1.0 + x)
-    contact[CRITICAL] -= values[1] * (1.0 - f) * (contact[CRITICAL] - contact[KINETIC])
+    contact[CRITICAL] -= values[0] * (1.0 - f) * (contact[CRITICAL] - contact[KINETIC])
 
 
 EFFECT = Effect(
     name="static_ageing",
     stage=Stage.FRICTION,
-    forms=_FORMS,
+    forms=("exponential", "logarithmic", "power"),
     parameters={
         "share": Parameter(
             1.0, "", 0.0, 1.0, "s: of T_crit - T_kin that must be regained in each stick"
@@ -90,7 +62,6 @@ EFFECT = Effect(
     },
     strength="share",
     contact=_contact,
-    pack=_pack,
     n_states=1,
 )
 """Critical torque that grows with the time of stick."""

@@ -1,4 +1,4 @@
-r"""Rubber comes off onto the shaft: more torque, less of a drop, and random friction.
+r"""Film of rubber on the shaft: more torque, less of a drop, and random friction.
 
 .. math::
     \chi &= \chi_0 + (1 - \chi_0) f(x), \quad x = \int |v| \, dt / \varphi_f, \qquad
@@ -30,9 +30,9 @@ from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
+
+    from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
 
@@ -58,12 +58,8 @@ def _noise(rng: np.random.Generator) -> NDArray[np.float64]:
     return np.asarray(noise / noise.std())
 
 
-def _pack(form: str, values: Mapping[str, float], rng: np.random.Generator) -> NDArray[np.float64]:
-    header = [
-        _FORMS.index(form), values["coverage"], values["torque_ratio"], values["drop_left"],
-        values["roughness"], values["growth_angle"], values["formed"],
-    ]  # fmt: skip
-    return np.concatenate([header, _noise(rng)])
+def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.float64]:
+    return np.concatenate([[_FORMS.index(form), *values.values()], _noise(rng)])
 
 
 @njit(cache=True, error_model="numpy")

@@ -17,43 +17,26 @@ surface follows the shaft faster than any bearable number of steps, and the run 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
 __all__ = ["EFFECT"]
-
-_FORMS = ("linear", "saturating", "logarithmic")
-
-
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
-    return np.array([_FORMS.index(form), values["gain"], values["speed"]])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
-    x = abs(context[SLIDING_SPEED]) / values[2]
-    if values[0] == 0.0:
+    x = abs(context[SLIDING_SPEED]) / values[1]
+    if values[2] == 0.0:
         f = x
-    elif values[0] == 1.0:
+    elif values[2] == 1.0:
         f = math.expm1(-x) / math.expm1(-1.0)
     else:
         f = math.log1p(10.0 * x) / math.log(11.0)
-    gained = values[1] * f * contact[KINETIC]
+    gained = values[0] * f * contact[KINETIC]
     contact[KINETIC] += gained
     contact[CRITICAL] += gained
 
@@ -61,13 +44,12 @@ def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
 EFFECT = Effect(
     name="velocity_strengthening",
     stage=Stage.FRICTION,
-    forms=_FORMS,
+    forms=("linear", "saturating", "logarithmic"),
     parameters={
         "gain": Parameter(0.1, "", 0.0, 5.0, "s: share that the kinetic torque gains at `speed`"),
         "speed": Parameter(10.0, "rad/s", 1e-2, 1e3, "v_r: speed at which it has gained that"),
     },
     strength="gain",
     contact=_contact,
-    pack=_pack,
 )
 """Kinetic torque that rises with sliding speed."""

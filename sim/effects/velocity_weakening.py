@@ -16,43 +16,26 @@ Limits: s = 0 is the plain model; at rest nothing changes; at high speed the sha
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
 __all__ = ["EFFECT"]
-
-_FORMS = ("exponential", "rational", "gaussian")
-
-
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
-    return np.array([_FORMS.index(form), values["share"], values["speed"]])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
-    x = abs(context[SLIDING_SPEED]) / values[2]
-    if values[0] == 0.0:
+    x = abs(context[SLIDING_SPEED]) / values[1]
+    if values[2] == 0.0:
         f = -math.expm1(-x)
-    elif values[0] == 1.0:
+    elif values[2] == 1.0:
         f = x / (1.0 + x)
     else:
         f = -math.expm1(-x * x)
-    lost = values[1] * f * contact[KINETIC]
+    lost = values[0] * f * contact[KINETIC]
     contact[KINETIC] -= lost
     contact[CRITICAL] -= lost
 
@@ -60,13 +43,12 @@ def _contact(context, values, state, state_rates, contact):  # noqa: ARG001
 EFFECT = Effect(
     name="velocity_weakening",
     stage=Stage.FRICTION,
-    forms=_FORMS,
+    forms=("exponential", "rational", "gaussian"),
     parameters={
         "share": Parameter(0.1, "", 0.0, 0.9, "s: share of the kinetic torque lost at high speed"),
         "speed": Parameter(10.0, "rad/s", 1e-2, 1e3, "v_w: speed over which it is lost"),
     },
     strength="share",
     contact=_contact,
-    pack=_pack,
 )
 """Kinetic torque that falls with sliding speed."""

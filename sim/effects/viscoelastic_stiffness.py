@@ -27,9 +27,9 @@ from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import NDArray
+
+    from sim.effects.effect import Values
 
 __all__ = ["EFFECT"]
 
@@ -39,11 +39,7 @@ _SHORTEST = 20e-6
 """[s]"""
 
 
-def _pack(
-    form: str,
-    values: Mapping[str, float],
-    rng: np.random.Generator,  # noqa: ARG001
-) -> NDArray[np.float64]:
+def _pack(form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.float64]:
     n = _BRANCHES[form]
     times = values["relaxation_time"] * values["spread"] ** (np.arange(n) - 0.5 * (n - 1))
     shares = times ** -values["exponent"] if form == "fractional" else np.ones(n)

@@ -21,18 +21,13 @@ rest of t, a contact much stiffer than T_crit / D has held T_kin + (T_crit - T_k
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import FASTEST, shear_speed
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS, FASTEST, shear_speed
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 __all__ = ["LAW"]
 
@@ -43,21 +38,15 @@ _YIELD = 0.7
 """Share of its strength up to which the contact does not slip."""
 
 _PARAMETERS = {
+    **BRISTLE_PARAMETERS,
     "contact_stiffness_per_torque": Parameter(
         3000.0, "1/rad", 1.0, 1e4, "K / T_kin: shear stiffness of the contact"
-    ),
-    "contact_damping_per_torque": Parameter(
-        9e-5, "s/rad", 0.0, 1e-2, "sigma / T_kin: damping of the contact's shear"
     ),
     "renewal_angle": Parameter(
         2e-4, "rad", 1e-5, 1.0, "D: slip distance over which the contact is renewed"
     ),
     "ageing_time": Parameter(1e-3, "s", 1e-5, 1e6, "tau: time in which strength is regained"),
 }
-
-
-def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    return np.array([0.0, _LONG_REST])
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
@@ -79,6 +68,6 @@ LAW = FrictionLaw(
     name="ageing",
     parameters=_PARAMETERS,
     torque=_torque,
-    initial_state=_initial_state,
+    rest=(0.0, _LONG_REST),
     tolerance=1e-7,
 )

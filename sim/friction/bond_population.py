@@ -21,18 +21,13 @@ torque relaxes; at high speed nothing is, and T = T_r + eta v.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.friction.shared.bristle import FASTEST, shear_speed
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 __all__ = ["LAW"]
 
@@ -51,10 +46,6 @@ _PARAMETERS = {
         0.0125, "s/rad", 0.0, 0.2, "eta / T_kin: rise of the torque with speed"
     ),
 }
-
-
-def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    return np.array([1.0, 0.0, 0.0])
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
@@ -77,6 +68,6 @@ LAW = FrictionLaw(
     name="bond_population",
     parameters=_PARAMETERS,
     torque=_torque,
-    initial_state=_initial_state,
+    rest=(1.0, 0.0, 0.0),
     tolerance=1e-7,
 )

@@ -21,17 +21,13 @@ constant T_kin; at rest for long, T may rise to T_crit and the share beta of T_k
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 __all__ = ["LAW"]
 
@@ -39,11 +35,9 @@ _LONG_REST = 1.0
 """Age of the contact at the start [s]."""
 
 _PARAMETERS = {
+    **BRISTLE_PARAMETERS,
     "contact_stiffness_per_torque": Parameter(
         1700.0, "1/rad", 1.0, 5e3, "K / T_kin: shear stiffness of the contact"
-    ),
-    "contact_damping_per_torque": Parameter(
-        9e-5, "s/rad", 0.0, 1e-2, "sigma / T_kin: damping of the contact's shear"
     ),
     "renewal_angle": Parameter(
         4e-4, "rad", 2e-5, 1.0, "D: sliding distance over which the contact is renewed"
@@ -55,10 +49,6 @@ _PARAMETERS = {
     "weakening_speed": Parameter(20.0, "rad/s", 1e-3, 1e4, "v_w: speed over which it fades"),
     "weakening_exponent": Parameter(1.0, "", 1.0, 4.0, "n: 1 falls at once, 2 as a Gaussian"),
 }
-
-
-def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    return np.array([0.0, _LONG_REST])
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
@@ -86,6 +76,6 @@ LAW = FrictionLaw(
     name="contact_with_memory",
     parameters=_PARAMETERS,
     torque=_torque,
-    initial_state=_initial_state,
+    rest=(0.0, _LONG_REST),
     tolerance=1e-7,
 )

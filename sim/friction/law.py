@@ -36,11 +36,11 @@ class FrictionLaw:
     pack : callable, optional
         ``pack(values)``: the coefficients that `torque` reads; by default the parameters' values
         in their order. The torques of the fit are in the contact, as effects leave them.
-    initial_state : callable, optional
-        ``initial_state(coefficients)``: the contact's inner state after a long rest; by default
-        there is none.
+    rest : tuple of float
+        The contact's inner state after a long rest, as `torque` has it [rad or s, by the law]; by
+        default there is none.
     tolerance : float
-        Error of a step of the solver, over twist, speed and inner state. The default serves the
+        Error of a step of the solver, over twist, speed and inner state [-]. The default serves the
         most chaotic; where neighbouring motions part slowly, a larger one is as good and faster.
     """
 
@@ -48,17 +48,17 @@ class FrictionLaw:
     parameters: Mapping[str, Parameter] = field(default_factory=dict)
     torque: Any = None
     pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
-    initial_state: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
+    rest: tuple[float, ...] = ()
     tolerance: float = 2e-9
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
-        """Numbers that `torque` reads, from resolved parameters."""
+        """Numbers that `torque` reads, from resolved parameters, shape (n,), units by the law."""
         import numpy as np
 
         return np.array(list(values.values()) or [0.0]) if self.pack is None else self.pack(values)
 
-    def state(self, coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Inner state after a long rest."""
+    def state(self) -> NDArray[np.float64]:
+        """Inner state after a long rest, shape (n_states,), units by the law."""
         import numpy as np
 
-        return np.zeros(0) if self.initial_state is None else self.initial_state(coefficients)
+        return np.array(self.rest, dtype=np.float64)

@@ -12,17 +12,12 @@ as PDMS does on the rig (5.1.2).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 __all__ = ["LAW"]
 
@@ -40,10 +35,6 @@ _PARAMETERS = {
 }
 
 
-def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    return np.zeros(1)
-
-
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
 def _torque(v, c, contact, state, state_rates):
     kinetic = contact[KINETIC]
@@ -57,6 +48,6 @@ LAW = FrictionLaw(
     name="lugre",
     parameters=_PARAMETERS,
     torque=_torque,
-    initial_state=_initial_state,
+    rest=(0.0,),
     tolerance=5e-9,
 )

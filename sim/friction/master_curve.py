@@ -30,7 +30,7 @@ from numba import njit
 from models.errors import ParameterError
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed, unbent
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
@@ -123,6 +123,6 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     pack=_pack,
-    initial_state=unbent,
+    rest=(0.0,),
     tolerance=3e-9,
 )

@@ -21,18 +21,13 @@ creeps; equal torques give a constant friction.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import shear_speed
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 __all__ = ["LAW", "N_ELEMENTS"]
 
@@ -42,19 +37,10 @@ _YIELD = 0.5
 """Share of its threshold up to which an element does not slip."""
 
 _PARAMETERS = {
-    "contact_stiffness_per_torque": Parameter(
-        1700.0, "1/rad", 1.0, 1e4, "K / T_kin: shear stiffness of the contact"
-    ),
-    "contact_damping_per_torque": Parameter(
-        9e-5, "s/rad", 0.0, 1e-2, "sigma / T_kin: damping of the contact's shear"
-    ),
+    **BRISTLE_PARAMETERS,
     "spread": Parameter(0.5, "", 0.0, 0.8, "of the elements' thresholds about their mean"),
     "stribeck_speed": Parameter(1.0, "rad/s", 1e-2, 1e4, "v_s: speed over which torque falls"),
 }
-
-
-def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    return np.zeros(N_ELEMENTS)
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
@@ -80,6 +66,6 @@ LAW = FrictionLaw(
     name="maxwell_slip",
     parameters=_PARAMETERS,
     torque=_torque,
-    initial_state=_initial_state,
+    rest=(0.0,) * N_ELEMENTS,
     tolerance=2e-8,
 )

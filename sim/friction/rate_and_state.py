@@ -20,18 +20,13 @@ tau -> infinity and a = 0, give a constant friction.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.friction.shared.bristle import BRISTLE_PARAMETERS, FASTEST, shear_speed
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 __all__ = ["LAW"]
 
@@ -47,10 +42,6 @@ _PARAMETERS = {
     "direct_effect": Parameter(0.0, "", 0.0, 1.0, "a: rise with the logarithm of the speed"),
     "direct_speed": Parameter(1e-2, "rad/s", 1e-4, 1e3, "v_0: speed above which it rises"),
 }
-
-
-def _initial_state(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    return np.array([0.0, _LONG_REST])
 
 
 @njit(LAW_SIGNATURE, cache=True, error_model="numpy")
@@ -72,6 +63,6 @@ LAW = FrictionLaw(
     name="rate_and_state",
     parameters=_PARAMETERS,
     torque=_torque,
-    initial_state=_initial_state,
+    rest=(0.0, _LONG_REST),
     tolerance=3e-8,
 )

@@ -19,7 +19,6 @@ from numba import njit
 
 from sim.contact import LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import unbent
 from sim.friction.shared.stribeck import STRIBECK_PARAMETERS, stribeck_torque
 
 __all__ = ["LAW"]
@@ -36,5 +35,5 @@ LAW = FrictionLaw(
     name="stribeck_exponential",
     parameters=STRIBECK_PARAMETERS,
     torque=_torque,
-    initial_state=unbent,
+    rest=(0.0,),
 )

@@ -20,7 +20,6 @@ from numba import njit
 
 from sim.contact import LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import unbent
 from sim.friction.shared.stribeck import STRIBECK_PARAMETERS, stribeck_torque
 
 __all__ = ["LAW"]
@@ -37,6 +36,6 @@ LAW = FrictionLaw(
     name="stribeck_gaussian",
     parameters=STRIBECK_PARAMETERS,
     torque=_torque,
-    initial_state=unbent,
+    rest=(0.0,),
     tolerance=5e-9,
 )

@@ -17,7 +17,6 @@ from numba import njit
 
 from sim.contact import LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import unbent
 from sim.friction.shared.stribeck import STRIBECK_PARAMETERS, stribeck_torque
 
 __all__ = ["LAW"]
@@ -34,5 +33,5 @@ LAW = FrictionLaw(
     name="stribeck_lorentzian",
     parameters=STRIBECK_PARAMETERS,
     torque=_torque,
-    initial_state=unbent,
+    rest=(0.0,),
 )

@@ -17,7 +17,7 @@ from numba import njit
 
 from sim.contact import KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
-from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed, unbent
+from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed
 from sim.parameters import Parameter
 
 __all__ = ["LAW"]
@@ -42,6 +42,6 @@ LAW = FrictionLaw(
     name="viscous",
     parameters=_PARAMETERS,
     torque=_torque,
-    initial_state=unbent,
+    rest=(0.0,),
     tolerance=1e-7,
 )

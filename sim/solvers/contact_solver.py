@@ -65,7 +65,7 @@ class ContactRun:
     Parameters
     ----------
     system : ndarray, shape (6,)
-        `LumpedBushing.packed`.
+        As of `LumpedBushing.packed`.
     critical_torque, kinetic_torque : float
         [Nm]
     start_speed : float
@@ -74,14 +74,14 @@ class ContactRun:
         Time between outputs [s].
     law : compiled function, optional
         Friction law by `sim.contact.LAW_SIGNATURE`; without one the contact truly sticks.
-    coefficients, law_state : ndarray, optional
-        Of the law; its state at the start.
+    coefficients, law_state : ndarray, shape (n,), optional
+        As of the law; its state at the start.
     hooks : tuple of Hook
         Effects that act on the contact, in this order; at most `MOST_HOOKS`.
     name : str
         What errors call the friction.
     tolerance : float
-        Error of a step; `sim.friction.law.FrictionLaw.tolerance` with a law.
+        Error of a step [-]; `sim.friction.law.FrictionLaw.tolerance` with a law.
     refined : float
         Steps are so many times shorter than by default, to tell their error.
 
@@ -224,7 +224,7 @@ def solve_contact(
     Parameters
     ----------
     system : ndarray, shape (6,)
-        `LumpedBushing.packed`.
+        As of `LumpedBushing.packed`.
     critical_torque, kinetic_torque : float
         [Nm]
     shaft_speed : ndarray, shape (n,)
@@ -233,14 +233,14 @@ def solve_contact(
         Time between outputs [s].
     law : compiled function, optional
         Friction law by `sim.contact.LAW_SIGNATURE`; without one the contact truly sticks.
-    coefficients, law_state : ndarray, optional
-        Of the law; its state at the start.
+    coefficients, law_state : ndarray, shape (n,), optional
+        As of the law; its state at the start.
     hooks : tuple of Hook
         Effects that act on the contact, in this order; at most `MOST_HOOKS`.
     name : str
         What errors call the friction.
     tolerance : float
-        Error of a step; `sim.friction.law.FrictionLaw.tolerance` with a law.
+        Error of a step [-]; `sim.friction.law.FrictionLaw.tolerance` with a law.
     refined : float
         Steps are so many times shorter than by default, to tell their error.
 
@@ -250,7 +250,7 @@ def solve_contact(
         Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2, theta2',
         speed of the shaft at the bushing [rad/s].
     direction : ndarray, shape (n,)
-        Of the sliding: +1 or -1, 0 in stick; 0 throughout with a law.
+        Of the sliding [-]: +1 or -1, 0 in stick; 0 throughout with a law.
     """
     run = ContactRun(
         system, critical_torque, kinetic_torque, float(shaft_speed[0]), step, law=law,

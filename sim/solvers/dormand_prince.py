@@ -59,7 +59,7 @@ def fill_dense(q, k, length) -> None:
 
 @_inlined
 def step_error(k, h, start, end, angle_scale, speed_scale) -> float:
-    """Largest error of a step over its scale; infinite if something is not finite.
+    """Largest error of a step over its scale [-]; infinite if something is not finite.
 
     Angles and speeds, which alternate, have scales of their own; other variables that of what
     they are, and of what the step changes in them.

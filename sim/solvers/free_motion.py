@@ -57,7 +57,7 @@ def parts_of_a_step(system: NDArray[np.float64], step: float) -> int:
     Parameters
     ----------
     system : ndarray, shape (6,)
-        `sim.bushing.LumpedBushing.packed`.
+        As of `sim.bushing.LumpedBushing.packed`.
     step : float
         [s]
 
@@ -97,11 +97,12 @@ def extended(system: NDArray[np.float64]) -> NDArray[np.float64]:
     Parameters
     ----------
     system : ndarray, shape (6,)
-        `sim.bushing.LumpedBushing.packed`.
+        As of `sim.bushing.LumpedBushing.packed`.
 
     Returns
     -------
     ndarray, shape (9,)
+        The same, then two of [1/(kg m2)] and one of [1/s].
 
     Examples
     --------

@@ -18,5 +18,5 @@ def no_hook(context, values, state, state_rates, contact) -> None:
 
 @njit(LAW_SIGNATURE, cache=True)
 def no_law(sliding_speed, coefficients, contact, state, state_rates) -> float:  # noqa: ARG001
-    """Stand in for a law where the contact truly sticks."""
+    """Stand in for a law where the contact truly sticks: no torque [Nm]."""
     return 0.0

@@ -24,6 +24,8 @@ __all__ = ["advance_stick_slip", "rest_state", "solve_stick_slip"]
 def rest_state(shaft_speed: float) -> NDArray[np.float64]:
     """State for `advance_stick_slip` to start from: at rest, the surfaces sticking.
 
+    Of shape (N_STATE,), for a shaft that starts at a speed [rad/s].
+
     Examples
     --------
     >>> rest_state(2.5)[:4]
@@ -53,7 +55,7 @@ def advance_stick_slip(
         At the samples [rad/s]; the one after them is where the next block starts. Without it the
         run ends here.
     state : ndarray, shape (N_STATE,)
-        From `rest_state` or the block before; changed in place.
+        As of `rest_state`, or from the block before; changed in place.
     n : int
         Samples to solve.
 
@@ -99,7 +101,7 @@ def solve_stick_slip(
     Parameters
     ----------
     system : ndarray, shape (6,)
-        `LumpedBushing.packed`.
+        As of `LumpedBushing.packed`.
     critical_torque, kinetic_torque : float
         [Nm]
     shaft_speed : ndarray, shape (n,)
@@ -112,7 +114,7 @@ def solve_stick_slip(
     states : ndarray, shape (n, 6)
         Friction torque and elastomer torque [Nm], theta1 [rad], theta1' [rad/s], theta2, theta2'.
     direction : ndarray, shape (n,)
-        Of the sliding: +1 or -1, 0 in stick.
+        Of the sliding: +1 or -1, 0 in stick [-].
     events : ndarray, shape (n_events,)
         Times at which stick or slip ended [s].
 

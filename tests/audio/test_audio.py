@@ -11,7 +11,10 @@ from hypothesis import given, settings, strategies as st
 from models.condition import FIXED, Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.audio import BITS, audible, common_full_scale, least_full_scale, write_audio
+from noise.audio.files import write_audio
+from noise.audio.gain import common_full_scale, least_full_scale
+from noise.audio.sound import audible
+from noise.audio.wav import BITS
 from noise.recordings import read_recording
 
 SQUEAL = Condition(speed=10.0, interference=0.279e-3, support_stiffness=FIXED, material="PDMS")

@@ -26,7 +26,7 @@ import soundfile
 
 from models.rig_files.rig_file import load_material_rig
 from noise.cli import main
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
+from noise.training.draws import coloured_noise
 from sim.acquisition import Acquisition
 from sim.run import simulate
 

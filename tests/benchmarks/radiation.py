@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
-from models.radiation.impulse_responses import convolve
-from models.radiation.rig_response import radiate, response
+from models.radiation.impulse_responses import radiate
+from models.radiation.rig_response import impulse_responses
 from models.radiation.sound_power_bands import third_octave_power
 from models.rig import HIGHEST_PLATE_FREQUENCY
 from models.rig_files.rig_file import load_material_rig
 from models.structure.modal import acceleration_section
 from models.structure.plate import plate_modes
+from models.transfer_functions.filtering import convolve
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,7 +62,7 @@ def main() -> None:
         modes = plate_modes(rig.plate, HIGHEST_PLATE_FREQUENCY)
         solved = time.process_time() - start
         start = time.process_time()
-        chain = response(rig, 2.79e-4, 2214.0, RATE)
+        chain = impulse_responses(rig, 2.79e-4, 2214.0, RATE)
         built = time.process_time() - start
         path = chain.torque_to_pressure
         print(f"\nplate {edges}, {modes.frequencies.size} modes")

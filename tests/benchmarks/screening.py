@@ -17,9 +17,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.rig_files.rig_file import load_material_rig
+from noise.screening.design.axis_values import spread
 from noise.screening.design.design import Use
-from noise.screening.map.axes import spread
-from noise.screening.map.point import judge
+from noise.screening.map.point import evaluate_point
 from noise.screening.screen import screen
 from sim.analysis.critical_speeds import regime_at
 from sim.analysis.regime import LEAST_OSCILLATION
@@ -85,7 +85,7 @@ def main() -> None:
         vibrates = by_solve_ivp(speed, *where) > LEAST_OSCILLATION
         looped += time.process_time() - start
         start = time.process_time()
-        judge(RIG, speed, interference=where[0], support_stiffness=where[1])
+        evaluate_point(RIG, speed, interference=where[0], support_stiffness=where[1])
         own += time.process_time() - start
         alike += vibrates == (regime_at(RIG, speed, *where, seconds=SECONDS) != "steady sliding")
     print(f"solve_ivp, {sample} conditions: {looped / sample:.2f} s each, {alike} regimes alike")

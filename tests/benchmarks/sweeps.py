@@ -16,9 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from models.rig_files.rig_file import load_material_rig
-from noise.long_run import simulate_to_file
+from noise.long_run import write_run
 from sim.analysis.sweep import Sweep
 from sim.analysis.sweep_features import motion_features
+from sim.long_run import simulate_blocks
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -57,7 +58,7 @@ def main() -> None:
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 60.0
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
-        path = simulate_to_file(Path(folder) / "long", RIG, 2.5, seconds=seconds)
+        path = write_run(Path(folder) / "long", simulate_blocks(RIG, 2.5, seconds=seconds))
         size = path.stat().st_size / 1e6
     passed = time.perf_counter() - start
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

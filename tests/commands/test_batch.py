@@ -11,11 +11,13 @@ import soundfile
 from features import recording_feature_names
 from models.condition import Condition
 from models.recording import Channel, Recording
-from noise.classifier import LABELS
+from noise.classifier import LABELS, load_classifier
 from noise.cli import main
+from noise.labels.labelling import COLUMNS
 from noise.labels.segments import Segment
-from noise.labels.table import COLUMNS
-from noise.recordings import write_recording
+from noise.labels.windows import FEATURE_NAMES, describe
+from noise.recordings import read_recording, write_recording
+from noise.recordings.blocks import RecordingBlocks
 
 
 @pytest.fixture
@@ -73,6 +75,44 @@ def test_features_are_the_same_with_two_processes(runs):
     assert main(["features", "runs", "--out", "one.csv"]) == 1
     assert main(["features", "runs", "--out", "two.csv", "--workers", "2"]) == 1
     assert Path("two.csv").read_bytes() == Path("one.csv").read_bytes()
+
+
+def test_windows_are_listed_as_the_classifier_is_given_them(runs):
+    assert main(["features", "runs", "--windows", "--out", "windows.csv"]) == 1
+    rows = read_table("windows.csv")
+    assert list(rows[0]) == ["file", "channel", "start_s", "end_s", *FEATURE_NAMES, "error"]
+    assert [row["file"] for row in rows] == ["a.wav", "b.wav", "c.wav"]
+    assert "damaged" in rows[1]["error"]
+    assert [rows[0][name] for name in ("channel", "start_s", "end_s")] == ["all", "0.0", "0.1"]
+    given = load_classifier().feature_names
+    recording = RecordingBlocks.of(read_recording(Path("runs/a.wav")))
+    values = describe(recording).features[:, [FEATURE_NAMES.index(name) for name in given]]
+    listed = np.array([float(rows[0][name] or "nan") for name in given], dtype=np.float32)
+    assert listed.tobytes() == values[0].tobytes()
+    assert np.isfinite(listed).any()
+
+
+def test_each_track_of_a_plain_sound_file_has_its_windows(runs):
+    hiss = np.random.default_rng(0).normal(size=(48_000, 2))
+    soundfile.write("two.wav", 0.1 * hiss, 48_000, subtype="FLOAT")
+    assert main(["features", "two.wav", "--windows", "--out", "windows.csv"]) == 0
+    rows = read_table("windows.csv")
+    assert [row["channel"] for row in rows] == ["1", "1", "1", "2", "2", "2"]
+    assert [row["start_s"] for row in rows] == ["0.0", "0.25", "0.5"] * 2
+    assert rows[2]["end_s"] == "1.0"
+    assert all(row["pressure_flatness"] and not row["torque_mean"] for row in rows)
+
+
+def test_a_recording_without_windows_says_so(runs, capsys):
+    turning = Recording(np.zeros((1, 4800)), 48e3, (Channel("angle"),))
+    write_recording(Path("turning"), turning)
+    assert main(["features", "turning.wav", "--windows"]) == 1
+    assert "has no channel of pressure, acceleration or torque" in capsys.readouterr().out
+
+
+def test_pitch_and_windows_are_not_asked_for_together(runs, capsys):
+    assert main(["features", "runs", "--windows", "--pitch"]) == 2
+    assert "not allowed with argument" in capsys.readouterr().err
 
 
 def test_a_recording_named_twice_is_a_row_once(runs, labelled):

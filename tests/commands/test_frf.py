@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from models.condition import Condition
-from models.radiation.impulse_responses import convolve
 from models.recording import Channel, Recording
 from models.structure.modal import ModalModel
-from models.transfer_functions.files import read_frf
+from models.transfer_functions.files import read_transfer_function
+from models.transfer_functions.filtering import convolve
 from noise.cli import main
 from noise.recordings import write_recording
 
@@ -64,10 +64,10 @@ def test_hits_of_every_kind_give_the_response_to_a_torque(hits, capsys, ending):
     out = Path("new") / f"beam.{ending}"
     assert main(["frf", *hits, "--arm", "0.05", "--out", str(out)]) == 0
     assert capsys.readouterr().out == f"{out}\n"
-    frf = read_frf(out, input_unit="N m", output_unit="m/s^2")
+    frf = read_transfer_function(out, input_unit="N m", output_unit="m/s^2")
     assert (frf.input_unit, frf.output_unit) == ("N m", "m/s^2")
-    band = (frf.frequency > 100) & (frf.frequency < 1800)
-    true = STRUCTURE.frequency_response(frf.frequency[band])[0, 0] / 0.05
+    band = (frf.frequencies > 100) & (frf.frequencies < 1800)
+    true = STRUCTURE.frequency_response(frf.frequencies[band])[0, 0] / 0.05
     difference = 20 * np.log10(np.abs(frf.response[band] / true))
     assert np.median(np.abs(difference)) < 0.3
     assert np.median(frf.coherence[band]) > 0.99
@@ -180,8 +180,8 @@ def real_hits():
 def test_real_hits_cohere_and_have_their_modes(tmp_path):
     out, modes = tmp_path / "beam.uff", tmp_path / "modes.csv"
     assert main(["frf", *real_hits(), "--out", str(out), "--modes", str(modes)]) == 0
-    frf = read_frf(out, input_unit="N", output_unit="m/s^2")
-    band = (frf.frequency >= 100) & (frf.frequency <= 5000)
+    frf = read_transfer_function(out, input_unit="N", output_unit="m/s^2")
+    band = (frf.frequencies >= 100) & (frf.frequencies <= 5000)
     assert np.median(frf.coherence[band]) > 0.998
     found = np.array([float(row["frequency_hz"]) for row in table(modes.read_text())])
     for mode in (810, 900, 2640, 3669, 4128, 4163):

@@ -20,9 +20,10 @@ from models.condition import Condition
 from models.errors import ParameterError
 from models.html_table import MOST_ROWS, html_table
 from models.recording import Channel, Recording
-from models.transfer_functions.transfer_function import Frf
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.inference import Inferred, Interval
-from noise.labels import LabelTable, Segment, Segments
+from noise.labels.segments import Segment, Segments
+from noise.labels.table import LabelTable
 from noise.pictures.conditions import LABEL_COLOURS
 from sim.shaft import SpeedRamp
 from tests.helpers.made_diagnoses import one_effect
@@ -78,7 +79,7 @@ def label_table():
 def frf():
     f = np.linspace(0.0, 200.0, 401)
     response = 1.0 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f)
-    return Frf(f, response, np.where(f < 20.0, 0.2, 0.99), "N m", "m/s^2", "hits")
+    return TransferFunction(f, response, np.where(f < 20.0, 0.2, 0.99), "N m", "m/s^2", "hits")
 
 
 def modes():
@@ -309,3 +310,5 @@ def test_labelling_files_in_one_call_gives_the_table_of_the_command(tmp_path):
     assert (tmp_path / "labels.csv").read_bytes() == (tmp_path / "again.csv").read_bytes()
     with pytest.raises(ParameterError, match="workers = 0"):
         noise.label(tmp_path, workers=0)
+    with pytest.raises(ParameterError, match="tables end in"):
+        noise.label(tmp_path, out=tmp_path / "labels.xlsx")

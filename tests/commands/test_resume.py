@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+import noise
 from noise.batch import journal_path
 from noise.cli import main
 from tests.helpers.batch_work import make_recordings
@@ -121,6 +122,37 @@ def test_later_calls_do_only_what_is_new_or_changed(tmp_path, capsys):
     err = capsys.readouterr().err
     assert "5 of 9 recordings are done already" in err  # but for 2 refused, 1 new, 1 changed
     assert out.read_bytes() == undisturbed(tmp_path).read_bytes()
+
+
+def test_a_notebook_goes_on_where_the_command_stopped_and_the_command_where_the_notebook_did(
+    tmp_path, monkeypatch, capsys
+):
+    make_recordings(tmp_path / "runs", 40, 4, 0.2)
+    out = tmp_path / "labels.csv"
+    kill_when(start(tmp_path / "runs", out), out, 10)
+    by_command = done_in(journal_path(out))
+
+    def interrupted(work, path, name, of=noise.batch.work.perform, left=[10]):  # noqa: B006
+        left[0] -= 1
+        if left[0] < 0:
+            raise KeyboardInterrupt
+        return of(work, path, name)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("noise.batch.work.perform", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            noise.label(tmp_path / "runs", out=out)
+    both = done_in(journal_path(out))
+    assert both[: len(by_command)] == by_command
+    assert 5 <= len(both) - len(by_command) <= 10
+    assert not out.exists()
+    assert main(["label", str(tmp_path / "runs"), "--out", str(out)]) == 1
+    assert f"{len(both)} of 40 recordings are done already" in capsys.readouterr().err
+    done = done_in(journal_path(out))
+    assert len(done) == len(set(done)) == 36
+    table = noise.label(tmp_path / "runs", out=tmp_path / "notebook.csv")
+    assert (tmp_path / "notebook.csv").read_bytes() == out.read_bytes()
+    assert len(table.refused) == 4
 
 
 @pytest.mark.slow

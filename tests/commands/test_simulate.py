@@ -230,6 +230,37 @@ def test_simulate_writes_a_recording_and_prints_its_names(capsys, tmp_path, name
     assert run["torque"].mean() < 0
 
 
+def test_simulate_tells_the_sound_power(capsys, tmp_path):
+    table = tmp_path / "new" / "power.csv"
+    run = ["simulate", "--speed", "10", "--support-stiffness", "3745", "--seconds", "0.3"]
+    assert main([*run, "--sound-power", str(table)]) == 0
+    out, err = capsys.readouterr()
+    assert out == f"{table}\n"
+    assert "dB(A) re 1 pW in a baffle" in err
+    header, *rows = table.read_text(encoding="utf-8").splitlines()
+    assert header.split(",")[:3] == ["band_hz", "level_db", "level_dba"]
+    levels = {band: float(level) for band, level, *_ in (row.split(",") for row in rows) if level}
+    assert max(levels, key=levels.get) == "total"
+    assert levels["1000"] == pytest.approx(levels["total"], abs=1.0)  # a squeal
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (("power.xlsx",), "tables end in .csv, .jsonl or .parquet"),
+        (("power.csv", "--seconds", "0.1"), "--sound-power: --seconds 0.1 is too short"),
+        (("power.csv", "--seconds", "61"), "--sound-power takes the whole run in memory"),
+    ],
+)
+def test_a_sound_power_that_cannot_be_told_is_refused_before_the_work(
+    simulated, capsys, tmp_path, given, said
+):
+    where = str(tmp_path / given[0])
+    line = refusal(capsys, "simulate", "--speed", "1", "--sound-power", where, *given[1:])
+    assert said in line
+    assert simulated == []
+
+
 def test_the_seed_decides_the_run(tmp_path):
     def bytes_of(name, seed):
         out = tmp_path / name

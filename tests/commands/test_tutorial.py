@@ -79,4 +79,4 @@ def test_files_are_where_the_tutorial_says(followed):
 def test_the_diagnosis_names_the_cause_that_was_put_in(followed):
     _, said = followed
     (diagnosed,) = (done for line, done in said if line[0] == "diagnose")
-    assert "verdict: partial_slip" in diagnosed.stderr
+    assert "The simulation lacks partial slip: " in diagnosed.stderr

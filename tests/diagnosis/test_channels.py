@@ -6,19 +6,16 @@ import numpy as np
 import pytest
 
 from noise.diagnosis.evidence.channel_summary import (
+    BAND_EDGES,
     angle_summary,
+    band_bins,
     channel_summary,
     hum_summary,
     shaft_speed,
 )
-from noise.diagnosis.evidence.path_summary import (
-    BAND_EDGES,
-    band_names,
-    common_residual,
-    path_summary,
-)
+from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.summary import summary
-from noise.diagnosis.simulated.paths import ways
+from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from tests.helpers.small_rigs import RATE, RIG, at, only, run
 
 CONDITION = at(1.0)
@@ -31,7 +28,7 @@ def recording():
 
 @pytest.fixture(scope="module")
 def numbers_of():
-    found = ways(RIG, 0.279e-3, 2214.0)
+    found = torque_transfer_functions(RIG, 0.279e-3, 2214.0)
     return lambda recording: summary(recording, RIG, found)
 
 
@@ -168,7 +165,7 @@ def test_noise_that_the_torque_does_not_explain_is_incoherent_in_its_band_alone(
         butter(6, [low * 1.05, high / 1.05], "band", fs=RATE, output="sos"), more
     )
     numbers, _ = path_summary(x, x + more, RATE, np.empty(0))
-    seen = {i: numbers[f"incoherent_{i}"] for i in band_names(RATE)}
+    seen = {i: numbers[f"incoherent_{i}"] for i, _ in band_bins(RATE)}
     assert max(seen, key=seen.get) == 9
     assert all(seen[9] - seen[i] > 2.0 for i in seen if abs(i - 9) > 1)
 

@@ -9,10 +9,11 @@ from dataclasses import replace
 import pytest
 
 from models.condition import FIXED
+from models.errors import ParameterError
+from noise.base.user_effects import effect_library
 from noise.cli import main
-from noise.commands.user_effects import effect_library
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.fit.own import with_own
+from noise.diagnosis.fit.user_effects import prefer_user_effects
 from noise.diagnosis.outcome import EffectFinding, as_json
 from noise.diagnosis.run import diagnose
 from sim.effects import EFFECTS
@@ -239,6 +240,24 @@ def test_an_effect_of_the_users_own_takes_the_verdict_when_it_is_the_cause(
     assert told["location"]["stage"] == "measurement"
 
 
+def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path, capsys):
+    mine, other = tmp_path / "rectifier.py", tmp_path / "other.py"
+    mine.write_text(RECTIFIER)
+    other.write_text(RECTIFIER.replace('"rectifier"', '"folded"'))
+    listed = RIG_FILE.replace("effects = []", 'effects = ["rectifier:share=0.8"]')
+    recordings = _recordings(("rectifier", {"share": 0.8}), library=effect_library(mine))
+    data, rig = write_case(tmp_path, recordings, listed)
+    told = _told(capsys, data, "--rig", rig, "--effects", mine, "--quick")
+    for effects in (mine, [str(mine), other]):
+        found = as_json(diagnose(data, rig, effects=effects, quick=True))
+        assert {**found, "seconds": 0.0} == {**told, "seconds": 0.0}
+    (tmp_path / "mine.py").write_text(RECTIFIER)
+    with pytest.raises(ParameterError, match=r"mine.py: effect 'rectifier' is defined in another"):
+        diagnose(data, rig, effects=[mine, tmp_path / "mine.py"], quick=True)
+    with pytest.raises(ParameterError, match=r"nowhere\.py"):
+        diagnose(data, rig, effects=tmp_path / "nowhere.py")
+
+
 def test_an_effect_of_the_users_own_that_is_not_the_cause_is_listed_behind(
     alarmed, tmp_path, capsys
 ):
@@ -277,7 +296,7 @@ def test_an_own_effect_takes_over_only_where_it_closes_clearly_more():
     (name,) = before.verdict
     for mine, taken in ((1.2, True), (2.9, False), (7.0, False)):
         findings = {name: _gaps(name, 3.0), "mine": _gaps("mine", mine)}
-        after = with_own(before, findings, ["mine"])
+        after = prefer_user_effects(before, findings, ["mine"])
         assert (after.verdict == ("mine",)) == taken
         if taken:
             assert after.probabilities["mine"] == pytest.approx(0.9)
@@ -286,21 +305,23 @@ def test_an_own_effect_takes_over_only_where_it_closes_clearly_more():
 
 def test_an_own_effect_that_closes_a_small_gap_is_as_probable_as_what_it_closes():
     small = replace(_gaps("mine", 1.0, closed=None), gap_before=1.4, gap_recalibrated=1.4)
-    after = with_own(one_effect(), {"mine": small}, ["mine"])
+    after = prefer_user_effects(one_effect(), {"mine": small}, ["mine"])
     assert after.verdict == ("mine",)
     assert after.probabilities["mine"] == pytest.approx(1.0)
 
 
 def test_where_there_is_no_gap_an_own_effect_has_none_to_close():
     nothing = replace(one_effect(), verdict=())
-    assert with_own(nothing, {"mine": _gaps("mine", 1.0, closed=None)}, ["mine"]) is nothing
-    assert with_own(one_effect(), {}, ["mine"]).verdict == one_effect().verdict
+    assert (
+        prefer_user_effects(nothing, {"mine": _gaps("mine", 1.0, closed=None)}, ["mine"]) is nothing
+    )
+    assert prefer_user_effects(one_effect(), {}, ["mine"]).verdict == one_effect().verdict
 
 
 def test_an_own_effect_that_closes_a_gap_which_the_first_answer_missed_is_named():
     nothing = replace(one_effect(), verdict=())
-    assert with_own(nothing, {"mine": _gaps("mine", 1.2)}, ["mine"]).verdict == ("mine",)
-    assert with_own(nothing, {"mine": _gaps("mine", 5.5)}, ["mine"]) is nothing
+    assert prefer_user_effects(nothing, {"mine": _gaps("mine", 1.2)}, ["mine"]).verdict == ("mine",)
+    assert prefer_user_effects(nothing, {"mine": _gaps("mine", 5.5)}, ["mine"]) is nothing
 
 
 def test_numbers_that_are_none_become_null():

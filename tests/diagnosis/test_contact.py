@@ -12,7 +12,7 @@ from models.condition import FIXED
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.evidence.summary import case_table, summary
-from noise.diagnosis.simulated.paths import ways
+from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from sim.bushing import lumped_bushing
 from tests.helpers.small_rigs import RATE, RIG, at, only, run
 
@@ -114,7 +114,7 @@ def test_a_shaft_that_turns_the_other_way_makes_the_same_contact():
     recording = run(condition, seconds=SECONDS)
     samples = recording.samples * -1.0
     mirrored = replace(recording, samples=samples, condition=at(-2.0))
-    found = ways(RIG, 0.279e-3, 2214.0)
+    found = torque_transfer_functions(RIG, 0.279e-3, 2214.0)
     one, other = summary(recording, RIG, found), summary(mirrored, RIG, found)
     contact = [name for name in one if name.startswith(("contact", "angle"))]
     assert len(contact) > 60

@@ -9,12 +9,13 @@ import pytest
 
 from models.condition import FIXED
 from models.rig import LawSpec
-from noise.diagnosis.fit.bench import Bench, Model
+from models.transfer_functions.filtering import filter_signal
+from models.transfer_functions.impulse_response import impulse_response
+from models.transfer_functions.transfer_function import TransferFunction
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.forms.drawn import drawn_forms
 from noise.diagnosis.fit.forms.estimated import estimated_forms
-from noise.diagnosis.fit.forms.transfer import Noise, estimated_transfer, filtered_by
-from noise.diagnosis.simulated.impulse import impulse_of
-from noise.diagnosis.simulated.paths import Way
+from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, at, run
 
@@ -35,35 +36,35 @@ CASES = {
 
 
 @cache
-def _bench(name):
+def _comparison(name):
     values, support = CASES[name]
     runs = tuple(run(at(v, support), (name, values), seed=40 + i) for i, v in enumerate(SPEEDS))
-    return Bench(RIG, runs, EFFECTS, None, (), np.empty(0))
+    return CaseComparison(RIG, runs, EFFECTS, None, (), np.empty(0))
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_form_that_was_estimated_closes_much_of_what_the_true_one_does_where_it_is_not_from(name):
-    bench = _bench(name)
+    comparison = _comparison(name)
     left = []
-    for form in estimated_forms(bench, [0, 2], name):
-        bench.forms[name, form.name] = form
-        left += [float(bench.misfits(Model(effects=(spec,)), [1])[0]) for spec in form.specs()]
+    for form in estimated_forms(comparison, [0, 2], name):
+        comparison.forms[name, form.name] = form
+        left += [float(comparison.misfits(Model(effects=(spec,)), [1])[0]) for spec in form.specs()]
     truth = Model(effects=(LawSpec(name, CASES[name][0]),))
-    before, after = (float(bench.misfits(model, [1])[0]) for model in (Model(), truth))
+    before, after = (float(comparison.misfits(model, [1])[0]) for model in (Model(), truth))
     assert before > after
     assert before - min(left) > 0.5 * (before - after)
 
 
 def test_what_the_contact_does_is_not_estimated():
-    assert estimated_forms(_bench("gain_error"), [0, 2], "velocity_weakening") == []
+    assert estimated_forms(_comparison("gain_error"), [0, 2], "velocity_weakening") == []
 
 
 def test_a_drawn_form_is_the_same_each_time_and_nothing_at_strength_0():
-    bench = _bench("gain_error")
+    comparison = _comparison("gain_error")
     for form in drawn_forms("plate_modes", 2, 0):
-        bench.forms["plate_modes", form.name] = form
+        comparison.forms["plate_modes", form.name] = form
         off = Model(effects=(form.spec(strength=0.0),))
-        assert bench.misfits(off, [1]) == pytest.approx(bench.misfits(Model(), [1]))
+        assert comparison.misfits(off, [1]) == pytest.approx(comparison.misfits(Model(), [1]))
     form = drawn_forms("clipping", 1, 3)[0]
     assert form.active({}).values == form.active({"form": form.name}).values
 
@@ -76,27 +77,25 @@ def test_a_form_says_what_it_is_not_made_of():
 
 def test_a_transfer_is_found_beneath_noise_and_not_where_there_was_nothing():
     rng, rate = np.random.default_rng(0), 8e3
-    x = filtered_by(rng.standard_normal(16000), rate, _low_pass())
+    x = filter_signal(rng.standard_normal(16000), rate, _low_pass())
     r = 0.5 * np.roll(x, 8)
     pairs = [(x, r + 0.02 * rng.standard_normal(x.size))]
-    found = estimated_transfer(pairs, rate, 0.02, noise=[Noise(0.02)])
+    found = wiener_estimate(pairs, rate, 0.02, noise=[Noise(0.02)])
     assert abs(found.at(np.array([300.0]))[0]) == pytest.approx(0.5, rel=0.1)
     assert abs(found.at(np.array([3000.0]))[0]) < 0.2
 
 
 def _low_pass():
-    from noise.diagnosis.fit.forms.transfer import Transfer
-
     frequency = np.linspace(0.0, 4e3, 401)
-    return Transfer(frequency, (frequency < 1000.0).astype(complex))
+    return TransferFunction(frequency, (frequency < 1000.0).astype(complex))
 
 
-def test_an_impulse_response_has_the_levels_of_its_way_within_the_table():
+def test_an_impulse_response_has_the_levels_of_its_transfer_function_within_the_table():
     f = np.arange(0.0, 10e3 + 1.0, 2.5)
     x = f / 700.0
-    way = Way(f, 20.0 * -(x**2) / (1.0 - x**2 + 0.04j * x))
+    transfer = TransferFunction(f, 20.0 * -(x**2) / (1.0 - x**2 + 0.04j * x))
     rate, n = 96e3, 24000
-    taps = impulse_of(way, rate, n)
+    taps = impulse_response(transfer, rate, n)
     at_lines = np.array([80.0, 200.0, 690.0, 2000.0, 6000.0])
     got = np.exp(-2j * np.pi * np.outer(at_lines, np.arange(n)) / rate) @ taps
-    assert np.abs(got) == pytest.approx(np.abs(way.at(at_lines)), rel=0.05)
+    assert np.abs(got) == pytest.approx(np.abs(transfer.at(at_lines, falls_below=True)), rel=0.05)

@@ -12,8 +12,8 @@ from noise.diagnosis.cases.draw import WEAKEST, draw_case
 from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.truth import KINDS
-from noise.diagnosis.cases.unknown_effects import STRANGERS, draw_stranger
-from noise.diagnosis.simulated.chain_run import CHANNELS
+from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
+from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.build import known_cases_of_a_rig
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, SECONDS, at, run
@@ -74,8 +74,8 @@ def test_all_kinds_and_all_effects_occur_about_as_often_as_is_said(truths):
     assert set(named) == set(EFFECTS)
     assert min(named.values()) > 0.4 * max(named.values())
     strange = Counter(n for truth, _ in truths if truth.kind == "unknown" for n in truth.effects)
-    assert set(strange) == set(STRANGERS)
-    assert not set(STRANGERS) & set(EFFECTS)
+    assert set(strange) == set(UNKNOWN_EFFECTS)
+    assert not set(UNKNOWN_EFFECTS) & set(EFFECTS)
 
 
 def test_effects_occur_in_the_simulators_forms_and_in_others(truths):
@@ -116,12 +116,14 @@ def test_a_stronger_effect_has_a_larger_strength_and_none_at_zero(name):
 
 
 def _strange(name, strength, seed):
-    effect = draw_stranger(name, strength, 8.0, 665.0, np.random.default_rng(seed))
+    effect = draw_unknown_effect(name, strength, 8.0, 665.0, np.random.default_rng(seed))
     # "strength" as a parameter would switch it off; here what it does at that strength is meant
-    return run(at(2.0), ("stranger", {}), seed=1, library={**EFFECTS, "stranger": effect})
+    return run(
+        at(2.0), ("unknown_effect", {}), seed=1, library={**EFFECTS, "unknown_effect": effect}
+    )
 
 
-@pytest.mark.parametrize("name", sorted(STRANGERS))
+@pytest.mark.parametrize("name", sorted(UNKNOWN_EFFECTS))
 def test_a_stranger_of_no_strength_does_nothing_and_a_strong_one_does(name):
     plain = run(at(2.0), seed=1)
     for seed in range(3):

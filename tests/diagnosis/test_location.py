@@ -15,7 +15,7 @@ from noise.diagnosis.causes.location import (
     stage_findings,
     stage_of,
 )
-from noise.diagnosis.evidence.path_summary import BAND_EDGES
+from noise.diagnosis.evidence.channel_summary import BAND_EDGES
 from sim.effects import EFFECTS
 from tests.helpers.made_posteriors import MOVES, NAMES, made_posterior, made_table
 from tests.helpers.small_rigs import table_of

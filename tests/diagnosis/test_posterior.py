@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from noise.classifier.trees import as_arrays
 from noise.diagnosis.cases.truth import Truth
-from noise.diagnosis.causes.equivalence import equivalent_pairs, next_measurement
 from noise.diagnosis.causes.posterior import CAUSES, calibrated, load_posterior, odds_features
-from noise.diagnosis.causes.verdict import verdict_of
+from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
 from noise.training.causes.fit import Known, causes_of, train_posterior, with_channels, with_fewer
+from noise.training.trees import boosted_trees
 from sim.effects import EFFECTS
 from tests.helpers.made_posteriors import MOVES, NAMES, made_cases, made_posterior, made_table
 
@@ -135,7 +134,7 @@ def test_trees_of_several_causes_say_what_scikit_learn_says():
         for wanted in (x[:, 0] > 0.0, x[:, 1] + x[:, 2] > 0.5)
     ]
     expected = np.stack([model.decision_function(x) for model in models], axis=1)
-    assert as_arrays(models).scores(x) == pytest.approx(expected, abs=1e-9)
+    assert boosted_trees(models).scores(x) == pytest.approx(expected, abs=1e-9)
 
 
 def test_more_votes_make_a_cause_more_probable():
@@ -208,10 +207,10 @@ def test_fewer_channels_leave_the_numbers_that_a_recording_without_them_has():
 
 def _numbers(recording):
     from noise.diagnosis.evidence.summary import summary
-    from noise.diagnosis.simulated.paths import ways
+    from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
     from tests.helpers.small_rigs import RIG
 
-    found = summary(recording, RIG, ways(RIG, 0.279e-3, 2214.0))
+    found = summary(recording, RIG, torque_transfer_functions(RIG, 0.279e-3, 2214.0))
     return found.keys(), found.values()
 
 

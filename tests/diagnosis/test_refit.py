@@ -15,8 +15,8 @@ from models.rig import LawSpec
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.evidence.evidence import scale_of
 from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.fit.bench import Bench, Model
 from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.fit_effect import fit_effect
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
 from sim.effects import EFFECTS
@@ -34,18 +34,18 @@ def _scale():
     return names, scale_of(tables, names)
 
 
-def _bench(recordings, rig=RIG, library=EFFECTS):
+def _comparison(recordings, rig=RIG, library=EFFECTS):
     table = case_table(recordings, rig, library=library)
-    return Bench(rig, tuple(recordings), library, table, *_scale())
+    return CaseComparison(rig, tuple(recordings), library, table, *_scale())
 
 
-def _gap(bench, model, chosen):
-    return float(np.sqrt(np.mean(bench.squared(model, chosen))))
+def _gap(comparison, model, chosen):
+    return float(np.sqrt(np.mean(comparison.squared(model, chosen))))
 
 
 @pytest.fixture(scope="module")
 def plain():
-    return _bench([run(at(v, FIXED), seed=40 + i) for i, v in enumerate(SPEEDS)])
+    return _comparison([run(at(v, FIXED), seed=40 + i) for i, v in enumerate(SPEEDS)])
 
 
 WEAK = {"form": "exponential", "share": 0.4, "speed": 5.0}
@@ -54,7 +54,7 @@ WEAK = {"form": "exponential", "share": 0.4, "speed": 5.0}
 @pytest.fixture(scope="module")
 def weakening():
     conditions = [at(v, FIXED) for v in SPEEDS]
-    return _bench([run(c, ("velocity_weakening", WEAK), seed=40 + i)
+    return _comparison([run(c, ("velocity_weakening", WEAK), seed=40 + i)
                    for i, c in enumerate(conditions)])  # fmt: skip
 
 
@@ -63,28 +63,30 @@ def test_a_plain_rig_has_no_gap(plain):
 
 
 def test_a_model_is_simulated_alike_each_time_and_as_it_was_recorded(plain):
-    like = plain.recordings[1]
-    one, again = (plain.simulated(Model(), like, 3) for _ in range(2))
+    template = plain.recordings[1]
+    one, again = (plain.simulated(Model(), template, 3) for _ in range(2))
     assert one.samples.tobytes() == again.samples.tobytes()
-    assert one.samples.shape == like.samples.shape
-    assert (one.rate, one.condition) == (like.rate, like.condition)
+    assert one.samples.shape == template.samples.shape
+    assert (one.rate, one.condition) == (template.rate, template.condition)
 
 
 def test_recordings_of_several_rates_are_each_simulated_at_their_own():
-    bench = _bench([run(at(1.0)), run(at(1.0), rate=48e3, seed=1), run(at(1.0), seconds=0.6)])
-    for like in bench.recordings:
-        made = bench.simulated(Model(), like, 0)
-        assert made.samples.shape == like.samples.shape
-        assert made.rate == like.rate
-    assert np.isfinite(bench.squared(Model(), range(3))).all()
-    assert bench.squared(Model(), range(3)).max() < 4.0
+    comparison = _comparison(
+        [run(at(1.0)), run(at(1.0), rate=48e3, seed=1), run(at(1.0), seconds=0.6)]
+    )
+    for template in comparison.recordings:
+        made = comparison.simulated(Model(), template, 0)
+        assert made.samples.shape == template.samples.shape
+        assert made.rate == template.rate
+    assert np.isfinite(comparison.squared(Model(), range(3))).all()
+    assert comparison.squared(Model(), range(3)).max() < 4.0
 
 
 @pytest.mark.parametrize("kinds", [("pressure",), ("torque",), ("acceleration", "angle")])
 def test_fewer_channels_can_be_fitted_to(kinds):
-    bench = _bench([only(run(at(1.0)), *kinds)])
-    assert bench.squared(Model(), [0])[0] < 4.0
-    rows = bench.residuals(Model(), [0])
+    comparison = _comparison([only(run(at(1.0)), *kinds)])
+    assert comparison.squared(Model(), [0])[0] < 4.0
+    rows = comparison.residuals(Model(), [0])
     assert np.isfinite(rows).all()
     assert np.mean(np.abs(rows) > 0.7) < 0.1  # few numbers are hopelessly off
 
@@ -106,13 +108,15 @@ def test_the_truth_closes_the_gap(weakening):
 
 def test_a_stiffness_that_is_off_is_recalibrated():
     stiff = with_offsets(RIG, {"elastomer_stiffness": 1.15})
-    bench = _bench([run(at(v, FIXED), seed=70 + i, rig=stiff) for i, v in enumerate(SPEEDS)])
-    fitted = fit_parameters(bench, [0, 2])
+    comparison = _comparison(
+        [run(at(v, FIXED), seed=70 + i, rig=stiff) for i, v in enumerate(SPEEDS)]
+    )
+    fitted = fit_parameters(comparison, [0, 2])
     found = dict(zip(OFFSETS, fitted.model.offsets, strict=True))
     assert found["elastomer_stiffness"] == pytest.approx(math.log(1.15), abs=0.06)
     for name in ("critical_torque", "kinetic_torque"):
         assert found[name] == pytest.approx(0.0, abs=0.06)
-    before, after = (_gap(bench, m, [1]) for m in (Model(), fitted.model))
+    before, after = (_gap(comparison, m, [1]) for m in (Model(), fitted.model))
     assert (before - max(after, 1.0)) / (before - 1.0) > 0.5
     assert all(s > 0 for s in fitted.spread)
 
@@ -168,5 +172,5 @@ def test_an_effect_of_the_users_own_is_tried_over_two_decades_about_its_default(
 
 def test_effects_of_the_rig_file_are_in_every_model():
     listed = replace(RIG, effects=(LawSpec("velocity_weakening", WEAK),))
-    bench = _bench([run(at(1.6, FIXED), ("velocity_weakening", WEAK))], rig=listed)
-    assert _gap(bench, Model(), [0]) < 1.8
+    comparison = _comparison([run(at(1.6, FIXED), ("velocity_weakening", WEAK))], rig=listed)
+    assert _gap(comparison, Model(), [0]) < 1.8

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import lfilter
 
-from features.kernels.slip_drops import torque_slips
+from features.kernels.slip_drops import repetition_rate, torque_slips
 from features.kernels.slip_pulses import acoustic_slips
+from features.kernels.slip_speeds import in_intervals, slip_intervals
 from models.errors import ParameterError
 
 
@@ -218,3 +219,35 @@ def test_four_slips_have_no_glide():
     found = torque_slips(stick_slip(20.0, seconds=0.22), 30e3)
     assert 2 <= found.times.size <= 4
     assert math.isnan(found.glide)
+
+
+def test_a_torque_repeats_at_its_slips_or_its_period_or_not_at_all():
+    t = np.arange(30_000) / 30e3
+    assert repetition_rate(stick_slip(150), 30e3) == pytest.approx(150.0, rel=0.01)
+    hum = 8.0 + np.sin(2 * np.pi * 90.0 * t)
+    assert repetition_rate(hum, 30e3) == pytest.approx(90.0, rel=0.01)
+    assert repetition_rate(np.full(6000, 8.0), 30e3) is None
+
+
+# --- slips of a sliding speed -----------------------------------------------------------------
+
+
+@settings(max_examples=200, deadline=None)
+@given(n=st.integers(0, 300), seed=st.integers(0, 2**16), apart=st.integers(0, 12))
+def test_slips_of_a_speed_are_those_that_a_reader_marks_from_sample_to_sample(n, seed, apart):
+    speed = 2.0 * np.cumsum(noise(n, seed))
+    marked, begun = [], None
+    for i, v in enumerate(speed.tolist()):
+        if begun is None and v > 3.0:
+            begun = i
+        elif begun is not None and v < 1.2:
+            if marked and begun - marked[-1][1] < apart:
+                marked[-1][1] = i
+            else:
+                marked.append([begun, i])
+            begun = None
+    starts, ends = slip_intervals(speed, above=3.0, below=1.2, apart=apart)
+    assert np.stack([starts, ends], axis=1).tolist() == marked
+    slipping = in_intervals(starts, ends, n)
+    assert slipping.sum() == (ends - starts).sum()
+    assert np.all(in_intervals(starts, ends, n, margin=2) >= slipping)

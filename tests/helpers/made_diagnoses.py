@@ -11,8 +11,8 @@ from models.rig_files.rig_file import load_material_rig
 from noise.diagnosis.outcome import (
     Diagnosis,
     EffectFinding,
-    Heard,
     Illustration,
+    LabelsAndLevels,
     Location,
     StageFinding,
 )
@@ -86,7 +86,7 @@ def none():
         gap=0.92,
         p_value=0.61,
         illustrations=(illustration("run03", run(), run(), None),),
-        heard=(Heard("run03", "creak", "creak", None, 78.2, 77.9, None),),
+        labels_and_levels=(LabelsAndLevels("run03", "creak", "creak", None, 78.2, 77.9, None),),
     )
 
 
@@ -129,8 +129,8 @@ def one_effect():
             illustration("run03", run(PARTIAL), run(), run(PARTIAL)),
             illustration("a/very_long_name_of_a_recording" * 3, run(HUM), run(), run(HUM)),
         ),
-        heard=(Heard("run03", "squawk", "creak", "squawk", 78.2, 84.9, 78.6),
-               Heard("run07", "none", "squeal", None, 51.0, 66.2, None)),
+        labels_and_levels=(LabelsAndLevels("run03", "squawk", "creak", "squawk", 78.2, 84.9, 78.6),
+               LabelsAndLevels("run07", "none", "squeal", None, 51.0, 66.2, None)),
     )  # fmt: skip
 
 

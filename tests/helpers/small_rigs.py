@@ -7,14 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from models.condition import Condition
+from models.condition import KnownCondition
 from models.rig import Fit, LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.diagnosis.simulated.chain_run import chain_of, fine_rate, recorded, run_signals
-from noise.diagnosis.simulated.paths import Way, ways
+from noise.diagnosis.simulated.repeats import record, run_signals
+from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transfer_functions
 from noise.recordings import write_recording
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
+from sim.timing import DIAGNOSIS
 
 __all__ = [
     "RATE", "RIG", "RIG_FILE", "SECONDS", "at", "only", "run", "table_of", "write_case",
@@ -41,11 +42,11 @@ kinetic_torque_Nm = 8.0
 damping_Nms_rad = { "2214" = 0.105, "3745" = 0.085, fixed = 0.085 }
 """
 
-_WAYS: dict[float, dict[str, Way]] = {}
+_TRANSFERS = {}
 
 
 def at(speed, support=2214.0):
-    return Condition(
+    return KnownCondition(
         speed=speed, interference=0.279e-3, support_stiffness=support, material="fluorocarbon"
     )
 
@@ -53,15 +54,17 @@ def at(speed, support=2214.0):
 def run(condition, *effects, seed=0, seconds=SECONDS, rate=RATE, rig=RIG, library=EFFECTS):
     """Record one run; an effect is (name, parameters)."""
     support = condition.support_stiffness
-    if support not in _WAYS:
-        _WAYS[support] = ways(RIG, condition.interference, support)
+    if support not in _TRANSFERS:
+        _TRANSFERS[support] = torque_transfer_functions(RIG, condition.interference, support)
     active = activated([LawSpec(name, values) for name, values in effects], library)
-    blows = any(e.effect.force is not None or e.effect.chain is not None for e in active)
-    fine = fine_rate(rate)
-    chain = chain_of(rig, condition.interference, support, _WAYS[support], fine, blows=blows)
+    impacts = any(e.effect.force is not None or e.effect.chain is not None for e in active)
+    fine = DIAGNOSIS.rate(rate)
+    chain = chain_of(
+        rig, condition.interference, support, _TRANSFERS[support], fine, impacts=impacts
+    )
     rng = np.random.default_rng(seed)
     signals = run_signals(rig, condition, active, chain, seconds, rng)
-    return recorded(signals, fine, rate, condition, rng)
+    return record(signals, rate, condition, rng, decimation=DIAGNOSIS.decimation(rate))
 
 
 def only(recording, *kinds):

@@ -6,9 +6,14 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 
 from models.errors import ParameterError
 from noise.classifier import LABELS, load_classifier
-from noise.classifier.calibration import Calibration, means_of_groups
-from noise.classifier.trees import grow_trees
-from noise.training.classifier.operating_point import FALSE_NAMES, file_name, fit_calibration
+from noise.classifier.model import Calibration
+from noise.training.classifier.operating_point import (
+    FALSE_NAMES,
+    file_name,
+    fit_calibration,
+    means_of_groups,
+)
+from noise.training.trees import grow_boosted_trees
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +28,7 @@ def data():
 def test_trees_as_arrays_say_what_scikit_learn_says(data):
     x, y = data
     weight = np.random.default_rng(1).uniform(0.5, 2.0, y.size)
-    trees = grow_trees(x, y, weight=weight, n_rounds=20, seed=5)
+    trees = grow_boosted_trees(x, y, weight=weight, n_rounds=20, seed=5)
     original = HistGradientBoostingClassifier(
         max_iter=20,
         learning_rate=0.1,
@@ -74,7 +79,7 @@ def test_calibrated_probabilities_are_as_often_right_as_they_say():
     assert right.mean() == pytest.approx(p.max(axis=1).mean(), abs=0.03)
 
 
-def test_few_strangers_are_called_a_noise_after_calibration():
+def test_few_background_sounds_are_called_a_noise_after_calibration():
     rng = np.random.default_rng(3)
     y = rng.integers(0, 5, 1000)
     votes = rng.dirichlet(np.ones(5), 1000) + 0.4 * np.eye(5)[y]

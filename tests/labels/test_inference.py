@@ -18,17 +18,16 @@ from models.recording import Channel, Recording
 from models.rig_files.rig_file import load_material_rig
 from noise.base.tables import write_table
 from noise.classifier import LABELS
-from noise.inference import Interval, load_inference
-from noise.inference.quantile_forest import PER_LEAF, grow_quantile_forest
-from noise.inference.quantities import QUANTITIES, places, value_at
-from noise.inference.segments import infer_stretch
-from noise.labels import Segment, label_rows
+from noise.inference import Interval, infer_stretch, load_inference
+from noise.inference.inputs import LONGEST, QUANTITIES, scaled, unscaled
 from noise.labels.conditions import conditions_map
-from noise.labels.reading import read_label_table
-from noise.labels.table import COLUMNS
+from noise.labels.labelling import COLUMNS, label_rows
+from noise.labels.segments import Segment
+from noise.labels.table import read_label_table
 from noise.recordings.blocks import RecordingBlocks
-from noise.training.inference.fit import coverage, draw_heard_sample, train_inference
-from noise.training.inference.population import LONGEST_LOOK, draw_heard
+from noise.training.inference.fit import coverage, draw_run_sample, train_inference
+from noise.training.inference.population import draw_audible_run
+from noise.training.trees import PER_LEAF, grow_quantile_forest
 from sim.run import simulate
 
 MODEL = load_inference()
@@ -57,7 +56,7 @@ def creak():
 
 @pytest.fixture(scope="module")
 def heard():
-    return [draw_heard_sample(seed) for seed in np.random.SeedSequence(FRESH).spawn(16)]
+    return [draw_run_sample(seed) for seed in np.random.SeedSequence(FRESH).spawn(16)]
 
 
 def widths(samples, kinds, logged=lambda _: Condition(), name="interference"):
@@ -66,12 +65,12 @@ def widths(samples, kinds, logged=lambda _: Condition(), name="interference"):
     for sample in samples:
         features = {k: v for k, v in sample.features[1].items() if k.split("_")[0] in kinds}
         condition = Condition(
-            *(value_at(q, at) for q, at in zip(QUANTITIES, sample.places, strict=True))
+            *(unscaled(q, at) for q, at in zip(QUANTITIES, sample.scaled, strict=True))
         )
         told = MODEL.infer(features, logged(condition), kinds=kinds, calibrated=True)
-        ends = told.get(name, Interval(0.0, value_at(name, -99.0), value_at(name, 99.0)))
+        ends = told.get(name, Interval(0.0, unscaled(name, -99.0), unscaled(name, 99.0)))
         low, high = (
-            places(Condition(**{name: end}))[QUANTITIES.index(name)]
+            scaled(Condition(**{name: end}))[QUANTITIES.index(name)]
             for end in (ends.low, ends.high)
         )
         found.append(high - low)
@@ -98,7 +97,7 @@ def test_intervals_hold_for_about_nine_of_ten(heard, name):
 @pytest.mark.slow
 def test_intervals_hold_for_88_to_92_of_100_on_fresh_recordings():
     seeds = np.random.SeedSequence(FRESH + 1).spawn(600)
-    samples = Parallel(n_jobs=-1)(delayed(draw_heard_sample)(seed) for seed in seeds)
+    samples = Parallel(n_jobs=-1)(delayed(draw_run_sample)(seed) for seed in seeds)
     counted = coverage(MODEL, samples)
     for name in QUANTITIES:
         for recording in ("rig", "field"):
@@ -170,7 +169,7 @@ def test_intervals_are_for_the_recordings_that_they_hold_for_alone(creak):
 def test_a_long_stretch_is_known_by_its_middle(creak):
     quiet = np.zeros((3, 60_000))
     long = replace(creak, samples=np.concatenate([quiet, creak.samples, quiet], axis=1))
-    assert creak.duration == LONGEST_LOOK
+    assert creak.duration == LONGEST
     alone, among = (
         infer_stretch(RecordingBlocks.of(r), 0, r.samples.shape[1], Condition(), MODEL)
         for r in (creak, long)
@@ -193,12 +192,12 @@ def test_a_track_of_several_is_looked_at_by_itself(creak):
 @given(st.floats(0.1, 15.0), st.floats(0.15e-3, 0.42e-3), st.floats(1e3, 1e4) | st.just(FIXED))
 def test_scales_lead_there_and_back(speed, interference, support):
     condition = Condition(speed, interference, support)
-    for name, place in zip(QUANTITIES, places(condition), strict=True):
-        assert value_at(name, place) == pytest.approx(getattr(condition, name))
+    for name, place in zip(QUANTITIES, scaled(condition), strict=True):
+        assert unscaled(name, place) == pytest.approx(getattr(condition, name))
 
 
 def test_drawn_runs_are_heard_and_can_be_drawn_again():
-    first, again = (draw_heard(np.random.default_rng(5)) for _ in range(2))
+    first, again = (draw_audible_run(np.random.default_rng(5)) for _ in range(2))
     assert first.label in ("creak", "squawk", "squeal")
     assert np.array_equal(first.field.samples, again.field.samples)
     assert first.rig.condition == first.field.condition == Condition()
@@ -249,7 +248,7 @@ def test_a_file_that_is_no_model_is_refused_in_one_line(tmp_path, content):
 
 def test_trees_that_never_end_are_refused(tmp_path):
     forest = MODEL.forests[0]
-    endless = replace(forest, following=np.zeros_like(forest.following))
+    endless = replace(forest, children=np.zeros_like(forest.children))
     replace(MODEL, forests=(endless, *MODEL.forests[1:])).save(tmp_path / "loop.npz")
     with pytest.raises(ParameterError, match="do not end"):
         load_inference(tmp_path / "loop.npz")

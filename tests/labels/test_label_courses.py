@@ -8,7 +8,7 @@ import pytest
 
 from models.rig_files.rig_file import load_material_rig
 from noise.classifier import load_classifier
-from noise.labels import file_label, label_recording
+from noise.labels.segments import file_label, label_recording
 from sim.run import simulate
 from sim.shaft import Oscillation, SpeedRamp
 

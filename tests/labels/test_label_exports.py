@@ -15,8 +15,8 @@ from noise.classifier import LABELS
 from noise.cli import main
 from noise.labels.audacity import label_track, track_paths, write_label_tracks
 from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
-from noise.labels.reading import read_label_table
-from noise.labels.table import COLUMNS, error_row
+from noise.labels.labelling import COLUMNS
+from noise.labels.table import read_label_table
 from noise.pictures.conditions import plot_conditions
 
 
@@ -35,7 +35,7 @@ TABLE = [
     row("day1/b.wav", "squeal", support=math.inf),
     row("day1/b.wav", "none", start_s=1.5, end_s=2.0, support=math.inf),
     row("c.wav", "unknown", None, None, None, material=None),
-    error_row("d.wav", "is damaged"),
+    dict.fromkeys(COLUMNS) | {"file": "d.wav", "error": "is damaged"},
 ]
 
 

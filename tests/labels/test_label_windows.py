@@ -5,15 +5,17 @@ import pytest
 import soundfile
 from scipy.signal import resample_poly
 
+from features.windows.declared import (
+    WINDOW_FEATURES,
+)
 from features.windows.table import WINDOW_NAMES, window_count
 from models.recording import Channel, Recording
-from noise.labels.boundaries import change_points
 from noise.labels.levels import CellLevels
-from noise.labels.viterbi import likeliest_course
+from noise.labels.segmentation import change_points, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import blocks as blocks_module
 from noise.recordings.blocks import RecordingBlocks, open_blocks
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
+from noise.training.draws import coloured_noise
 
 
 def recording(*rows, rate=48_000.0, names=("pressure", "acceleration", "torque")):
@@ -33,6 +35,13 @@ def noise(seconds, rate=48_000, seed=0):
     since = np.mod(time, 0.025)
     blows = np.exp(-since / 0.004) * np.sin(2 * np.pi * 3100.0 * since)
     return blows + 0.3 * np.sin(2 * np.pi * 880.0 * time) + 0.02 * coloured_noise(n, 1.0, rng)
+
+
+def test_each_feature_of_a_window_has_its_own_name_a_unit_and_a_definition():
+    assert len(set(WINDOW_NAMES)) == len(WINDOW_NAMES)
+    for feature in WINDOW_FEATURES:
+        assert feature.unit
+        assert feature.definition.endswith(".")
 
 
 @pytest.fixture(scope="module")
@@ -124,8 +133,8 @@ def test_the_change_from_noise_to_tone_is_found_to_50_ms(at):
 def test_a_short_doubt_is_no_segment_but_a_long_one_is():
     sure, other = [0.9, 0.1], [0.1, 0.9]
     doubt = [0.45, 0.55]
-    assert not likeliest_course(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
-    course = likeliest_course(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
+    assert not viterbi_path(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
+    course = viterbi_path(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
     assert course.tolist() == [0] * 4 + [1] * 4 + [0] * 4
 
 

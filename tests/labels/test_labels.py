@@ -9,8 +9,10 @@ import pytest
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig_files.rig_file import load_material_rig
+from noise.batch.work import refusal
 from noise.classifier import LABELS, load_classifier
-from noise.labels import COLUMNS, Segment, error_row, file_label, label_recording, label_rows
+from noise.labels.labelling import COLUMNS, Labelling, label_rows
+from noise.labels.segments import Segment, file_label, label_recording
 from sim.run import simulate
 
 CLASSIFIER = load_classifier()
@@ -106,8 +108,8 @@ def test_speed_is_that_of_the_segment_where_the_angle_was_recorded():
 
 
 def test_a_refused_file_has_a_row_with_the_reason():
-    row = error_row("bad.wav", "empty")
-    assert tuple(row) == COLUMNS
+    (cells,) = refusal(Labelling(), "bad.wav", "empty").rows
+    row = dict(zip(COLUMNS, cells, strict=True))
     assert (row["file"], row["error"], row["label"]) == ("bad.wav", "empty", None)
 
 

@@ -12,8 +12,8 @@ from features.kernels.spectra import autospectrum
 from models.rig_files.rig_file import load_material_rig
 from noise.classifier import load_classifier
 from noise.demo import CASES
-from noise.labels import file_label, label_recording
-from noise.noise_definition import noise_of
+from noise.labels.segments import file_label, label_recording
+from noise.noise_definition import label_by_physics
 from sim.effects.slip_pulse import torque_drops
 from sim.run import simulate
 
@@ -44,7 +44,7 @@ def lines(run, channel, highest=2000.0):
 
 @pytest.mark.parametrize("name", [case.name for case in CASES])
 def test_each_condition_makes_the_noise_that_the_thesis_heard(runs, name):
-    assert noise_of(runs[name]) == name
+    assert label_by_physics(runs[name]) == name
 
 
 @pytest.mark.parametrize("name", [case.name for case in CASES])
@@ -102,7 +102,7 @@ def test_without_the_plates_blows_a_creak_loses_what_lies_above_2_khz(runs):
 def test_bolting_the_clamp_down_ends_the_creak():
     rig = load_material_rig("fluorocarbon")
     bolted = simulate(rig, 1.0, interference=0.381e-3, support_stiffness=np.inf)
-    assert noise_of(bolted) == "squawk"
+    assert label_by_physics(bolted) == "squawk"
     assert not bolted.pulse_pressure.any()
 
 
@@ -153,7 +153,7 @@ def test_conditions_whose_noise_the_thesis_names_make_it(interference, stiffness
         interference=interference,
         support_stiffness=stiffness,
     )
-    assert noise_of(run) == noise
+    assert label_by_physics(run) == noise
 
 
 @pytest.mark.parametrize("interference", [0.254e-3, 0.381e-3])
@@ -167,7 +167,7 @@ def test_pdms_is_silent_everywhere(interference, stiffness, speed):
         support_stiffness=stiffness,
         seconds=0.5,
     )
-    assert noise_of(run) == "none"
+    assert label_by_physics(run) == "none"
 
 
 @pytest.mark.parametrize("name", ["creak", "squawk", "squeal"])

@@ -10,14 +10,14 @@ from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.radiation.impulse_responses import convolve
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig import Beams, Microphone
 from models.rig_files.rig_file import load_material_rig, load_rig
 from models.structure.beams import PULSE, TORQUE, beam_structure
 from models.structure.beams_sound import beams_pressure, strip_section
 from models.structure.beams_stiffness import beam_length
+from models.transfer_functions.filtering import convolve
 from sim.effects import EFFECTS
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
@@ -132,7 +132,8 @@ def test_beams_and_clamp_of_the_shipped_rig_are_heard():
 
 def test_beams_add_to_the_plate_and_leave_the_acceleration():
     silent, loud = (
-        response(rig(radiating=each), 0.279e-3, 2214.0, RATE, seconds=0.2) for each in (False, True)
+        impulse_responses(rig(radiating=each), 0.279e-3, 2214.0, RATE, seconds=0.2)
+        for each in (False, True)
     )
     assert np.array_equal(silent.torque_to_acceleration, loud.torque_to_acceleration)
     beams = rig().beams
@@ -150,7 +151,8 @@ def test_beams_add_to_the_plate_and_leave_the_acceleration():
 
 def test_a_bolted_clamp_has_no_beams_to_radiate():
     silent, loud = (
-        response(rig(radiating=each), 0.279e-3, FIXED, RATE, seconds=0.1) for each in (False, True)
+        impulse_responses(rig(radiating=each), 0.279e-3, FIXED, RATE, seconds=0.1)
+        for each in (False, True)
     )
     assert np.array_equal(silent.torque_to_pressure, loud.torque_to_pressure)
 
@@ -164,7 +166,8 @@ def test_without_the_plate_a_creak_loses_10_db_above_2_khz(support, speed, least
     """A blow in the joint meets the beam within half its thickness of the anchor."""
     interference = 0.381e-3
     whole, no_beams = (
-        response(rig(radiating=each), interference, support, RATE) for each in (True, False)
+        impulse_responses(rig(radiating=each), interference, support, RATE)
+        for each in (True, False)
     )
     motion = simulate_motion(
         rig(), ConstantSpeed(speed), interference=interference, support_stiffness=support,

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.radiation.rig_response import frequency_response, radiate, response
+from models.radiation.impulse_responses import radiate
+from models.radiation.rig_response import impulse_responses
+from models.rig_files.measured_file import measured_responses
 from models.rig_files.rig_file import load_material_rig, load_rig
-from models.transfer_functions.files import write_frf
-from models.transfer_functions.measured import measured_responses
-from models.transfer_functions.transfer_function import Frf
+from models.transfer_functions.files import write_transfer_function
+from models.transfer_functions.transfer_function import TransferFunction
+from tests.helpers.spectra import path_spectra
 
 FIT = 0.279e-3
 RATE = 48e3
@@ -26,20 +28,22 @@ torque_to_acceleration = "a.npz"
 
 @pytest.fixture(scope="module")
 def modelled():
-    return response(load_material_rig("fluorocarbon"), FIT, 2214.0, RATE)
+    return impulse_responses(load_material_rig("fluorocarbon"), FIT, 2214.0, RATE)
 
 
 def written(folder, text=ENTRY, **kinds):
     """A rig file beside the responses that it names."""
     for name, (values, unit, f) in kinds.items():
-        write_frf(folder / f"{name}.npz", Frf(f, values, None, "N m", unit))
+        write_transfer_function(
+            folder / f"{name}.npz", TransferFunction(f, values, None, "N m", unit)
+        )
     path = folder / "rig.toml"
     path.write_text(text, encoding="utf-8")
     return path
 
 
 def rig_with(folder, modelled, gain=1.0, text=ENTRY, f=F):
-    h = frequency_response(modelled, f)
+    h = path_spectra(modelled, f)
     return load_rig(
         written(
             folder,
@@ -58,13 +62,13 @@ def torque():
 def test_the_models_own_response_given_as_measured_gives_the_models_sound(tmp_path, modelled):
     text = ENTRY + 'torque_to_pressure = "p.npz"\n'
     rig = rig_with(tmp_path, modelled, text=text)
-    measured = response(rig, FIT, 2214.0, RATE, seconds=0.7)
+    measured = impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.7)
     for found, true in zip(radiate(measured, torque()), radiate(modelled, torque()), strict=True):
         assert np.std(found - true) < 0.015 * np.std(true)
 
 
 def test_what_was_not_measured_stays_modelled(tmp_path, modelled):
-    measured = response(rig_with(tmp_path, modelled, 2.0), FIT, 2214.0, RATE, seconds=0.7)
+    measured = impulse_responses(rig_with(tmp_path, modelled, 2.0), FIT, 2214.0, RATE, seconds=0.7)
     assert measured.torque_to_pressure is modelled.torque_to_pressure
     assert measured.pulse_to_acceleration is modelled.pulse_to_acceleration
     found, true = radiate(measured, torque())[0], radiate(modelled, torque())[0]
@@ -73,14 +77,14 @@ def test_what_was_not_measured_stays_modelled(tmp_path, modelled):
 
 def test_another_support_stays_modelled(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled, 2.0)
-    other = response(load_material_rig("fluorocarbon"), FIT, 3745.0, RATE, seconds=0.1)
+    other = impulse_responses(load_material_rig("fluorocarbon"), FIT, 3745.0, RATE, seconds=0.1)
     with pytest.warns(UserWarning, match="measured with the support 3745 Nm/rad, only with 2214"):
-        assert response(rig, FIT, 3745.0, RATE, seconds=0.1) is other
+        assert impulse_responses(rig, FIT, 3745.0, RATE, seconds=0.1) is other
 
 
 def test_a_bolted_clamp_may_be_measured_too(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled, text=ENTRY.replace("2214", '"fixed"'))
-    found = radiate(response(rig, FIT, math.inf, RATE, seconds=0.7), torque())[0]
+    found = radiate(impulse_responses(rig, FIT, math.inf, RATE, seconds=0.7), torque())[0]
     true = radiate(modelled, torque())[0]
     assert np.std(found - true) < 0.015 * np.std(true)
 
@@ -88,21 +92,21 @@ def test_a_bolted_clamp_may_be_measured_too(tmp_path, modelled):
 def test_a_response_that_ends_below_what_is_modelled_says_what_is_missing(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled, f=F[F <= 8000])
     with pytest.warns(UserWarning, match="from 20 to 8000 Hz; what lies above, up to 16000 Hz"):
-        response(rig, FIT, 2214.0, RATE, seconds=0.3)
+        impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.3)
 
 
 def test_a_response_that_reaches_far_enough_warns_of_nothing(tmp_path, modelled):
     rig = rig_with(tmp_path, modelled)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        response(rig, FIT, 2214.0, RATE, seconds=0.2)
+        impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.2)
 
 
 def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
-    h = frequency_response(modelled, F).torque_to_acceleration.conj()
+    h = path_spectra(modelled, F).torque_to_acceleration.conj()
     rig = load_rig(written(tmp_path, a=(h, "m/s^2", F)))
     with pytest.raises(ParameterError, match=r"a\.npz: \d+ % of the response comes before its cau"):
-        response(rig, FIT, 2214.0, RATE, seconds=0.7)
+        impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.7)
 
 
 @pytest.mark.parametrize(

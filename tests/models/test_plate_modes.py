@@ -7,24 +7,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.radiation.impulse_responses import frequency_response
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig_files.rig_file import load_material_rig
 from sim.chain import resonance
 from tests.helpers.chain_paths import RATE, changed, spectra
+from tests.helpers.spectra import path_spectra
 
 RIG = load_material_rig("fluorocarbon")
 
 
 @pytest.fixture(scope="module")
 def plain():
-    return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
+    return impulse_responses(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
 
 
 def test_a_lonely_resonance_adds_6_db_where_it_is_and_nothing_far_away(plain):
     louder = changed(plain, "plate_modes", frequency=2000.0)
     frequency = np.array([200.0, 2000.0, 15e3])
-    before, after = (frequency_response(each, frequency) for each in (plain, louder))
+    before, after = (path_spectra(each, frequency) for each in (plain, louder))
     for path in ("torque_to_pressure", "pulse_to_pressure"):
         gain = 20 * np.log10(np.abs(getattr(after, path) / getattr(before, path)))
         assert gain == pytest.approx([0.0, 6.02, 0.0], abs=0.02)
@@ -50,5 +50,5 @@ def test_a_resonance_is_exact_where_it_rings(frequency):
 
 
 def test_resonances_beyond_the_band_are_left_out():
-    paths = response(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
+    paths = impulse_responses(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
     assert changed(paths, "plate_modes", frequency=14e3) is paths

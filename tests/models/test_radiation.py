@@ -8,11 +8,13 @@ import pytest
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.radiation.rig_response import frequency_response, radiate, response
+from models.radiation.impulse_responses import radiate
+from models.radiation.rig_response import impulse_responses
 from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
 from models.structure.beams_stiffness import beam_length
 from models.structure.plate import plate_modes, pressure_response
+from tests.helpers.spectra import path_spectra
 
 RATE = 96e3
 BENCH = Rig(
@@ -48,7 +50,7 @@ def _third_octaves(spectrum, frequency):
 @pytest.mark.parametrize("path", ["torque_to_pressure", "pulse_to_pressure"])
 def test_the_rig_answers_over_the_whole_band_to_15_khz(stiffness, path):
     frequency = np.geomspace(200, 16e3, 2000)
-    spectra = frequency_response(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
+    spectra = path_spectra(impulse_responses(BENCH, SQUEAKY, stiffness, RATE), frequency)
     levels = _third_octaves(getattr(spectra, path), frequency)
     assert levels.min() > levels.max() - 50
 
@@ -73,14 +75,14 @@ def test_torque_reaches_the_microphone_through_both_anchors():
     moment = anchors[ANCHOR_MOMENT - 1]
     right, left, right_turn, left_turn = heard @ kernel
     expected = force * (right - left) + moment * (right_turn + left_turn)
-    found = frequency_response(response(BENCH, SQUEAKY, 2214.0, RATE), frequency)
+    found = path_spectra(impulse_responses(BENCH, SQUEAKY, 2214.0, RATE), frequency)
     assert np.abs(found.torque_to_pressure / expected) == pytest.approx(1, abs=0.05)
 
 
 @pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
 def test_acceleration_peaks_at_the_first_torsional_mode(stiffness):
     frequency = np.arange(100.0, 600.0, 0.5)
-    spectra = frequency_response(response(BENCH, SQUEAKY, stiffness, RATE), frequency)
+    spectra = path_spectra(impulse_responses(BENCH, SQUEAKY, stiffness, RATE), frequency)
     peak = frequency[np.argmax(np.abs(spectra.torque_to_acceleration))]
     assert peak == pytest.approx(math.sqrt(stiffness * 1200) / (2 * math.pi), abs=1.5)
 
@@ -89,7 +91,9 @@ def test_damping_of_the_fit_sets_the_height_of_the_first_mode():
     frequency = np.arange(230.0, 290.0, 0.25)
     peaks = [
         np.abs(
-            frequency_response(response(BENCH, fit, 2214.0, RATE), frequency).torque_to_acceleration
+            path_spectra(
+                impulse_responses(BENCH, fit, 2214.0, RATE), frequency
+            ).torque_to_acceleration
         ).max()
         for fit in (SQUEAKY, TIGHT)
     ]
@@ -97,7 +101,7 @@ def test_damping_of_the_fit_sets_the_height_of_the_first_mode():
 
 
 def test_bolting_the_clamp_down_silences_the_pulses():
-    bolted = response(BENCH, TIGHT, FIXED, RATE)
+    bolted = impulse_responses(BENCH, TIGHT, FIXED, RATE)
     pulse = np.zeros(4800)
     pulse[100:105] = 10.0
     acceleration, pressure = radiate(bolted, np.zeros(4800), pulse)
@@ -107,8 +111,8 @@ def test_bolting_the_clamp_down_silences_the_pulses():
 
 def test_the_bolted_clamp_has_no_torsional_mode():
     frequency = np.arange(150.0, 500.0, 1.0)
-    on_beams = frequency_response(response(BENCH, TIGHT, 2214.0, RATE), frequency)
-    bolted = frequency_response(response(BENCH, TIGHT, FIXED, RATE), frequency)
+    on_beams = path_spectra(impulse_responses(BENCH, TIGHT, 2214.0, RATE), frequency)
+    bolted = path_spectra(impulse_responses(BENCH, TIGHT, FIXED, RATE), frequency)
     loudest = np.abs(on_beams.torque_to_acceleration).max()
     assert np.abs(bolted.torque_to_acceleration).max() < 0.05 * loudest
     assert np.any(bolted.torque_to_pressure)
@@ -121,13 +125,13 @@ def test_an_antisymmetric_drive_is_silent_on_the_plane_of_symmetry():
         microphone=Microphone((0.0, -0.1, 0.8)),
     )
     aside = dataclasses.replace(centred, microphone=Microphone((0.2, -0.1, 0.8)))
-    on_plane = response(centred, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
-    off_plane = response(aside, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
+    on_plane = impulse_responses(centred, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
+    off_plane = impulse_responses(aside, SQUEAKY, 2214.0, 48e3, seconds=0.2).torque_to_pressure
     assert np.abs(on_plane).max() < 1e-9 * np.abs(off_plane).max()
 
 
 def test_sound_arrives_after_its_travel():
-    chain = response(BENCH, SQUEAKY, 2214.0, RATE)
+    chain = impulse_responses(BENCH, SQUEAKY, 2214.0, RATE)
     nearest = 0.8 / 343.2 * RATE
     for path in (chain.torque_to_pressure, chain.pulse_to_pressure):
         before = np.abs(path[: int(nearest) - 2]).max()
@@ -137,7 +141,7 @@ def test_sound_arrives_after_its_travel():
 def test_a_slip_of_six_newton_metres_shakes_the_beams_as_its_inertia_allows():
     time = np.arange(int(0.2 * RATE)) / RATE
     slip = 6 * np.exp(-(((time - 0.05) / 1e-3) ** 2))
-    acceleration, pressure = radiate(response(BENCH, TIGHT, 2214.0, RATE), slip)
+    acceleration, pressure = radiate(impulse_responses(BENCH, TIGHT, 2214.0, RATE), slip)
     rigid = 6 * 1200 * 0.0449
     assert 0.3 * rigid < np.abs(acceleration).max() < 3 * rigid
     assert 60 < 20 * np.log10(np.abs(pressure).max() / 2e-5) < 110
@@ -149,7 +153,7 @@ def test_pulses_at_the_rate_of_a_creak_are_heard_from_5_to_15_khz():
     pulse = np.zeros(n)
     time = np.arange(int(50e-6 * RATE) + 1) / RATE
     pulse[: time.size] = 10 * np.sin(np.pi * time / 50e-6)
-    _, pressure = radiate(response(BENCH, TIGHT, 2214.0, RATE), np.zeros(n), pulse)
+    _, pressure = radiate(impulse_responses(BENCH, TIGHT, 2214.0, RATE), np.zeros(n), pulse)
     frequency = np.fft.rfftfreq(n, 1 / RATE)
     band = (frequency > 5e3) & (frequency < 15e3)
     energy = 2 * np.sum(np.abs(np.fft.rfft(pressure)[band]) ** 2) / n / RATE
@@ -159,7 +163,7 @@ def test_pulses_at_the_rate_of_a_creak_are_heard_from_5_to_15_khz():
 def test_other_rates_give_the_same_response_in_the_common_band():
     frequency = np.geomspace(150, 5e3, 60)
     spectra = [
-        frequency_response(response(BENCH, SQUEAKY, 3745.0, rate), frequency)
+        path_spectra(impulse_responses(BENCH, SQUEAKY, 3745.0, rate), frequency)
         for rate in (48e3, 96e3)
     ]
     for path in ("torque_to_acceleration", "torque_to_pressure", "pulse_to_pressure"):
@@ -168,7 +172,7 @@ def test_other_rates_give_the_same_response_in_the_common_band():
 
 
 def test_shared_responses_cannot_be_overwritten():
-    chain = response(BENCH, SQUEAKY, 2214.0, RATE)
+    chain = impulse_responses(BENCH, SQUEAKY, 2214.0, RATE)
     with pytest.raises(ValueError, match="read-only"):
         chain.torque_to_pressure[0] = 1.0
 
@@ -176,7 +180,7 @@ def test_shared_responses_cannot_be_overwritten():
 def test_anchors_off_the_plate_are_refused():
     narrow = dataclasses.replace(BENCH, plate=dataclasses.replace(BENCH.plate, length=0.4))
     with pytest.raises(ParameterError, match="off the plate"):
-        response(narrow, SQUEAKY, 2214.0, RATE)
+        impulse_responses(narrow, SQUEAKY, 2214.0, RATE)
 
 
 def test_at_the_same_support_stiffness_yielding_anchors_mean_shorter_beams_that_ring_higher():
@@ -184,8 +188,8 @@ def test_at_the_same_support_stiffness_yielding_anchors_mean_shorter_beams_that_
     frequency = np.arange(100.0, 5000.0, 4.0)
     found = []
     for rig in (BENCH, soft):
-        paths = response(rig, SQUEAKY, 2214.0, RATE, seconds=0.3)
-        spectrum = np.abs(frequency_response(paths, frequency).torque_to_acceleration)
+        paths = impulse_responses(rig, SQUEAKY, 2214.0, RATE, seconds=0.3)
+        spectrum = np.abs(path_spectra(paths, frequency).torque_to_acceleration)
         inner = spectrum[1:-1]
         peaks = np.flatnonzero((inner > spectrum[:-2]) & (inner > spectrum[2:]))
         found.append(frequency[1 + peaks])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from noise.diagnosis.text.sentences import headline, verdict_sentence
-from noise.pages import write_diagnosis
+from noise.pages.diagnosis.page import write_diagnosis
 from tests.helpers.browser import chromium
 from tests.helpers.made_diagnoses import KINDS
 
@@ -62,7 +62,7 @@ def test_verdict_chain_and_first_cause_are_on_the_first_screen(opened):
 
 def test_the_sections_stand_in_the_order_of_their_rank(opened):
     judged, shown = opened.diagnosis.verdict, opened.diagnosis.illustrations
-    assert opened.page.locator("h2").all_inner_texts() == [
+    assert opened.page.locator("main h2").all_inner_texts() == [
         *(["Where it lies", "How far it closes", "Which cause"] if judged else []),
         *(["Each stage of the chain", "What else it could be"] if not judged else []),
         "What to measure next",
@@ -114,25 +114,26 @@ def test_words_in_the_chain_stay_in_their_boxes(opened, width, media):
 
 
 def test_every_player_is_ready_and_one_stops_the_other(opened):
-    players = opened.page.locator("audio")
+    players = opened.page.locator(".card .play")
     expected = sum(2 + (one.after is not None) for one in opened.diagnosis.illustrations)
     assert players.count() == expected
-    opened.page.wait_for_function(
-        "[...document.querySelectorAll('audio')].every((p) => p.readyState >= 1 && p.duration > .5)"
-    )
     for index in range(min(2, expected)):
-        players.nth(index).evaluate("(player) => { player.loop = true; return player.play(); }")
+        players.nth(index).click()
         opened.page.wait_for_function(
-            "(i) => document.querySelectorAll('audio')[i].currentTime > 0.05", arg=index
+            "() => engine.playing && engine.now() > 0.05 && engine.length() > 0.5"
         )
+        assert players.nth(index).text_content() == "Pause"
     if expected:
-        assert players.nth(0).evaluate("(player) => player.paused")
-        players.nth(1).evaluate("(player) => player.pause()")
+        assert players.nth(0).text_content() == "Play"
+        players.nth(1).click()
+        assert players.nth(1).text_content() == "Play"
+        opened.page.evaluate("document.getElementById('player').classList.remove('used')")
 
 
 def test_every_picture_is_drawn_and_described(opened):
     pictures = opened.page.evaluate(
-        "[...document.images].map((image) => [image.naturalWidth, image.alt])"
+        "[...document.querySelectorAll('main .view img, .panels img')]"
+        ".map((image) => [image.naturalWidth, image.alt])"
     )
     assert bool(pictures) == bool(opened.diagnosis.illustrations)
     assert all(width > 0 and alt for width, alt in pictures)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import io
 import json
 import math
@@ -15,13 +14,20 @@ import soundfile
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.diagnosis.outcome import Diagnosis, Illustration, StageFinding, as_json
+from noise.diagnosis.outcome import (
+    Diagnosis,
+    Illustration,
+    StageFinding,
+    as_json,
+    from_json,
+)
 from noise.diagnosis.text.sentences import verdict_sentence
-from noise.pages import write_diagnosis
+from noise.pages.diagnosis.answer_display import cause_rows, parameter_rows, stage_boxes
 from noise.pages.diagnosis.figures import cycle_window, illustration_panels, sixth_octaves
-from noise.pages.diagnosis.sounds import LONGEST, played_sounds
-from noise.pages.diagnosis.view import cause_rows, parameter_rows, stage_boxes
+from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.diagnosis.sounds import LONGEST, illustration_entries, reported_entries
 from noise.pages.diagnosis.waterfall import waterfall
+from noise.pages.engine.clips import common_gain, make_clips
 from tests.helpers.made_diagnoses import (
     KINDS,
     none,
@@ -168,13 +174,15 @@ def test_a_parameter_is_off_only_where_its_interval_excludes_one():
         assert row.start + row.width <= 100.0
 
 
-def samples(uri):
-    return soundfile.read(io.BytesIO(base64.b64decode(uri.partition(",")[2])))[0]
+def played_sounds(*recordings):
+    """Samples of measured, before and after, as the page holds them."""
+    entries = illustration_entries(Illustration("a", *recordings))
+    clips, _ = make_clips(entries, common_gain(entries.values()))
+    return [soundfile.read(io.BytesIO(clip.flac))[0] for clip in clips.values()]
 
 
 def test_a_louder_sound_stays_louder_by_as_much():
-    sounds = played_sounds([Illustration("a", tone(1.0), tone(0.1), tone(0.5))])
-    played = [samples(sounds.uris[0][role]) for role in ("measured", "before", "after")]
+    played = played_sounds(tone(1.0), tone(0.1), tone(0.5))
     loudness = [float(np.sqrt(np.mean(each**2))) for each in played]
     assert loudness[0] / loudness[1] == pytest.approx(10.0, rel=1e-3)
     assert loudness[0] / loudness[2] == pytest.approx(2.0, rel=1e-3)
@@ -182,21 +190,36 @@ def test_a_louder_sound_stays_louder_by_as_much():
 
 
 def test_long_sounds_are_cut():
-    (uris,) = played_sounds([Illustration("a", tone(1.0, 5.0), tone(1.0), None)]).uris
-    assert samples(uris["measured"]).size == round(LONGEST * 48_000)
+    measured, _ = played_sounds(tone(1.0, 5.0), tone(1.0), None)
+    assert measured.size == round(LONGEST * 48_000)
 
 
 def test_silence_can_be_played():
     silent = tone(0.0)
-    (uris,) = played_sounds([Illustration("a", silent, silent, None)]).uris
-    assert not samples(uris["measured"]).any()
+    measured, _ = played_sounds(silent, silent, None)
+    assert not measured.any()
 
 
 def test_without_pressure_there_is_nothing_to_play():
     torque = only(run(), "torque")
-    sounds = played_sounds([Illustration("a", torque, torque, None)])
-    assert sounds.uris == ({},)
-    assert sounds.words == ""
+    assert played_sounds(torque, torque, None) == []
+
+
+def test_the_sounds_of_a_report_can_be_read_back_with_label_and_level(tmp_path):
+    diagnosis = one_effect()
+    write_diagnosis(tmp_path, diagnosis)
+    found = reported_entries(tmp_path / "report.html", diagnosis)
+    entries = illustration_entries(diagnosis.illustrations[0], diagnosis.labels_and_levels)
+    for entry, back in zip(entries.values(), found, strict=False):
+        assert (back.title, back.label) == (entry.title, entry.label)
+        assert entry.note in back.note
+        assert back.sound == pytest.approx(entry.sound, abs=2e-4)
+    assert reported_entries(tmp_path / "gone.html", diagnosis) == []
+
+
+def test_what_the_data_hold_can_be_read_back():
+    for made in KINDS.values():
+        assert as_json(from_json(as_json(made()))) == as_json(made())
 
 
 def test_a_sixth_octave_holds_the_power_of_a_tone_in_it():

@@ -9,7 +9,7 @@ import soundfile
 from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
-from noise.pages import ReportEntry, write_report
+from noise.pages.report import ReportEntry, write_report
 from tests.helpers.browser import chromium
 
 RATE = 30_000
@@ -82,28 +82,29 @@ def page(opened):
 
 
 def play(page, index):
-    page.locator("audio").nth(index).evaluate("(player) => player.play()")
+    key = f"s{index + 1}"
+    page.evaluate("(key) => engine.start(key, 0)", key)
     page.wait_for_function(
-        "(index) => document.querySelectorAll('audio')[index].currentTime > 0.1", arg=index
+        "(key) => engine.playing && engine.key === key && engine.now() > 0.1", arg=key
     )
 
 
 def test_every_sound_is_ready_and_has_its_length(page):
-    page.wait_for_function(
-        "[...document.querySelectorAll('audio')].every((player) => player.readyState >= 1)"
-    )
-    lengths = page.evaluate(
-        "[...document.querySelectorAll('audio')].map((player) => player.duration)"
-    )
+    lengths = []
+    for index in range(3):
+        play(page, index)
+        lengths.append(page.evaluate("engine.length()"))
     assert lengths == pytest.approx([1.0, 1.0, 1.0], abs=1e-3)
 
 
 def test_playing_advances_and_one_sound_stops_the_other(page):
-    page.locator("audio").first.evaluate("(player) => { player.loop = true; }")
+    buttons = page.locator(".card .play")
     play(page, 0)
-    assert not page.locator("audio").first.evaluate("(player) => player.paused")
+    assert buttons.nth(0).text_content() == "Pause"
     play(page, 1)
-    assert page.locator("audio").first.evaluate("(player) => player.paused")
+    assert buttons.nth(0).text_content() == "Play"
+    assert buttons.nth(1).text_content() == "Pause"
+    assert list(page.evaluate("engine.gains()")) == ["a"]
 
 
 def test_the_page_is_quiet_and_asks_nothing_of_the_network(opened):
@@ -120,8 +121,10 @@ def test_the_page_itself_forbids_other_sources(browser, page_file):
 
 
 def test_every_picture_is_drawn(page):
-    widths = page.evaluate("[...document.images].map((image) => image.naturalWidth)")
-    assert len(widths) == 18
+    widths = page.evaluate(
+        "[...document.querySelectorAll('main img')].map((image) => image.naturalWidth)"
+    )
+    assert len(widths) == 3 * (6 + 1)  # panels and a spectrogram
     assert min(widths) > 0
 
 
@@ -130,13 +133,18 @@ def test_the_page_fits_the_width_of_every_screen(page):
         page.set_viewport_size({"width": width, "height": 800})
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert page.locator(".wide").evaluate("(box) => box.scrollWidth <= box.clientWidth"), width
+        beyond = page.evaluate(
+            "[...document.querySelectorAll('main *')].filter((one) => one.getClientRects().length)"
+            ".filter((one) => one.getBoundingClientRect().right > innerWidth + 1).length"
+        )
+        assert beyond == 0, width
 
 
 def test_panels_stand_side_by_side_where_there_is_room(page):
     for width, columns in ((390, 1), (1280, 2)):
         page.set_viewport_size({"width": width, "height": 800})
         lefts = page.evaluate(
-            "[...document.querySelectorAll('#entry-1 img')]"
+            "[...document.querySelectorAll('#entry-1 .panels img')]"
             ".map((image) => Math.round(image.getBoundingClientRect().left))"
         )
         assert len(set(lefts)) == columns

@@ -14,11 +14,11 @@ import soundfile
 import noise
 from models.errors import ParameterError
 from noise.audio.gain import loudness
+from noise.base.label_looks import LABEL_LOOKS
 from noise.cli import main
-from noise.labels.label_display import LABEL_LOOKS
 from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.engine.equal_loudness import equal_factors
 from noise.pages.review.build import review
-from noise.pages.review.equal import equal_factors
 from noise.recordings import write_recording
 from tests.helpers.made_diagnoses import one_effect
 from tests.helpers.made_reviews import (
@@ -42,7 +42,7 @@ class Page:
 
     def sound(self, title):
         key = next(key for key, one in self.about.items() if one["title"].startswith(title))
-        text = re.search(rf'id="sound-{key}">(.*?)</script>', self.html, re.S)[1]
+        text = re.search(rf'id="sound-{key}"[^>]*>(.*?)</script>', self.html, re.S)[1]
         return soundfile.read(io.BytesIO(base64.b64decode(text)))
 
 
@@ -69,7 +69,9 @@ def test_sounds_keep_their_levels_to_one_another_and_to_the_stated_full_scale(ca
 def test_a_full_scale_that_is_set_is_level_true_and_one_that_clips_is_refused(campaign):
     out = campaign / "review.html"
     page = Page(review(campaign, out, pascal_per_full_scale=20.0).path)
-    assert "Calibrated sounds are level-true: full scale = 20 Pa (120 dB peak)" in page.html
+    assert (
+        "Calibrated sounds are level-true: full scale = 20 Pa (120 dB peak re 20 µPa)" in page.html
+    )
     squeal, _ = page.sound("recordings/squeal")
     assert np.abs(squeal).max() == pytest.approx(0.01, rel=0.02)
     with pytest.raises(ParameterError, match=r"creak.*would clip at 0.1 Pa"):

@@ -7,15 +7,18 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
+from noise.pages.engine.maps import areas_of, axis_of, recorded_maps
+from noise.pages.engine.page import MAP_SIZE
 from noise.pages.review import simulated
 from noise.pages.review.design_rig import rig_of
-from noise.pages.review.maps import HEIGHT, WIDTH, areas_of, axis_of, recorded_maps
 from noise.pages.review.screens import ScreenPoint, read_screen
 from noise.pages.review.simulated import MOST_SILENT, chosen_points
 from tests.helpers.made_reviews import row, screen_rows, write_screen
 from tests.helpers.small_rigs import RIG_FILE
 
 LABELS = ("creak", "squawk", "squeal", "none")
+
+WIDTH, HEIGHT = MAP_SIZE
 
 
 def points(rows):
@@ -31,7 +34,9 @@ def test_areas_cover_the_map_once_and_have_the_label_of_their_point(n_across, n_
     speed = np.tile(np.arange(n_across) * 2.0 + 1.0, n_up)
     fit = np.repeat(np.arange(n_up) * 0.05 + 0.2, n_across)
     across, up, areas = areas_of(speed, fit, labels[: speed.size])
-    assert sum(a.width * a.height for a in areas) == pytest.approx(WIDTH * HEIGHT, rel=1e-3)
+    assert sum(a.width * a.height for a in areas) == pytest.approx(
+        MAP_SIZE[0] * MAP_SIZE[1], rel=1e-3
+    )
     for v, i, label in zip(speed, fit, labels, strict=False):
         x, y = WIDTH * across.share(v), HEIGHT * (1.0 - up.share(i))
         (found,) = (a for a in areas if a.x < x < a.x + a.width and a.y < y < a.y + a.height)
@@ -42,7 +47,9 @@ def test_points_without_a_grid_are_divided_by_the_nearest():
     rng = np.random.default_rng(5)
     speed, fit = rng.uniform(1.0, 11.0, 300), rng.uniform(0.2, 0.4, 300)
     _, _, areas = areas_of(speed, fit, ["creak" if v < 6.0 else "none" for v in speed])
-    share = sum(a.width * a.height for a in areas if a.label == "creak") / (WIDTH * HEIGHT)
+    share = sum(a.width * a.height for a in areas if a.label == "creak") / (
+        MAP_SIZE[0] * MAP_SIZE[1]
+    )
     assert share == pytest.approx(0.5, abs=0.05)
 
 

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from models.drawing import thinned
+from models.drawing import styled, thinned
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
-from noise.pages import figures
-from noise.pages.figures import entry_figures
+from noise.pages.engine import figures
+from noise.pages.engine.figures import entry_figures
+from noise.pages.engine.panels import COLUMNS
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE
@@ -73,14 +74,14 @@ def test_a_slow_recording_has_a_spectrum_to_half_its_rate():
 @pytest.mark.parametrize("amplitude", [1e-7, 0.03, 0.7, 30_000.0])
 def test_no_writing_on_a_panel_overlaps_or_is_cut_off(monkeypatch, amplitude, calibrated):
     drawn = []
-    monkeypatch.setattr(figures, "_svg", lambda figure: drawn.append(figure) or b"")
+    monkeypatch.setattr(figures, "as_svg", lambda figure: drawn.append(figure) or b"")
     loud = recording(
         torque=amplitude * TONE - 36.9, acceleration=amplitude * TONE, calibrated=calibrated
     )
     quiet = recording(torque=8.0, acceleration=0.0, calibrated=calibrated)
     entry_figures([(loud, SEGMENT), (quiet, SEGMENT)])
     assert len(drawn) == 8
-    with mpl.style.context(["default", figures._STYLE]):
+    with styled():
         for figure in drawn:
             figure.draw_without_rendering()
             (axes,) = figure.axes
@@ -103,7 +104,7 @@ def test_thinning_keeps_every_peak():
     position = np.linspace(0.0, 1.0, 20_000)
     spikes = np.zeros(20_000)
     spikes[137::613] = 1.0
-    _, kept = thinned(position, spikes, columns=figures._COLUMNS)
+    _, kept = thinned(position, spikes, columns=COLUMNS)
     assert kept.size < 2000
     assert np.count_nonzero(kept) == np.count_nonzero(spikes)
 
@@ -111,7 +112,7 @@ def test_thinning_keeps_every_peak():
 @given(st.integers(1, 4000), st.integers(0, 2**32 - 1))
 def test_thinning_keeps_ends_order_and_extremes(size, seed):
     x, y = np.arange(float(size)), np.random.default_rng(seed).normal(size=size)
-    kept_x, kept_y = thinned(x, y, columns=figures._COLUMNS)
+    kept_x, kept_y = thinned(x, y, columns=COLUMNS)
     assert np.all(np.diff(kept_x) > 0)
     assert (kept_x[0], kept_x[-1]) == (x[0], x[-1])
     assert (kept_y.min(), kept_y.max()) == (y.min(), y.max())
@@ -126,7 +127,7 @@ def test_drawing_leaves_the_callers_settings_alone_and_does_not_depend_on_them()
 
 
 def test_no_plotting_interface_with_state_is_loaded():
-    code = "import sys, noise.pages.figures; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, noise.pages.engine.figures; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

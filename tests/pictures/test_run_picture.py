@@ -13,11 +13,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from features.kernels.spectra import autospectrum
+from models.drawing import thinned
 from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from noise.cli import main
-from noise.pictures.axes import thinned
 from noise.pictures.files import check_picture_path, write_picture
 from noise.pictures.run import plot_run
 from noise.pictures.window import run_window

@@ -11,7 +11,7 @@ from models.condition import FIXED
 from noise.cli import main
 from noise.pictures import thesis
 from noise.pictures.model_traces import exact_trace, listing_trace, model_traces
-from noise.pictures.slips import plot_slip_histories
+from noise.pictures.slips import plot_damping, plot_slip_histories
 from noise.pictures.spectra import SpectraColumn, plot_spectra
 from noise.thesis.runs import RATE, SHORT, THESIS, Case, motion
 
@@ -98,7 +98,7 @@ def test_the_models_agree_on_the_first_stick_of_the_equations():
 
 
 def test_damping_that_ends_stick_slip_is_found_and_drawn():
-    listing, exact = thesis._damping().axes
+    listing, exact = plot_damping(thesis._damping(), title="").axes
     assert listing.get_title("left") == "listing: critical 0.0760 Nm s/rad"
     assert exact.get_title("left") == "equations, exact: critical 0.0781 Nm s/rad"
     sticking, critical, sliding = exact.lines[:3]

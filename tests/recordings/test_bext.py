@@ -8,7 +8,7 @@ import pytest
 import soundfile
 from hypothesis import given, strategies as st
 
-from noise.recordings.formats.bext import bext_description, chunks, missing_bytes
+from noise.recordings.formats.sound_file import bext_description, chunks, missing_bytes
 
 
 def chunk(name: bytes, content: bytes, size: int | None = None) -> bytes:

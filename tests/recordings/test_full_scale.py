@@ -5,7 +5,7 @@ import math
 import pytest
 from hypothesis import given, strategies as st
 
-from noise.recordings.formats.full_scale import stated_full_scale
+from noise.recordings.meaning import stated_full_scale
 
 
 @pytest.mark.parametrize(

@@ -150,30 +150,48 @@ def refusal(folder: Path, ending: str, content: bytes) -> str:
     return str(refused.value)
 
 
-def test_a_text_of_4_gb_in_an_hdf5_attribute_is_refused_before_it_is_read(valid):
+@pytest.fixture
+def impatient(monkeypatch):
+    """A reader that is killed soon."""
+    monkeypatch.setattr("noise.recordings.formats.isolated._PATIENCE", 2.0)
+
+
+def test_a_text_of_4_gb_in_an_hdf5_attribute_is_refused(valid):
     folder, files = valid
     content = bytearray(files[".h5"])
     at = content.index(b"unit\0")
     length = content.index((2).to_bytes(4, "little"), at + 32)  # of "Pa", before its address
     content[length : length + 4] = b"\xff\xff\xff\xff"
-    assert "an attribute announces 4294967295 bytes" in refusal(folder, ".h5", bytes(content))
+    message = refusal(folder, ".h5", bytes(content))
+    assert "is damaged or no HDF5 file" in message
+    assert "memory" in message
 
 
-def test_an_hdf5_heap_without_an_end_is_refused(valid):
+def test_an_hdf5_heap_without_an_end_is_refused(valid, impatient):
     folder, files = valid
     content = bytearray(files[".h5"])
     heap = content.index(b"GCOL")
     content[heap + 24 : heap + 32] = bytes(8)  # length of the first text ...
     content[heap + 16 : heap + 18] = bytes(2)  # ... which is now free space that goes nowhere
-    assert "do not end" in refusal(folder, ".h5", bytes(content))
+    message = refusal(folder, ".h5", bytes(content))
+    assert "is damaged or no HDF5 file (reading it took longer than 2 s)" in message
 
 
-def test_an_mdf_group_that_follows_itself_is_refused(valid):
+def test_an_mdf_group_that_follows_itself_is_refused(valid, impatient):
     folder, files = valid
     content = bytearray(files[".mf4"])
     group = content.index(b"##DG")
     content[group + 24 : group + 32] = group.to_bytes(8, "little")
-    assert "is pointed at twice" in refusal(folder, ".mf4", bytes(content))
+    message = refusal(folder, ".mf4", bytes(content))
+    assert "is damaged or no MDF file (reading it took longer than 2 s)" in message
+
+
+def test_an_mdf_text_beyond_the_end_is_refused(valid):
+    folder, files = valid
+    content = bytearray(files[".mf4"])
+    name = content.index(b"##CN") + 24 + 16  # third link of a channel
+    content[name : name + 8] = (1 << 40).to_bytes(8, "little")
+    assert "exceeds the file size" in refusal(folder, ".mf4", bytes(content))
 
 
 def test_an_mdf_channel_outside_its_record_is_refused(valid):
@@ -186,11 +204,18 @@ def test_an_mdf_channel_outside_its_record_is_refused(valid):
     assert "of a record of" in refusal(folder, ".mf4", bytes(content))
 
 
+def test_a_tdms_file_of_an_unknown_version_is_refused(valid):
+    folder, files = valid
+    content = bytearray(files[".tdms"])
+    content[8:12] = (9999).to_bytes(4, "little")
+    assert "version 9999, expected 4712" in refusal(folder, ".tdms", bytes(content))
+
+
 def test_an_unfinished_tdms_segment_is_refused(valid):
     folder, files = valid
     content = bytearray(files[".tdms"])
     content[12:20] = b"\xff" * 8
-    assert "is truncated; the segment at byte 0 goes on" in refusal(folder, ".tdms", bytes(content))
+    assert "is truncated; its last segment goes on" in refusal(folder, ".tdms", bytes(content))
 
 
 # --- whole files -------------------------------------------------------------------------------

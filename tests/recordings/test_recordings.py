@@ -15,7 +15,7 @@ from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import CHANNEL_UNITS, Channel, Recording
 from noise.recordings import find_recordings, read_recording, write_recording
-from noise.recordings.readers import READERS
+from noise.recordings.files import READERS
 
 RATE = 48_000
 HALF = np.full(480, 0.5)

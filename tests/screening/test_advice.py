@@ -8,13 +8,13 @@ from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig
-from noise.screening.parts.advice import ending, widening
-from noise.screening.parts.lever import Lever
+from noise.screening.parts.advice import increase_margin, remove_noise
+from noise.screening.parts.design_variable import DesignVariable
 from sim.analysis.critical_damping import critical_damping, with_damping
 from sim.analysis.critical_speeds import critical_speeds, regime_at
 from sim.analysis.regime import Regime
 
-LEVERS = [Lever("damping", 0.5, 2.0), Lever("friction", 0.6, 1.2, cost=3.0)]
+VARIABLES = [DesignVariable("damping", 0.5, 2.0), DesignVariable("friction", 0.6, 1.2, cost=3.0)]
 FIT, SUPPORT = 0.279e-3, 3745.0
 
 
@@ -34,10 +34,10 @@ def linear(slopes, offset=0.0):
 def test_on_a_straight_margin_the_change_is_the_gain_over_the_slope(sizes, signs, gain, offset):
     slopes = dict(zip(("damping", "friction"), np.multiply(sizes, signs), strict=True))
     margin = linear(list(slopes.values()), offset)
-    for advice in widening(margin, LEVERS, gain):
-        lever = next(lever for lever in LEVERS if lever.name == advice.name)
+    for advice in increase_margin(margin, VARIABLES, gain):
+        variable = next(variable for variable in VARIABLES if variable.name == advice.name)
         slope = slopes[advice.name]
-        room = lever.high - 1.0 if slope > 0.0 else 1.0 - lever.low
+        room = variable.high - 1.0 if slope > 0.0 else 1.0 - variable.low
         assert advice.slope == pytest.approx(slope, rel=1e-6)
         assert advice.gain == pytest.approx(slope * advice.change, rel=1e-6)
         # The bracket is halved to a 256th of the way to the end of the range.
@@ -57,7 +57,7 @@ def test_a_curved_margin_is_widened_by_what_was_asked(optimum, gain):
     def margin(designs):
         return -40.0 * (designs[:, 0] - optimum) ** 2
 
-    [advice] = widening(margin, LEVERS[:1], gain)
+    [advice] = increase_margin(margin, VARIABLES[:1], gain)
     lost = 40.0 * (1.0 - optimum) ** 2
     if gain < 0.98 * lost:
         assert advice.enough
@@ -68,7 +68,7 @@ def test_a_curved_margin_is_widened_by_what_was_asked(optimum, gain):
 
 
 def test_the_cheapest_sufficient_change_stands_first():
-    found = widening(linear([1.0, -2.0]), LEVERS, 0.3)
+    found = increase_margin(linear([1.0, -2.0]), VARIABLES, 0.3)
     assert [advice.name for advice in found] == ["damping", "friction"]
     assert found[0].change > found[1].change
     assert found[0].cost < found[1].cost == pytest.approx(3.0 * 0.15, rel=0.02)
@@ -81,7 +81,7 @@ def test_a_budget_limits_what_is_tried():
         seen.append(designs.copy())
         return designs.sum(axis=1)
 
-    found = {one.name: one for one in widening(margin, LEVERS, 0.4, budget=0.3)}
+    found = {one.name: one for one in increase_margin(margin, VARIABLES, 0.4, budget=0.3)}
     tried = np.vstack(seen)
     assert np.abs(tried[:, 0] - 1.0).max() <= 0.3 + 1e-12
     assert np.abs(tried[:, 1] - 1.0).max() <= 0.1 + 1e-12
@@ -95,14 +95,14 @@ def test_one_parameter_is_changed_at_a_time():
         assert ((designs != 1.0).sum(axis=1) <= 1).all()
         return designs[:, 0]
 
-    widening(margin, LEVERS, 0.1)
+    increase_margin(margin, VARIABLES, 0.1)
 
 
 def test_an_island_is_not_steady():
     def margin(designs):
         return np.where(np.abs(designs[:, 0] - 1.25) < 0.03, 5.0, 0.0)
 
-    [advice] = widening(margin, LEVERS[:1], 1.0)
+    [advice] = increase_margin(margin, VARIABLES[:1], 1.0)
     assert advice.enough
     assert not advice.steady
     assert abs(advice.value - 1.25) < 0.03
@@ -112,7 +112,7 @@ def test_of_two_ways_the_smaller_change_is_advised():
     def margin(designs):
         return np.where((designs[:, 0] < 0.8) | (designs[:, 0] > 1.3), 1.0, 0.0)
 
-    [advice] = widening(margin, LEVERS[:1], 1.0)
+    [advice] = increase_margin(margin, VARIABLES[:1], 1.0)
     assert advice.value == pytest.approx(0.8, abs=0.01)
 
 
@@ -120,7 +120,7 @@ def test_a_margin_without_end_is_enough():
     def margin(designs):
         return np.where(designs[:, 0] > 1.4, np.inf, 0.0)
 
-    [advice] = widening(margin, LEVERS[:1], 1.0)
+    [advice] = increase_margin(margin, VARIABLES[:1], 1.0)
     assert advice.gain == np.inf
     assert advice.value == pytest.approx(1.4, abs=0.01)
 
@@ -131,18 +131,18 @@ def test_the_change_that_ends_a_noise_is_the_smallest():
             designs[:, 0] < 1.37, "creak", np.where(designs[:, 0] < 1.7, "squeal", "none")
         )
 
-    [creak] = ending(label, LEVERS[:1], {"creak"})
+    [creak] = remove_noise(label, VARIABLES[:1], {"creak"})
     assert (creak.label, creak.enough) == ("squeal", True)
     assert creak.value == pytest.approx(1.37, abs=1.0 / 256.0)
-    [every] = ending(label, LEVERS[:1], {"creak", "squeal"})
+    [every] = remove_noise(label, VARIABLES[:1], {"creak", "squeal"})
     assert every.label == "none"
     assert every.value == pytest.approx(1.7, abs=1.0 / 256.0)
-    [never] = ending(lambda designs: ["creak"] * len(designs), LEVERS[:1], {"creak"})
+    [never] = remove_noise(lambda designs: ["creak"] * len(designs), VARIABLES[:1], {"creak"})
     assert (never.enough, never.label, never.change) == (False, "creak", 0.0)
 
 
 def test_a_silent_design_needs_no_change():
-    found = ending(lambda designs: ["none"] * len(designs), LEVERS, {"creak"})
+    found = remove_noise(lambda designs: ["none"] * len(designs), VARIABLES, {"creak"})
     assert {(one.change, one.enough, one.steady) for one in found} == {(0.0, True, True)}
 
 
@@ -157,25 +157,25 @@ def test_a_silent_design_needs_no_change():
     ],
 )
 def test_a_lever_that_cannot_be_is_refused_by_name(low, high, options, message):
-    with pytest.raises(ParameterError, match=f"lever damping: .*{message}"):
-        Lever("damping", low, high, **options)
+    with pytest.raises(ParameterError, match=f"design variable damping: .*{message}"):
+        DesignVariable("damping", low, high, **options)
 
 
 def test_what_cannot_be_asked_is_refused():
     with pytest.raises(ParameterError, match="gain = 0"):
-        widening(linear([1.0, 1.0]), LEVERS, 0.0)
+        increase_margin(linear([1.0, 1.0]), VARIABLES, 0.0)
     with pytest.raises(ParameterError, match="budget = 0"):
-        widening(linear([1.0, 1.0]), LEVERS, 1.0, budget=0.0)
-    with pytest.raises(ParameterError, match="no lever"):
-        widening(linear([1.0, 1.0]), [], 1.0)
+        increase_margin(linear([1.0, 1.0]), VARIABLES, 1.0, budget=0.0)
+    with pytest.raises(ParameterError, match="no design variable"):
+        increase_margin(linear([1.0, 1.0]), [], 1.0)
     with pytest.raises(ParameterError, match="nothing to widen"):
-        widening(lambda designs: np.full(len(designs), np.inf), LEVERS, 1.0)
+        increase_margin(lambda designs: np.full(len(designs), np.inf), VARIABLES, 1.0)
     with pytest.raises(ParameterError, match="not a number"):
-        widening(lambda designs: np.full(len(designs), np.nan), LEVERS, 1.0)
+        increase_margin(lambda designs: np.full(len(designs), np.nan), VARIABLES, 1.0)
     with pytest.raises(ParameterError, match="results of shape"):
-        widening(lambda designs: designs, LEVERS, 1.0)
+        increase_margin(lambda designs: designs, VARIABLES, 1.0)
     with pytest.raises(ParameterError, match="no noise"):
-        ending(lambda designs: ["none"] * len(designs), LEVERS, set())
+        remove_noise(lambda designs: ["none"] * len(designs), VARIABLES, set())
 
 
 def changed(rig, *, damping=1.0, stiffness=1.0, drop=1.0):
@@ -201,9 +201,9 @@ def boundary(rig, step, seconds=1.0):
     return critical_speeds(rig, FIT, SUPPORT, speeds, seconds=seconds).v_crit2
 
 
-def moved_as_predicted(rig, levers, gain, step, seconds=1.0):
+def moved_as_predicted(rig, variables, gain, step, seconds=1.0):
     """Each advice with the move of the boundary that follows when it is made, judged anew."""
-    names = [lever.name for lever in levers]
+    names = [variable.name for variable in variables]
 
     def margin(designs):
         rigs = [changed(rig, **dict(zip(names, row, strict=True))) for row in designs]
@@ -211,18 +211,18 @@ def moved_as_predicted(rig, levers, gain, step, seconds=1.0):
 
     fine = 0.5 * step
     before = boundary(rig, fine)
-    advice = widening(margin, levers, gain)
+    advice = increase_margin(margin, variables, gain)
     return [(one, before - boundary(changed(rig, **{one.name: one.value}), fine)) for one in advice]
 
 
 def test_the_advised_change_made_moves_the_boundary_as_predicted():
     rig = load_material_rig("fluorocarbon-thesis")
-    levers = [
-        Lever("damping", 0.5, 2.0),
-        Lever("stiffness", 0.6, 1.6),
-        Lever("drop", 0.4, 1.3),
+    variables = [
+        DesignVariable("damping", 0.5, 2.0),
+        DesignVariable("stiffness", 0.6, 1.6),
+        DesignVariable("drop", 0.4, 1.3),
     ]
-    found = moved_as_predicted(rig, levers, 1.5, step=0.1)
+    found = moved_as_predicted(rig, variables, 1.5, step=0.1)
     assert all(advice.enough for advice, _ in found)
     for advice, moved in found:
         assert moved == pytest.approx(advice.gain, rel=0.2)
@@ -231,8 +231,8 @@ def test_the_advised_change_made_moves_the_boundary_as_predicted():
 @pytest.mark.slow
 def test_advice_holds_for_a_contact_with_memory():
     rig = load_material_rig("fluorocarbon")
-    levers = [Lever("damping", 0.7, 1.5), Lever("drop", 0.6, 1.2)]
-    found = moved_as_predicted(rig, levers, 2.0, step=0.25, seconds=0.7)
+    variables = [DesignVariable("damping", 0.7, 1.5), DesignVariable("drop", 0.6, 1.2)]
+    found = moved_as_predicted(rig, variables, 2.0, step=0.25, seconds=0.7)
     assert all(advice.enough for advice, _ in found)
     for advice, moved in found:
         assert moved == pytest.approx(advice.gain, rel=0.2)
@@ -246,7 +246,9 @@ def test_the_damping_that_ends_stick_is_the_critical_damping():
         regimes = [regime_at(with_damping(rig, c), speed, FIT, SUPPORT) for [c] in designs]
         return ["creak" if regime is Regime.STICK_SLIP else "none" for regime in regimes]
 
-    [advice] = ending(label, [Lever("damping", 0.05, 0.1, nominal=nominal)], {"creak"})
+    [advice] = remove_noise(
+        label, [DesignVariable("damping", 0.05, 0.1, nominal=nominal)], {"creak"}
+    )
     critical = critical_damping(
         rig, speed, interference=FIT, support_stiffness=SUPPORT, highest=0.1
     )

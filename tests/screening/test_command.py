@@ -11,7 +11,7 @@ from noise.cli import main
 from noise.pages.review.design_rig import rig_of
 from noise.pages.review.screens import read_screen
 from noise.screening.design.design import load_design
-from noise.screening.parts.lever import Lever
+from noise.screening.parts.design_variable import DesignVariable
 from noise.screening.parts.robustness import robustness
 
 QUICK = ["--speed", "1,5,9", "--support-stiffness", "2214"]
@@ -98,8 +98,10 @@ kinetic_torque = 0.05
 
 @pytest.fixture
 def rough(monkeypatch):
-    """Wide intervals and one lever, which take a tenth of the time."""
-    quick = partial(robustness, half_width=0.2, samples=64, levers=(Lever("damping", 0.5, 2.0),))
+    """Wide intervals and one variable, which take a tenth of the time."""
+    quick = partial(
+        robustness, half_width=0.2, samples=64, variables=(DesignVariable("damping", 0.5, 2.0),)
+    )
     monkeypatch.setattr("noise.screening.parts.statistics.robustness", quick)
 
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
+from noise.screening.design.axis_values import axis_values, spread, text_values
 from noise.screening.design.design import load_design
 from noise.screening.design.environments import environment, environment_names, in_environment
 from noise.screening.design.tolerances import Tolerance, read_tolerances
-from noise.screening.map.axes import axis_values, spread, text_values
 from noise.screening.map.grid import grid_of
 from noise.screening.parts.variation import nominal_values, use_point, varied
 
@@ -136,12 +136,10 @@ def test_tolerances_become_factors_on_the_nominal_value():
         "design",
     )
     damping, fit, temperature = found
-    assert damping.factors(0.1) == ("normal", 1.0, 0.1)
-    assert fit.factors(0.25) == ("normal", 1.0, pytest.approx(0.04))
-    kind, low, high = temperature.factors(23.0)
-    assert (kind, low * 296.15, high * 296.15) == (
-        "uniform", pytest.approx(273.15), pytest.approx(323.15),
-    )  # fmt: skip
+    assert damping.factor(0.1).stats() == pytest.approx((1.0, 0.1**2))
+    assert fit.factor(0.25).stats() == pytest.approx((1.0, 0.04**2))
+    low, high = temperature.factor(23.0).support()
+    assert (low * 296.15, high * 296.15) == pytest.approx((273.15, 323.15))
 
 
 def test_a_varied_design_changes_what_is_named_and_nothing_else():
@@ -179,8 +177,7 @@ def test_every_environment_but_dry_is_marked_as_assumed_number_by_number(name):
     changed = in_environment(rig, where)
     assert len(changed.assumed) == len(rig.assumed) + len(where.why)
     assert all(entry.startswith(f"{name}: ") for entry in changed.assumed[len(rig.assumed) :])
-    numbers = [where.elastomer_stiffness, where.damping, where.critical_torque]
-    numbers += [where.kinetic_torque, *(1.0 + len(e.parameters) for e in where.effects)]
+    numbers = [*where.factors.values(), *(1.0 + len(e.parameters) for e in where.effects)]
     assert any(number != 1.0 for number in numbers)
 
 

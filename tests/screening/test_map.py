@@ -9,12 +9,12 @@ import pytest
 from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.noise_definition import evidence, is_ambiguous
+from noise.noise_definition import is_ambiguous, run_criteria
 from noise.screening.design.design import Design, Swinging, Use
-from noise.screening.map.batches import judging
+from noise.screening.map.batches import batch_evaluator
 from noise.screening.map.grid import grid_of
 from noise.screening.map.mapping import map_design
-from noise.screening.map.point import judge
+from noise.screening.map.point import evaluate_point
 from noise.screening.screen import screen
 from sim.analysis.critical_speeds import critical_speeds
 from sim.run import simulate
@@ -26,7 +26,7 @@ FLUOROCARBON = load_material_rig("fluorocarbon")
 
 def mapped(material, use, **more):
     design = Design(material, load_material_rig(material))
-    with judging() as judged:
+    with batch_evaluator() as judged:
         return map_design(design.rig, grid_of(design, use), judged, design=material, **more)
 
 
@@ -67,7 +67,9 @@ def test_natural_rubber_chatters_without_its_film_and_not_on_it():
     ],
 )
 def test_a_point_is_labelled_as_the_thesis_heard_it(interference, support, speed, noise):
-    found = judge(FLUOROCARBON, speed, interference=interference, support_stiffness=support)
+    found = evaluate_point(
+        FLUOROCARBON, speed, interference=interference, support_stiffness=support
+    )
     assert found.label == noise
 
 
@@ -80,9 +82,9 @@ def test_points_are_labelled_as_whole_recordings_are():
             "support_stiffness": float(rng.choice([2214.0, 3745.0])),
         }
         speed = rng.uniform(0.5, 12.5)
-        truth = evidence(simulate(FLUOROCARBON, speed, **where))
-        if not is_ambiguous(truth):
-            alike.append(judge(FLUOROCARBON, speed, **where).label == truth.name)
+        criteria = run_criteria(simulate(FLUOROCARBON, speed, **where))
+        if not is_ambiguous(criteria):
+            alike.append(evaluate_point(FLUOROCARBON, speed, **where).label == criteria.label)
     assert len(alike) > 3
     assert all(alike)
 
@@ -141,8 +143,10 @@ def test_temperature_makes_a_difference_only_to_a_law_that_knows_it():
 
 def test_a_bar_that_swings_on_the_road_makes_noise_where_its_rubber_does():
     swing = Oscillation(math.radians(15), 2.0)
-    loud = judge(FLUOROCARBON, swing, interference=0.381e-3, support_stiffness=2214.0)
-    still = judge(load_material_rig("PDMS"), swing, interference=0.381e-3, support_stiffness=2214.0)
+    loud = evaluate_point(FLUOROCARBON, swing, interference=0.381e-3, support_stiffness=2214.0)
+    still = evaluate_point(
+        load_material_rig("PDMS"), swing, interference=0.381e-3, support_stiffness=2214.0
+    )
     assert loud.label == "creak"
     assert (still.label, still.regime.value) == ("none", "steady sliding")
     assert math.isnan(still.level)

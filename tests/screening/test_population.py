@@ -7,7 +7,7 @@ import pytest
 
 from models.errors import ParameterError
 from noise.screening.design.design import load_design
-from noise.screening.map.point import judge
+from noise.screening.map.point import evaluate_point
 from noise.screening.parts.population import outcomes
 from noise.screening.parts.variation import UsePoint, use_point, varied
 from noise.screening.ranking.margins import margin_of, range_of
@@ -18,7 +18,7 @@ POINT = UsePoint(10.0, 0.279e-3, 3745.0, 23.0, (2.0, 13.0))
 
 def test_the_nominal_bushing_is_the_design_itself():
     found = outcomes(FLUOROCARBON, [[1.0, 1.0]], names=["damping", "interference"], point=POINT)
-    alone = judge(FLUOROCARBON.rig, 10.0, interference=0.279e-3, support_stiffness=3745.0)
+    alone = evaluate_point(FLUOROCARBON.rig, 10.0, interference=0.279e-3, support_stiffness=3745.0)
     assert found.labels.tolist() == [alone.label] == ["squeal"]
     assert found.v_crit2[0] == pytest.approx(11.53, abs=0.05)
     assert found.margin[0] == pytest.approx(2.0 - found.v_crit2[0])
@@ -34,7 +34,7 @@ def test_each_row_is_its_own_bushing_whatever_the_order_and_the_workers():
     assert found.margin.tolist() == turned.margin[::-1].tolist()
     for i in (0, 5):
         rig, moved = varied(FLUOROCARBON.rig, POINT, dict(zip(names, factors[i], strict=True)))
-        own = judge(
+        own = evaluate_point(
             rig, moved.speed,
             interference=moved.interference, support_stiffness=moved.support_stiffness,
         )  # fmt: skip

@@ -7,14 +7,14 @@ from scipy import stats
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig
 from noise.screening.parts.probability import NOISES, label_probabilities
-from noise.screening.parts.scatter import Scatter, parts
+from noise.screening.parts.sampling import parts
 from sim.analysis.sweep import Sweep
 
-DESIGN = [
-    Scatter("stiffness", "normal", 0.05),
-    Scatter("friction", "lognormal", 0.2),
-    Scatter("damping", "uniform", 0.3),
-]
+DESIGN = {
+    "stiffness": stats.norm(1.0, 0.05),
+    "friction": stats.lognorm(np.sqrt(np.log1p(0.2**2))),
+    "damping": stats.uniform(0.7, 0.6),
+}
 
 
 def noise_of(parts):
@@ -27,16 +27,16 @@ def noise_of(parts):
     return label
 
 
-def by_brute_force(labels_of, scatters, n, seed=0):
-    points = np.random.default_rng(seed).random((n, len(scatters)))
-    found = labels_of(parts(scatters, points))
+def by_brute_force(labels_of, distributions, n, seed=0):
+    points = np.random.default_rng(seed).random((n, len(distributions)))
+    found = labels_of(parts(distributions, points))
     return {label: float(np.mean(found == label)) for label in NOISES}
 
 
-def covered(labels_of, scatters, truth, repeats, **options):
+def covered(labels_of, distributions, truth, repeats, **options):
     """How often each interval holds the truth, and the parts that it took."""
     runs = [
-        label_probabilities(labels_of, scatters, np.random.default_rng(seed), **options)
+        label_probabilities(labels_of, distributions, np.random.default_rng(seed), **options)
         for seed in range(repeats)
     ]
     assert all(run.reached for run in runs)
@@ -60,11 +60,11 @@ def test_intervals_hold_the_truth_as_often_as_they_state(confidence, half_width)
 @pytest.mark.slow
 def test_intervals_hold_what_twenty_thousand_simulated_parts_give():
     rig = load_material_rig("fluorocarbon-thesis")
-    scatters = [
-        Scatter("interference", "truncated-normal", 0.015e-3, nominal=0.279e-3, relative=False),
-        Scatter("support_stiffness", "normal", 0.08, nominal=3745.0),
-        Scatter("speed", "uniform", 2.0, nominal=6.0, relative=False),
-    ]
+    distributions = {
+        "interference": stats.truncnorm(-3.0, 3.0, loc=0.279e-3, scale=0.015e-3),
+        "support_stiffness": stats.norm(3745.0, 0.08 * 3745.0),
+        "speed": stats.uniform(4.0, 4.0),
+    }
 
     def sticks(parts):
         interference, support_stiffness, speed = parts.T
@@ -73,9 +73,9 @@ def test_intervals_hold_what_twenty_thousand_simulated_parts_give():
         )
         return np.where(runs.features()["stick_fraction"] > 0.02, "creak", "none")
 
-    truth = by_brute_force(sticks, scatters, 20_000)
+    truth = by_brute_force(sticks, distributions, 20_000)
     assert 0.1 < truth["creak"] < 0.9
-    held, samples = covered(sticks, scatters, truth, 60, half_width=0.08)
+    held, samples = covered(sticks, distributions, truth, 60, half_width=0.08)
     assert min(held.values()) >= stats.binom.ppf(0.001, 60, 0.95)
     assert samples < 300
 
@@ -92,12 +92,12 @@ def test_it_stops_once_every_interval_is_narrow_enough():
 
 
 def test_a_smooth_boundary_takes_fewer_parts_than_chance():
-    scatter = [Scatter("friction", "normal", 0.1)]
+    friction = {"friction": stats.norm(1.0, 0.1)}
 
     def creaks(parts):
         return np.where(parts[:, 0] > 1.05, "creak", "none")
 
-    found = label_probabilities(creaks, scatter, np.random.default_rng(0), half_width=0.02)
+    found = label_probabilities(creaks, friction, np.random.default_rng(0), half_width=0.02)
     p = found.by_label["creak"].value
     assert p == pytest.approx(stats.norm.sf(0.5), abs=0.02)
     assert found.samples < 0.7 * 1.96**2 * p * (1.0 - p) / 0.02**2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.screening.map.carry import carried
+from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.refine import refined_map
 
 
@@ -98,6 +98,6 @@ def test_maps_of_any_shape_are_filled(shape):
 def test_carried_values_stay_between_those_of_their_own_code():
     codes = np.array([[[0, 0, 0, 1, 1, 1]]])
     how = np.array([[[0, 2, 0, 0, 2, 0]]])
-    filled = carried(np.array([[[10.0, np.nan, 20.0, 70.0, np.nan, 90.0]]]), codes, how)
+    filled = interpolate_levels(np.array([[[10.0, np.nan, 20.0, 70.0, np.nan, 90.0]]]), codes, how)
     assert filled[0, 0, 1] == pytest.approx(15.0)
     assert filled[0, 0, 4] == pytest.approx(80.0)

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from scipy import stats
 
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig
 from noise.screening.parts.estimate import Estimate
 from noise.screening.parts.probability import label_probabilities
-from noise.screening.parts.scatter import Scatter
 from noise.screening.ranking.risk import Candidate, design_risk, ranked, risk_band, risk_grades
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.critical_speeds import critical_speeds
@@ -27,7 +27,7 @@ def sure(probability):
 
 
 def places(*candidates):
-    return {one.candidate.name: one.place for one in ranked(candidates)}
+    return ranked(candidates)
 
 
 @settings(max_examples=50)
@@ -149,8 +149,8 @@ def test_the_ranking_does_not_depend_on_the_order_given(designs, random):
     ]
     found = ranked(candidates)
     random.shuffle(candidates)
-    assert ranked(candidates) == found
-    assert [one.place for one in found] == sorted(one.place for one in found)
+    assert list(ranked(candidates).items()) == list(found.items())
+    assert list(found.values()) == sorted(found.values())
 
 
 def candidate(name, rig):
@@ -173,11 +173,8 @@ def candidate(name, rig):
         ).features()
         return np.where(found["stick_fraction"] > 0.02, "creak", "none")
 
-    scatters = [
-        Scatter("interference", "normal", 0.01e-3, nominal=fit, relative=False),
-        Scatter("speed", "uniform", 4.0, nominal=6.0, relative=False),
-    ]
-    found = label_probabilities(noise_of, scatters, np.random.default_rng(0), half_width=0.1)
+    vary = {"interference": stats.norm(fit, 0.01e-3), "speed": stats.uniform(2.0, 8.0)}
+    found = label_probabilities(noise_of, vary, np.random.default_rng(0), half_width=0.1)
     v_crit2 = critical_speeds(rig, fit, support).v_crit2
     return Candidate(name, design_risk(grades), found.any_but("none"), speed[0] - v_crit2)
 

@@ -9,17 +9,17 @@ from scipy import stats
 
 from noise.screening.design.design import Use, load_design
 from noise.screening.design.tolerances import Tolerance
-from noise.screening.parts.advice import widening
-from noise.screening.parts.lever import Lever
+from noise.screening.parts.advice import increase_margin
+from noise.screening.parts.design_variable import DesignVariable
 from noise.screening.parts.population import outcomes
 from noise.screening.parts.probability import label_probabilities
-from noise.screening.parts.robustness import ASSUMED, robustness, scatters_of
-from noise.screening.parts.scatter import parts
+from noise.screening.parts.robustness import ASSUMED, factor_distributions, robustness
+from noise.screening.parts.sampling import parts
 from noise.screening.parts.variation import use_point, varied
-from noise.screening.ranking.risk import ranked, risk_band
+from noise.screening.ranking.risk import Candidate, ranked, risk_band
 from noise.screening.ranking.use_risk import use_grades, use_risk
 
-FEW = (Lever("damping", 0.7, 1.5), Lever("critical_torque", 0.7, 1.2))
+FEW = (DesignVariable("damping", 0.7, 1.5), DesignVariable("critical_torque", 0.7, 1.2))
 TOLERANCES = (
     Tolerance("damping", "relative", 0.1),
     Tolerance("critical_torque", "relative", 0.05),
@@ -37,7 +37,7 @@ def design(name="fluorocarbon", material="fluorocarbon", factors=None, **use):
 
 
 def stands(found, **options):
-    given = {"half_width": 0.15, "samples": 64, "levers": FEW}
+    given = {"half_width": 0.15, "samples": 64, "variables": FEW}
     return robustness(found, np.random.default_rng(0), **(given | options))
 
 
@@ -49,16 +49,18 @@ def plain():
 @pytest.fixture(scope="module")
 def quieter():
     found = design("damped", factors={"damping": 2.0, "critical_torque": 0.8})
-    return stands(found, levers=FEW[:1])
+    return stands(found, variables=FEW[:1])
 
 
 def test_a_design_quieter_by_construction_is_ranked_first(plain, quieter):
-    found = ranked([plain.candidate, quieter.candidate])
-    assert [(one.place, one.candidate.name) for one in found] == [
-        (1, "damped"),
-        (2, "fluorocarbon"),
-    ]
-    assert quieter.candidate.noise.high < plain.candidate.noise.low
+    ranks = ranked(
+        [
+            Candidate(one.design, one.risk, one.noises.any_but(), one.margin)
+            for one in (plain, quieter)
+        ]
+    )
+    assert ranks == {"damped": 1, "fluorocarbon": 2}
+    assert quieter.noises.any_but().high < plain.noises.any_but().low
     assert quieter.risk <= plain.risk
     assert quieter.margin > plain.margin
 
@@ -77,7 +79,7 @@ def test_what_scatters_more_matters_more(plain):
 def test_tolerances_of_its_own_are_not_assumed_ones(plain):
     assert not plain.assumed
     bare = replace(design(), tolerances=())
-    assert [one.name for one in scatters_of(bare, use_point(bare))] == [
+    assert list(factor_distributions(bare, use_point(bare))) == [
         *(one.name for one in ASSUMED),
         "speed",
     ]
@@ -85,14 +87,14 @@ def test_tolerances_of_its_own_are_not_assumed_ones(plain):
 
 def test_advice_made_moves_the_simulated_boundary_as_predicted():
     found = design()
-    levers = [*FEW, Lever("kinetic_torque", 0.7, 1.4)]
-    names = [lever.name for lever in levers]
+    variables = [*FEW, DesignVariable("kinetic_torque", 0.7, 1.4)]
+    names = [variable.name for variable in variables]
 
     def by_stability(factors):
         return outcomes(found, factors, names=names, labels=False).margin
 
-    advice = widening(by_stability, levers, 2.0)
-    made = np.ones((1 + len(levers), len(levers)))
+    advice = increase_margin(by_stability, variables, 2.0)
+    made = np.ones((1 + len(variables), len(variables)))
     for row, one in zip(made[1:], advice, strict=True):
         row[names.index(one.name)] = one.value
     simulated = outcomes(found, made, names=names, labels=False, critical="simulation").margin
@@ -102,8 +104,8 @@ def test_advice_made_moves_the_simulated_boundary_as_predicted():
 
 
 def test_the_change_advised_against_a_noise_ends_it_in_the_simulation(plain):
-    names = [lever.name for lever in FEW]
-    ends = [one for one in plain.ending if one.enough]
+    names = [variable.name for variable in FEW]
+    ends = [one for one in plain.noise_advice if one.enough]
     assert ends
     for one in ends:
         factors = [[one.value if one.name == name else 1.0 for name in names]]
@@ -115,7 +117,7 @@ def test_a_silent_rubber_needs_no_advice():
     assert found.noises.by_label["none"].value == 1.0
     assert found.clear.value == 1.0
     assert found.margin == math.inf
-    assert (found.widening, found.ending) == ((), ())
+    assert (found.margin_advice, found.noise_advice) == ((), ())
     assert {one.total.value for one in found.sensitivities} == {0.0}
     assert risk_band(found.risk) == "no risk"
 
@@ -128,21 +130,21 @@ def test_factors_scatter_as_the_file_says():
         Tolerance("speed", "relative", 0.01),
     )
     found = replace(design(), tolerances=stated)
-    scatters = scatters_of(found, use_point(found))
-    assert [one.name for one in scatters] == [one.name for one in stated]
-    middle = parts(scatters, np.full((1, 4), 0.5))[0]
-    low = parts(scatters, np.full((1, 4), 1e-12))[0]
+    factors = factor_distributions(found, use_point(found))
+    assert list(factors) == [one.name for one in stated]
+    middle = parts(factors, np.full((1, 4), 0.5))[0]
+    low = parts(factors, np.full((1, 4), 1e-12))[0]
     assert middle == pytest.approx([1.0, 0.95, 1.0, 1.0])
     assert (low > 0.0).all()
     assert low[1] == pytest.approx(0.8)
-    assert scatters[0].spread == pytest.approx(0.1)
+    assert factors["interference"].std() == pytest.approx(0.1)
 
 
 def test_speeds_of_use_are_alike_where_no_tolerance_says_otherwise():
     found = design()
     point = use_point(found)
-    speed = scatters_of(found, point)[-1]
-    assert point.speed * speed.quantile([0.0, 0.5, 1.0]) == pytest.approx([2.0, 7.0, 12.0])
+    speed = factor_distributions(found, point)["speed"]
+    assert point.speed * speed.ppf([0.0, 0.5, 1.0]) == pytest.approx([2.0, 7.0, 12.0])
 
 
 def test_creaking_fits_are_a_greater_risk_than_sliding_ones():
@@ -166,19 +168,20 @@ def test_a_bolted_clamp_is_graded_as_well():
 @pytest.mark.slow
 def test_intervals_of_being_clear_hold_brute_force_as_often_as_they_state():
     found = design(speed=(11.0, 13.0))
-    scatters = [one for one in scatters_of(found, use_point(found)) if one.name != "speed"]
-    names = [one.name for one in scatters]
+    vary = factor_distributions(found, use_point(found))
+    del vary["speed"]
+    names = list(vary)
 
     def clear(factors):
         margin = outcomes(found, factors, names=names, labels=False).margin
         return np.where(margin > 0.0, "clear", "vibrates")
 
-    points = np.random.default_rng(1).random((4000, len(scatters)))
-    truth = float(np.mean(clear(parts(scatters, points)) == "clear"))
+    points = np.random.default_rng(1).random((4000, len(vary)))
+    truth = float(np.mean(clear(parts(vary, points)) == "clear"))
     assert 0.1 < truth < 0.9
     held = 0
     for seed in range(20):
         rng = np.random.default_rng(seed)
-        one = label_probabilities(clear, scatters, rng, half_width=0.1).by_label["clear"]
+        one = label_probabilities(clear, vary, rng, half_width=0.1).by_label["clear"]
         held += one.low <= truth <= one.high
     assert held >= stats.binom.ppf(0.001, 20, 0.95)

@@ -6,23 +6,23 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from models.radiation.impulse_responses import frequency_response
-from models.radiation.rig_response import response
+from models.radiation.rig_response import impulse_responses
 from models.rig_files.rig_file import load_material_rig
 from tests.helpers.chain_paths import RATE, changed, spectra
+from tests.helpers.spectra import path_spectra
 
 RIG = load_material_rig("fluorocarbon")
 
 
 @pytest.fixture(scope="module")
 def plain():
-    return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
+    return impulse_responses(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
 
 
 def test_a_further_mode_stands_out_in_acceleration_and_sound(plain):
     louder = changed(plain, "beam_modes", constant=20.0)
     frequency = np.array([4500.0])
-    before, after = (frequency_response(each, frequency) for each in (plain, louder))
+    before, after = (path_spectra(each, frequency) for each in (plain, louder))
     added = after.torque_to_acceleration - before.torque_to_acceleration
     assert np.abs(added) == pytest.approx(20.0 / (2 * 0.01), rel=1e-4)
     heard = after.torque_to_pressure - before.torque_to_pressure
@@ -44,10 +44,10 @@ def test_forms_of_beam_modes_have_their_frequencies(plain, form, expected):
 
 
 def test_with_the_clamp_bolted_down_there_are_no_beams_to_have_modes():
-    bolted = response(RIG, 0.381e-3, FIXED, RATE, seconds=0.1)
+    bolted = impulse_responses(RIG, 0.381e-3, FIXED, RATE, seconds=0.1)
     assert changed(bolted, "beam_modes", amount=50.0) is bolted
 
 
 def test_modes_beyond_the_band_are_left_out():
-    paths = response(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
+    paths = impulse_responses(RIG, 0.381e-3, 2214.0, 30e3, seconds=0.1)
     assert changed(paths, "beam_modes", frequency=14e3) is paths

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.radiation.impulse_responses import Response, radiate
-from models.radiation.rig_response import response
+from models.radiation.impulse_responses import ImpulseResponses, radiate
+from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from sim.acquisition import Acquisition
@@ -31,7 +31,7 @@ QUIET = Acquisition(noise={})
 
 @pytest.fixture(scope="module")
 def plain():
-    return response(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
+    return impulse_responses(RIG, 0.381e-3, 2214.0, RATE, seconds=0.1)
 
 
 def padded(signal, size):
@@ -77,7 +77,7 @@ def test_what_is_added_is_proportional_to_the_strength(plain, name, form):
 
 @pytest.mark.parametrize(("name", "form"), EVERY_FORM)
 def test_the_default_strength_changes_the_sound_and_leaves_the_given_response(plain, name, form):
-    before = {field.name: np.copy(getattr(plain, field.name)) for field in fields(Response)}
+    before = {field.name: np.copy(getattr(plain, field.name)) for field in fields(ImpulseResponses)}
     louder = changed(plain, name, form=form)
     assert difference(louder, plain, "torque_to_pressure") > 1e-3
     assert all(np.array_equal(getattr(plain, key), value) for key, value in before.items())

@@ -52,7 +52,7 @@ def test_integration_agrees_with_a_sixteenth_of_its_step(name):
             1 / 90e3,
             law=law.torque,
             coefficients=coefficients,
-            law_state=law.state(coefficients),
+            law_state=law.state(),
             refined=refined,
         )[0][:, 1]
         for refined in (1, 16)

@@ -35,7 +35,7 @@ FORMS = [
 
 def hook(name, **given):
     active = EFFECTS[name].active(given)
-    values = active.effect.pack(active.form, active.values, np.random.default_rng(0))
+    values = active.packed(np.random.default_rng(0))
     return Hook(active.effect.contact, values, active.effect.n_states)
 
 
@@ -49,7 +49,7 @@ def arguments(condition, name, given=None, hooks=(), stiffness=3745.0):
     options = {
         "law": law.torque,
         "coefficients": coefficients,
-        "law_state": law.state(coefficients),
+        "law_state": law.state(),
         "hooks": hooks,
         "tolerance": law.tolerance,
     }

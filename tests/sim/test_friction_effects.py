@@ -49,7 +49,7 @@ RATE = 90e3
 
 def hook(name, seed=0, **given):
     active = EFFECTS[name].active(given)
-    values = active.effect.pack(active.form, active.values, np.random.default_rng(seed))
+    values = active.packed(np.random.default_rng(seed))
     return Hook(active.effect.contact, values, active.effect.n_states)
 
 
@@ -66,7 +66,7 @@ def solve(*hooks, rig=TRUE_STICK, speed=1.0, interference=0.279e-3, samples=3000
         1.0 / RATE,
         law=law.torque,
         coefficients=coefficients,
-        law_state=law.state(coefficients),
+        law_state=law.state(),
         hooks=hooks,
         refined=refined,
     )

@@ -61,7 +61,7 @@ def follow(name, speed, given=None, torques=(T_CRIT, T_KIN), step=STEP):
     coefficients = law.coefficients(resolve(name, law.parameters, given or {}))
     contact = np.zeros(N_CONTACT)
     contact[CRITICAL], contact[KINETIC] = torques
-    state = law.state(coefficients)
+    state = law.state()
     speed = np.ascontiguousarray(speed, dtype=float)
     return _followed(law.torque, coefficients, contact, state, speed, step), state
 
@@ -84,7 +84,7 @@ def on_the_rig(name, speed, given=None, *, seconds, step=STEP, refined=1, rig=RI
         step,
         law=law.torque,
         coefficients=coefficients,
-        law_state=law.state(coefficients),
+        law_state=law.state(),
         refined=refined,
     )[0]
 

@@ -11,17 +11,16 @@ from scipy.signal import resample_poly
 
 from models.condition import FIXED, Condition
 from models.errors import ParameterError
-from models.radiation.impulse_responses import convolve
 from models.recording import Channel
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.long_run import simulate_to_file
+from models.transfer_functions.filtering import convolve
+from noise.long_run import write_run
 from noise.recordings import read_recording
-from noise.recordings.block_writer import write_blocks
+from noise.recordings.writing import write_blocks
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
-from sim.motion import simulate_motion
-from sim.motion_blocks import motion_blocks
+from sim.motion import motion_blocks, simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 from sim.streams import Convolution, Decimation
@@ -120,7 +119,7 @@ def test_decimation_in_blocks_is_that_of_the_whole_signal(factor, block):
 
 
 def test_a_long_run_is_written_as_any_recording(tmp_path):
-    path = simulate_to_file(tmp_path / "deep" / "run07", MEMORY, 5.0, seconds=0.3)
+    path = write_run(tmp_path / "deep" / "run07", simulate_blocks(MEMORY, 5.0, seconds=0.3))
     back = read_recording(path)
     direct = joined(simulate_blocks(MEMORY, 5.0, seconds=0.3).blocks)
     assert path == tmp_path / "deep" / "run07.wav"
@@ -151,10 +150,12 @@ def test_memory_stays_below_300_MB_and_does_not_grow(tmp_path, material):  # noq
     code = f"""
 from pathlib import Path
 from models.rig_files.rig_file import load_material_rig
-from noise.long_run import simulate_to_file
+from models.transfer_functions.filtering import convolve
+from noise.long_run import write_run
+from sim.long_run import simulate_blocks
 peaks, rig = [], load_material_rig({material!r})
 for seconds in (20.0, 90.0):
-    simulate_to_file({str(tmp_path / "run")!r}, rig, 2.5, seconds=seconds)
+    write_run({str(tmp_path / "run")!r}, simulate_blocks(rig, 2.5, seconds=seconds))
     status = Path("/proc/self/status").read_text()
     peaks.append(int(status.split("VmHWM:")[1].split()[0]) / 1024)
 print(*peaks)

@@ -6,7 +6,7 @@ import pytest
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.rig_files.rig_file import load_material_rig
-from noise.noise_definition import noise_of
+from noise.noise_definition import label_by_physics
 from sim.analysis.regime import Regime, friction_regime
 from sim.run import simulate
 
@@ -40,7 +40,7 @@ def test_it_sticks_and_slips_at_the_first_torsional_mode(material, stiffness, mo
 @pytest.mark.parametrize("material", BARE)
 @pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
 def test_its_chatter_is_heard_as_squawk(material, stiffness):
-    assert noise_of(run(material, 10.0, stiffness)) == "squawk"
+    assert label_by_physics(run(material, 10.0, stiffness)) == "squawk"
 
 
 def test_without_film_it_slides_steadily_at_1_rad_s_on_the_softer_support_alone():

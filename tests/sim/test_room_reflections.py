@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from models.radiation.impulse_responses import Response
+from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rayleigh import SOUND_SPEED
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
@@ -16,7 +16,7 @@ RATE = 96e3
 def room(form, seed=0, **given):
     one = np.ones(1)
     active = EFFECTS["room_reflections"].active({"form": form, **given})
-    plain = Response(RATE, one, one, one, one)
+    plain = ImpulseResponses(RATE, one, one, one, one)
     return changed_chain(plain, [active], np.random.default_rng(seed)).torque_to_pressure
 
 

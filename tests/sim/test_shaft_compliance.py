@@ -27,7 +27,7 @@ ALL_FORMS = pytest.mark.parametrize("form", EFFECT.forms)
 
 def hook(name="shaft_compliance", **given):
     active = EFFECTS[name].active(given)
-    values = active.effect.pack(active.form, active.values, np.random.default_rng(0))
+    values = active.packed(np.random.default_rng(0))
     return Hook(active.effect.contact, values, active.effect.n_states)
 
 
@@ -43,7 +43,7 @@ def solve(*hooks, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, samples=3000, ref
         1.0 / RATE,
         law=law.torque,
         coefficients=coefficients,
-        law_state=law.state(coefficients),
+        law_state=law.state(),
         hooks=hooks,
         refined=refined,
     )

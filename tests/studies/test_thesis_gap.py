@@ -1,7 +1,7 @@
 """The thesis's own gap: cells, candidates, fits that know no left-out cell, and the page.
 
-The page is written by ``python -m tests.studies.thesis_gap --out tests/studies/thesis_gap.md``. Where a
-test says that it is stale, look at what changed, and write it again.
+The page is written by ``python -m tests.studies.thesis_gap --out tests/studies/thesis_gap.md``.
+Where a test says that it is stale, look at what changed, and write it again.
 """
 
 from __future__ import annotations

@@ -3,18 +3,11 @@
 import numpy as np
 import pytest
 
-from noise.training.classifier.augmentation import (
-    RATES,
-    as_recorded,
-    coded,
-    coloured_noise,
-    hear,
-    in_a_room,
-    levelled,
-    quantised,
-    resampled,
-    through_a_microphone,
-)
+from noise.training.classifier.augmentation.codecs import coded, quantised
+from noise.training.classifier.augmentation.microphones import levelled, through_a_microphone
+from noise.training.classifier.augmentation.recorder import RATES, augmented, recorded, resampled
+from noise.training.classifier.augmentation.rooms import in_a_room
+from noise.training.draws import coloured_noise
 
 
 def test_coloured_noise_falls_as_its_slope_says():
@@ -25,8 +18,8 @@ def test_coloured_noise_falls_as_its_slope_says():
 
 
 def test_a_recorded_silence_is_noise_of_unit_strength():
-    heard = as_recorded(np.zeros(4800), 48e3, np.random.default_rng(0))
-    assert heard.std() == pytest.approx(1.0)
+    clip = recorded(np.zeros(4800), 48e3, np.random.default_rng(0))
+    assert clip.std() == pytest.approx(1.0)
 
 
 def test_resampling_keeps_a_tone():
@@ -39,18 +32,18 @@ def test_resampling_keeps_a_tone():
 def test_a_room_adds_sound_after_a_click_that_dies_away():
     click = np.zeros(48_000)
     click[100] = 1.0
-    heard = in_a_room(click, 48e3, np.random.default_rng(3))
-    early, late = np.sum(heard[200:10_000] ** 2), np.sum(heard[20_000:] ** 2)
-    assert not heard[:100].any() or np.abs(heard[:100]).max() < 1e-9
+    clip = in_a_room(click, 48e3, np.random.default_rng(3))
+    early, late = np.sum(clip[200:10_000] ** 2), np.sum(clip[20_000:] ** 2)
+    assert not clip[:100].any() or np.abs(clip[:100]).max() < 1e-9
     assert early > 1e-3
     assert late < 0.1 * early
 
 
 def test_a_phone_hears_less_below_100_hz_and_above_12_khz_than_between():
     noise = np.random.default_rng(0).standard_normal(2**16)
-    heard = through_a_microphone(noise, 48e3, np.random.default_rng(1), phone=True)
-    power = np.abs(np.fft.rfft(heard)) ** 2
-    hertz = np.fft.rfftfreq(heard.size, 1 / 48e3)
+    clip = through_a_microphone(noise, 48e3, np.random.default_rng(1), phone=True)
+    power = np.abs(np.fft.rfft(clip)) ** 2
+    hertz = np.fft.rfftfreq(clip.size, 1 / 48e3)
     middle = power[(hertz > 500) & (hertz < 3000)].mean()
     assert power[hertz < 40].mean() < 0.1 * middle
     assert power[hertz > 20e3].mean() < 0.2 * middle
@@ -58,18 +51,18 @@ def test_a_phone_hears_less_below_100_hz_and_above_12_khz_than_between():
 
 def test_an_automatic_gain_brings_loud_and_quiet_closer():
     tone = np.sin(0.3 * np.arange(96_000)) * np.repeat([0.01, 1.0], 48_000)
-    heard = levelled(tone, 48e3, np.random.default_rng(2))
+    clip = levelled(tone, 48e3, np.random.default_rng(2))
     before = tone[80_000:].std() / tone[20_000:40_000].std()
-    assert heard[80_000:].std() / heard[20_000:40_000].std() < 0.8 * before
+    assert clip[80_000:].std() / clip[20_000:40_000].std() < 0.8 * before
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_codec_keeps_a_tone_and_its_length(seed):
     tone = 0.5 * np.sin(2 * np.pi * 1000.0 * np.arange(30_000) / 44_100)
-    heard = coded(tone, 44_100, np.random.default_rng(seed))
-    assert heard.shape == tone.shape
+    clip = coded(tone, 44_100, np.random.default_rng(seed))
+    assert clip.shape == tone.shape
     middle = slice(6_000, 24_000)
-    line = np.abs(np.fft.rfft(heard[middle] * np.hanning(18_000))).argmax() * 44_100 / 18_000
+    line = np.abs(np.fft.rfft(clip[middle] * np.hanning(18_000))).argmax() * 44_100 / 18_000
     assert line == pytest.approx(1000.0, abs=5.0)
 
 
@@ -81,11 +74,11 @@ def test_few_bits_leave_few_values():
 @pytest.mark.parametrize("seed", range(12))
 def test_what_is_heard_fits_full_scale_and_is_silent_about_its_span(seed):
     sound = np.random.default_rng(0).standard_normal(40_000)
-    heard = hear(sound, 48e3, np.random.default_rng(seed))
-    assert heard.rate in RATES
-    assert np.abs(heard.samples).max() <= 1.0
-    first, last = (round(time * heard.rate) for time in heard.span)
-    assert last - first == pytest.approx(40_000 / 48e3 * heard.rate, abs=2)
-    inside = heard.samples[first:last].std()
-    for outside in (heard.samples[: max(first - 2000, 0)], heard.samples[last + 2000 :]):
+    clip = augmented(sound, 48e3, np.random.default_rng(seed))
+    assert clip.rate in RATES
+    assert np.abs(clip.samples).max() <= 1.0
+    first, last = (round(time * clip.rate) for time in clip.span)
+    assert last - first == pytest.approx(40_000 / 48e3 * clip.rate, abs=2)
+    inside = clip.samples[first:last].std()
+    for outside in (clip.samples[: max(first - 2000, 0)], clip.samples[last + 2000 :]):
         assert outside.size == 0 or outside.std() < 0.05 * inside

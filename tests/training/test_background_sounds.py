@@ -5,10 +5,10 @@ import pytest
 from scipy.signal import hilbert
 
 from features.kernels.harmonics import analyse_harmonics
-from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, stranger
+from noise.training.classifier.augmentation.backgrounds import quiet
+from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, background_sound
+from noise.training.classifier.background_sounds.animals import chirping
 from noise.training.classifier.background_sounds.building import harmonics, repeated, voiced
-from noise.training.classifier.background_sounds.insects import chirping
-from noise.training.classifier.quiet import quiet
 
 RATE = 48e3
 
@@ -43,7 +43,7 @@ def test_every_recipe_makes_a_sound_that_can_be_made_again(name, rate):
         assert sound.shape == (rate // 2,)
         assert np.isfinite(sound).all()
         assert sound.tobytes() == again.tobytes()
-    assert stranger(rate // 2, float(rate), np.random.default_rng(1), name).std() > 0.0
+    assert background_sound(rate // 2, float(rate), np.random.default_rng(1), name).std() > 0.0
 
 
 def test_a_cricket_sings_at_its_carrier_in_pulses_of_its_rate():

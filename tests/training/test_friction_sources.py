@@ -5,21 +5,12 @@ import pytest
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
-from noise.training.classifier.friction_sources import (
-    CREAKS,
-    SQUAWKS,
-    SQUEALS,
-    ModalBody,
-    Slips,
-    creak,
-    random_body,
-    slide,
-    squawk,
-    squeal,
-)
-from noise.training.classifier.friction_sources.creaks import pulses, random_slips
+from noise.training.classifier.friction_sources.creaks import CREAKS, creak, pulses, random_slips
 from noise.training.classifier.friction_sources.limit_cycle import ENVELOPE_RATE, amplitudes
-from noise.training.classifier.friction_sources.slider import random_drive
+from noise.training.classifier.friction_sources.modal_body import ModalBody, random_body
+from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
+from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
+from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
 
 RATE = 48e3
 

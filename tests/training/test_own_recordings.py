@@ -11,12 +11,12 @@ import pytest
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.classifier import load_classifier
-from noise.classifier.trees import grow_trees
 from noise.cli import main
 from noise.labels.audacity import label_track, read_label_track
 from noise.recordings import write_recording
 from noise.training.classifier.own_recordings import MOST_WINDOWS, read_labelled
 from noise.training.classifier.own_samples import OwnSample, own_samples, split_files
+from noise.training.trees import grow_boosted_trees
 
 RATE = 16_000.0
 
@@ -149,7 +149,7 @@ def test_weights_say_what_counts_where_labels_meet():
     heavy = np.where((y == 1) & (x[:, 0] == 0.0), 5.0, 1.0)
     there = np.array([[0.0]])
     alike, weighted = (
-        grow_trees(x, y, weight=weight, n_rounds=20, seed=0).probabilities(there)[0, 1]
+        grow_boosted_trees(x, y, weight=weight, n_rounds=20, seed=0).probabilities(there)[0, 1]
         for weight in (np.ones(y.size), heavy)
     )
     assert weighted > alike + 0.2

@@ -7,10 +7,10 @@ import pytest
 
 from models.errors import ParameterError
 from noise.classifier import LABELS
-from noise.noise_definition import noise_of
+from noise.noise_definition import label_by_physics
 from noise.training.classifier.bushing_recordings import bushing_recording
 from noise.training.classifier.bushings import random_run, stretch
-from noise.training.classifier.extras import random_extras
+from noise.training.classifier.designs import random_extras
 from noise.training.classifier.samples import SHARES, SOURCES, draw, draw_from
 from sim.effects import EFFECTS
 
@@ -23,7 +23,7 @@ def runs():
 def test_a_drawn_bushing_is_called_by_its_physics(runs):
     for drawn in runs:
         if drawn.run.recording.condition.speed is not None:
-            assert drawn.label == noise_of(drawn.run)
+            assert drawn.label == label_by_physics(drawn.run)
 
 
 def test_every_piece_of_a_run_of_varying_speed_has_the_label_of_the_whole(runs):
@@ -32,7 +32,7 @@ def test_every_piece_of_a_run_of_varying_speed_has_the_label_of_the_whole(runs):
         seconds = drawn.run.pressure.size / drawn.run.motion.rate
         assert seconds >= 0.5
         for i in range(int(seconds / 0.25 + 1e-6)):
-            assert noise_of(stretch(drawn.run, 0.25 * i, 0.25 * (i + 1))) == drawn.label
+            assert label_by_physics(stretch(drawn.run, 0.25 * i, 0.25 * (i + 1))) == drawn.label
     assert varying
 
 

@@ -13,28 +13,27 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import resample_poly
 
 from models.recording import Channel, Recording
 from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
 from noise.diagnosis.cases.strengths import drawn_effect
 from noise.diagnosis.cases.structures import draw_structure
 from noise.diagnosis.cases.truth import KINDS, Truth
-from noise.diagnosis.cases.unknown_effects import STRANGERS, draw_stranger
+from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.diagnosis.cases.variants import draw_variant
-from noise.diagnosis.gap.scatter import Scatter
-from noise.diagnosis.simulated.chain_run import CHANNELS, fine_rate, run_signals
-from sim.acquisition import Acquisition
+from noise.diagnosis.simulated.repeats import CHANNELS, Scatter, run_signals
+from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
+from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from models.condition import Condition
-    from models.radiation.impulse_responses import Response
+    from models.condition import KnownCondition
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Rig
     from noise.diagnosis.cases.rigs import Setting
     from sim.effects.effect import ActiveEffect
@@ -84,7 +83,7 @@ def draw_case(seed: int) -> DrawnCase:
     louder = {name: level * rng.uniform(0.7, 1.6) for name, level in Acquisition().noise.items()}
     recordings = tuple(
         _record(
-            setting, condition, effects, dict(truth.offsets), plain[_support(condition)],
+            setting, condition, effects, dict(truth.offsets), plain[condition.support_stiffness],
             chain_seed, louder, rng,
         )
         for condition in setting.conditions
@@ -93,16 +92,16 @@ def draw_case(seed: int) -> DrawnCase:
 
 
 @lru_cache(maxsize=1)
-def _drawn_rig(number: int) -> tuple[Setting, dict[float, Response]]:
+def _drawn_rig(number: int) -> tuple[Setting, dict[float, ImpulseResponses]]:
     """Draw a rig with measured responses, and the true ones at the rate of the simulation."""
     rng = np.random.default_rng([0, number])
     setting = draw_setting(rng)
     structures = {
         support: draw_structure(lumped_bushing(setting.rig, 0.279e-3, support), rng)
-        for support in sorted({_support(c) for c in setting.conditions})
+        for support in sorted({c.support_stiffness for c in setting.conditions})
     }
     measured = tuple(s.measured(support, rng) for support, s in structures.items())
-    fine = fine_rate(setting.rate)
+    fine = DIAGNOSIS.rate(setting.rate)
     return (
         replace(setting, rig=replace(setting.rig, measured=measured)),
         {support: s.response(fine) for support, s in structures.items()},
@@ -117,12 +116,12 @@ def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveE
         offsets = tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
         return Truth(kind, offsets=offsets), []
     if kind == "unknown":
-        name, strength = str(rng.choice(list(STRANGERS))), _strength(rng)
+        name, strength = str(rng.choice(list(UNKNOWN_EFFECTS))), _strength(rng)
         middle = rig.fit(0.279e-3)
-        stranger = draw_stranger(
+        unknown_effect = draw_unknown_effect(
             name, strength, middle.kinetic_torque, middle.elastomer_stiffness, rng
         )
-        return Truth(kind, (name,), ("plain",), (strength,)), [stranger.active({})]
+        return Truth(kind, (name,), ("plain",), (strength,)), [unknown_effect.active({})]
     count = {"one": 1, "pair": 2, "triple": 3}.get(kind, 0)
     names = rng.choice(sorted(EFFECTS), count, replace=False).tolist()
     strengths = tuple(_strength(rng) for _ in names)
@@ -139,21 +138,20 @@ def _drawn_effect(name: str, strength: float, rng: np.random.Generator) -> Activ
 
 def _record(
     setting: Setting,
-    condition: Condition,
+    condition: KnownCondition,
     effects: list[ActiveEffect],
     offsets: Mapping[str, float],
-    plain: Response,
+    plain: ImpulseResponses,
     chain_seed: int,
     noise: Mapping[str, float],
     rng: np.random.Generator,
 ) -> Recording:
     scatter, chance = Scatter(), np.random.default_rng(int(rng.integers(2**31)))
-    fine = plain.rate
     signals = run_signals(
         with_offsets(setting.rig, offsets), condition, effects, plain, setting.seconds, chance,
         chain_seed=chain_seed,
     )  # fmt: skip
-    decimation = round(fine / setting.rate)
+    decimation = DIAGNOSIS.decimation(setting.rate)
     samples = [
         _sampled(
             signals[name], decimation, noise[name], 0.0 if name == "angle" else scatter.gain, chance
@@ -173,7 +171,7 @@ def _sampled(
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
     """Decimate, and add white noise, a coloured one and a drift."""
-    x = resample_poly(signal, 1, decimation, padtype="line")
+    x = decimate(signal, decimation)
     f = np.fft.rfftfreq(x.size)
     slow = np.fft.irfft(np.fft.rfft(rng.standard_normal(x.size)) / np.sqrt(1.0 + f / 1e-3), x.size)
     drift = rng.standard_normal() * np.linspace(-1.0, 1.0, x.size)
@@ -186,8 +184,3 @@ def _sampled(
 
 def _strength(rng: np.random.Generator) -> float:
     return math.exp(rng.uniform(math.log(WEAKEST), 0.0))
-
-
-def _support(condition: Condition) -> float:
-    assert condition.support_stiffness is not None
-    return condition.support_stiffness

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.condition import FIXED, Condition
+from models.condition import FIXED, KnownCondition
 from models.rig import Fit, LawSpec, Rig
 from models.rig_files.rig_file import load_material_rig
 
@@ -48,14 +48,14 @@ class Setting:
     ----------
     rig : Rig
         As its file has it.
-    conditions : tuple of Condition
+    conditions : tuple of KnownCondition
         One a recording; two are there twice.
     rate, seconds : float
         [Hz], [s]
     """
 
     rig: Rig
-    conditions: tuple[Condition, ...]
+    conditions: tuple[KnownCondition, ...]
     rate: float
     seconds: float
 
@@ -103,7 +103,7 @@ def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
     ----------
     rig : Rig
     offsets : mapping of str to float
-        By names of `OFFSETS`.
+        Factors [-] by names of `OFFSETS`.
     """
 
     def factor(name: str) -> float:
@@ -126,16 +126,16 @@ def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
     )
 
 
-def _conditions(rng: np.random.Generator) -> tuple[Condition, ...]:
+def _conditions(rng: np.random.Generator) -> tuple[KnownCondition, ...]:
     different = int(rng.integers(2, 8))
     supports = rng.choice(list(_DAMPING), rng.integers(1, 3), replace=False).tolist()
     fits = rng.choice(list(_FITS), rng.integers(1, 4), replace=False).tolist()
-    found: list[Condition] = []
+    found: list[KnownCondition] = []
     while len(found) < different:
         fit = fits[int(rng.integers(len(fits)))]
         fastest = _CREEPING[fit] if rng.random() < 0.9 else _FASTEST
         speed = math.exp(rng.uniform(math.log(_SLOWEST), math.log(fastest)))
-        condition = Condition(
+        condition = KnownCondition(
             speed=round(speed, 1),
             interference=fit,
             support_stiffness=supports[int(rng.integers(len(supports)))],

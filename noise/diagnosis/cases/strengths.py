@@ -8,6 +8,7 @@ widest range in which the effect still is what its name says, since the real one
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from models.rig import LawSpec
@@ -15,13 +16,13 @@ from noise.diagnosis.cases.variants.common import log_uniform
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import numpy as np
 
 __all__ = ["drawn_effect"]
 
 Values = dict[str, float]
+Draw = Callable[[float, "np.random.Generator"], float]
+"""Of a strength and a generator."""
 
 _SENSED = ("torque", "acceleration", "pressure")
 
@@ -34,7 +35,7 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
     name : str
         Of `sim.effects.EFFECTS`.
     strength : float
-        From 0 to 1.
+        From 0 to 1 [-].
     rng : numpy.random.Generator
 
     Returns
@@ -47,8 +48,13 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
     >>> drawn_effect("critical_torque_scatter", 0.5, np.random.default_rng(0)).parameters["scatter"]
     0.25
     """
-    form = str(rng.choice(EFFECTS[name].forms))
-    values: dict[str, float | str] = {"form": form, **_DRAW[name](strength, rng)}
+    values: dict[str, float | str] = {"form": str(rng.choice(EFFECTS[name].forms))}
+    # A mount is mostly that of the accelerometer; this is drawn before its resonance.
+    alone = name == "mount_resonance" and rng.random() < 0.7
+    values |= {key: draw(strength, rng) for key, draw in _PARAMETERS[name].items()}
+    if name in _ON_CHANNELS:
+        names = ("acceleration",) if alone else _SENSED
+        values |= _shares(rng, names, signed=name == "channel_delay")
     return LawSpec(name, values)
 
 
@@ -67,193 +73,96 @@ def _shares(
     return shares
 
 
-def _level(rng: np.random.Generator, pascal: float) -> float:
-    return 20.0 * math.log10(pascal * float(rng.uniform(0.2, 1.0)) / 20e-6)
+def _times(factor: float) -> Draw:
+    """Return a number in proportion to the strength; nothing is drawn."""
+    return lambda strength, _rng: factor * strength
 
 
-def _amplitude_softening(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "share": 0.6 * a,
-        "twist": log_uniform(rng, 4e-4, 6e-3),
-        "averaging_time": log_uniform(rng, 0.02, 0.2),
-    }
+def _log(low: float, high: float) -> Draw:
+    return lambda _strength, rng: log_uniform(rng, low, high)
 
 
-def _background_noise(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "amount": a,
-        "pressure_level": _level(rng, 0.3),
-        "angle": 0.0,
-        "acceleration": 8.0 * float(rng.uniform(0.2, 1.0)),
-        "torque": 0.15 * float(rng.uniform(0.2, 1.0)),
-    }
+def _even(low: float, high: float, factor: float = 1.0) -> Draw:
+    return lambda _strength, rng: factor * float(rng.uniform(low, high))
 
 
-def _beam_modes(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "amount": a,
-        "frequency": log_uniform(rng, 350.0, 6000.0),
-        "constant": log_uniform(rng, 8.0, 40.0),
-        "damping_ratio": log_uniform(rng, 0.004, 0.04),
-        "anchor_mass": log_uniform(rng, 0.005, 0.08),
-    }
+def _level(pascal: float) -> Draw:
+    """Return a sound pressure level of up to so many pascal [dB re 20 µPa]."""
+    return lambda _strength, rng: 20.0 * math.log10(pascal * float(rng.uniform(0.2, 1.0)) / 20e-6)
 
 
-def _channel_delay(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "delay": a * log_uniform(rng, 5e-4, 3e-3),
-        "bandwidth": log_uniform(rng, 3.0, 80.0),
-        "angle": 0.0,
-    } | _shares(rng, signed=True)
+_STRENGTH, _ZERO = _times(1.0), _times(0.0)
 
+_ON_CHANNELS = ("channel_delay", "clipping", "gain_error", "mount_resonance")
+"""Effects that have a share of each channel as well."""
 
-def _clipping(a: float, rng: np.random.Generator) -> Values:
-    return {"amount": 0.75 * a} | _shares(rng)
-
-
-def _critical_torque_scatter(a: float, rng: np.random.Generator) -> Values:
-    return {"scatter": 0.5 * a, "correlation": float(rng.uniform(0.2, 0.9))}
-
-
-def _frictional_heating(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "softening": 0.02 * a,
-        "resistance": log_uniform(rng, 0.3, 2.0),
-        "area": log_uniform(rng, 3e-4, 1e-3),
-        "time_constant": log_uniform(rng, 0.03, 1.0),
-        "floor": float(rng.uniform(0.3, 0.7)),
-    }
-
-
-def _gain_error(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "error": float(rng.choice([-0.5, 0.8])) * a,
-        "corner": log_uniform(rng, 150.0, 3000.0),
-        "angle": 0.0,
-    } | _shares(rng)
-
-
-def _mains_hum(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "amount": a,
-        "pressure_level": _level(rng, 0.25),
-        "angle": 0.0,
-        "frequency": float(rng.choice([50.0, 60.0])) * (1.0 + 2e-3 * float(rng.standard_normal())),
-        "acceleration": 6.0 * float(rng.uniform(0.2, 1.0)),
-        "torque": 0.3 * float(rng.uniform(0.2, 1.0)),
-    }
-
-
-def _mount_resonance(a: float, rng: np.random.Generator) -> Values:
-    mostly = ("acceleration",) if rng.random() < 0.7 else _SENSED
-    return {
-        "amount": a,
-        "frequency": log_uniform(rng, 900.0, 9000.0),
-        "damping_ratio": log_uniform(rng, 0.015, 0.15),
-    } | _shares(rng, mostly)
-
-
-def _partial_slip(a: float, rng: np.random.Generator) -> Values:
-    return {"share": 0.92 * a, "exponent": log_uniform(rng, 1.2, 12.0)}
-
-
-def _plate_modes(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "amount": 2.0 * a,
-        "frequency": log_uniform(rng, 150.0, 3000.0),
-        "damping_ratio": log_uniform(rng, 0.006, 0.15),
-        "spacing": log_uniform(rng, 150.0, 1500.0),
-    }
-
-
-def _room_reflections(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "amount": 4.0 * a,
-        "distance": float(rng.uniform(0.3, 1.0)),
-        "length": float(rng.uniform(3.0, 12.0)),
-        "width": float(rng.uniform(2.5, 9.0)),
-        "height": float(rng.uniform(2.3, 5.0)),
-        "reverberation_time": log_uniform(rng, 0.1, 1.2),
-    }
-
-
-def _shaft_compliance(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "compliance": 8e-4 * a,
-        "inertia": log_uniform(rng, 3e-5, 2e-4),
-        "damping_ratio": log_uniform(rng, 0.01, 0.2),
-        "reference_torque": log_uniform(rng, 5.0, 30.0),
-    }
-
-
-def _slip_pulse(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "amplitude": 250.0 * a,
-        "threshold": float(rng.choice([0.0, 0.0, 1.0, 3.0])),
-        "duration": log_uniform(rng, 2e-5, 2.5e-4),
-    }
-
-
-def _speed_fluctuation(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "depth": 0.25 * a,
-        "frequency": log_uniform(rng, 3.0, 45.0),
-        "bandwidth": log_uniform(rng, 3.0, 60.0),
-    }
-
-
-def _static_ageing(a: float, rng: np.random.Generator) -> Values:
-    return {"share": 0.97 * a, "ageing_time": log_uniform(rng, 5e-4, 2e-2)}
-
-
-def _transfer_film(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "coverage": a,
-        "torque_ratio": float(rng.uniform(1.4, 3.0)),
-        "drop_left": float(rng.uniform(0.1, 0.5)),
-        "roughness": 0.05 * float(rng.uniform(0.5, 1.0)),
-        "growth_angle": log_uniform(rng, 0.2, 3.0),
-        "formed": 0.0,
-    }
-
-
-def _velocity_strengthening(a: float, rng: np.random.Generator) -> Values:
-    return {"gain": 0.5 * a, "speed": log_uniform(rng, 5.0, 20.0)}
-
-
-def _velocity_weakening(a: float, rng: np.random.Generator) -> Values:
-    return {"share": 0.5 * a, "speed": log_uniform(rng, 2.0, 20.0)}
-
-
-def _viscoelastic_stiffness(a: float, rng: np.random.Generator) -> Values:
-    return {
-        "stiffening": 0.9 * a,
-        "relaxation_time": log_uniform(rng, 5e-5, 1e-2),
-        "spread": float(rng.uniform(2.0, 8.0)),
-        "exponent": float(rng.uniform(0.1, 0.4)),
-    }
-
-
-_DRAW: dict[str, Callable[[float, np.random.Generator], Values]] = {
-    "amplitude_softening": _amplitude_softening,
-    "background_noise": _background_noise,
-    "beam_modes": _beam_modes,
-    "channel_delay": _channel_delay,
-    "clipping": _clipping,
-    "critical_torque_scatter": _critical_torque_scatter,
-    "frictional_heating": _frictional_heating,
-    "gain_error": _gain_error,
-    "mains_hum": _mains_hum,
-    "mount_resonance": _mount_resonance,
-    "partial_slip": _partial_slip,
-    "plate_modes": _plate_modes,
-    "room_reflections": _room_reflections,
-    "shaft_compliance": _shaft_compliance,
-    "slip_pulse": _slip_pulse,
-    "speed_fluctuation": _speed_fluctuation,
-    "static_ageing": _static_ageing,
-    "transfer_film": _transfer_film,
-    "velocity_strengthening": _velocity_strengthening,
-    "velocity_weakening": _velocity_weakening,
-    "viscoelastic_stiffness": _viscoelastic_stiffness,
-}
+_PARAMETERS: dict[str, dict[str, Draw]] = {
+    "amplitude_softening": {
+        "share": _times(0.6), "twist": _log(4e-4, 6e-3), "averaging_time": _log(0.02, 0.2),
+    },
+    "background_noise": {
+        "amount": _STRENGTH, "pressure_level": _level(0.3), "angle": _ZERO,
+        "acceleration": _even(0.2, 1.0, 8.0), "torque": _even(0.2, 1.0, 0.15),
+    },
+    "beam_modes": {
+        "amount": _STRENGTH, "frequency": _log(350.0, 6000.0), "constant": _log(8.0, 40.0),
+        "damping_ratio": _log(0.004, 0.04), "anchor_mass": _log(0.005, 0.08),
+    },
+    "channel_delay": {
+        "delay": lambda strength, rng: strength * log_uniform(rng, 5e-4, 3e-3),
+        "bandwidth": _log(3.0, 80.0), "angle": _ZERO,
+    },
+    "clipping": {"amount": _times(0.75)},
+    "critical_torque_scatter": {"scatter": _times(0.5), "correlation": _even(0.2, 0.9)},
+    "frictional_heating": {
+        "softening": _times(0.02), "resistance": _log(0.3, 2.0), "area": _log(3e-4, 1e-3),
+        "time_constant": _log(0.03, 1.0), "floor": _even(0.3, 0.7),
+    },
+    "gain_error": {
+        "error": lambda strength, rng: float(rng.choice([-0.5, 0.8])) * strength,
+        "corner": _log(150.0, 3000.0), "angle": _ZERO,
+    },
+    "mains_hum": {
+        "amount": _STRENGTH, "pressure_level": _level(0.25), "angle": _ZERO,
+        "frequency": lambda _strength, rng: (
+            float(rng.choice([50.0, 60.0])) * (1.0 + 2e-3 * float(rng.standard_normal()))
+        ),
+        "acceleration": _even(0.2, 1.0, 6.0), "torque": _even(0.2, 1.0, 0.3),
+    },
+    "mount_resonance": {
+        "amount": _STRENGTH, "frequency": _log(900.0, 9000.0), "damping_ratio": _log(0.015, 0.15),
+    },
+    "partial_slip": {"share": _times(0.92), "exponent": _log(1.2, 12.0)},
+    "plate_modes": {
+        "amount": _times(2.0), "frequency": _log(150.0, 3000.0),
+        "damping_ratio": _log(0.006, 0.15), "spacing": _log(150.0, 1500.0),
+    },
+    "room_reflections": {
+        "amount": _times(4.0), "distance": _even(0.3, 1.0), "length": _even(3.0, 12.0),
+        "width": _even(2.5, 9.0), "height": _even(2.3, 5.0), "reverberation_time": _log(0.1, 1.2),
+    },
+    "shaft_compliance": {
+        "compliance": _times(8e-4), "inertia": _log(3e-5, 2e-4),
+        "damping_ratio": _log(0.01, 0.2), "reference_torque": _log(5.0, 30.0),
+    },
+    "slip_pulse": {
+        "amplitude": _times(250.0),
+        "threshold": lambda _strength, rng: float(rng.choice([0.0, 0.0, 1.0, 3.0])),
+        "duration": _log(2e-5, 2.5e-4),
+    },
+    "speed_fluctuation": {
+        "depth": _times(0.25), "frequency": _log(3.0, 45.0), "bandwidth": _log(3.0, 60.0),
+    },
+    "static_ageing": {"share": _times(0.97), "ageing_time": _log(5e-4, 2e-2)},
+    "transfer_film": {
+        "coverage": _STRENGTH, "torque_ratio": _even(1.4, 3.0), "drop_left": _even(0.1, 0.5),
+        "roughness": _even(0.5, 1.0, 0.05), "growth_angle": _log(0.2, 3.0), "formed": _ZERO,
+    },
+    "velocity_strengthening": {"gain": _times(0.5), "speed": _log(5.0, 20.0)},
+    "velocity_weakening": {"share": _times(0.5), "speed": _log(2.0, 20.0)},
+    "viscoelastic_stiffness": {
+        "stiffening": _times(0.9), "relaxation_time": _log(5e-5, 1e-2), "spread": _even(2.0, 8.0),
+        "exponent": _even(0.1, 0.4),
+    },
+}  # fmt: skip
+"""Draws of each effect's parameters, in the order in which they are made."""

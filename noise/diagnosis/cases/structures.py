@@ -1,4 +1,4 @@
-"""Clamp, beams, plate and air of a rig that was never built: modes by chance, and hammer blows."""
+"""Random structures: modes of clamp, beams, plate and air, and how a hammer test measures them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft
 
-from models.radiation.impulse_responses import Response
+from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import MeasuredResponse
-from models.transfer_functions.transfer_function import Frf
+from models.transfer_functions.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +23,7 @@ __all__ = ["Structure", "draw_structure"]
 _LINES = np.arange(10.0, 10_001.0, 2.5)
 """Of the hammer test [Hz]."""
 
-_BLOWS = 32
+_IMPACTS = 32
 _SOUND_SPEED = 343.0
 _LONGEST = 0.25
 """Impulse responses are followed so long [s]."""
@@ -31,7 +31,7 @@ _LONGEST = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """Ways from torque and from blows in the anchors to acceleration and sound, as sums of modes.
+    """Ways from torque and from impacts in the anchors to acceleration and sound, as sums of modes.
 
     Parameters
     ----------
@@ -58,7 +58,18 @@ class Structure:
     def from_torque(
         self, frequency: NDArray[np.float64]
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Responses of acceleration and pressure to the torque."""
+        """Responses of acceleration and pressure to the torque.
+
+        Parameters
+        ----------
+        frequency : ndarray, shape (n,)
+            [Hz]
+
+        Returns
+        -------
+        acceleration, pressure : ndarray of complex, shape (n,)
+            [m/s2 per Nm], [Pa per Nm]
+        """
         late = np.exp(-2j * np.pi * frequency * self.distance / _SOUND_SPEED)
         acceleration = _modes(frequency, self.beams)
         pressure = late * _modes(frequency, self.plate)
@@ -78,15 +89,15 @@ class Structure:
         return acceleration, pressure
 
     def measured(self, support_stiffness: float, rng: np.random.Generator) -> MeasuredResponse:
-        """Return the responses to the torque as a hammer test finds them."""
+        """Return the responses to the torque as a hammer test of a support [Nm/rad] finds them."""
         acceleration, pressure = (_as_measured(h, rng) for h in self.from_torque(_LINES))
         return MeasuredResponse(
             support_stiffness,
-            Frf(_LINES, acceleration, None, "N m", "m/s^2", "torque_to_acceleration"),
-            Frf(_LINES, pressure, None, "N m", "Pa", "torque_to_pressure"),
+            TransferFunction(_LINES, acceleration, None, "N m", "m/s^2", "torque_to_acceleration"),
+            TransferFunction(_LINES, pressure, None, "N m", "Pa", "torque_to_pressure"),
         )
 
-    def response(self, rate: float) -> Response:
+    def response(self, rate: float) -> ImpulseResponses:
         """Impulse responses at a sampling rate [Hz]."""
         n = int(_LONGEST * rate)
         frequency = np.asarray(np.fft.rfftfreq(2 * n, 1.0 / rate), np.float64)
@@ -99,7 +110,7 @@ class Structure:
         def impulse(response: NDArray[np.complex128]) -> NDArray[np.float64]:
             return np.asarray(irfft(response * taper, 2 * n)[:n])
 
-        return Response(
+        return ImpulseResponses(
             rate, impulse(acceleration), impulse(pressure), impulse(struck),
             impulse(0.02 * late * struck),
         )  # fmt: skip
@@ -158,12 +169,12 @@ def _modes(frequency: NDArray[np.float64], modes: NDArray[np.float64]) -> NDArra
 def _as_measured(
     response: NDArray[np.complex128], rng: np.random.Generator
 ) -> NDArray[np.complex128]:
-    """Add the scatter of an average over blows whose coherence falls where little comes through."""
+    """Add the scatter of an average over impacts, whose coherence falls with what is passed."""
     size = np.abs(response)
     floor = 0.006 * float(np.median(size)) * (1.0 + (30.0 / _LINES) ** 2)
     noise = (floor / size) ** 2 + 1e-3 * (1.0 + (_LINES / 6e3) ** 4)
     coherence = 1.0 / (1.0 + np.minimum(noise, 9.0))
-    spread = size * np.sqrt((1.0 - coherence) / (2.0 * _BLOWS * coherence))
+    spread = size * np.sqrt((1.0 - coherence) / (2.0 * _IMPACTS * coherence))
     error = rng.standard_normal((2, _LINES.size)) * spread / math.sqrt(2.0)
     return np.asarray(response + error[0] + 1j * error[1])
 

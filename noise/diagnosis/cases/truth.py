@@ -1,4 +1,4 @@
-"""What a simulated case is about."""
+"""Known cause of a simulated case."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Truth:
         Names of what is missing in the model; of an unknown effect the name it has here.
     forms : tuple of str
     strengths : tuple of float
-        From 0.01, which cannot be seen, to 1, which is strong.
+        From 0.01, which cannot be seen, to 1, which is strong [-].
     offsets : tuple of (str, float)
         Parameters that are off in all recordings, and by what factor.
     """

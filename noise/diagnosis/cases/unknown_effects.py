@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["STRANGERS", "draw_stranger"]
+__all__ = ["UNKNOWN_EFFECTS", "draw_unknown_effect"]
 
 Signals = dict[str, "NDArray[np.float64]"]
 Recipe = Callable[[float, float, float, np.random.Generator], Effect]
@@ -44,17 +44,17 @@ _OVER_TIME, _OVER_ANGLE = 0.0, 1.0
 _HEADER = 4
 
 
-def draw_stranger(
+def draw_unknown_effect(
     name: str, strength: float, kinetic_torque: float, stiffness: float, rng: np.random.Generator
 ) -> Effect:
-    """Draw a stranger.
+    """Draw an unknown effect.
 
     Parameters
     ----------
     name : str
-        Of `STRANGERS`.
+        Of `UNKNOWN_EFFECTS`.
     strength : float
-        From 0 to 1.
+        From 0 to 1 [-].
     kinetic_torque, stiffness : float
         Of the rig [Nm], [Nm/rad].
     rng : numpy.random.Generator
@@ -63,11 +63,11 @@ def draw_stranger(
     -------
     Effect
     """
-    return STRANGERS[name](strength, kinetic_torque, stiffness, rng)
+    return UNKNOWN_EFFECTS[name](strength, kinetic_torque, stiffness, rng)
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def _changed(context, values, state, state_rates, contact):
+def _table_hook(context, values, state, state_rates, contact):
     what, over, scale = values[0], values[1], values[2]
     if what == _SPRING:
         deep = context[TWIST] - scale
@@ -89,14 +89,14 @@ def _changed(context, values, state, state_rates, contact):
 
 def _contact(pack: Callable[[np.random.Generator], NDArray[np.float64]]) -> Effect:
     return Effect(
-        "stranger", Stage.FRICTION, ("plain",), _STRENGTH, "strength", contact=_changed,
+        "unknown_effect", Stage.FRICTION, ("plain",), _STRENGTH, "strength", contact=_table_hook,
         pack=lambda _form, _values, rng: pack(rng),
     )  # fmt: skip
 
 
 def _sensors(change: Callable[[Signals, float, np.random.Generator], Signals]) -> Effect:
     return Effect(
-        "stranger", Stage.MEASUREMENT, ("plain",), _STRENGTH, "strength",
+        "unknown_effect", Stage.MEASUREMENT, ("plain",), _STRENGTH, "strength",
         sensors=lambda signals, rate, _form, _values, rng: change(signals, rate, rng),
     )  # fmt: skip
 
@@ -167,7 +167,7 @@ def _stall(a: float, _torque: float, _stiffness: float, rng: np.random.Generator
         stalled = (often * time + rng.random()) % 1.0 < duty
         return speed * np.where(stalled, 1.0 - share, 1.0 + share * duty / (1.0 - duty))
 
-    return Effect("stranger", Stage.DRIVE, ("plain",), _STRENGTH, "strength", drive=drive)
+    return Effect("unknown_effect", Stage.DRIVE, ("plain",), _STRENGTH, "strength", drive=drive)
 
 
 def _crosstalk(a: float, _torque: float, _stiffness: float, rng: np.random.Generator) -> Effect:
@@ -193,13 +193,13 @@ def _wow(a: float, _torque: float, _stiffness: float, rng: np.random.Generator) 
 
     def change(signals: Signals, rate: float, rng: np.random.Generator) -> Signals:
         phases = rng.random(2)
-        heard = {}
+        read = {}
         for name, x in signals.items():
             time = np.arange(x.size) / rate
             late = 2.5e-3 * np.sin(2 * np.pi * (slow * time + phases[0]))
             late += 4e-4 * np.sin(2 * np.pi * (fast * time + phases[1]))
-            heard[name] = np.interp(time - a * late, time, x)
-        return heard
+            read[name] = np.interp(time - a * late, time, x)
+        return read
 
     return _sensors(change)
 
@@ -250,17 +250,17 @@ def _shocks(a: float, _torque: float, _stiffness: float, rng: np.random.Generato
 
 
 def _play(a: float, _torque: float, _stiffness: float, rng: np.random.Generator) -> Effect:
-    through = float(rng.uniform(0.2, 0.5))
+    passed = float(rng.uniform(0.2, 0.5))
 
     def change(signals: Signals, _rate: float, _rng: np.random.Generator) -> Signals:
         x = signals["torque"]
         lost = _lagging(x, 1.2 * a * float(x.std()))
-        return signals | {"torque": through * x + (1.0 - through) * lost}
+        return signals | {"torque": passed * x + (1.0 - passed) * lost}
 
     return _sensors(change)
 
 
-STRANGERS: Mapping[str, Recipe] = {
+UNKNOWN_EFFECTS: Mapping[str, Recipe] = {
     "cogging": _cogging,
     "pumped_stiffness": _pumped,
     "debris": _debris,

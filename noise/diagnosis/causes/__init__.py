@@ -1,1 +1,1 @@
-"""Which cause: posterior, location, equivalence, verdict."""
+"""Causes of a gap: posterior probabilities, location and verdict."""

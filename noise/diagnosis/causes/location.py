@@ -1,4 +1,4 @@
-"""Where the simulation goes wrong: stage by stage, each fed with what was measured before it.
+"""Location of a gap: stage by stage, each fed with what was measured before it.
 
 The contact is rebuilt from the measured torque, the structure is driven by it, the sound is
 predicted from it, the shaft's motion is read off its angle. So an error of one stage does not show
@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.evidence.evidence import aligned
-from noise.diagnosis.evidence.path_summary import BAND_EDGES
+from noise.diagnosis.evidence.channel_summary import BAND_EDGES
+from noise.diagnosis.evidence.evidence import deviations, standard_errors
 from noise.diagnosis.outcome import Location, StageFinding
 from sim.effects.effect import Stage
 
@@ -84,10 +84,10 @@ def null_maxima(
     Returns
     -------
     ndarray, shape (n_cases, n_stages)
-        Each column rising.
+        Each column rising, in standard errors [-].
     """
     stages = np.array([stage_of(name) for name in names])
-    sizes = [np.abs(_sure(table, names, scale)) for table in tables]
+    sizes = [np.abs(_standard_errors(table, names, scale)) for table in tables]
     return np.sort(
         np.array([[_most(size[stages == stage]) for stage in STAGES] for size in sizes]), axis=0
     )
@@ -99,16 +99,14 @@ def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFin
     The gap is that of the number that differs most, over what is usual without a cause; the
     p-values are corrected for the looks within and between stages.
     """
-    size = np.abs(_sure(table, posterior.names, posterior.scale))
+    size = np.abs(_standard_errors(table, posterior.names, posterior.scale))
     stages = np.array([stage_of(name) for name in posterior.names])
     found = {}
     for i, stage in enumerate(STAGES):
         most = _most(size[stages == stage])
         null = posterior.null[:, i]
-        beyond = int(np.count_nonzero(null >= most))
-        p_value = min(1.0, len(STAGES) * (1.0 + beyond) / (len(null) + 1.0))
         gap = most / max(float(np.median(null)), 1e-9)
-        found[stage] = (min(gap, _LARGEST_GAP), p_value)
+        found[stage] = (min(gap, _LARGEST_GAP), _p_value(most, null))
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
     whole = sum(excess.values())
     return {
@@ -134,7 +132,7 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
     inside = np.array([stage_of(name) == stage for name in names])
     if not inside.any():
         inside[:] = True
-    sizes = np.nan_to_num(np.abs(_sure(table, names, posterior.scale)))
+    sizes = np.nan_to_num(np.abs(_standard_errors(table, names, posterior.scale)))
     size = np.where(inside, sizes, -1.0)
     strongest = np.argsort(size)[::-1][:12]
     strongest = strongest[size[strongest] >= 0.5 * size[strongest[0]]]
@@ -147,7 +145,7 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
         channels=tuple(c for c in ("torque", "acceleration", "pressure", "angle") if c in channels),
         band=(low, high),
         phase=_phase(top),
-        conditions=_where(table, posterior, strongest),
+        conditions=_conditions(table, posterior, strongest),
         p_value=findings[stage].p_value,
     )
 
@@ -167,7 +165,7 @@ def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
         that whole stages have without a cause, so it is corrected for all looks.
     """
     names = posterior.names
-    size = np.abs(_sure(table, names, posterior.scale))
+    size = np.abs(_standard_errors(table, names, posterior.scale))
     places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
     for i, name in enumerate(names):
         if np.isfinite(size[i]):
@@ -178,25 +176,23 @@ def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
         largest = np.array(numbers)[np.argsort(-size[numbers])][:3]
         most = float(size[largest[0]])
         null = posterior.null[:, STAGES.index(stage)]
-        p_value = len(STAGES) * (1.0 + np.count_nonzero(null >= most)) / (len(null) + 1.0)
         place = Location(
-            stage, (channel,), band or _WHOLE_BAND, phase, _where(table, posterior, largest),
-            min(1.0, float(p_value)),
+            stage, (channel,), band or _WHOLE_BAND, phase, _conditions(table, posterior, largest),
+            _p_value(most, null),
         )  # fmt: skip
         found.append((place.p_value, -most, place))
     return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
 
 
-def _sure(
+def _standard_errors(
     table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Mean difference of each number in units of its standard error; NaN where it tells nothing."""
-    z = _deviation(table, names, scale)
-    count = np.isfinite(z).sum(axis=0)
-    sure = np.where(count > 0, np.nansum(z, axis=0) / np.sqrt(np.maximum(count, 1)), np.nan)
+    z = deviations(table, names, scale)
+    errors = np.where(np.isfinite(z).any(axis=0), standard_errors(z), np.nan)
     if any(name.startswith("contact") for name in table.names):
-        sure[[_is_overall(name) for name in names]] = np.nan
-    return np.asarray(sure)
+        errors[[_is_overall(name) for name in names]] = np.nan
+    return np.asarray(errors)
 
 
 def _is_overall(name: str) -> bool:
@@ -204,13 +200,10 @@ def _is_overall(name: str) -> bool:
     return kind in ("acceleration", "pressure") and what.startswith(_OVERALL)
 
 
-def _deviation(
-    table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    measured, nominal, scatter = aligned(table, names)
-    return np.asarray(
-        (measured - nominal) / np.sqrt(np.nan_to_num(scatter, nan=0.0) ** 2 + scale**2)
-    )
+def _p_value(size: float, null: NDArray[np.float64]) -> float:
+    """Probability of so large a difference without a cause, corrected for all stages [-]."""
+    beyond = int(np.count_nonzero(null >= size))
+    return min(1.0, len(STAGES) * (1.0 + beyond) / (len(null) + 1.0))
 
 
 def _most(sizes: NDArray[np.float64]) -> float:
@@ -241,12 +234,12 @@ def _phase(name: str) -> str:
     return next((phase for phase, heads in _PHASES.items() if what.startswith(heads)), "cycle")
 
 
-def _where(table: CaseTable, posterior: Posterior, strongest: NDArray[np.int64]) -> str:
+def _conditions(table: CaseTable, posterior: Posterior, strongest: NDArray[np.int64]) -> str:
     """In which conditions it shows, if only fast or only slow ones."""
     speed = np.array([c.speed for c in table.conditions], dtype=np.float64)
     if np.unique(speed).size < 3:
         return "all"
-    z = np.abs(_deviation(table, posterior.names, posterior.scale)[:, strongest])
+    z = np.abs(deviations(table, posterior.names, posterior.scale)[:, strongest])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         size = np.nanmean(z, axis=1)

@@ -1,31 +1,27 @@
-"""How probable each cause is: trees over the evidence, their votes made probabilities.
+"""Posterior probability of each cause: trees over the evidence, with calibrated probabilities.
 
 The causes are not exclusive, an effect may come with another; ``none``, ``parameters`` and
 ``unknown`` are. So each has boosted trees of its own, and the calibration is a logistic one on
 their logarithmic odds, the strongest other ones and those of ``none``, fitted on cases that the
-trees have not seen. The file holds arrays only and runs no code.
+trees have not seen.
 """
 
 from __future__ import annotations
 
-import json
-import zipfile
-from dataclasses import dataclass, fields
-from functools import lru_cache
-from importlib import resources
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import ParameterError
-from noise.base.atomic import atomic
-from noise.classifier.trees import Trees
+from noise.base.model_file import ModelKind, load_model, save_model
+from noise.base.trees import BoostedTrees
 from noise.diagnosis.evidence.evidence import evidence
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
+    from typing import Any
 
     from numpy.typing import NDArray
 
@@ -36,7 +32,12 @@ __all__ = ["CAUSES", "Posterior", "calibrated", "load_posterior", "odds_features
 CAUSES = (*sorted(EFFECTS), "parameters", "unknown", "none")
 """What can be the matter."""
 
-_FORMAT = 2
+_KIND = ModelKind(
+    "cause posterior", 2, "python -m noise.training.causes --out",
+    ("noise.diagnosis", "causes.npz"),
+)  # fmt: skip
+
+_ARRAYS = ("scale", "weights", "null", "columns")
 _LARGEST = 12.0
 """Of a logarithm of odds: no library is large enough to tell more."""
 
@@ -48,19 +49,20 @@ class Posterior:
     Parameters
     ----------
     names : tuple of str
-        Numbers of a recording that count.
+        Numbers of a recording that count, each in its own unit.
     scale : ndarray, shape (n_names,)
-        Scatter of each without a cause.
+        Scatter of each without a cause, [unit of the number].
     columns : ndarray of int, shape (n_columns,)
         Of the evidence that the trees look at.
-    trees : Trees
+    trees : BoostedTrees
         Their scores are logarithmic odds of each of `CAUSES`.
     weights : ndarray, shape (n_causes, 4)
-        Of the calibration: constant, own odds, strongest other, none.
+        Of the calibration: constant, own odds, strongest other, none [-].
     alarm : float
-        Probability of ``none`` below which there is something to explain.
+        Probability [-] of ``none`` below which there is something to explain.
     null : ndarray, shape (n_quantiles, n_stages)
-        Largest differences of each stage in cases without a cause, for p-values.
+        Largest differences of each stage in cases without a cause, for p-values In standard errors
+        [-].
     card : mapping
         How it was made: seed, counts, scores.
     """
@@ -68,7 +70,7 @@ class Posterior:
     names: tuple[str, ...]
     scale: NDArray[np.float64]
     columns: NDArray[np.int64]
-    trees: Trees
+    trees: BoostedTrees
     weights: NDArray[np.float64]
     alarm: float
     null: NDArray[np.float64]
@@ -81,21 +83,33 @@ class Posterior:
         return dict(zip(CAUSES, p.tolist(), strict=True))
 
     def save(self, path: str | Path) -> None:
-        """Write it into an NPZ file, whole or not at all."""
-        arrays = {field.name: getattr(self.trees, field.name) for field in fields(Trees)}
+        """Write it into an NPZ file, whole or not at all.
+
+        Raises
+        ------
+        ParameterError
+            The file cannot be written.
+        """
         header = {
-            "format": _FORMAT, "causes": CAUSES, "names": self.names, "alarm": self.alarm,
-            "card": dict(self.card),
+            "causes": CAUSES, "names": self.names, "alarm": self.alarm, "card": dict(self.card)
         }  # fmt: skip
-        with atomic(path) as temporary, temporary.open("wb") as file:
-            np.savez_compressed(
-                file, header=np.array(json.dumps(header)), scale=self.scale, weights=self.weights,
-                null=self.null, columns=self.columns, **arrays,
-            )  # fmt: skip
+        own = {name: getattr(self, name) for name in _ARRAYS}
+        save_model(path, _KIND, header, {**own, **self.trees.arrays()})
 
 
 def odds_features(odds: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return what the calibration looks at, shape (n, n_causes, 4)."""
+    """Return what the calibration looks at.
+
+    Parameters
+    ----------
+    odds : ndarray, shape (n, n_causes)
+        Natural logarithms of odds [-].
+
+    Returns
+    -------
+    ndarray, shape (n, n_causes, 4)
+        Constant, own odds, strongest other odds, odds of ``none`` [-].
+    """
     odds = np.clip(odds, -_LARGEST, _LARGEST)
     others = np.stack(
         [np.delete(odds, k, axis=1).max(axis=1) for k in range(odds.shape[1])], axis=1
@@ -106,6 +120,18 @@ def odds_features(odds: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Probabilities of logarithmic odds.
+
+    Parameters
+    ----------
+    odds : ndarray, shape (n, n_causes)
+        Natural logarithms of odds [-].
+    weights : ndarray, shape (n_causes, 4)
+        As of `Posterior` [-].
+
+    Returns
+    -------
+    ndarray, shape (n, n_causes)
+        Probabilities [-].
 
     Examples
     --------
@@ -120,37 +146,36 @@ def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArr
 def load_posterior(path: str | Path | None = None) -> Posterior:
     """Load a cause posterior, by default the one that is shipped.
 
+    Parameters
+    ----------
+    path : path-like, optional
+        NPZ file that `Posterior.save` wrote.
+
+    Returns
+    -------
+    Posterior
+
     Raises
     ------
     ParameterError
         If the file is none that `Posterior.save` wrote.
     """
-    return _shipped() if path is None else _load(Path(path))
+    return load_model(path, _KIND, _built)
 
 
-@lru_cache(maxsize=1)
-def _shipped() -> Posterior:
-    with resources.as_file(resources.files("noise.diagnosis") / "data" / "causes.npz") as path:
-        return _load(path)
-
-
-def _load(path: Path) -> Posterior:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            header = json.loads(str(file["header"]))
-            trees = Trees(**{field.name: file[field.name] for field in fields(Trees)})
-            arrays = {name: file[name] for name in ("scale", "weights", "null", "columns")}
-        trees.check()
-        if header["format"] != _FORMAT or tuple(header["causes"]) != CAUSES:
-            raise ValueError("it was made for other causes")
-        return Posterior(
-            names=tuple(header["names"]),
-            trees=trees,
-            alarm=float(header["alarm"]),
-            card=header["card"],
-            **arrays,
-        )
-    except FileNotFoundError:
-        raise ParameterError(f"cause posterior {path}: no such file") from None
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-        raise ParameterError(f"cause posterior {path}: cannot be used ({error})") from None
+def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Posterior:
+    if tuple(header["causes"]) != CAUSES:
+        raise ValueError("it was made for other causes")
+    own = {name: arrays[name] for name in _ARRAYS}
+    trees = BoostedTrees.of_arrays(arrays)
+    trees.check(own["columns"].size)
+    n = len(CAUSES)
+    if trees.base.size != n or own["weights"].shape != (n, 4):
+        raise ValueError("its arrays do not fit together")
+    return Posterior(
+        names=tuple(header["names"]),
+        trees=trees,
+        alarm=float(header["alarm"]),
+        card=header["card"],
+        **own,
+    )

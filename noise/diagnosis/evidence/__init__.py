@@ -1,1 +1,1 @@
-"""What a recording says of contact, channels and transfer paths, as named numbers."""
+"""Named numbers of contact, channels and transfer paths, and a case as one row of them."""

@@ -1,4 +1,4 @@
-"""The health of a channel in numbers: clipping, offset, hum, noise floor; and of the shaft's angle.
+"""Health of a channel in numbers: clipping, offset, hum, noise floor; and of the shaft's angle.
 
 None needs a model: a sensor that fails shows it in its own signal.
 """
@@ -11,12 +11,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from noise.diagnosis.evidence.path_summary import segments
+from features.kernels.segments import segment_spectra
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
-__all__ = ["angle_summary", "channel_summary", "hum_summary", "shaft_speed"]
+__all__ = [
+    "BAND_EDGES",
+    "USABLE",
+    "angle_summary",
+    "band_bins",
+    "channel_summary",
+    "hum_summary",
+    "segment_frequency",
+    "shaft_speed",
+]
+
+BAND_EDGES = np.array([
+    30.0, 60.0, 120.0, 180.0, 260.0, 350.0, 500.0, 700.0, 1000.0, 1400.0, 2000.0, 2800.0, 4000.0,
+    5600.0, 8000.0, 10000.0,
+])  # fmt: skip
+"""[Hz]; band 1 lies between the first two."""
+
+USABLE = 0.42
+"""Share of the sampling rate up to which a band counts [-]."""
 
 Numbers = dict[str, float]
 
@@ -36,12 +56,21 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     Parameters
     ----------
     x : ndarray, shape (n,)
+        [unit of the channel]
     rate : float
-        [Hz]
+        Sampling rate [Hz].
 
     Returns
     -------
     dict of str to float
+        [-], but ``floor_*``: logarithms of amplitudes in the channel's unit.
+
+    Examples
+    --------
+    >>> sound = np.sin(2 * np.pi * 440 * np.arange(30_000) / 30e3)
+    >>> clipped = channel_summary(np.clip(sound, -0.5, 0.5), 30e3)
+    >>> clipped["top"] > channel_summary(sound, 30e3)["top"]
+    True
     """
     top, bottom = float(x.max()), float(x.min())
     span = top - bottom + 1e-12
@@ -59,7 +88,7 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
         "dwell_bottom": _dwell(low),
         "offset": mean / spread,
     }
-    power = np.percentile(np.abs(segments(x, 1024)) ** 2, 10, axis=0)
+    power = np.percentile(np.abs(segment_spectra(x, 1024)) ** 2, 10, axis=0)
     frequency = np.fft.rfftfreq(1024, 1.0 / rate)
     for i, (first, last) in enumerate(_FLOOR_BANDS):
         inside = (frequency > first) & (frequency < last)
@@ -68,7 +97,27 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
 
 
 def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
-    """Summarise how far the mains' harmonics stand out of what lies beside them."""
+    """Summarise how far the mains' harmonics stand out of what lies beside them.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [unit of the channel]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    dict of str to float
+        Logarithms of ratios of power [-]; ``hum_level`` that of an amplitude in the channel's unit.
+
+    Examples
+    --------
+    >>> hum = 0.01 * np.sin(2 * np.pi * 50 * np.arange(30_000) / 30e3)
+    >>> found = hum_summary(hum + np.random.default_rng(0).normal(size=30_000), 30e3)
+    >>> found["hum_50"] > found["hum_60"]
+    True
+    """
     n = x.size
     power = np.abs(rfft(_detrended(x) * np.hanning(n))) ** 2
     spacing = rate / n
@@ -86,11 +135,32 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
 
 
 def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numbers:
-    """Summarise how evenly the shaft turns; `speed` is what was set [rad/s]."""
+    """Summarise how evenly the shaft turns.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        [rad], rising.
+    speed : float
+        As set [rad/s].
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    dict of str to float
+        Speeds as logarithms of their ratio to `speed` [-], ``unevenness`` that of an angle in
+        radian, ``speed_line_at`` that of a frequency in hertz.
+
+    Examples
+    --------
+    >>> time = np.arange(30_000) / 30e3
+    >>> shaking = 2.0 * time + 0.001 * np.sin(2 * np.pi * 10.0 * time)
+    >>> round(np.exp(angle_summary(shaking, 2.0, 30e3)["speed_line_at"]))
+    10
+    """
     n = angle.size
-    time = np.arange(n, dtype=np.float64) / rate
-    mean_speed = _slope(time, angle)
-    left = angle - angle.mean() - mean_speed * (time - time.mean())
+    mean_speed, left = _about_line(angle, rate)
     block = max(1, int(2.5e-3 * rate))
     means = left[: n // block * block].reshape(-1, block).mean(axis=1)
     v = np.diff(means) * rate / block / abs(speed)
@@ -112,7 +182,19 @@ def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numb
 
 
 def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Speed of the shaft from its angle, below 60 Hz [rad/s].
+    """Speed of the shaft from its angle, below 60 Hz.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        [rad]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [rad/s]
 
     Examples
     --------
@@ -122,9 +204,7 @@ def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     2.63
     """
     n = angle.size
-    time = np.arange(n, dtype=np.float64) / rate
-    mean_speed = _slope(time, angle)
-    left = angle - angle.mean() - mean_speed * (time - time.mean())
+    mean_speed, left = _about_line(angle, rate)
     # Turned about its ends, so that neither its value nor its slope jumps there.
     m = min(round(0.05 * rate), n - 1)
     before, after = 2.0 * left[0] - left[m:0:-1], 2.0 * left[-1] - left[-2 : -m - 2 : -1]
@@ -136,8 +216,16 @@ def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     return np.asarray(mean_speed + irfft(rfft(extended, length) * s * gain, length)[m : m + n])
 
 
-def _line(power: NDArray[np.float64], place: float) -> float:
-    k = round(place)
+def _about_line(angle: NDArray[np.float64], rate: float) -> tuple[float, NDArray[np.float64]]:
+    """Mean speed [rad/s], and what the angle has besides [rad]."""
+    time = np.arange(angle.size, dtype=np.float64) / rate
+    speed = _slope(time, angle)
+    return speed, angle - angle.mean() - speed * (time - time.mean())
+
+
+def _line(power: NDArray[np.float64], bin_number: float) -> float:
+    """Logarithm of the power of a line over the median of what lies beside it [-]."""
+    k = round(bin_number)
     if k + 13 > power.size:
         return 0.0
     beside = np.concatenate([power[max(k - 12, 1) : max(k - 4, 1)], power[k + 5 : k + 13]])
@@ -161,6 +249,56 @@ def _log_share(chosen: NDArray[np.bool_]) -> float:
 
 
 def _dwell(chosen: NDArray[np.bool_]) -> float:
-    """Mean samples of a stay."""
+    """Logarithm of the mean length of a stay in samples [-]."""
     stays = max(int(np.count_nonzero(chosen[1:] & ~chosen[:-1])), 1)
     return math.log(max(float(chosen.sum()), 1.0) / stays)
+
+
+def segment_frequency(rate: float) -> tuple[int, NDArray[np.float64]]:
+    """Length of the segments in which bands are resolved, and the frequency of their bins.
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    length : int
+        Samples of a segment.
+    frequency : ndarray, shape (length // 2 + 1,)
+        [Hz]
+
+    Examples
+    --------
+    >>> segment_frequency(30e3)[0], segment_frequency(48e3)[0]
+    (2048, 4096)
+    """
+    length = 2048 if rate < 40e3 else 4096
+    return length, np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
+
+
+def band_bins(rate: float) -> Iterator[tuple[int, NDArray[np.bool_]]]:
+    """Yield the number of each band that a rate reaches, from 1, and which bins lie in it.
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+
+    Yields
+    ------
+    number : int
+    inside : ndarray of bool, shape (n_bins,)
+        Of the bins of `segment_frequency`.
+
+    Examples
+    --------
+    >>> [number for number, _ in band_bins(10e3)][-1]
+    12
+    """
+    place = np.digitize(segment_frequency(rate)[1], BAND_EDGES)
+    for number in range(1, BAND_EDGES.size):
+        inside = place == number
+        if BAND_EDGES[number] < USABLE * rate and inside.any():
+            yield number, inside

@@ -1,4 +1,4 @@
-"""What the contact did, in numbers that no phase enters: stick, slips, cycles, the torque as such.
+"""Contact in numbers that no phase enters: stick, slips, cycles, the torque as such.
 
 All come from a `Reconstruction` and are relative to what the rig file says of the condition, so
 that a rig as its file describes it has much the same numbers whatever its fit and speed:
@@ -17,10 +17,9 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
 
-from noise.diagnosis.evidence.cycle_shape import cycle_shape
-from noise.diagnosis.evidence.torque_by_speed import torque_by_speed
+from features.kernels.slip_speeds import in_intervals, slip_intervals
+from noise.diagnosis.evidence.slip_summary import cycle_shape, torque_by_speed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,15 +48,27 @@ _NEAR_PEAK = 6e-4
 
 
 def slip_starts(found: Reconstruction, speed: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the samples at which the surface begins to slip, and at which it is caught again."""
+    """Find the slips of a contact.
+
+    Parameters
+    ----------
+    found : Reconstruction
+    speed : float
+        Of the shaft, as set [rad/s].
+
+    Returns
+    -------
+    starts, ends : ndarray of int, shape (n_slips,)
+        Samples of the reconstruction at which the surface begins to slip, and at which it is caught
+        again.
+    """
     wanted = abs(speed)
-    starts, ends = _slips(
+    return slip_intervals(
         found.sliding_speed,
-        max(3.0, 1.3 * wanted + 2.0),
-        0.5 * wanted + 0.8,
-        int(_APART * found.rate),
+        above=max(3.0, 1.3 * wanted + 2.0),
+        below=0.5 * wanted + 0.8,
+        apart=int(_APART * found.rate),
     )
-    return starts, ends
 
 
 def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
@@ -74,11 +85,13 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
     Returns
     -------
     dict of str to float
-        NaN, or missing, where a recording does not show it.
+        Torques over the file's critical or kinetic one and speeds over the shaft's [-], speeds
+        within a slip [rad/s]; times and rates as logarithms of seconds and 1/s. NaN, or missing,
+        where a recording does not show it.
     """
     starts, ends = slip_starts(found, speed)
     n = found.torque.size
-    near = _around(starts, ends, n, int(_AROUND * found.rate))
+    near = in_intervals(starts, ends, n, margin=int(_AROUND * found.rate))
     wanted = max(abs(speed), 0.05)
     stick = ~near & (np.abs(found.sliding_speed) < 0.7 * wanted + 1.2)
     numbers = {
@@ -90,8 +103,7 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
     }
     numbers |= _stick(found, fit, stick, wanted)
     numbers |= _sliding(found, fit, ~near & ~stick)
-    slipping = _around(starts, ends, n, 0)
-    numbers |= torque_by_speed(found, fit, slipping)
+    numbers |= torque_by_speed(found, fit, in_intervals(starts, ends, n))
     numbers |= _cycles(found, fit, starts, ends)
     numbers |= cycle_shape(found, fit, starts, ends)
     numbers |= _torque(found, fit)
@@ -233,34 +245,6 @@ def _torque(found: Reconstruction, fit: Fit) -> Numbers:
         "friction_highest": float(found.friction_torque.max()) / critical,
         "skewness": float(away @ (away * away)) / torque.size / (float(torque.std()) ** 3 + 1e-9),
     }
-
-
-@njit(cache=True)
-def _slips(v, on, off, apart):
-    starts = np.empty(v.size // 2 + 1, np.int64)
-    ends = np.empty(v.size // 2 + 1, np.int64)
-    count, inside, start = 0, False, 0
-    for i in range(v.size):
-        if not inside:
-            if v[i] > on:
-                inside, start = True, i
-        elif v[i] < off:
-            if count > 0 and start - ends[count - 1] < apart:
-                ends[count - 1] = i
-            else:
-                starts[count], ends[count] = start, i
-                count += 1
-            inside = False
-    return starts[:count], ends[:count]
-
-
-def _around(
-    starts: NDArray[np.int64], ends: NDArray[np.int64], n: int, margin: int
-) -> NDArray[np.bool_]:
-    step = np.zeros(n + 1, np.int64)
-    np.add.at(step, np.maximum(starts - margin, 0), 1)
-    np.add.at(step, np.minimum(ends + margin, n), -1)
-    return np.asarray(np.cumsum(step)[:n] > 0)
 
 
 def _mean(x: NDArray[np.float64]) -> float:

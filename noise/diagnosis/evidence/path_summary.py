@@ -1,35 +1,27 @@
-"""How a channel compares with what the torque should have made of it, in numbers.
+"""Differences of a channel from what the torque should have made of it, in numbers.
 
-The torque that was measured is sent through the way that the rig file has, so that nothing the
-contact does enters: gain, delay and coherence by band, the shape of what the channel has too much,
-when it comes, and how it decays.
+The torque that was measured is sent through the transfer function that the rig file has, so that
+nothing the contact does enters: gain, delay and coherence by band, the shape of what the channel
+has too much, when it comes, and how it decays.
 """
 
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, rfft
-from scipy.signal import get_window
+
+from features.kernels.segments import segment_spectra
+from noise.diagnosis.evidence.channel_summary import USABLE, band_bins, segment_frequency
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["BAND_EDGES", "band_names", "common_residual", "path_summary", "segments"]
+__all__ = ["common_residual", "path_summary"]
 
 Numbers = dict[str, float]
-
-BAND_EDGES = np.array([
-    30.0, 60.0, 120.0, 180.0, 260.0, 350.0, 500.0, 700.0, 1000.0, 1400.0, 2000.0, 2800.0, 4000.0,
-    5600.0, 8000.0, 10000.0,
-])  # fmt: skip
-"""[Hz]"""
-
-USABLE = 0.42
-"""Share of the sampling rate up to which a band counts."""
 
 _LEAD, _TAIL = 0.08, 0.01
 """Left out at the ends, where the structure rings from before and nothing follows [s]."""
@@ -45,28 +37,9 @@ _ECHO = (6e-4, 2e-2)
 """In which echoes are looked for, after what is direct [s]."""
 
 _SHORT = 256
-"""Samples of a short segment, in which blows are told from what lasts."""
+"""Samples of a short segment, in which impacts are told from what lasts."""
 
 _CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
-
-
-def band_names(rate: float) -> list[int]:
-    """Numbers of the bands that a rate reaches, from 1."""
-    return [i for i in range(1, BAND_EDGES.size) if BAND_EDGES[i] < USABLE * rate]
-
-
-def segments(x: NDArray[np.float64], size: int) -> NDArray[np.complex128]:
-    """Spectra of half-overlapping Hann-windowed segments, each of its own mean removed.
-
-    Returns
-    -------
-    ndarray, shape (n_segments, size // 2 + 1)
-        Their mean square is the signal's, summed over both sides.
-    """
-    hop = size // 2
-    count = (x.size - size) // hop + 1
-    cut = np.lib.stride_tricks.sliding_window_view(x, size)[::hop][:count]
-    return np.asarray(rfft((cut - cut.mean(axis=1, keepdims=True)) * _window(size), axis=1))
 
 
 def path_summary(
@@ -80,37 +53,65 @@ def path_summary(
     Parameters
     ----------
     predicted, measured : ndarray, shape (n,)
+        [unit of the channel]
     rate : float
-        [Hz]
+        Sampling rate [Hz].
     slips : ndarray, shape (n_slips,)
         Times at which the contact begins to slip [s].
 
     Returns
     -------
-    dict of str to float
-    residual : ndarray
-        Measured less predicted, without its ends.
+    numbers : dict of str to float
+        By name, those of a band with its number; ratios and coherences as logarithms [-], ``delay``
+        in microseconds, ``*_at`` as logarithms of seconds or hertz.
+    residual : ndarray, shape (n_kept,)
+        Measured less predicted, without its ends [unit of the channel].
+
+    Examples
+    --------
+    >>> sound = np.random.default_rng(0).normal(size=30_000)
+    >>> numbers, residual = path_summary(sound, 2.0 * sound, 30e3, np.empty(0))
+    >>> round(math.exp(numbers["gain"]), 3), residual.size
+    (2.0, 27300)
     """
     ends = slice(int(_LEAD * rate), predicted.size - int(_TAIL * rate))
     p, m = predicted[ends], measured[ends]
     residual = m - p
-    size = 2048 if rate < 40e3 else 4096
-    of_p, of_m = segments(p, size), segments(m, size)
-    frequency = np.asarray(np.fft.rfftfreq(size, 1.0 / rate), np.float64)
+    size, frequency = segment_frequency(rate)
+    of_p, of_m = segment_spectra(p, size), segment_spectra(m, size)
     pp, mm = (np.abs(of_p) ** 2).mean(axis=0), (np.abs(of_m) ** 2).mean(axis=0)
     pm = (np.conj(of_p) * of_m).mean(axis=0)
     left = (np.abs(of_m - of_p) ** 2).mean(axis=0)
-    numbers = _by_band(frequency, pp, mm, pm, left, rate)
+    numbers = _by_band(pp, mm, pm, left, rate)
     numbers |= _transfer(frequency, pp, mm, pm, rate)
-    numbers |= _course(p, m, residual)
-    numbers |= _blows(residual, rate, slips - ends.start / rate)
+    numbers |= _by_time(p, m, residual)
+    numbers |= _impacts(residual, rate, slips - ends.start / rate)
     return numbers, residual
 
 
 def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: float) -> Numbers:
-    """Coherence, by band, of what two channels have too much."""
+    """Coherence, by band, of what two channels have too much.
+
+    Parameters
+    ----------
+    one, other : ndarray, shape (n,)
+        Residuals as `path_summary` gives them, each in its unit.
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    dict of str to float
+        Logarithms of coherences [-].
+
+    Examples
+    --------
+    >>> one, other = np.random.default_rng(0).normal(size=(2, 30_000))
+    >>> common_residual(one, one, 30e3)["common_0"] > common_residual(one, other, 30e3)["common_0"]
+    True
+    """
     size = 2048
-    x, y = segments(one, size), segments(other, size)
+    x, y = segment_spectra(one, size), segment_spectra(other, size)
     frequency = np.asarray(np.fft.rfftfreq(size, 1.0 / rate), np.float64)
     cross = np.abs((np.conj(x) * y).mean(axis=0)) ** 2
     power = (np.abs(x) ** 2).mean(axis=0) * (np.abs(y) ** 2).mean(axis=0)
@@ -122,7 +123,6 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
 
 
 def _by_band(
-    frequency: NDArray[np.float64],
     pp: NDArray[np.float64],
     mm: NDArray[np.float64],
     pm: NDArray[np.complex128],
@@ -130,12 +130,8 @@ def _by_band(
     rate: float,
 ) -> Numbers:
     numbers: Numbers = {}
-    place = np.digitize(frequency, BAND_EDGES)
     coherent = np.abs(pm) ** 2 / (pp * mm + 1e-30) * mm
-    for i in band_names(rate):
-        inside = place == i
-        if not inside.any():
-            continue
+    for i, inside in band_bins(rate):
         a, c = float(pp[inside].sum()) + 1e-30, float(mm[inside].sum()) + 1e-30
         share = min(float(coherent[inside].sum()) / c, 0.99999)
         numbers[f"gain_{i}"] = 0.5 * math.log(c / a)
@@ -154,7 +150,7 @@ def _transfer(
     pm: NDArray[np.complex128],
     rate: float,
 ) -> Numbers:
-    """Gain, tilt, delay and decay of the way from predicted to measured."""
+    """Gain, tilt, delay and decay of the transfer function from predicted to measured."""
     inside = (frequency > _REFERENCE_BAND[0]) & (frequency < _REFERENCE_BAND[1])
     h = pm[inside] / np.maximum(pp[inside], 1e-30)
     coherence = np.abs(pm[inside]) ** 2 / (pp[inside] * mm[inside] + 1e-30)
@@ -211,9 +207,10 @@ def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
     }
 
 
-def _course(
+def _by_time(
     p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
 ) -> Numbers:
+    """Size and drift of the residual over the quarters of a recording."""
     quarter = residual.size // 4
 
     def quarters(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -230,8 +227,9 @@ def _course(
     }
 
 
-def _blows(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float64]) -> Numbers:
-    power = np.abs(segments(residual, _SHORT)) ** 2
+def _impacts(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float64]) -> Numbers:
+    """Level of the residual in short segments above and below 2.5 kHz, and after slips."""
+    power = np.abs(segment_spectra(residual, _SHORT)) ** 2
     frequency = np.fft.rfftfreq(_SHORT, 1.0 / rate)
     high = power[:, (frequency > 2500.0) & (frequency < min(12e3, USABLE * rate))].sum(axis=1)
     low = power[:, frequency < 2500.0].sum(axis=1)
@@ -260,9 +258,3 @@ def _kurtosis(x: NDArray[np.float64]) -> float:
 
 def _half_log(power: float) -> float:
     return 0.5 * math.log(power + 1e-14)
-
-
-@lru_cache(maxsize=8)
-def _window(size: int) -> NDArray[np.float64]:
-    window = get_window("hann", size)
-    return np.asarray(window / math.sqrt(float((window**2).sum())))

@@ -1,4 +1,4 @@
-"""The friction torque that no sensor sees, rebuilt from the torque that one does.
+"""Friction torque, which no sensor sees, rebuilt from the torque of the cell.
 
 The torque cell reads T = k_E (theta1 - theta2) + c (theta1' - theta2'), the elastomer's torque on
 the clamp. The clamp's angle follows from it by the clamp's own equation (Figure 4.1),
@@ -39,7 +39,7 @@ _WAY_BACK = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Reconstruction:
-    """Motion of the rig over time; all arrays have shape (n,).
+    """Motion of the rig over time.
 
     Parameters
     ----------
@@ -47,15 +47,15 @@ class Reconstruction:
         [Hz]
     start : float
         Time of the first sample within the recording [s].
-    torque, friction_torque : ndarray
+    torque, friction_torque : ndarray, shape (n,)
         In the cell, and in the contact [Nm].
-    torque_rate : ndarray
+    torque_rate : ndarray, shape (n,)
         [Nm/s]
-    shaft_speed, sliding_speed : ndarray
+    shaft_speed, sliding_speed : ndarray, shape (n,)
         [rad/s]
-    clamp_speed : ndarray
+    clamp_speed : ndarray, shape (n,)
         [rad/s]
-    by_stiffness, by_damping, by_clamp : ndarray
+    by_stiffness, by_damping, by_clamp : ndarray, shape (n,)
         By how much the sliding speed would be more were the elastomer's stiffness, all damping or
         the clamp's inertia greater, per relative change [rad/s].
     """
@@ -150,6 +150,18 @@ def reconstruct(
 
 def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     """Lead a signal back to its start along half a cosine, so that a transform sees no step.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n_closed,)
+        A quarter of a second longer, or more for a fast transform [unit of the signal].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A recording in some four hundred numbers, and a case as how they differ from the rig file's.
+"""Summary of a recording in some four hundred numbers, and of a case against its rig file.
 
 A *case* is what a user brings: recordings of one rig over several conditions, and its file. Each
 number is taken from the recording and from simulated repeats of its condition; what matters is
@@ -15,22 +15,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.kernels.segments import segment_spectra
+from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
+    band_bins,
     channel_summary,
     hum_summary,
+    segment_frequency,
     shaft_speed,
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
-from noise.diagnosis.evidence.path_summary import (
-    BAND_EDGES,
-    common_residual,
-    path_summary,
-    segments,
-)
+from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import reconstruct
-from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.paths import KnownWays, predict
+from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
@@ -41,10 +40,10 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import Effect
 
-__all__ = ["CaseTable", "NominalNumbers", "case_table", "summary", "through_same"]
+__all__ = ["CaseTable", "NominalNumbers", "case_table", "same_channels", "summary"]
 
 Numbers = dict[str, float]
 
@@ -63,7 +62,8 @@ class CaseTable:
     names : tuple of str
         Of the columns.
     measured, nominal, scatter : ndarray, shape (n_recordings, n_numbers)
-        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined.
+        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined
+        [unit of the number].
     conditions : tuple of Condition
     rate : float
         Sampling rate of the recordings [Hz].
@@ -77,7 +77,9 @@ class CaseTable:
     rate: float
 
 
-def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Numbers:
+def summary(
+    recording: Recording, rig: Rig, transfer_functions: Mapping[str, TransferFunction]
+) -> Numbers:
     """Summarise a recording against the rig that it is said to be of.
 
     Parameters
@@ -85,18 +87,15 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     recording : Recording
         With speed, interference and support stiffness in its condition.
     rig : Rig
-    found_ways : mapping of str to Way
-        As `noise.diagnosis.simulated.paths.ways` gives them.
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
 
     Returns
     -------
     dict of str to float
-        What a missing channel would tell is missing.
+        What a missing channel would tell is missing [unit of the number].
     """
-    condition, rate = recording.condition, recording.rate
-    assert condition.speed is not None
-    assert condition.interference is not None
-    assert condition.support_stiffness is not None
+    condition, rate = known_condition(recording.condition), recording.rate
     signal = {
         kind: recording.samples[row]
         for kind in ("torque", *_OUTPUTS, "angle")
@@ -125,7 +124,7 @@ def summary(recording: Recording, rig: Rig, found_ways: Mapping[str, Way]) -> Nu
     residuals = {}
     for kind in _OUTPUTS:
         if kind in signal:
-            expected = predict(torque, rate, found_ways[kind])
+            expected = predict(torque, rate, transfer_functions[kind])
             more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
             numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
     if len(residuals) == len(_OUTPUTS):
@@ -152,29 +151,22 @@ class NominalNumbers:
     _kept: dict[tuple[object, ...], tuple[Numbers, Numbers]] = field(default_factory=dict)
 
     @cached_property
-    def ways(self) -> KnownWays:
+    def transfer_functions(self) -> TransferFunctionCache:
         """The rig's, each looked up once."""
-        return KnownWays(self.rig)
+        return TransferFunctionCache(self.rig)
 
-    def like(self, recording: Recording) -> tuple[Numbers, Numbers]:
+    def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
-        c = recording.condition
-        at = _condition(recording)
-        like = (at, recording.rate, recording.samples.shape[1], recording.channel_names)
-        if like not in self._kept:
-            found_ways = self.ways.at(at[1], at[2])
-            repeats = nominal_recordings(
-                self.rig,
-                c,
-                found_ways,
-                rate=recording.rate,
-                seconds=recording.duration,
-                seeds=[self.seed + i for i in range(N_REPEATS)],
-                library=self.library,
-            )
-            heard = [through_same(repeat, recording) for repeat in repeats]
-            self._kept[like] = _moments([summary(repeat, self.rig, found_ways) for repeat in heard])
-        return self._kept[like]
+        key = (*condition_key(recording), recording.channel_names)
+        if key not in self._kept:
+            repeats = nominal_repeats(
+                recording, self.rig, self.transfer_functions,
+                [self.seed + i for i in range(N_REPEATS)], library=self.library,
+            )  # fmt: skip
+            transfer_functions = self.transfer_functions.of(recording)
+            alike = [same_channels(repeat, recording) for repeat in repeats]
+            self._kept[key] = _moments([summary(x, self.rig, transfer_functions) for x in alike])
+        return self._kept[key]
 
 
 def case_table(
@@ -204,10 +196,10 @@ def case_table(
     """
     nominal = nominal or NominalNumbers(rig, library, seed)
     rows = [
-        summary(recording, rig, nominal.ways.at(*_condition(recording)[1:]))
+        summary(recording, rig, nominal.transfer_functions.of(recording))
         for recording in recordings
     ]
-    means, spreads = zip(*(nominal.like(recording) for recording in recordings), strict=True)
+    means, spreads = zip(*(nominal.moments(recording) for recording in recordings), strict=True)
     names = tuple(sorted({name for row in (*rows, *means) for name in row}))
 
     def table(numbers: Sequence[Numbers]) -> NDArray[np.float64]:
@@ -223,13 +215,18 @@ def case_table(
     )
 
 
-def _condition(recording: Recording) -> tuple[float, float, float]:
-    c = recording.condition
-    return (c.speed or 0.0, c.interference or 0.0, c.support_stiffness or 0.0)
+def same_channels(repeat: Recording, recording: Recording) -> Recording:
+    """Return a repeat without the channels that a recording lacks.
 
+    Parameters
+    ----------
+    repeat, recording : Recording
 
-def through_same(repeat: Recording, recording: Recording) -> Recording:
-    """Return a repeat without the channels that a recording lacks."""
+    Returns
+    -------
+    Recording
+        Of the former, with the channels of kinds that the latter has.
+    """
     rows = [i for i, c in enumerate(repeat.channels) if recording.first(c.kind) is not None]
     return replace(
         repeat, samples=repeat.samples[rows], channels=tuple(repeat.channels[i] for i in rows)
@@ -237,13 +234,10 @@ def through_same(repeat: Recording, recording: Recording) -> Recording:
 
 
 def _levels(x: NDArray[np.float64], rate: float) -> Numbers:
-    size = 2048 if rate < 40e3 else 4096
-    power = (np.abs(segments(x, size)) ** 2).mean(axis=0)
-    place = np.digitize(np.fft.rfftfreq(size, 1.0 / rate), BAND_EDGES)
+    power = (np.abs(segment_spectra(x, segment_frequency(rate)[0])) ** 2).mean(axis=0)
     return {
-        f"band_{i}": 0.5 * math.log(float(power[place == i].mean()) + 1e-14)
-        for i in range(1, BAND_EDGES.size)
-        if BAND_EDGES[i] < 0.42 * rate and (place == i).any()
+        f"band_{i}": 0.5 * math.log(float(power[inside].mean()) + 1e-14)
+        for i, inside in band_bins(rate)
     }
 
 

@@ -1,4 +1,4 @@
-"""What a fit of an effect begins with: its forms, from weak to strong, and what else shapes it."""
+"""Candidates that a fit of an effect begins with: its forms, from weak to strong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much of a gap closes, and how sure that is.
+"""Share of a gap that a fit closes, with its interval.
 
 A share is that of what can be closed: a gap of one floor is none. Beside the recordings, of which
 there are few, three things make it unsure. What is left after the fit is as unsure as the floor is;
@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.diagnosis.gap.distance import closed_fraction
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scores", "closed_interval", "closed_share", "root"]
+__all__ = ["Scores", "closed_interval", "closed_share", "rms"]
 
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor."""
@@ -36,7 +38,8 @@ class Scores:
     Parameters
     ----------
     before, recalibrated, after : ndarray, shape (n,)
-        From the rig file's, from that with other parameters, from that with effects.
+        From the rig file's, from that with other parameters, from that with effects In squared
+        floors [-].
     """
 
     before: NDArray[np.float64]
@@ -44,21 +47,47 @@ class Scores:
     after: NDArray[np.float64]
 
 
-def root(squared: NDArray[np.float64]) -> float:
-    """Distance of recordings together, of their squared ones."""
+def rms(squared: NDArray[np.float64]) -> float:
+    """Root mean square distance of recordings.
+
+    Parameters
+    ----------
+    squared : ndarray, shape (n,)
+        Distances in squared floors [-].
+
+    Returns
+    -------
+    float
+        In floors [-].
+
+    Examples
+    --------
+    >>> rms(np.array([1.0, 7.0]))
+    2.0
+    """
     return float(np.sqrt(np.mean(squared)))
 
 
 def closed_share(before: NDArray[np.float64], after: NDArray[np.float64]) -> float | None:
     """Share of the closable gap; None where there is less than `CLOSABLE` to close.
 
+    Parameters
+    ----------
+    before, after : ndarray, shape (n,)
+        Distances of recordings in squared floors [-].
+
+    Returns
+    -------
+    float or None
+        [-]
+
     Examples
     --------
     >>> closed_share(np.array([9.0]), np.array([4.0])), closed_share(np.array([2.0]), np.ones(1))
     (0.5, None)
     """
-    gap, left = root(before), max(root(after), 1.0)
-    return None if gap - 1.0 < CLOSABLE else (gap - left) / (gap - 1.0)
+    gap, left = rms(before), max(rms(after), 1.0)
+    return None if gap - 1.0 < CLOSABLE else closed_fraction(gap, left)
 
 
 def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None:
@@ -84,12 +113,12 @@ def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None
     found = []
     for _ in range(_DRAWS):
         place = rng.integers(n, size=n)
-        gap = root(scores.before[place])
+        gap = rms(scores.before[place])
         if gap - 1.0 < CLOSABLE:
-            gap = root(scores.before)
-        left = root(scores.after[place]) + _FLOOR_SPREAD / np.sqrt(n) * rng.standard_normal()
-        found.append((gap - max(left, 1.0)) / (gap - 1.0))
+            gap = rms(scores.before)
+        left = rms(scores.after[place]) + _FLOOR_SPREAD / np.sqrt(n) * rng.standard_normal()
+        found.append(closed_fraction(gap, max(left, 1.0)))
     low = float(np.percentile(found, _LEVEL[0]))
-    gap = root(scores.before)
+    gap = rms(scores.before)
     lowest = 1.0 - 1.645 * _FLOOR_SPREAD / float(np.sqrt(n))
-    return min(low, 1.0), (gap - lowest) / (gap - 1.0)
+    return min(low, 1.0), closed_fraction(gap, lowest)

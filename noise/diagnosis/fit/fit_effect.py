@@ -15,8 +15,8 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.rig import LawSpec
-from noise.diagnosis.fit.bench import Bench, Model
 from noise.diagnosis.fit.candidates import drawn_candidates, plain_candidates
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.fit_parameters import (
     Fitted,
     different,
@@ -75,38 +75,44 @@ _SHARES = ("torque", "acceleration", "pressure", "angle")
 
 
 def fit_effect(
-    bench: Bench, chosen: Sequence[int], names: Sequence[str], start: Model, seed: int = 0
+    comparison: CaseComparison,
+    chosen: Sequence[int],
+    names: Sequence[str],
+    start: Model,
+    seed: int = 0,
 ) -> Fitted:
     """Fit effects together with the parameters.
 
     Parameters
     ----------
-    bench : Bench
+    comparison : CaseComparison
     chosen : sequence of int
         Recordings to fit to.
     names : sequence of str
-        Of effects in the bench's library, the strongest first.
+        Of effects in the comparison's library, the strongest first.
     start : Model
         With the parameters as they were recalibrated alone.
     seed : int
         Of what is tried.
     """
-    few = different(bench, chosen)
+    few = different(comparison, chosen)
     best = Model()
     for name in names:
-        for form in estimated_forms(bench, chosen, name):
-            bench.forms[name, form.name] = form
-        best = _added(bench, few, best, start.offsets, name, seed)
+        for form in estimated_forms(comparison, chosen, name):
+            comparison.forms[name, form.name] = form
+        best = _added(comparison, few, best, start.offsets, name, seed)
     if len(names) > 1:  # what the first had to stand for is the others' now
         for place in range(len(names)):
-            best = _refined(bench, few, best, place)
-    fitted = fit_parameters(bench, chosen, best, rounds=_ROUNDS)
-    fitted = replace(fitted, model=_settled(bench, few[:_LOOKED], fitted.model))
-    return replace(fitted, spread=(*fitted.spread, *_strength_spread(bench, few, fitted.model)))
+            best = _refined(comparison, few, best, place)
+    fitted = fit_parameters(comparison, chosen, best, rounds=_ROUNDS)
+    fitted = replace(fitted, model=_settled(comparison, few[:_LOOKED], fitted.model))
+    return replace(
+        fitted, spread=(*fitted.spread, *_strength_spread(comparison, few, fitted.model))
+    )
 
 
 def _added(
-    bench: Bench,
+    comparison: CaseComparison,
     few: Sequence[int],
     model: Model,
     offsets: tuple[float, ...],
@@ -115,36 +121,36 @@ def _added(
 ) -> Model:
     """Add the candidates of one effect; return the best model that comes of it."""
     looked = [
-        (offset_cost(bench, few[:_LOOKED], one, at_a_look=True), one)
-        for spec in _candidates(bench, bench.library[name], seed)
+        (offset_cost(comparison, few[:_LOOKED], one, single_run=True), one)
+        for spec in _candidates(comparison, comparison.library[name], seed)
         for one in [replace(model, effects=(*model.effects, spec))]
     ]
     looked.sort(key=lambda pair: pair[0])
     tried = [
-        (offset_cost(bench, few, one), one)
+        (offset_cost(comparison, few, one), one)
         for _, shown in looked[:_PROMISING]
         for one in [replace(shown, offsets=x) for x in dict.fromkeys((model.offsets, offsets))]
     ]
     tried.sort(key=lambda pair: pair[0])
-    refined = [_refined(bench, few, one, len(one.effects) - 1) for _, one in tried[:_KEPT]]
-    return min(refined, key=lambda one: offset_cost(bench, few, one))
+    refined = [_refined(comparison, few, one, len(one.effects) - 1) for _, one in tried[:_KEPT]]
+    return min(refined, key=lambda one: offset_cost(comparison, few, one))
 
 
-def _candidates(bench: Bench, effect: Effect, seed: int) -> list[LawSpec]:
+def _candidates(comparison: CaseComparison, effect: Effect, seed: int) -> list[LawSpec]:
     rng = np.random.default_rng([seed, 7])
     for form in drawn_forms(effect.name, _VARIANTS[effect.stage], seed):
-        bench.forms[effect.name, form.name] = form
-    further = [form for (name, _), form in bench.forms.items() if name == effect.name]
+        comparison.forms[effect.name, form.name] = form
+    further = [form for (name, _), form in comparison.forms.items() if name == effect.name]
     listed = list(drawn_candidates(effect, _DRAWN, rng)) or plain_candidates(effect)
     for form in further:
         listed += form.specs()
     return listed
 
 
-def _refined(bench: Bench, few: Sequence[int], model: Model, place: int) -> Model:
+def _refined(comparison: CaseComparison, few: Sequence[int], model: Model, place: int) -> Model:
     """Search about an effect's numbers."""
     spec = model.effects[place]
-    free = _free(bench, spec)
+    free = _free(comparison, spec)
 
     def model_at(x: NDArray[np.float64]) -> Model:
         values = dict(spec.parameters)
@@ -155,17 +161,17 @@ def _refined(bench: Bench, few: Sequence[int], model: Model, place: int) -> Mode
         return replace(model, effects=tuple(effects))
 
     x, _ = pattern_search(
-        lambda x: offset_cost(bench, few, model_at(x)), np.zeros(len(free)),
+        lambda x: offset_cost(comparison, few, model_at(x)), np.zeros(len(free)),
         np.full(len(free), _STEP), _SHRINK,
     )  # fmt: skip
     return model_at(x)
 
 
-def _settled(bench: Bench, few: Sequence[int], model: Model) -> Model:
+def _settled(comparison: CaseComparison, few: Sequence[int], model: Model) -> Model:
     """Settle the last effect's strength with scattered repeats, as scores are made."""
     spec = model.effects[-1]
-    name = strength_of(bench, spec)
-    limits = {n: (low, high) for n, _, low, high in _free(bench, spec)}
+    name = strength_of(comparison, spec)
+    limits = {n: (low, high) for n, _, low, high in _free(comparison, spec)}
     if name not in limits:
         return model
     tried = []
@@ -173,13 +179,15 @@ def _settled(bench: Bench, few: Sequence[int], model: Model) -> Model:
         value = float(np.clip(factor * float(spec.parameters[name]), *limits[name]))
         changed = LawSpec(spec.name, {**spec.parameters, name: value})
         tried.append(replace(model, effects=(*model.effects[:-1], changed)))
-    return min(tried, key=lambda one: float(np.sum(np.sqrt(bench.squared(one, few)))))
+    return min(tried, key=lambda one: float(np.sum(np.sqrt(comparison.squared(one, few)))))
 
 
-def _strength_spread(bench: Bench, few: Sequence[int], model: Model) -> tuple[float, ...]:
+def _strength_spread(
+    comparison: CaseComparison, few: Sequence[int], model: Model
+) -> tuple[float, ...]:
     """Return the standard deviation of the logarithm of the last effect's strength."""
     spec = model.effects[-1]
-    name = strength_of(bench, spec)
+    name = strength_of(comparison, spec)
     value = spec.parameters.get(name)
     if not isinstance(value, float) or value == 0.0:
         return ()
@@ -187,25 +195,27 @@ def _strength_spread(bench: Bench, few: Sequence[int], model: Model) -> tuple[fl
     def cost(x: NDArray[np.float64]) -> float:
         changed = LawSpec(spec.name, {**spec.parameters, name: value * math.exp(float(x[0]))})
         try:
-            return offset_cost(bench, few, replace(model, effects=(*model.effects[:-1], changed)))
+            return offset_cost(
+                comparison, few, replace(model, effects=(*model.effects[:-1], changed))
+            )
         except ParameterError:
             return math.inf
 
     return spreads(cost, np.zeros(1), np.full(1, _LOOK), _LEAST_SURE)
 
 
-def strength_of(bench: Bench, spec: LawSpec) -> str:
+def strength_of(comparison: CaseComparison, spec: LawSpec) -> str:
     """Name of the number that switches an effect off, in the form that it has."""
-    form = bench.forms.get((spec.name, str(spec.parameters.get("form"))))
+    form = comparison.forms.get((spec.name, str(spec.parameters.get("form"))))
     if form is not None:
         return "strength" if "strength" in form.start else "amount"
-    return bench.library[spec.name].strength
+    return comparison.library[spec.name].strength
 
 
-def _free(bench: Bench, spec: LawSpec) -> list[tuple[str, float, float, float]]:
+def _free(comparison: CaseComparison, spec: LawSpec) -> list[tuple[str, float, float, float]]:
     """Numbers that are fitted: name, value, and how far each may go."""
-    form = bench.forms.get((spec.name, str(spec.parameters.get("form"))))
-    effect = bench.library[spec.name]
+    form = comparison.forms.get((spec.name, str(spec.parameters.get("form"))))
+    effect = comparison.library[spec.name]
     found = []
     for name, value in spec.parameters.items():
         if isinstance(value, str) or value == 0.0 or name in _SHARES:

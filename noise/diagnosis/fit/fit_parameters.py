@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.diagnosis.cases.rigs import OFFSETS
-from noise.diagnosis.fit.bench import Bench, Model
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.pattern_search import pattern_search
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class Fitted:
     ----------
     model : Model
     cost : float
-        Mean distance of the recordings, and the prior.
+        Mean distance of the recordings, and the prior, in floors [-].
     spread : tuple of float
         Standard deviation of the logarithm of each offset, and then of the effect's strength.
     """
@@ -89,34 +89,38 @@ def split(conditions: Sequence[Condition]) -> tuple[list[int], list[int]]:
     return fitted, held
 
 
-def different(bench: Bench, chosen: Sequence[int], most: int = _MOST) -> list[int]:
+def different(comparison: CaseComparison, chosen: Sequence[int], most: int = _MOST) -> list[int]:
     """Choose recordings for a fit: one a condition, as repeats tell it nothing new."""
     first: dict[Condition, int] = {}
     for i in chosen:
-        first.setdefault(bench.recordings[i].condition, i)
+        first.setdefault(comparison.recordings[i].condition, i)
     listed = list(first.values())
     places = np.linspace(0, len(listed) - 1, min(most, len(listed))).round().astype(int)
     return [listed[k] for k in places.tolist()]
 
 
 def offset_cost(
-    bench: Bench, few: Sequence[int], model: Model, *, at_a_look: bool = False
+    comparison: CaseComparison, few: Sequence[int], model: Model, *, single_run: bool = False
 ) -> float:
-    """Mean distance of recordings from a model, and what its offsets cost."""
+    """Mean distance of recordings from a model in floors [-], and what its offsets cost."""
     held = _HOLD * float(np.sum((np.array(model.offsets) / PRIOR) ** 2)) / len(few)
     if any(spec.name in _BY_NUMBERS for spec in model.effects):
-        held += _NUMBERS * float(np.mean(bench.residuals(model, few) ** 2))
-    return float(np.mean(bench.misfits(model, few, at_a_look=at_a_look))) + held
+        held += _NUMBERS * float(np.mean(comparison.residuals(model, few) ** 2))
+    return float(np.mean(comparison.misfits(model, few, single_run=single_run))) + held
 
 
 def fit_parameters(
-    bench: Bench, chosen: Sequence[int], start: Model | None = None, *, rounds: int = len(_SHRINK)
+    comparison: CaseComparison,
+    chosen: Sequence[int],
+    start: Model | None = None,
+    *,
+    rounds: int = len(_SHRINK),
 ) -> Fitted:
     """Recalibrate the rig's parameters, whatever effects a model has.
 
     Parameters
     ----------
-    bench : Bench
+    comparison : CaseComparison
     chosen : sequence of int
         Recordings to fit to.
     start : Model, optional
@@ -124,10 +128,10 @@ def fit_parameters(
     rounds : int
         Of the search, the last of which have the smallest steps.
     """
-    begin, few = start or Model(), different(bench, chosen)
+    begin, few = start or Model(), different(comparison, chosen)
 
     def cost(x: NDArray[np.float64]) -> float:
-        return offset_cost(bench, few, replace(begin, offsets=tuple(x.tolist())))
+        return offset_cost(comparison, few, replace(begin, offsets=tuple(x.tolist())))
 
     steps = np.full(len(OFFSETS), _STEP)
     x, best = pattern_search(cost, np.array(begin.offsets), steps, _SHRINK[-rounds:])
@@ -148,11 +152,12 @@ def spreads(
     ----------
     cost : callable
     x : ndarray, shape (n,)
-        Where it is least.
+        Where it is least [any unit].
     look : ndarray, shape (n,)
-        So far off it is looked at; it is taken to rise as the square from there inwards.
+        So far off it is looked at; it is taken to rise as the square from there inwards In the
+        unit of `x` [any unit].
     most : float
-        Where it does not rise.
+        Standard deviation where it does not rise [unit of `x`].
 
     Examples
     --------

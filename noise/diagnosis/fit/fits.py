@@ -14,13 +14,13 @@ import numpy as np
 
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.causes.location import locate
-from noise.diagnosis.evidence.contact_course import contact_courses
-from noise.diagnosis.fit.bench import Bench, Model
-from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, root
+from noise.diagnosis.evidence.friction_curves import friction_curves
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit_effect import fit_effect, strength_of
 from noise.diagnosis.fit.fit_parameters import Fitted, fit_parameters, split
-from noise.diagnosis.fit.heard import heard_of
-from noise.diagnosis.fit.own import with_own
+from noise.diagnosis.fit.labels_and_levels import labels_and_levels
+from noise.diagnosis.fit.user_effects import prefer_user_effects
 from noise.diagnosis.outcome import EffectFinding, Illustration
 from sim.effects import EFFECTS
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis
     from sim.effects.effect import Effect
 
-__all__ = ["fitted_causes", "with_fits"]
+__all__ = ["add_fits", "fitted_causes"]
 
 _FITTED = 3
 """Candidates that are fitted."""
@@ -47,7 +47,7 @@ _SHOWN = 3
 _SURE = 1.645
 
 
-def with_fits(
+def add_fits(
     case: Case,
     diagnosis: Diagnosis,
     table: CaseTable,
@@ -73,44 +73,46 @@ def with_fits(
     tell : callable
         Told what is being done.
     """
-    bench = Bench(case.rig, case.recordings, library, table, posterior.names, posterior.scale)
+    comparison = CaseComparison(
+        case.rig, case.recordings, library, table, posterior.names, posterior.scale
+    )
     fitted_to, held = split([recording.condition for recording in case.recordings])
     diagnosis = replace(diagnosis, held_out=tuple(case.names[i] for i in held))
-    own = [name for name in library if name not in EFFECTS and name not in known]
-    if not diagnosis.verdict and not own:
-        return replace(diagnosis, illustrations=_illustrations(case, bench, held, None))
+    user_effects = [name for name in library if name not in EFFECTS and name not in known]
+    if not diagnosis.verdict and not user_effects:
+        return replace(diagnosis, illustrations=_illustrations(case, comparison, held, None))
     tell("recalibrating the parameters")
-    alone = fit_parameters(bench, fitted_to)
+    alone = fit_parameters(comparison, fitted_to)
     named = [name for name in diagnosis.verdict if name in library]
     groups = [named] if len(named) > 1 else []
-    single = [*_candidates(diagnosis), *own] if diagnosis.verdict else own
+    single = [*_candidates(diagnosis), *user_effects] if diagnosis.verdict else user_effects
     groups += [[name] for name in single if name not in named or len(named) == 1]
-    fits = fitted_causes(bench, fitted_to, held, groups, alone, seed, tell)
+    fits = fitted_causes(comparison, fitted_to, held, groups, alone, seed, tell)
     findings = {
-        name: _finding(name, bench, diagnosis.probabilities, fitted, scores, seed)
+        name: _finding(name, comparison, diagnosis.probabilities, fitted, scores, seed)
         for name, (fitted, scores) in fits.items()
     }
     was = diagnosis.verdict
-    diagnosis = with_own(diagnosis, findings, own)
+    diagnosis = prefer_user_effects(diagnosis, findings, user_effects)
     if diagnosis.verdict != was:
         stage = library[diagnosis.verdict[0]].stage.value
         diagnosis = replace(diagnosis, location=locate(table, posterior, stage))
     if not diagnosis.verdict:
-        return replace(diagnosis, illustrations=_illustrations(case, bench, held, None))
+        return replace(diagnosis, illustrations=_illustrations(case, comparison, held, None))
     effects = [
         replace(
             findings.get(effect.name, effect),
             probability=diagnosis.probabilities.get(effect.name, 0.0),
         )
-        for effect in (*diagnosis.effects, *(findings[name] for name in own))
+        for effect in (*diagnosis.effects, *(findings[name] for name in user_effects))
     ]
     best = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else alone
-    heard = tuple(
-        heard_of(
+    listened = tuple(
+        labels_and_levels(
             case.names[i],
             case.recordings[i],
-            bench.simulated(Model(), case.recordings[i], 7),
-            bench.simulated(best.model, case.recordings[i], 7),
+            comparison.simulated(Model(), case.recordings[i], 7),
+            comparison.simulated(best.model, case.recordings[i], 7),
         )
         for i in held[:_SHOWN]
     )
@@ -118,13 +120,13 @@ def with_fits(
         diagnosis,
         effects=tuple(sorted(effects, key=lambda effect: -effect.probability)),
         parameters=_intervals(best),
-        heard=heard,
-        illustrations=_illustrations(case, bench, held, best.model),
+        labels_and_levels=listened,
+        illustrations=_illustrations(case, comparison, held, best.model),
     )
 
 
 def fitted_causes(
-    bench: Bench,
+    comparison: CaseComparison,
     fitted_to: Sequence[int],
     held: Sequence[int],
     groups: Sequence[Sequence[str]],
@@ -136,7 +138,7 @@ def fitted_causes(
 
     Parameters
     ----------
-    bench : Bench
+    comparison : CaseComparison
     fitted_to, held : sequence of int
         Recordings, as `noise.diagnosis.fit.fit_parameters.split` divides them.
     groups : sequence of sequence of str
@@ -152,13 +154,13 @@ def fitted_causes(
     dict of str to (Fitted, Scores)
         By the name of the effect; those of one group share their fit.
     """
-    before, recalibrated = bench.squared(Model(), held), bench.squared(alone.model, held)
+    before, recalibrated = comparison.squared(Model(), held), comparison.squared(alone.model, held)
     found: dict[str, tuple[Fitted, Scores]] = {}
     for names in groups:
         if tell is not None:
             tell(f"fitting {' and '.join(names)}")
-        fitted = fit_effect(bench, fitted_to, names, alone.model, seed)
-        scores = Scores(before, recalibrated, bench.squared(fitted.model, held))
+        fitted = fit_effect(comparison, fitted_to, names, alone.model, seed)
+        scores = Scores(before, recalibrated, comparison.squared(fitted.model, held))
         found |= dict.fromkeys(names, (fitted, scores))
     return found
 
@@ -171,7 +173,7 @@ def _candidates(diagnosis: Diagnosis) -> list[str]:
 
 def _finding(
     name: str,
-    bench: Bench,
+    comparison: CaseComparison,
     probabilities: Mapping[str, float],
     fitted: Fitted,
     scores: Scores,
@@ -181,13 +183,13 @@ def _finding(
     interval = closed_interval(scores, seed)
     return EffectFinding(
         name=name,
-        stage=bench.library[name].stage.value,
+        stage=comparison.library[name].stage.value,
         probability=probabilities.get(name, 0.0),
         parameters=spec.parameters,
-        strength=_strength(fitted, bench) if spec is fitted.model.effects[-1] else None,
-        gap_before=root(scores.before),
-        gap_recalibrated=root(scores.recalibrated),
-        gap_after=root(scores.after),
+        strength=_strength(fitted, comparison) if spec is fitted.model.effects[-1] else None,
+        gap_before=rms(scores.before),
+        gap_recalibrated=rms(scores.recalibrated),
+        gap_after=rms(scores.after),
         gap_floor=1.0,
         closed=closed_share(scores.before, scores.after),
         closed_low=None if interval is None else interval[0],
@@ -196,10 +198,10 @@ def _finding(
     )
 
 
-def _strength(fitted: Fitted, bench: Bench) -> tuple[float, float] | None:
+def _strength(fitted: Fitted, comparison: CaseComparison) -> tuple[float, float] | None:
     """Interval of the last effect's strength, of whose logarithm the fit gives an error."""
     n, spec = len(fitted.model.offsets), fitted.model.effects[-1]
-    value = spec.parameters.get(strength_of(bench, spec))
+    value = spec.parameters.get(strength_of(comparison, spec))
     if not isinstance(value, float) or len(fitted.spread) <= n:
         return None
     factor = float(np.exp(_SURE * fitted.spread[n]))
@@ -215,20 +217,22 @@ def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
 
 
 def _illustrations(
-    case: Case, bench: Bench, held: Sequence[int], after: Model | None
+    case: Case, comparison: CaseComparison, held: Sequence[int], after: Model | None
 ) -> tuple[Illustration, ...]:
-    return tuple(_illustration(case, bench, i, after) for i in held[:2])
+    return tuple(_illustration(case, comparison, i, after) for i in held[:2])
 
 
-def _illustration(case: Case, bench: Bench, i: int, after: Model | None) -> Illustration:
+def _illustration(
+    case: Case, comparison: CaseComparison, i: int, after: Model | None
+) -> Illustration:
     shown = {
         "measured": case.recordings[i],
-        "before": bench.simulated(Model(), case.recordings[i], 7),
+        "before": comparison.simulated(Model(), case.recordings[i], 7),
     }
     if after is not None:
-        shown["after"] = bench.simulated(after, case.recordings[i], 7)
-    courses = {name: contact_courses(recording, case.rig) for name, recording in shown.items()}
-    contacts = {name: course for name, course in courses.items() if course is not None}
+        shown["after"] = comparison.simulated(after, case.recordings[i], 7)
+    found = {name: friction_curves(recording, case.rig) for name, recording in shown.items()}
+    contacts = {name: curves for name, curves in found.items() if curves is not None}
     return Illustration(
         case.names[i], shown["measured"], shown["before"], shown.get("after"), contacts
     )

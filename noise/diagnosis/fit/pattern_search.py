@@ -35,16 +35,16 @@ def pattern_search(
     cost : callable
         Of an ndarray as `start`; may be infinite.
     start, steps : ndarray, shape (n,)
-        Steps of 0 leave a number as it is.
+        Steps of 0 leave a number as it is [any unit].
     shrink : sequence of float
         Factors on the steps, one a round.
 
     Returns
     -------
     ndarray, shape (n,)
-        The best that was tried.
+        The best that was tried [unit of `start`].
     float
-        Its cost.
+        Its cost [unit of the cost].
 
     Examples
     --------
@@ -57,14 +57,14 @@ def pattern_search(
     for factor in shrink:
         for i in np.flatnonzero(steps):
             for sign in (1.0, -1.0):
-                moved = False
+                improved = False
                 for _ in range(_FARTHEST):
                     candidate = x.copy()
                     candidate[i] += sign * factor * steps[i]
                     tried = cost(candidate)
                     if tried >= best:
                         break
-                    x, best, moved = candidate, tried, True
-                if moved:
+                    x, best, improved = candidate, tried, True
+                if improved:
                     break
     return x, best

@@ -1,4 +1,4 @@
-"""How far a recording lies from repeats, in units of what repeats differ by.
+"""Distance of a recording from repeats, in units of what repeats differ by.
 
 Each value of a signature is compared with its mean over the repeats and divided by its standard
 deviation; a group's share is the mean over its values, and all groups weigh alike. Large
@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -29,8 +29,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "LEAST_SCALE", "Gap", "Reference", "gap_of", "group_costs", "reference", "scattered_enough",
-]  # fmt: skip
+    "LEAST_SCALE",
+    "Gap",
+    "Reference",
+    "closed_fraction",
+    "gap_of",
+    "group_costs",
+    "reference",
+    "with_least_scatter",
+]
+
+_Distance = TypeVar("_Distance", float, "NDArray[np.float64]")
 
 _BEND = 3.0
 """Deviations beyond so many standard deviations count linearly."""
@@ -56,11 +65,11 @@ class Reference:
     Parameters
     ----------
     mean, scale : ndarray, shape (n_values,)
-        Of their signatures.
+        Of their signatures [Np], or [-] of the cycle.
     null : ndarray, shape (n_repeats,)
-        Squared distance of each repeat from the others.
+        Squared distance of each repeat from the others [-].
     repeats : ndarray, shape (n_repeats, n_values)
-        Their signatures, as they are exchanged.
+        Their signatures, as they are exchanged [Np], or [-] of the cycle.
     """
 
     mean: NDArray[np.float64]
@@ -69,15 +78,48 @@ class Reference:
     repeats: NDArray[np.float64]
 
     def deviation(self, signature: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How many standard deviations each value lies from the mean."""
+        """How many standard deviations each value lies from the mean.
+
+        Parameters
+        ----------
+        signature : ndarray, shape (n_values,)
+            As of `noise.diagnosis.gap.signature.signature`.
+
+        Returns
+        -------
+        ndarray, shape (n_values,)
+            [-]
+        """
         return np.asarray((signature - self.mean) / self.scale)
 
     def squared(self, signature: NDArray[np.float64]) -> float:
-        """Squared distance of a signature, 1 on average for a repeat."""
+        """Squared distance of a signature, 1 on average for a repeat.
+
+        Parameters
+        ----------
+        signature : ndarray, shape (n_values,)
+            As of `noise.diagnosis.gap.signature.signature`.
+
+        Returns
+        -------
+        float
+            In squared floors [-].
+        """
         return self.squared_of(self.deviation(signature))
 
     def squared_of(self, deviation: NDArray[np.float64]) -> float:
-        """Squared distance of deviations, 1 on average for those of a repeat."""
+        """Squared distance of deviations, 1 on average for those of a repeat.
+
+        Parameters
+        ----------
+        deviation : ndarray, shape (n_values,)
+            In standard deviations [-].
+
+        Returns
+        -------
+        float
+            In squared floors [-].
+        """
         # one repeat in a hundred falls into another regime, and must not set the unit
         usual = np.minimum(self.null, _UNUSUAL * np.median(self.null))
         return _squared(deviation) / float(np.mean(usual))
@@ -90,13 +132,13 @@ class Gap:
     Parameters
     ----------
     distance : float
-        In units of the floor.
+        In units of the floor [-].
     p_value : float
         Probability of so large a gap between repeats.
     of_recordings : ndarray, shape (n_recordings,)
-        Distance of each recording.
+        Distance of each recording, in floors [-].
     widened : float
-        By how much the floor is larger than the repeats alone had it.
+        By how much the floor is larger than the repeats alone had it [-].
     """
 
     distance: float
@@ -112,8 +154,8 @@ def reference(
 
     Parameters
     ----------
-    signatures : sequence of ndarray
-        One a repeat.
+    signatures : sequence of ndarray, shape (n_values,)
+        One a repeat As of `noise.diagnosis.gap.signature.signature`.
     least : float
         Relative scatter of whole spectra that is known to be there whatever these repeats say; 0
         where they scatter as they should. It is for p-values: in a distance, 3 % is the least.
@@ -128,8 +170,8 @@ def reference(
     >>> repeats.null.shape, 0.5 < repeats.squared(rng.normal(size=len(NAMES))) < 2.0
     ((8,), True)
     """
-    exchanged = scattered_enough(np.array(signatures), least, seed)
-    s = scattered_enough(np.array(signatures), LEAST_SCALE, seed)
+    exchanged = with_least_scatter(np.array(signatures), least, seed)
+    s = with_least_scatter(np.array(signatures), LEAST_SCALE, seed)
     null = np.empty(len(s))
     for i in range(len(s)):
         mean, scale = _moments(np.delete(s, i, axis=0))
@@ -149,8 +191,8 @@ def gap_of(
 
     Parameters
     ----------
-    signatures : sequence of ndarray
-        One a recording.
+    signatures : sequence of ndarray, shape (n_values,)
+        One a recording As of `noise.diagnosis.gap.signature.signature`.
     references : sequence of Reference
         One a recording; recordings of one condition share one.
     seed, n_draws : int
@@ -182,7 +224,7 @@ def gap_of(
     return Gap(float(np.sqrt(np.mean(squared))), p_value, np.sqrt(squared))
 
 
-def scattered_enough(
+def with_least_scatter(
     signatures: NDArray[np.float64], least: float = LEAST_SCALE, seed: int = 0
 ) -> NDArray[np.float64]:
     """Shift whole spectra of repeats so that none scatters by less than repeats always do.
@@ -190,6 +232,7 @@ def scattered_enough(
     Parameters
     ----------
     signatures : ndarray, shape (n_repeats, n_values)
+        As of `noise.diagnosis.gap.signature.signature`.
     least : float
         Relative standard deviation.
     seed : int
@@ -197,11 +240,12 @@ def scattered_enough(
     Returns
     -------
     ndarray, shape (n_repeats, n_values)
+        As `signatures`.
 
     Examples
     --------
     >>> same = np.zeros((40, len(_GROUP_OF)))
-    >>> 0.02 < float(scattered_enough(same)[:, 0].std()) < 0.04
+    >>> 0.02 < float(with_least_scatter(same)[:, 0].std()) < 0.04
     True
     """
     rng = np.random.default_rng(seed)
@@ -217,6 +261,16 @@ def scattered_enough(
 
 def group_costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     """Mean square of the deviations in each of `GROUPS`, large ones bent; NaN where unknown.
+
+    Parameters
+    ----------
+    deviation : ndarray, shape (n_values,)
+        In standard deviations [-].
+
+    Returns
+    -------
+    ndarray, shape (n_groups,)
+        [-]
 
     Examples
     --------
@@ -271,6 +325,24 @@ def _moments(s: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.fl
 
 def _squared(deviation: NDArray[np.float64]) -> float:
     return float(np.nanmean(group_costs(deviation)))
+
+
+def closed_fraction(
+    before: _Distance, after: _Distance, floor: _Distance | float = 1.0
+) -> _Distance:
+    """Share of what lies above the floor that is closed; negative where the gap grew [-].
+
+    Parameters
+    ----------
+    before, after, floor : float or ndarray, shape (n,)
+        Gaps without and with a change, and that of repeats, all in floors [-].
+
+    Examples
+    --------
+    >>> closed_fraction(3.0, 1.5)
+    0.75
+    """
+    return (before - after) / (before - floor)
 
 
 _GROUP_OF = group_of()

@@ -15,17 +15,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.gap.blocks import block_signatures
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
     gap_of,
     group_costs,
     reference,
-    scattered_enough,
+    with_least_scatter,
 )
-from noise.diagnosis.gap.signature import GROUPS, group_of, signature
-from noise.diagnosis.simulated.nominal import nominal_recordings
-from noise.diagnosis.simulated.paths import KnownWays
+from noise.diagnosis.gap.signature import GROUPS, block_signatures, group_of, signature
+from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,10 +34,10 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
     from noise.diagnosis.gap.distance import Gap, Reference
-    from noise.diagnosis.gap.scatter import Scatter
+    from noise.diagnosis.simulated.repeats import Scatter
     from sim.effects.effect import Effect
 
-__all__ = ["case_gap", "condition_key", "references_of", "repeat_gap", "widening"]
+__all__ = ["case_gap", "floor_widening", "references_of", "repeat_gap"]
 
 N_REPEATS = 12
 """Simulated repeats a condition."""
@@ -91,15 +90,12 @@ def case_gap(
     True
     """
     simulated: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
-    known_ways = KnownWays(rig)
+    transfer_functions = TransferFunctionCache(rig)
     for recording in recordings:
-        key, c = condition_key(recording), recording.condition
+        key = condition_key(recording)
         if key not in simulated:
-            found = known_ways.at(key[1], key[2])
-            runs = nominal_recordings(
-                rig, c, found, rate=recording.rate, seconds=recording.duration,
-                seeds=_seeds(seed, len(simulated), n_repeats), scatter=scatter, library=library,
-            )  # fmt: skip
+            seeds = _seeds(seed, len(simulated), n_repeats)
+            runs = nominal_repeats(recording, rig, transfer_functions, seeds, scatter, library)
             simulated[key] = [signature(run) for run in runs]
     return repeat_gap(recordings, simulated, least=0.0, seed=seed)
 
@@ -117,8 +113,9 @@ def repeat_gap(
     ----------
     recordings : sequence of Recording
     repeats : mapping of (float, float, float, float, float) to sequence of ndarray
-        Signatures of at least three repeats, by speed [rad/s], interference [m], support stiffness
-        [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives them.
+        Signatures, shape (n_values,), of at least three repeats, by speed [rad/s], interference
+        [m], support stiffness [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives
+        them.
     least : float
         As in `noise.diagnosis.gap.distance.reference`.
     seed : int
@@ -145,8 +142,8 @@ def references_of(
     Parameters
     ----------
     recordings : sequence of Recording
-    signatures : sequence of ndarray
-        Of the recordings.
+    signatures : sequence of ndarray, shape (n_values,)
+        Of the recordings As of `noise.diagnosis.gap.signature.signature`.
     repeats, least, seed
         As of `repeat_gap`.
 
@@ -155,17 +152,17 @@ def references_of(
     references : list of Reference
         One a recording; recordings of one condition share one.
     widened : float
-        By how much the floor is wider than the repeats alone have it.
+        By how much the floor is wider than the repeats alone have it [-].
     """
     own: dict[tuple[float, ...], list[NDArray[np.float64]]] = {}
     for recording, values in zip(recordings, signatures, strict=True):
         own.setdefault(condition_key(recording), []).append(values)
     pairs = [(own[key], repeats[key]) for key in own if len(own[key]) > 1]
     if pairs:
-        wider = widening(pairs)
+        wider = floor_widening(pairs)
     else:
         first = {condition_key(r): r for r in reversed(recordings)}
-        wider = _widening_of_blocks([(r, repeats[key]) for key, r in first.items()])
+        wider = _block_widening([(r, repeats[key]) for key, r in first.items()])
     each = wider[_GROUP_OF]
     references = {}
     for key in own:
@@ -175,7 +172,7 @@ def references_of(
     return [references[condition_key(r)] for r in recordings], float(np.sqrt(np.mean(wider**2)))
 
 
-def widening(
+def floor_widening(
     repeated: Sequence[tuple[Sequence[NDArray[np.float64]], Sequence[NDArray[np.float64]]]],
 ) -> NDArray[np.float64]:
     """By how much the floor is wider than simulated repeats have it.
@@ -183,8 +180,8 @@ def widening(
     Parameters
     ----------
     repeated : sequence of (sequence of ndarray, sequence of ndarray)
-        For each condition, signatures of its recordings, at least two, and of its simulated
-        repeats, at least four.
+        For each condition, signatures, shape (n_values,), of its recordings, at least two, and of
+        its simulated repeats, at least four; as of `repeat_gap`.
 
     Returns
     -------
@@ -193,20 +190,20 @@ def widening(
         repeats differ by no more than simulated ones do 99 times out of 100.
     """
     rng = np.random.default_rng(0)
-    sets = [_sets(np.array(own), scattered_enough(np.array(s)), rng) for own, s in repeated]
+    sets = [_sets(np.array(own), with_least_scatter(np.array(s)), rng) for own, s in repeated]
     return _beyond(np.array([one[0] for one in sets]), np.array([one[1:] for one in sets]))
 
 
-def _widening_of_blocks(
+def _block_widening(
     alone: Sequence[tuple[Recording, Sequence[NDArray[np.float64]]]],
 ) -> NDArray[np.float64]:
-    """As `widening`, were the recordings as unsteady from run to run as from block to block."""
+    """As `floor_widening`, were runs as unsteady as the blocks of a recording are."""
     recorded, simulated = [], []
     for recording, others in alone:
         blocks = block_signatures(recording)
         if blocks is None:
             continue
-        s = scattered_enough(np.array(others))
+        s = with_least_scatter(np.array(others))
         spread = np.sqrt(s.var(axis=0, ddof=1) + LEAST_SCALE**2)
         error = np.sqrt(blocks.var(axis=0, ddof=1) / len(blocks))
         recorded.append(group_costs(error / spread))
@@ -252,25 +249,6 @@ def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     known = np.isfinite(rows)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(known, rows, 0.0).sum(axis=0) / known.sum(axis=0))
-
-
-def condition_key(recording: Recording) -> tuple[float, ...]:
-    """Return what recordings that can be repeats of each other have in common.
-
-    Parameters
-    ----------
-    recording : Recording
-
-    Returns
-    -------
-    tuple of float
-        Speed, interference, support stiffness, sampling rate and length.
-    """
-    c = recording.condition
-    assert c.speed is not None
-    assert c.interference is not None
-    assert c.support_stiffness is not None
-    return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
 
 
 def _seeds(seed: int, place: int, n: int) -> list[int]:

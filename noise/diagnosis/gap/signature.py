@@ -1,4 +1,4 @@
-"""What two recordings of one condition have in common, whatever their phases do.
+"""Signature of a recording: what it shares with others of its condition, whatever the phases.
 
 Stick-slip is chaotic: two runs of one rig agree in no waveform, but in what they are made of.
 A signature is the levels of each channel in sixth octaves and the statistics of the torque's
@@ -8,6 +8,7 @@ slips; the distance between two is what `noise.diagnosis.gap.distance` makes of 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +24,15 @@ if TYPE_CHECKING:
     from models.recording import Recording
 
 __all__ = [
-    "GROUPS", "KINDS", "NAMES", "channel_signature", "group_of", "joined_signature", "signature",
-]  # fmt: skip
+    "GROUPS",
+    "KINDS",
+    "NAMES",
+    "block_signatures",
+    "channel_signature",
+    "group_of",
+    "joined_signature",
+    "signature",
+]
 
 KINDS = ("torque", "acceleration", "pressure")
 """Kinds of channel that have a signature; of each the first channel counts."""
@@ -111,6 +119,7 @@ def channel_signature(signal: NDArray[np.float64], rate: float, kind: str) -> ND
     Parameters
     ----------
     signal : ndarray, shape (n,)
+        [unit of the channel]
     rate : float
         [Hz]
     kind : str
@@ -118,7 +127,8 @@ def channel_signature(signal: NDArray[np.float64], rate: float, kind: str) -> ND
 
     Returns
     -------
-    ndarray
+    ndarray, shape (n,)
+        Levels [Np], and of a torque ratios of its cycle [-].
     """
     levels = _levels(signal, rate, kind)
     return np.concatenate([levels, _cycle(signal, rate)]) if kind == "torque" else levels
@@ -162,4 +172,33 @@ def _cycle(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     return np.array([
         math.log(scale), spread / scale, float(slow.std()) / scale, skewness,
         float(high) / scale, float(low) / scale, fall / scale,
+    ])  # fmt: skip
+
+
+_BLOCK = 0.25
+"""Shortest block of a recording that has a signature of its own [s]."""
+
+_MOST_BLOCKS = 16
+_FEWEST_BLOCKS = 3
+
+
+def block_signatures(recording: Recording) -> NDArray[np.float64] | None:
+    """Describe each block of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    ndarray, shape (n_blocks, n_values), or None
+        None where the recording is too short for three As of `signature`.
+    """
+    count = min(int(recording.duration / _BLOCK + 1e-6), _MOST_BLOCKS)
+    if count < _FEWEST_BLOCKS:
+        return None
+    n = recording.samples.shape[1] // count
+    return np.array([
+        signature(replace(recording, samples=recording.samples[:, i * n : (i + 1) * n]))
+        for i in range(count)
     ])  # fmt: skip

@@ -9,38 +9,39 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeVar
+from functools import partial
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
+from models.condition import known_condition
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
-from noise.diagnosis.gap.floor import condition_key
-from noise.diagnosis.gap.scatter import Scatter, scattered
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
-from noise.diagnosis.simulated.chain_run import (
+from noise.diagnosis.simulated.nominal import condition_key
+from noise.diagnosis.simulated.repeats import Scatter, perturb_run, plan_repeat, record
+from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
     chain_of,
-    fine_rate,
-    heard,
-    moving,
-    read_by_sensors,
-    recorded,
-    sampled_at,
+    shift_clamp_mode,
 )
-from noise.diagnosis.simulated.paths import KnownWays, moved
+from sim.acquisition import decimate
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
+from sim.pipeline import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
+from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.recording import Recording
     from models.rig import LawSpec, Rig
     from noise.diagnosis.fit.forms.form import Form
-    from sim.effects.effect import ActiveEffect, Effect
+    from sim.effects.effect import ActiveEffect, Effect, Signals
     from sim.motion import Motion
+    from sim.pipeline import Plan
 
 __all__ = ["Model", "ModelRuns"]
 
@@ -48,7 +49,7 @@ T = TypeVar("T")
 
 _EXACT = Scatter(0.0, 0.0, 0.0)
 
-_KEPT = 24
+_CACHED = 24
 """Motions that are kept; one of a second at 90 kHz takes six megabytes."""
 
 
@@ -83,24 +84,24 @@ class ModelRuns:
     rig: Rig
     library: Mapping[str, Effect]
     forms: dict[tuple[str, str], Form]
-    known_ways: KnownWays = field(init=False)
-    _chains: dict[object, Response] = field(init=False, default_factory=dict)
-    _motions: dict[object, Motion] = field(init=False, default_factory=dict)
-    _signals: dict[object, dict[str, NDArray[np.float64]]] = field(init=False, default_factory=dict)
-    _parts: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
+    transfer_functions: TransferFunctionCache = field(init=False)
+    _responses: _Cache[ImpulseResponses] = field(init=False, default_factory=lambda: _Cache())
+    _motions: _Cache[Motion] = field(init=False, default_factory=lambda: _Cache())
+    _signals: _Cache[Signals] = field(init=False, default_factory=lambda: _Cache())
+    _parts: _Cache[NDArray[np.float64]] = field(init=False, default_factory=lambda: _Cache())
 
     def __post_init__(self) -> None:
-        self.known_ways = KnownWays(self.rig)
+        self.transfer_functions = TransferFunctionCache(self.rig)
 
     def simulated(
-        self, model: Model, like: Recording, seed: int, scatter: Scatter | None = None
+        self, model: Model, template: Recording, seed: int, scatter: Scatter | None = None
     ) -> Recording:
         """Simulate a recording by a model, at the condition, rate and length of another.
 
         Parameters
         ----------
         model : Model
-        like : Recording
+        template : Recording
         seed : int
             Of the scatter, of effects that scatter, and of the sensors' noise.
         scatter : Scatter, optional
@@ -112,43 +113,53 @@ class ModelRuns:
             The model cannot be simulated.
         """
         scatter = scatter or Scatter()
-        fine = fine_rate(like.rate)
+        fine = DIAGNOSIS.rate(template.rate)
         effects = self._active(model)
-        signals = self._heard(model, effects, like, fine, seed, scatter)[1]
-        signals = read_by_sensors(signals, effects, fine, np.random.default_rng([seed, 2]))
-        rng = np.random.default_rng([seed, 3])
-        return recorded(signals, fine, like.rate, like.condition, rng, scatter)
+        signals = self._radiated(model, effects, template, fine, seed, scatter)[1]
+        signals = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
+        return record(
+            signals, template.rate, template.condition, np.random.default_rng([seed, 3]), scatter,
+            decimation=DIAGNOSIS.decimation(template.rate),
+        )  # fmt: skip
 
-    def seen(self, model: Model, like: Recording, seed: int) -> NDArray[np.float64]:
+    def noise_free_signature(
+        self, model: Model, template: Recording, seed: int
+    ) -> NDArray[np.float64]:
         """Return the signature of a run without scatter and noise.
 
         Parameters
         ----------
         model : Model
-        like : Recording
+        template : Recording
         seed : int
             Of effects that are chance.
+
+        Returns
+        -------
+        ndarray, shape (n_values,)
+            As of `noise.diagnosis.gap.signature.signature`.
 
         Raises
         ------
         ParameterError
             The model cannot be simulated.
         """
-        effects, fine = self._active(model), fine_rate(like.rate)
-        key, signals = self._heard(model, effects, like, fine, seed, _EXACT)
-        read = read_by_sensors(signals, effects, fine, np.random.default_rng([seed, 2]))
+        effects, fine = self._active(model), DIAGNOSIS.rate(template.rate)
+        key, signals = self._radiated(model, effects, template, fine, seed, _EXACT)
+        read = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
+
+        def part(kind: str) -> NDArray[np.float64]:
+            sampled = decimate(read[kind], DIAGNOSIS.decimation(template.rate))
+            return channel_signature(sampled, template.rate, kind)
+
         parts = {}
         for kind in KINDS:
-            if like.first(kind) is None:
+            if template.first(kind) is None:
                 continue
-            known = (key, kind) if read[kind] is signals[kind] else None
-            if known is None or known not in self._parts:
-                sampled = sampled_at(read[kind], fine, like.rate)
-                parts[kind] = channel_signature(sampled, like.rate, kind)
-                if known is not None:
-                    _keep(self._parts, known, parts[kind])
-            else:
-                parts[kind] = self._parts[known]
+            untouched = read[kind] is signals[kind]
+            parts[kind] = (
+                self._parts.get((key, kind), partial(part, kind)) if untouched else part(kind)
+            )
         return joined_signature(parts)
 
     def _active(self, model: Model) -> list[ActiveEffect]:
@@ -164,69 +175,69 @@ class ModelRuns:
                 found.append(active)
         return found
 
-    def _heard(
+    def _radiated(
         self,
         model: Model,
         effects: Sequence[ActiveEffect],
-        like: Recording,
+        template: Recording,
         fine: float,
         seed: int,
         scatter: Scatter,
-    ) -> tuple[object, dict[str, NDArray[np.float64]]]:
+    ) -> tuple[object, Signals]:
         """Return signals before the sensors, and what tells them from others."""
-        on_way = [a for a in effects if a.effect.chain is not None or a.effect.force is not None]
+        on_paths = [a for a in effects if a.effect.chain is not None or a.effect.force is not None]
         on_motion = [
             a for a in effects if a.effect.contact is not None or a.effect.drive is not None
         ]
-        same = (condition_key(like), seed, scatter, model.offsets)
-        of_motion = (*same, _key(on_motion))
-        key = (*of_motion, _key(on_way))
-        if key in self._signals:
-            return key, self._signals[key]
-        c, rng = like.condition, np.random.default_rng([seed, 0])
-        assert c.speed is not None
-        assert c.interference is not None
-        assert c.support_stiffness is not None
-        factors = {n: math.exp(x) for n, x in zip(OFFSETS, model.offsets, strict=True)}
-        once = scattered(with_offsets(self.rig, factors), scatter, rng)
-        speed = c.speed * float(np.exp(scatter.structure * rng.normal()))
-        if of_motion not in self._motions:
-            _keep(self._motions, of_motion, moving(
-                once, c, c.support_stiffness, speed, on_motion, like.duration, fine,
-                np.random.default_rng([seed, 1]),
-            ))  # fmt: skip
-        chain = self._chain(once, c.interference, c.support_stiffness, fine, on_way)
-        changed = changed_chain(chain, on_way, np.random.default_rng(0))
-        _keep(self._signals, key, heard(self._motions[of_motion], on_way, changed))
-        return key, self._signals[key]
+        of_motion = (condition_key(template), seed, scatter, model.offsets, _key(on_motion))
+        key = (*of_motion, _key(on_paths))
 
-    def _chain(
-        self,
-        once: Rig,
-        interference: float,
-        support: float,
-        rate: float,
-        effects: Sequence[ActiveEffect],
-    ) -> Response:
-        blows = bool(effects)
-        lumped = lumped_bushing(once, interference, support)
-        key = (interference, support, rate, blows, repr(lumped))
-        if key not in self._chains:
-            plain = lumped_bushing(self.rig, interference, support)
-            found = self.known_ways.at(interference, support)
-            ways = {name: moved(way, plain, lumped) for name, way in found.items()}
-            _keep(self._chains, key, chain_of(
-                self.rig, interference, support, ways, rate, blows=blows
-            ))  # fmt: skip
-        return self._chains[key]
+        def radiated() -> Signals:
+            factors = {n: math.exp(x) for n, x in zip(OFFSETS, model.offsets, strict=True)}
+            once, at = perturb_run(
+                with_offsets(self.rig, factors), known_condition(template.condition), scatter,
+                np.random.default_rng([seed, 0]),
+            )  # fmt: skip
+            plan = plan_repeat(once, at, on_motion, rate=fine, seconds=template.duration)
+            motion = self._motions.get(
+                of_motion, lambda: run_motion(plan, np.random.default_rng([seed, 1]))
+            )
+            paths = self._paths(plan, impacts=bool(on_paths))
+            changed = changed_chain(paths, on_paths, np.random.default_rng(0))
+            sound = radiate_motion(motion, changed, on_paths)
+            return sensor_signals(motion, sound, plan.n_settling)
+
+        return key, self._signals.get(key, radiated)
+
+    def _paths(self, plan: Plan, *, impacts: bool) -> ImpulseResponses:
+        """Impulse responses of the rig, the clamp's mode where a plan's rig has it."""
+        at = (plan.interference, plan.support_stiffness)
+        lumped = lumped_bushing(plan.rig, *at)
+
+        def made() -> ImpulseResponses:
+            plain = lumped_bushing(self.rig, *at)
+            nominal = self.transfer_functions.at(*at)
+            shifted = {name: shift_clamp_mode(h, plain, lumped) for name, h in nominal.items()}
+            return chain_of(self.rig, *at, shifted, plan.rate, impacts=impacts)
+
+        return self._responses.get((*at, plan.rate, impacts, repr(lumped)), made)
+
+
+class _Cache(Generic[T]):
+    """What was made last, by what it was made of."""
+
+    def __init__(self) -> None:
+        self._made: dict[object, T] = {}
+
+    def get(self, key: object, make: Callable[[], T]) -> T:
+        """Return what was made under a key, or make it."""
+        if key not in self._made:
+            made = make()
+            while len(self._made) >= _CACHED:
+                self._made.pop(next(iter(self._made)))
+            self._made[key] = made
+        return self._made[key]
 
 
 def _key(effects: Sequence[ActiveEffect]) -> tuple[object, ...]:
     return tuple((a.effect.name, a.form, tuple(a.values.items())) for a in effects)
-
-
-def _keep(kept: dict[object, T], key: object, value: T) -> None:
-    """Keep what was made last."""
-    while len(kept) >= _KEPT:
-        kept.pop(next(iter(kept)))
-    kept[key] = value

@@ -1,42 +1,41 @@
-"""What the rig file says would have been recorded: quick simulated repeats of a condition.
+"""Nominal repeats: a condition simulated quickly and often, with the rig as its file has it.
 
-The structure's ways are those of `noise.diagnosis.simulated.paths`, applied to the simulated
+The transfer functions are those of the structure, applied to the simulated
 torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and
-drive is run by `noise.diagnosis.simulated.replicates` instead, which knows all of them.
+drive is run by `sim.run.simulate` instead, which knows all of them.
 """
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import resample_poly
 
-from noise.diagnosis.gap.scatter import Scatter, scattered
-from noise.diagnosis.simulated.chain_run import fine_rate, sensed
-from noise.diagnosis.simulated.paths import moved, predict
-from noise.diagnosis.simulated.replicates import replicates
+from models.condition import known_condition
+from noise.diagnosis.simulated.repeats import Scatter, perturb_rig, perturb_run, plan_repeat, record
+from noise.diagnosis.simulated.transfer_functions import predict, shift_clamp_mode
+from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
+from sim.pipeline import run_motion
+from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from models.condition import Condition
+    from models.condition import KnownCondition
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
+    from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
     from sim.effects.effect import Effect
 
-__all__ = ["nominal_recordings"]
-
-_SETTLING = 0.35
-"""Simulated before a recording begins [s]."""
+__all__ = ["condition_key", "nominal_recordings", "nominal_repeats"]
 
 _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""
@@ -47,8 +46,8 @@ _FADE = 0.1
 
 def nominal_recordings(
     rig: Rig,
-    condition: Condition,
-    found_ways: Mapping[str, Way],
+    condition: KnownCondition,
+    transfer_functions: Mapping[str, TransferFunction],
     *,
     rate: float,
     seconds: float,
@@ -61,10 +60,9 @@ def nominal_recordings(
     Parameters
     ----------
     rig : Rig
-    condition : Condition
-        Speed, interference and support stiffness; all must be known.
-    found_ways : mapping of str to Way
-        As `noise.diagnosis.simulated.paths.ways` gives them for this condition.
+    condition : KnownCondition
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them for this condition.
     rate, seconds : float
         [Hz], [s]
     seeds : sequence of int
@@ -76,20 +74,20 @@ def nominal_recordings(
     Returns
     -------
     list of Recording
+
+    Raises
+    ------
+    ParameterError
+        The rig cannot be simulated.
     """
+    scatter = scatter or Scatter()
     effects = activated(rig.effects, library or EFFECTS)
     if any(e.effect.force or e.effect.chain or e.effect.sensors for e in effects):
-        return replicates(
-            rig, condition, rate=rate, seconds=seconds, seeds=seeds, scatter=scatter,
-            library=library,
-        )  # fmt: skip
-    assert condition.speed is not None
-    assert condition.interference is not None
-    assert condition.support_stiffness is not None
-    scatter = scatter or Scatter()
-    fine = fine_rate(rate)
-    decimation = round(fine / rate)
-    before = round(_SETTLING * rate)
+        return [
+            _full_repeat(rig, condition, rate, seconds, seed, scatter, library) for seed in seeds
+        ]
+    decimation = DIAGNOSIS.decimation(rate)
+    before = round(DIAGNOSIS.settling * rate)
     kept = slice(before, before + round(seconds * rate))
     n = (kept.stop + round(_RUNNING_OUT * rate)) * decimation
     at = (condition.interference, condition.support_stiffness)
@@ -97,25 +95,16 @@ def nominal_recordings(
     recordings = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
-        once = scattered(rig, scatter, rng)
-        motion = simulate_motion(
-            once,
-            ConstantSpeed(condition.speed * float(np.exp(scatter.structure * rng.normal()))),
-            interference=condition.interference,
-            support_stiffness=condition.support_stiffness,
-            seconds=n / fine,
-            rate=fine,
-            effects=effects,
-            rng=rng,
-        )
-        torque, angle = (
-            resample_poly(x, 1, decimation, padtype="line")
-            for x in (motion.torque, motion.shaft_angle)
-        )
+        once, found = perturb_run(rig, condition, scatter, rng)
+        plan = plan_repeat(once, found, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
+        motion = run_motion(replace(plan, n_settling=0, n_kept=n), rng)
+        torque, angle = (decimate(x, decimation) for x in (motion.torque, motion.shaft_angle))
         faded = torque[kept].mean() + _faded(torque - torque[kept].mean(), rate)
         lumped = lumped_bushing(once, *at)
         outputs = {
-            name: predict(faded, rate, moved(found_ways[name], bushing, lumped))[kept]
+            name: predict(faded, rate, shift_clamp_mode(transfer_functions[name], bushing, lumped))[
+                kept
+            ]
             for name in ("acceleration", "pressure")
         }
         signals = {
@@ -123,8 +112,86 @@ def nominal_recordings(
             **outputs,
             "angle": angle[kept] - angle[before],
         }
-        recordings.append(sensed(signals, rate, condition, rng, scatter))
+        recordings.append(record(signals, rate, condition, rng, scatter))
     return recordings
+
+
+def nominal_repeats(
+    template: Recording,
+    rig: Rig,
+    transfer_functions: TransferFunctionCache,
+    seeds: Sequence[int],
+    scatter: Scatter | None = None,
+    library: Mapping[str, Effect] | None = None,
+) -> list[Recording]:
+    """Simulate repeats at the condition, rate and length of a recording.
+
+    Parameters
+    ----------
+    template : Recording
+    rig : Rig
+    transfer_functions : TransferFunctionCache
+        Of the rig.
+    seeds, scatter, library
+        As of `nominal_recordings`.
+
+    Returns
+    -------
+    list of Recording
+    """
+    return nominal_recordings(
+        rig, known_condition(template.condition), transfer_functions.of(template),
+        rate=template.rate, seconds=template.duration, seeds=seeds, scatter=scatter,
+        library=library,
+    )  # fmt: skip
+
+
+def condition_key(recording: Recording) -> tuple[float, ...]:
+    """Return what recordings that can be repeats of each other have in common.
+
+    Parameters
+    ----------
+    recording : Recording
+
+    Returns
+    -------
+    tuple of float
+        Speed [rad/s], interference [m], support stiffness [Nm/rad], sampling rate [Hz] and length
+        [s].
+    """
+    c = known_condition(recording.condition)
+    return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
+
+
+def _full_repeat(
+    rig: Rig,
+    condition: KnownCondition,
+    rate: float,
+    seconds: float,
+    seed: int,
+    scatter: Scatter,
+    library: Mapping[str, Effect] | None,
+) -> Recording:
+    """Simulate a repeat with all effects there are, as `sim.timing.SIMULATION` has it."""
+    from sim.run import simulate  # only rig files that list such effects need it
+
+    rng = np.random.default_rng(seed)
+    speed = condition.speed * scatter.structure_factor(rng)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what measured responses lack was said once already
+        recording = simulate(
+            perturb_rig(rig, scatter, rng),
+            speed,
+            interference=condition.interference,
+            support_stiffness=condition.support_stiffness,
+            seconds=seconds,
+            acquisition=Acquisition(rate=rate),
+            library=library,
+            rng=rng,
+        ).recording
+    gain = 1.0 + scatter.gain * rng.standard_normal((recording.samples.shape[0], 1))
+    gain[[channel.kind == "angle" for channel in recording.channels]] = 1.0
+    return replace(recording, samples=recording.samples * gain)
 
 
 def _faded(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""How a diagnosis shows itself: the answer in sentences, and how probable each cause is."""
+"""Display of a diagnosis: the answer in sentences, the stages, and how probable each cause is."""
 
 from __future__ import annotations
 

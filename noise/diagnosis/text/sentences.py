@@ -11,6 +11,7 @@ import re
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.text.words import (
+    NOT_DETERMINED,
     cause_of,
     chance,
     evidence,
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis, EffectFinding
 
 __all__ = [
+    "answer",
     "closed_sentence",
+    "closed_words",
     "equivalence_sentences",
     "finding_of",
     "headline",
@@ -65,6 +68,20 @@ def headline(diagnosis: Diagnosis) -> str:
         case ("unknown",):
             return "Unknown cause"
     return f"Missing: {joined([cause_of(name).name for name in diagnosis.verdict])}"
+
+
+def answer(diagnosis: Diagnosis) -> list[str]:
+    """Return all sentences of the answer: verdict, location, what cannot be told apart.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> answer(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0))
+    ['Recordings and simulation differ no more than repeats do: there is nothing to explain (gap
+      0.9, floor 1, p = 0.60).']
+    """
+    sentences = [verdict_sentence(diagnosis), location_sentence(diagnosis)]
+    return [*filter(None, sentences), *equivalence_sentences(diagnosis)]
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
@@ -118,6 +135,30 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     return f"{', '.join(parts)}; {evidence(place.p_value)} ({p_number(place.p_value)})."
 
 
+def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
+    """Return how much of the gap a fit with an effect closes, with the 90 % interval.
+
+    Parameters
+    ----------
+    finding : EffectFinding or None
+    of, interval : str
+        What stands behind the share, and before the interval.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import EffectFinding
+    >>> closed_words(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
+    ...                            closed_high=0.99))
+    '96 % (91 % to 99 %)'
+    """
+    if finding is None or finding.closed is None:
+        return NOT_DETERMINED
+    words = f"{percent(finding.closed)}{of}"
+    if finding.closed_low is None or finding.closed_high is None:
+        return words
+    return f"{words} ({interval}{percent(finding.closed_low)} to {percent(finding.closed_high)})"
+
+
 def closed_sentence(finding: EffectFinding) -> str:
     """Return how far a fit with an effect closes the gap; empty where that is not determined.
 
@@ -126,17 +167,14 @@ def closed_sentence(finding: EffectFinding) -> str:
     >>> from noise.diagnosis.outcome import EffectFinding
     >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
     ...                               closed_high=0.99))
-    'closes 96 % of the closable gap (90 % interval 91 % to 99 %)'
+    'The fit closes 96 % of the closable gap (90 % interval 91 % to 99 %).'
     """
     if finding.closed is None:
         return ""
-    words = f"closes {percent(finding.closed)} of the closable gap"
-    if finding.closed_low is not None and finding.closed_high is not None:
-        low, high = percent(finding.closed_low), percent(finding.closed_high)
-        words += f" (90 % interval {low} to {high})"
+    words = closed_words(finding, " of the closable gap", "90 % interval ")
     if finding.closed_by_effect is not None:
         words += f", and {percent(finding.closed_by_effect)} of what refitted parameters leave"
-    return words
+    return f"The fit closes {words}."
 
 
 def equivalence_sentences(diagnosis: Diagnosis) -> list[str]:

@@ -15,6 +15,7 @@ from models.errors import ParameterError
 
 __all__ = [
     "CAUSES",
+    "NOT_DETERMINED",
     "STAGES",
     "Cause",
     "cause_of",
@@ -22,9 +23,14 @@ __all__ = [
     "evidence",
     "frequency",
     "joined",
+    "number",
     "p_number",
     "percent",
 ]
+
+
+NOT_DETERMINED = "not determined"
+"""Stands for a figure that is not known, so that a gap in the data is never read as a zero."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +162,7 @@ def evidence(p_value: float) -> str:
     ('repeats would hardly ever differ as much', 'repeats differ as much')
     """
     if not math.isfinite(p_value):
-        return "not determined"
+        return NOT_DETERMINED
     return next(words for below, words in _EVIDENCE if p_value < below)
 
 
@@ -169,20 +175,22 @@ def p_number(p_value: float) -> str:
     ('p = 0.40', 'p = 0.012', 'p = 0.0004', 'p < 0.0001')
     """
     if not math.isfinite(p_value):
-        return "p not determined"
+        return f"p {NOT_DETERMINED}"
     if p_value < 1e-4:
         return "p < 0.0001"
     return f"p = {p_value:.{2 if p_value >= 0.1 else 3 if p_value >= 0.01 else 4}f}"
 
 
-def percent(share: float) -> str:
+def percent(share: float | None) -> str:
     """Return a share in per cent; no estimate of a chance is said to be certain by rounding.
 
     Examples
     --------
-    >>> percent(0.5), percent(0.996), percent(0.001), percent(-0.2)
-    ('50 %', '> 99 %', '< 1 %', '−20 %')
+    >>> percent(0.5), percent(0.996), percent(0.001), percent(-0.2), percent(None)
+    ('50 %', '> 99 %', '< 1 %', '−20 %', 'not determined')
     """
+    if share is None or not math.isfinite(share):
+        return NOT_DETERMINED
     if 0.0 < share < 0.01:
         return "< 1 %"
     if 0.99 < share < 1.0:
@@ -190,8 +198,21 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %".replace("-", "\N{MINUS SIGN}")
 
 
+def number(value: float | None, form: str = ".2f") -> str:
+    """Return a number [any unit] as it is printed.
+
+    Examples
+    --------
+    >>> number(-1.234), number(None)
+    ('−1.23', 'not determined')
+    """
+    if value is None or not math.isfinite(value):
+        return NOT_DETERMINED
+    return format(value, form).replace("-", "\N{MINUS SIGN}")
+
+
 def frequency(hertz: float) -> str:
-    """Return a frequency as it is read.
+    """Return a frequency [Hz] as it is read.
 
     Examples
     --------

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.pages.diagnosis.figures import CURVES, as_svg, new_panel
-from noise.pages.figures import Panel
-from noise.pictures.axes import styled
+from models.drawing import styled
+from noise.pages.diagnosis.figures import CURVES, draw
+from noise.pages.engine.panels import Panel, as_svg, new_panel
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from noise.diagnosis.evidence.contact_course import ContactCourses
+    from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
 __all__ = ["contact_panels"]
 
@@ -24,12 +24,12 @@ _OVER = {
 """Title, what is across, and its scale."""
 
 
-def contact_panels(contacts: Mapping[str, ContactCourses]) -> tuple[Panel, ...]:
+def contact_panels(contacts: Mapping[str, FrictionCurves]) -> tuple[Panel, ...]:
     """Draw the friction torque with its 90 % interval.
 
     Parameters
     ----------
-    contacts : mapping of str to ContactCourses
+    contacts : mapping of str to FrictionCurves
         By ``measured``, ``before`` and ``after``.
 
     Returns
@@ -48,22 +48,20 @@ def contact_panels(contacts: Mapping[str, ContactCourses]) -> tuple[Panel, ...]:
         return tuple(_panel(name, contacts) for name in _OVER)
 
 
-def _panel(over: str, contacts: Mapping[str, ContactCourses]) -> Panel:
+def _panel(over: str, contacts: Mapping[str, FrictionCurves]) -> Panel:
     title, across, scale = _OVER[over]
-    figure, axes = new_panel(title)
+    figure, axes = new_panel(title, across, "Torque [Nm]")
     words = []
-    for name, courses in contacts.items():
-        course, curve = getattr(courses, over), CURVES[name]
-        if not course.x.size:
+    for name, friction_curves in contacts.items():
+        torque_curve, curve = getattr(friction_curves, over), CURVES[name]
+        if not torque_curve.x.size:
             continue
-        x = scale * course.x
-        axes.fill_between(x, course.low, course.high, color=curve.colour, alpha=0.18, linewidth=0)
-        style = (0.0, (4.0, 1.6)) if curve.dashed else "-"
-        axes.plot(
-            x, course.torque, color=curve.colour, linewidth=curve.width, linestyle=style,
-            marker="o", markersize=3.0,
-        )  # fmt: skip
-        words.append(f"{curve.label} {course.torque.min():.3g} to {course.torque.max():.3g} Nm")
-    axes.set_xlabel(across)
-    axes.set_ylabel("Torque [Nm]")
+        x = scale * torque_curve.x
+        axes.fill_between(
+            x, torque_curve.low, torque_curve.high, color=curve.colour, alpha=0.18, linewidth=0
+        )
+        draw(axes, name, x, torque_curve.torque, marker="o")
+        words.append(
+            f"{curve.label} {torque_curve.torque.min():.3g} to {torque_curve.torque.max():.3g} Nm"
+        )
     return Panel(as_svg(figure), f"{title}, over {across.lower()}: {'; '.join(words)}.")

@@ -8,20 +8,17 @@ show a resonance.
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator
 
 from features.kernels.bands import band_levels, band_power
 from features.kernels.slip_drops import torque_slips
 from features.kernels.spectra import autospectrum
-from noise.pages.figures import Panel
-from noise.pages.traces import KINDS
-from noise.pictures.axes import BLUE, VERMILION, frequency_axis, padded, styled, thinned
+from models.drawing import BLUE, VERMILION, padded, styled, thinned
+from noise.pages.engine.panels import COLUMNS, Panel, as_svg, new_panel, panel_frequencies
+from noise.pictures.channel_kinds import KINDS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,15 +27,12 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from noise.diagnosis.outcome import Illustration
 
-__all__ = [
-    "CURVES", "Curve", "as_svg", "cycle_window", "illustration_panels", "new_panel",
-    "sixth_octaves",
-]  # fmt: skip
+__all__ = ["CURVES", "Curve", "cycle_window", "draw", "illustration_panels", "sixth_octaves"]
 
 
 @dataclass(frozen=True)
 class Curve:
-    """How one of the three is drawn, as no eye takes it for another."""
+    """How one of the three is drawn, as no eye takes it for another; `width` in points."""
 
     label: str
     colour: str
@@ -62,7 +56,6 @@ _LEAST_BINS = 2.0
 _RANGE = 70.0  # of a level axis at most [dB]
 _ANTI_ALIAS = 0.9  # of the Nyquist frequency
 _LEAST_SAMPLES = 16
-_TICKS = (50, 100, 200, 500, 1e3, 2e3, 5e3, 10e3)  # [Hz]
 
 
 def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
@@ -92,11 +85,11 @@ def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
     >>> panel.alt[:46]
     'Sound pressure in sixth octaves: over all, mea'
     """
-    shown = _shown(illustration)
+    runs = {role: run for role in CURVES if (run := getattr(illustration, role)) is not None}
     measured = illustration.measured
     with styled():
-        panels = [_cycles(shown)] if measured.first("torque") is not None else []
-        panels += [_spectra(shown, kind) for kind in KINDS if measured.first(kind) is not None]
+        panels = [_cycles(runs)] if measured.first("torque") is not None else []
+        panels += [_spectra(runs, kind) for kind in KINDS if measured.first(kind) is not None]
     return tuple(panels)
 
 
@@ -108,10 +101,11 @@ def sixth_octaves(
     Parameters
     ----------
     signal : ndarray, shape (n_samples,)
+        In any unit, such as [Pa].
     rate : float
         [Hz]
     reference : float
-        Of the levels, in the signal's unit.
+        Of the levels, in the signal's unit, such as [Pa].
 
     Returns
     -------
@@ -168,11 +162,6 @@ def cycle_window(torque: NDArray[np.float64], rate: float, length: float) -> tup
     return float(slip) - _LEAD * length, True
 
 
-def _shown(illustration: Illustration) -> dict[str, Recording]:
-    shown = {"measured": illustration.measured, "before": illustration.before}
-    return shown if illustration.after is None else shown | {"after": illustration.after}
-
-
 def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
     row = recording.first(kind)
     if row is None or recording.samples.shape[1] < _LEAST_SAMPLES:
@@ -180,28 +169,28 @@ def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
     return np.asarray(recording.samples[row], dtype=np.float64)
 
 
-def _cycles(shown: dict[str, Recording]) -> Panel:
+def _cycles(runs: dict[str, Recording]) -> Panel:
     signals = {
         name: (signal, recording.rate)
-        for name, recording in shown.items()
+        for name, recording in runs.items()
         if (signal := _signal(recording, "torque")) is not None
     }
     length = _length(*signals["measured"]) if "measured" in signals else _LONGEST
-    figure, axes = new_panel("Torque, around a slip of each")
+    figure, axes = new_panel(
+        "Torque, around a slip of each", "Time from the slip [ms]", "Torque [Nm]"
+    )
     unaligned, low, high = [], np.inf, -np.inf
     for name, (signal, rate) in signals.items():
         start, aligned = cycle_window(signal, rate, length)
         first = round(start * rate)
         piece = signal[first : first + round(length * rate) + 1]
         time = (np.arange(first, first + piece.size) / rate - start - _LEAD * length) * 1e3
-        _draw(axes, name, *thinned(time, piece, columns=400))
+        draw(axes, name, *thinned(time, piece, columns=COLUMNS))
         low, high = min(low, float(piece.min())), max(high, float(piece.max()))
         if not aligned:
             unaligned.append(CURVES[name].label)
     axes.set_xlim(-1e3 * _LEAD * length, 1e3 * (1.0 - _LEAD) * length)
     axes.set_ylim(*padded(low, high, 0.1))
-    axes.set_xlabel("Time from the slip [ms]")
-    axes.set_ylabel("Torque [Nm]")
     alt = f"Torque over {1e3 * length:.0f} ms around a slip, {low:.3g} to {high:.3g} Nm."
     if unaligned:
         text = f"no slip: {', '.join(unaligned)}"
@@ -217,17 +206,18 @@ def _length(torque: NDArray[np.float64], rate: float) -> float:
     return float(min(max(wanted, _SHORTEST), _LONGEST, torque.size / rate))
 
 
-def _spectra(shown: dict[str, Recording], kind: str) -> Panel:
+def _spectra(runs: dict[str, Recording], kind: str) -> Panel:
     about = KINDS[kind]
-    figure, axes = new_panel(f"{about.name}, sixth octaves")
+    reference = about.density.removesuffix("²/Hz").strip("()")
+    figure, axes = new_panel(f"{about.name}, sixth octaves", "Frequency [Hz]", f"dB re {reference}")
     tops, bottoms, overall = [], [], []
-    for name, recording in shown.items():
+    for name, recording in runs.items():
         signal = _signal(recording, kind)
         if signal is None:
             continue
         middle, level = sixth_octaves(signal, recording.rate, about.reference)
         level = np.where(np.isfinite(level), level, np.nan)
-        _draw(axes, name, middle, level)
+        draw(axes, name, middle, level)
         if np.isfinite(level).any():
             tops.append(float(np.nanmax(level)))
             bottoms.append(float(np.nanmin(level)))
@@ -237,31 +227,36 @@ def _spectra(shown: dict[str, Recording], kind: str) -> Panel:
     if tops:
         top = 5.0 * np.ceil((max(tops) + 3.0) / 5.0)
         axes.set_ylim(max(5.0 * np.floor((min(bottoms) - 1.0) / 5.0), top - _RANGE), top)
-    frequency_axis(axes, _LOWEST, _HIGHEST)
-    axes.xaxis.set_major_locator(FixedLocator(_TICKS))
-    axes.set_xlabel("Frequency [Hz]")
-    reference = about.density.removesuffix("²/Hz").strip("()")
-    axes.set_ylabel(f"dB re {reference}")
+    panel_frequencies(axes, _LOWEST, _HIGHEST)
     return Panel(as_svg(figure), f"{about.name} in sixth octaves: over all, {', '.join(overall)}.")
 
 
-def _draw(axes: Axes, name: str, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
-    curve = CURVES[name]
+def draw(
+    axes: Axes, role: str, x: NDArray[np.float64], y: NDArray[np.float64], marker: str = ""
+) -> None:
+    """Draw a curve as all of its role are drawn.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    role : str
+        A key of `CURVES`.
+    x, y : ndarray, shape (n,)
+        In the units of the axes [-].
+    marker : str
+        Of matplotlib; none by default.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> axes = Figure().subplots()
+    >>> draw(axes, "before", np.zeros(2), np.ones(2))
+    >>> axes.lines[0].get_label()
+    'nominal model'
+    """
+    curve = CURVES[role]
     style = (0.0, (4.0, 1.6)) if curve.dashed else "-"
-    axes.plot(x, y, color=curve.colour, linewidth=curve.width, linestyle=style, label=curve.label)
-
-
-def new_panel(title: str) -> tuple[Figure, Axes]:
-    """Begin a panel of the page."""
-    figure = Figure(figsize=(5.2, 2.5))
-    axes = figure.add_axes((0.14, 0.2, 0.84, 0.68))
-    axes.set_title(title, fontweight="bold", color="#222222")
-    axes.yaxis.set_label_coords(-0.12, 0.5)
-    return figure, axes
-
-
-def as_svg(figure: Figure) -> bytes:
-    """Write a figure out, the same one as the same bytes."""
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    return buffer.getvalue()
+    axes.plot(
+        x, y, color=curve.colour, linewidth=curve.width, linestyle=style, label=curve.label,
+        marker=marker, markersize=3.0,
+    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The sounds of a diagnosis: measured, before and after, at one gain for the whole page.
+"""Sounds of a diagnosis: measured, before and after, at one gain for the whole page.
 
 What a missing effect does to loudness is part of what it does; so nothing is matched, and the one
 full scale is what the loudest of all sounds needs.
@@ -6,90 +6,147 @@ full scale is what the loudest of all sounds needs.
 
 from __future__ import annotations
 
+import base64
+import io
 import math
-from dataclasses import dataclass
+from html.parser import HTMLParser
 from typing import TYPE_CHECKING
 
-from models.recording import REFERENCE_PRESSURE
-from noise.audio.gain import full_scale_without_clipping, true_peak
+import numpy as np
+import soundfile
+
+from models.errors import RecordingError
 from noise.audio.sound import audible
-from noise.audio.wav import wav_bytes
-from noise.pages.templating import as_base64
+from noise.diagnosis.outcome import ROLES
+from noise.diagnosis.text.words import number
+from noise.pages.diagnosis.figures import CURVES
+from noise.pages.engine.entry import RATE, Entry
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
-    import numpy as np
     from numpy.typing import NDArray
 
-    from noise.diagnosis.outcome import Illustration
+    from noise.diagnosis.outcome import Diagnosis, Illustration, LabelsAndLevels
 
-__all__ = ["LONGEST", "PlayedSounds", "played_sounds"]
+__all__ = ["LONGEST", "illustration_entries", "reported_entries"]
 
 LONGEST = 4.0
 """Of a sound on the page [s]; what is longer is played from its beginning."""
 
-_RATE = 48000
-_ROLES = ("measured", "before", "after")
+_NEEDED = {"data-recording", "data-role", "data-full-scale"}
 
 
-@dataclass(frozen=True)
-class PlayedSounds:
-    """Sounds by illustration and role.
+def illustration_entries(
+    illustration: Illustration, heard: Sequence[LabelsAndLevels] = ()
+) -> dict[str, Entry]:
+    """Return what is heard of an illustration, by role.
 
     Parameters
     ----------
-    uris : tuple of dict of str to str
-        One an illustration; keys are ``measured``, ``before`` and ``after``, where there is a
-        sound.
-    words : str
-        What full scale is worth; empty where there is no sound at all.
-    full_scale : float
-        The same as a number [Pa].
-    """
+    illustration : Illustration
+    heard : sequence of LabelsAndLevels
+        Labels and levels, of any recordings.
 
-    uris: tuple[dict[str, str], ...]
-    words: str
-    full_scale: float = 1.0
-
-
-def played_sounds(illustrations: Sequence[Illustration]) -> PlayedSounds:
-    """Encode the sound pressure of illustrations, all at the same gain.
+    Returns
+    -------
+    dict of str to Entry
+        Keys are ``measured``, ``before`` and ``after``, where there is a sound.
 
     Examples
     --------
-    >>> import numpy as np
     >>> from models.recording import Channel, Recording
     >>> from noise.diagnosis.outcome import Illustration
     >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 480)), 48e3,
     ...                  (Channel("pressure"),))
-    >>> sounds = played_sounds([Illustration("hiss", hiss, hiss, None)])
-    >>> [sorted(uris) for uris in sounds.uris], sounds.words[:19]
-    ([['before', 'measured']], 'All sounds have one')
+    >>> found = illustration_entries(Illustration("hiss", hiss, hiss, None))
+    >>> [(role, entry.title) for role, entry in found.items()]
+    [('measured', 'hiss, measured'), ('before', 'hiss, nominal model')]
     """
-    heard = [_heard(illustration) for illustration in illustrations]
-    peaks = [true_peak(sound, _RATE) for sounds in heard for sound in sounds.values()]
-    if not peaks:
-        return PlayedSounds(tuple({} for _ in heard), "")
-    full_scale = full_scale_without_clipping(max(peaks)) or 1.0
-    uris = tuple(
-        {role: _uri(sound / full_scale) for role, sound in sounds.items()} for sounds in heard
-    )
-    level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
-    words = f"{full_scale:.3g} Pa ({level:.0f} dB peak re 20 µPa)"
-    return PlayedSounds(
-        uris, f"All sounds have one gain and may be compared: full scale = {words}.", full_scale
-    )
-
-
-def _heard(illustration: Illustration) -> dict[str, NDArray[np.float64]]:
-    sounds = {}
-    for role in _ROLES:
+    entries = {}
+    for role in ROLES:
         recording = getattr(illustration, role)
         if recording is not None and recording.first("pressure") is not None:
-            sounds[role] = audible(recording, _RATE)[: round(LONGEST * _RATE)]
-    return sounds
+            sound = audible(recording, RATE)[: round(LONGEST * RATE)].astype(np.float32)
+            entries[role] = _entry(illustration.name, role, sound, heard)
+    return entries
 
 
-def _uri(fractions: NDArray[np.float64]) -> str:
-    return f"data:audio/wav;base64,{as_base64(wav_bytes(fractions, _RATE, 16))}"
+def reported_entries(report: Path, diagnosis: Diagnosis) -> list[Entry]:
+    """Take the sounds out of the report of a diagnosis, so that a review plays the very sounds.
+
+    Parameters
+    ----------
+    report : Path
+        None are found where it is not there, or holds none.
+    diagnosis : Diagnosis
+        Has the labels and the levels.
+
+    Raises
+    ------
+    RecordingError
+        A sound is damaged.
+    """
+    try:
+        text = report.read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return []
+    found = _Sounds()
+    found.feed(text)
+    entries = []
+    for values, content in found.found:
+        name, role = values["data-recording"], values["data-role"]
+        try:
+            flac = io.BytesIO(base64.b64decode(content))
+            fractions, _ = soundfile.read(flac, dtype="float32")
+            sound = np.float32(values["data-full-scale"]) * fractions
+        except (ValueError, soundfile.LibsndfileError) as error:
+            raise RecordingError(f"sound {name} of the report is damaged ({error})") from None
+        note = "from the report of the diagnosis"
+        entries.append(_entry(name, role, sound, diagnosis.labels_and_levels, note))
+    return entries
+
+
+class _Sounds(HTMLParser):
+    """Collects the sounds of a report, each with its attributes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[dict[str, str], str]] = []
+        self._open: dict[str, str] | None = None
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Keep the attributes of a sound that says what it is."""
+        values = {name: value or "" for name, value in attrs}
+        self._open = values if tag == "script" and set(values) >= _NEEDED else None
+
+    def handle_data(self, data: str) -> None:
+        """Keep the sound."""
+        if self._open is not None:
+            self.found.append((self._open, data))
+            self._open = None
+
+
+def _entry(
+    name: str,
+    role: str,
+    sound: NDArray[np.float32],
+    heard: Sequence[LabelsAndLevels],
+    note: str = "",
+) -> Entry:
+    known = next((one for one in heard if one.recording == name), None)
+    label, level = (None, None) if known is None else known.of(role)
+    notes = [note] if note else []
+    if level is not None and math.isfinite(level):
+        notes.append(f"{number(level, '.1f')} dB(A)")
+    elif known is not None:
+        notes.append("level not determined")
+    return Entry(
+        f"{name}, {CURVES[role].label if role in CURVES else role}",
+        () if label is None else ({"label": label},),
+        duration=sound.size / RATE,
+        sound=sound,
+        note="; ".join(notes),
+        data={"recording": name, "role": role},
+    )

@@ -10,8 +10,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.text.sentences import closed_sentence, finding_of
 from noise.diagnosis.text.words import cause_of, joined, percent
+from noise.pages.engine.ticks import round_ticks
 
 if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis, EffectFinding
@@ -52,10 +54,11 @@ class Waterfall:
     ----------
     bars : tuple of Bar
     floor : float
-        What repeats differ by.
+        What repeats differ by, a gap [-].
     top : float
-        End of the axis.
+        End of the axis, a gap [-].
     ticks : tuple of float
+        Gaps along it [-].
     words : str
         How much is closed, with its interval.
     """
@@ -102,7 +105,9 @@ def waterfall(diagnosis: Diagnosis) -> Waterfall | None:
         bars.append(Bar("what is left", 0.0, gap, "left", f"{gap:.2f}"))
     top = 1.04 * max(floor, *(bar.high for bar in bars))
     words = closed if closed is not None else _closed_so_far(before, gap, floor, len(bars) > 1)
-    return Waterfall(tuple(bars), floor, top, _ticks(top), _sentence(words))
+    ticks = tuple(round_ticks(0.0, top, _TICKS))
+    undetermined = "How much of the gap can be closed was not determined."
+    return Waterfall(tuple(bars), floor, top, ticks, words or undetermined)
 
 
 def _fitted(diagnosis: Diagnosis) -> EffectFinding | None:
@@ -141,30 +146,12 @@ def _step(label: str, before: float, after: float) -> Bar:
 
 def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str:
     if before <= floor:
-        return "the nominal gap is no larger than the floor, so there is nothing to close"
+        return "The nominal gap is no larger than the floor, so there is nothing to close."
     if not fitted:
         return ""
-    share = percent((before - gap) / (before - floor))
-    return f"refitted parameters close {share} of the closable gap"
-
-
-def _sentence(words: str) -> str:
-    if not words:
-        return "How much of the gap can be closed was not determined."
-    words = f"the fit {words}" if words.startswith("closes") else words
-    return f"{words[0].upper()}{words[1:]}."
+    share = percent(closed_fraction(before, gap, floor))
+    return f"Refitted parameters close {share} of the closable gap."
 
 
 def _known(value: float | None, otherwise: float) -> float:
     return otherwise if value is None else value
-
-
-def _ticks(top: float) -> tuple[float, ...]:
-    """Return about `_TICKS` round numbers from zero to `top`."""
-    step = next(
-        step
-        for decade in (10.0**n for n in range(-2, 9))
-        for step in (decade, 2.0 * decade, 5.0 * decade)
-        if top / step <= _TICKS
-    )
-    return tuple(step * n for n in range(math.floor(top / step) + 1))

@@ -7,41 +7,35 @@ it, since whoever looks at it later cannot see the terminal.
 from __future__ import annotations
 
 import os
-from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.condition import Condition
 from models.errors import BushingNoiseError, ParameterError
-from noise.base.atomic import atomic
-from noise.base.progress import counted, track
-from noise.classifier import LABELS, load_classifier
-from noise.pages.review.clips import BYTES_A_SECOND, SHORTEST, common_gain, make_clips
+from noise.base.progress import counted
+from noise.pages.engine.clips import common_gain, make_clips
+from noise.pages.engine.entry import label_counts, labels_sentence
+from noise.pages.engine.maps import recorded_maps
+from noise.pages.engine.page import page_html, write_page
 from noise.pages.review.diagnoses import read_diagnosis
-from noise.pages.review.entries import read_entry, without_sound
 from noise.pages.review.inputs import Refusal, sort_inputs
-from noise.pages.review.maps import recorded_maps
-from noise.pages.review.page import Contents, page_html
+from noise.pages.review.recorded import recorded_entries
 from noise.pages.review.screened import screened_maps
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from noise.pages.review.diagnoses import ShownDiagnosis
-    from noise.pages.review.entries import Entry
-    from noise.pages.review.inputs import Inputs, LabelTable
+    from noise.pages.engine.entry import Entry
+    from noise.pages.review.diagnoses import DiagnosisDisplay
+    from noise.pages.review.inputs import Inputs
 
 __all__ = ["Review", "review"]
 
 _PAGE = "report.html"
 _PAGE_BYTES, _CARD_BYTES, _AREA_BYTES = 60_000.0, 42_000.0, 120.0
 """What the page takes up, and at most each card with its spectrogram, and each area of a map."""
-
-_GENEROUS = 4.0
-"""Quiet sounds take a quarter of the space of loud noise."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +103,8 @@ def review(
     seconds : float
         Longest stretch of a recording that is played [s].
     megabytes : float
-        Size of the page; where it does not hold all, sounds are shortened, and the page says so.
+        Size of the page [MB]; where it does not hold all, sounds are shortened, and the page says
+        so.
     simulated : int
         How many sounds are simulated for the maps of screens, of all maps together.
     classify : bool
@@ -145,48 +140,46 @@ def review(
     target = page_path(Path(out))
     refused = list(inputs.refused)
     budget = 1e6 * megabytes
-    recorded = _recorded(inputs, refused, seconds, full_scale, budget, classify=classify)
+    recorded = recorded_entries(
+        inputs, refused, seconds=seconds, full_scale=full_scale, budget=budget, classify=classify
+    )
     diagnosed = _diagnosed(inputs, refused)
     maps, heard = screened_maps(inputs, refused, number=simulated, seed=seed)
 
     entries: dict[str, Entry] = {}
-    groups: dict[str, list[str]] = {}
-    for group, members in (
-        ("recorded", recorded),
-        *((f"diagnosis {i}", list(one.entries)) for i, one in enumerate(diagnosed)),
-    ):
-        groups[group] = [f"s{len(entries) + 1 + i}" for i in range(len(members))]
-        entries |= dict(zip(groups[group], members, strict=True))
+    groups: list[list[str]] = []
+    for members in (recorded, *(one.entries for one in diagnosed)):
+        groups.append([f"s{len(entries) + 1 + i}" for i in range(len(members))])
+        entries |= dict(zip(groups[-1], members, strict=True))
     entries |= heard
     if not (entries or maps or diagnosed):
         raise ParameterError(f"{refused[0].name}: {refused[0].reason}; there is nothing else")
-    gain = common_gain(list(entries.values()), pascal_per_full_scale)
+    gain = common_gain(entries.values(), pascal_per_full_scale)
     n_areas = sum(len(one.areas) for one in maps)
     left = budget - _PAGE_BYTES - _CARD_BYTES * len(entries) - _AREA_BYTES * n_areas
-    made, shortened = make_clips(list(entries.values()), gain, left, np.random.default_rng(seed))
-    clips = {key: clip for key, clip in zip(entries, made, strict=True) if clip is not None}
+    clips, shortened = make_clips(entries, gain, budget=left, dither=np.random.default_rng(seed))
+    rows = [{**row, "file": key} for key in groups[0] for row in entries[key].rows]
     titles = {key: entry.title for key, entry in entries.items()}
-    rows = [{**row, "file": key} for key in groups["recorded"] for row in entries[key].rows]
     of_recordings, unplaced = recorded_maps(rows, titles, clips)
+    counts = label_counts(recorded)
     html = page_html(
-        Contents(
-            title=title,
-            summary=_summary(recorded, diagnosed, len(maps), len(heard)),
-            gain=gain,
-            shortened=shortened,
-            entries=entries,
-            clips=clips,
-            groups=groups,
-            diagnoses=tuple(diagnosed),
-            recorded_maps=tuple(of_recordings),
-            unplaced=unplaced,
-            screened_maps=tuple(maps),
-            refused=tuple(refused),
-        )
+        "review.html.j2",
+        entries,
+        clips,
+        without_card=heard,
+        title=title,
+        summary=_summary(recorded, diagnosed, len(maps), len(heard)),
+        gain=gain.sentences if clips else (),
+        shortened=shortened,
+        refused=refused,
+        recorded=groups[0],
+        counts=counts if len(counts) > 1 else [],
+        recorded_maps=of_recordings,
+        unplaced=unplaced,
+        screened_maps=maps,
+        diagnoses=list(zip(diagnosed, groups[1:], strict=True)),
     )
-    with atomic(target) as temporary:
-        # Names of files may hold what no UTF-8 can.
-        temporary.write_bytes(html.encode("utf-8", "backslashreplace"))
+    write_page(target, html)
     return Review(target, len(clips), shortened, tuple(refused))
 
 
@@ -201,92 +194,22 @@ def page_path(out: Path) -> Path:
     return out if out.suffix.lower() in (".html", ".htm") and not out.is_dir() else out / _PAGE
 
 
-def _recorded(
-    inputs: Inputs,
-    refused: list[Refusal],
-    seconds: float,
-    full_scale: float | None,
-    budget: float,
-    *,
-    classify: bool,
-) -> list[Entry]:
-    """Read recordings, and what tables say of those that are not at hand."""
-    if not inputs.recordings and not inputs.tables:
-        return []
-    files = list(inputs.recordings)
-    known = {path.resolve() for path, _ in files}
-    files += [found for found in _named_by_tables(inputs.tables) if found[0].resolve() not in known]
-    needs = classify and any(not _labelled(path, inputs.tables) for path, _ in files)
-    classifier = load_classifier() if needs else None
-    # What could never fit is not read at all.
-    longest = min(
-        seconds, max(SHORTEST, _GENEROUS * budget / (BYTES_A_SECOND * max(1, len(files))))
-    )
-    entries: list[Entry] = []
-    for path, name in track(files, "reading"):
-        found = read_entry(
-            path, name, inputs.tables, classifier, longest=longest, full_scale=full_scale
-        )
-        if isinstance(found, Refusal):
-            refused.append(found)
-        else:
-            entries.append(found)
-    return entries + _missing(inputs.tables, [path for path, _ in files])
-
-
-def _labelled(path: Path, tables: Sequence[LabelTable]) -> bool:
-    return any(row["label"] is not None for table in tables for row in table.of(path))
-
-
-def _named_by_tables(tables: Sequence[LabelTable]) -> list[tuple[Path, str]]:
-    """Find recordings that a table names beside or below its own folder."""
-    found: dict[Path, tuple[Path, str]] = {}
-    for table in tables:
-        for name in dict.fromkeys(str(row["file"]) for row in table.rows):
-            for path in (table.path.parent / name, *_below(table.path.parent, name)):
-                if path.is_file():
-                    found.setdefault(path.resolve(), (path, name))
-                    break
-    return list(found.values())
-
-
-def _below(folder: Path, name: str) -> list[Path]:
-    try:
-        return sorted(folder.glob(f"*/{name}"), key=lambda path: path.parent.name != "recordings")
-    except (ValueError, NotImplementedError):  # an absolute name, or one that is no pattern
-        return []
-
-
-def _missing(tables: Sequence[LabelTable], files: Sequence[Path]) -> list[Entry]:
-    entries = []
-    for table in tables:
-        used = {str(row["file"]) for path in files for row in table.of(path)}
-        for name in dict.fromkeys(str(row["file"]) for row in table.rows):
-            rows = [row for row in table.rows if row["file"] == name and row["label"] is not None]
-            if name not in used and rows:
-                entries.append(without_sound(name, rows, Condition()))
-    return entries
-
-
-def _diagnosed(inputs: Inputs, refused: list[Refusal]) -> list[ShownDiagnosis]:
+def _diagnosed(inputs: Inputs, refused: list[Refusal]) -> list[DiagnosisDisplay]:
     diagnosed = []
     for path in inputs.diagnoses:
         try:
             diagnosed.append(read_diagnosis(path))
         except BushingNoiseError as error:
-            refused.append(Refusal(str(path), str(error).removeprefix(f"{path}: ")))
+            refused.append(Refusal.of(path, error))
     return diagnosed
 
 
 def _summary(
-    recorded: Sequence[Entry], diagnosed: Sequence[ShownDiagnosis], n_maps: int, n_heard: int
+    recorded: Sequence[Entry], diagnosed: Sequence[DiagnosisDisplay], n_maps: int, n_heard: int
 ) -> str:
     told = []
     if recorded:
-        counts = Counter(entry.label for entry in recorded)
-        labels = [f"{counts[label]} {label}" for label in LABELS if counts[label]]
-        labels += [f"{counts[None]} without a label"] if counts[None] else []
-        told.append(f"{counted(len(recorded), 'recording')}: {', '.join(labels)}")
+        told.append(labels_sentence(recorded))
     if diagnosed:
         told.append(f"{len(diagnosed)} diagnos{'is' if len(diagnosed) == 1 else 'es'}")
     if n_maps:

@@ -1,4 +1,4 @@
-"""What a review is made of: the paths that were named, sorted by what they hold.
+"""Inputs of a review: the paths that were named, sorted by what they hold.
 
 A file is taken at its word and refused where it is not what its ending says. A folder is searched:
 what in it is of no known kind, such as a table of features, is passed over, because folders of
@@ -15,21 +15,18 @@ from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.tables import TABLE_ENDINGS
-from noise.labels.reading import read_label_table
+from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
-from noise.recordings.readers import READERS
+from noise.recordings.files import READERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-__all__ = ["DIAGNOSIS", "SCREEN", "Inputs", "LabelTable", "Refusal", "sort_inputs"]
+__all__ = ["DIAGNOSIS", "Inputs", "LabelTable", "Refusal", "sort_inputs"]
 
 DIAGNOSIS = "diagnosis.json"
 """What a folder of a diagnosis holds."""
-
-SCREEN = "map.csv"
-"""What a folder of a screen holds."""
 
 _MOST_FOLDERS = 8
 """That a name is lengthened by, to tell it from another."""
@@ -46,6 +43,18 @@ class Refusal:
 
     name: str
     reason: str
+
+    @classmethod
+    def of(cls, path: Path, error: BushingNoiseError | str) -> Refusal:
+        """Refuse a file for an error, whose message may begin with its path.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> Refusal.of(Path("run07.wav"), "run07.wav: is empty").reason
+        'is empty'
+        """
+        return cls(str(path), str(error).removeprefix(f"{path}: "))
 
 
 @dataclass(frozen=True)
@@ -236,7 +245,7 @@ def _read_tables(paths: Iterable[Path]) -> tuple[list[LabelTable], list[Refusal]
             tables.append(LabelTable(path, tuple(rows)))
         except BushingNoiseError as error:
             lines.append(str(error))
-        refused += [Refusal(str(path), line.removeprefix(f"{path}: ")) for line in lines]
+        refused += [Refusal.of(path, line) for line in lines]
     return tables, refused
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.base.progress import counted, track
+from noise.pages.engine.maps import ConditionMap, Spot, areas_of
 from noise.pages.review.design_rig import rig_of
 from noise.pages.review.inputs import Refusal
-from noise.pages.review.maps import ConditionMap, Spot, areas_of
 from noise.pages.review.screens import read_screen
 from noise.pages.review.simulated import chosen_points, simulated_entry
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from noise.pages.review.entries import Entry
+    from noise.pages.engine.entry import Entry
     from noise.pages.review.inputs import Inputs
     from noise.pages.review.screens import ScreenMap, ScreenPoint
 
@@ -52,7 +52,7 @@ def screened_maps(
         try:
             found += [(path, one) for one in read_screen(path)]
         except BushingNoiseError as error:
-            refused.append(Refusal(str(path), str(error).removeprefix(f"{path}: ")))
+            refused.append(Refusal.of(path, error))
     if not found:
         return [], {}
     rigs = [_rig(screened, path.parent, inputs.designs) for path, screened in found]

@@ -6,14 +6,16 @@ and support, speed across and interference up.
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import RecordingError
-from noise.classifier import LABELS
-from noise.pictures.speeds import support_words
+from noise.base.label_names import LABELS
+from noise.base.tables import read_table
+from noise.labels.table import cell_number
+from noise.pictures.titles import support_words
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -121,59 +123,41 @@ def read_screen(path: Path) -> list[ScreenMap]:
     ...     [(one.title, one.points[0].words) for one in read_screen(path)]
     [('old', '5 rad/s, 0.279 mm: squawk'), ('new', '5 rad/s, 0.279 mm: none')]
     """
-    try:
-        rows = _rows(path)
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, csv.Error) as error:
-        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
+    _, rows = read_table(path)
     if not rows:
         raise RecordingError(f"{path}: has no rows, so is no map of a screen")
     maps: dict[tuple[str, str, str, float | None, float | None], list[ScreenPoint]] = {}
-    for number, row in enumerate(rows, 1):
-        where = f"{path}: row {number}"
-        missing = [column for column in _NEEDED if row.get(column) in (None, "")]
+    for n, row in enumerate(rows, 1):
+        where = f"{path}: row {n}"
+        named = row if isinstance(row, dict) else {}  # a line of JSON may be anything
+        missing = [column for column in _NEEDED if named.get(column) in (None, "")]
         if missing:
             raise RecordingError(f"{where} has no {missing[0]}")
         label = str(row["label"])
         if label not in LABELS:
             raise RecordingError(f"{where} has label {label!r}, expected {', '.join(LABELS)}")
+        number = partial(cell_number, row, where=where)
         key = (
             str(row["design"]),
             str(row.get("environment") or ""),
             str(row.get("motion") or ""),
-            _number(row, "temperature_C", where),
+            number("temperature_C"),
             _support(row, where),
         )
-        speed, fit = _number(row, "speed_rad_s", where), _number(row, "interference_mm", where)
+        speed, fit = number("speed_rad_s"), number("interference_mm")
         if speed is None or fit is None:
             raise RecordingError(f"{where}: speed and interference are numbers")
         maps.setdefault(key, []).append(
             ScreenPoint(
                 speed, fit, label,
                 str(row.get("regime") or ""),
-                _number(row, "level_db", where),
-                _number(row, "loudness", where),
+                number("level_db"),
+                number("loudness"),
                 str(row.get("how") or ""),
-                _number(row, "frequency_hz", where) or None,
+                number("frequency_hz") or None,
             )
         )  # fmt: skip
     return [ScreenMap(*key, tuple(points)) for key, points in maps.items()]
-
-
-def _rows(path: Path) -> list[dict[str, object]]:
-    ending = path.suffix.lower()
-    if ending == ".parquet":
-        from pyarrow import parquet
-
-        table: list[dict[str, object]] = parquet.read_table(path).to_pylist()
-        return table
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        if ending == ".jsonl":
-            import json
-
-            return [json.loads(line) for line in file if line.strip()]
-        return [{str(k): v for k, v in row.items()} for row in csv.DictReader(file)]
 
 
 def _support(row: dict[str, object], where: str) -> float | None:
@@ -181,15 +165,4 @@ def _support(row: dict[str, object], where: str) -> float | None:
         return None
     if row[_SUPPORT] in (None, "", "fixed"):
         return math.inf
-    return _number(row, _SUPPORT, where)
-
-
-def _number(row: dict[str, object], column: str, where: str) -> float | None:
-    value = row.get(column)
-    if value is None or value == "":
-        return None
-    try:
-        number = float(str(value))
-    except ValueError:
-        raise RecordingError(f"{where} has {column} {value!r}, expected a number") from None
-    return None if math.isnan(number) else number
+    return cell_number(row, _SUPPORT, where)

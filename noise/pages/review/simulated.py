@@ -7,7 +7,6 @@ anywhere else plays the nearest of the same label.
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -15,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.audio.sound import audible
-from noise.pages.review.entries import RATE, Entry
+from noise.pages.engine.entry import RATE, Entry
+from noise.screening.map.point import shaft_motion
 from sim.acquisition import Acquisition
 from sim.run import simulate
-from sim.shaft import ConstantSpeed, Oscillation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
     from noise.pages.review.screens import ScreenMap, ScreenPoint
-    from sim.shaft import ShaftMotion
 
 __all__ = ["MOST_SILENT", "SECONDS", "chosen_points", "simulated_entry"]
 
@@ -116,7 +114,7 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
     support = screened.support_stiffness
     run = simulate(
         rig,
-        _turning(point),
+        shaft_motion(point.speed, point.frequency),
         interference=1e-3 * point.interference,
         seconds=SECONDS,
         acquisition=Acquisition(rate=RATE),
@@ -129,17 +127,7 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
         title=f"{point.speed:.3g} rad/s, {point.interference:.3g} mm, {screened.title}",
         rows=(row,),
         condition=replace(run.recording.condition, material=screened.design),
-        origin="simulated",
         duration=SECONDS,
         sound=audible(run.recording, RATE).astype(np.float32),
-        offset=0.0,
-        calibrated=True,
         note="simulated for this page; label and level are the screen's",
     )
-
-
-def _turning(point: ScreenPoint) -> ShaftMotion:
-    """Turn steadily, or swing as fast as that at most."""
-    if point.frequency is None:
-        return ConstantSpeed(point.speed)
-    return Oscillation(point.speed / (2.0 * math.pi * point.frequency), point.frequency)

@@ -9,26 +9,23 @@ Conditions are attributes of the file. Datasets kept in other files are not foll
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.errors import RecordingError, not_installed
-from noise.recordings.formats.bounded import BoundedFile
-from noise.recordings.formats.hdf5_texts import check_texts
-from noise.recordings.formats.logged import LoggedChannel, raw_samples, refusing
-from noise.recordings.sampling import even_rate, whole_rate
-from noise.recordings.stated_condition import CONDITIONS
+from models.errors import RecordingError
+from noise.recordings.formats.logged import LoggedChannel
+from noise.recordings.formats.sampling import even_rate, whole_rate
+from noise.recordings.formats.stated_condition import CONDITIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from noise.recordings.readers import RawSamples
-
-__all__ = ["read_hdf5_file"]
+__all__ = ["open_hdf5"]
 
 _RATES = ("rate_Hz", "rate", "fs", "sampling_rate", "sample_rate", "sampling_frequency")
 _STEP = "dt"
@@ -39,36 +36,18 @@ _LONGEST = 1 << 16  # of the text of an attribute [byte]
 _ALLOWANCE = 1 << 20  # of a chunk that is larger than its data [byte]
 
 
-def read_hdf5_file(path: Path) -> RawSamples:
-    """Read the channels of an HDF5 file.
-
-    Parameters
-    ----------
-    path : Path
-        An existing file.
-
-    Returns
-    -------
-    RawSamples
-        Samples in SI, in the order of the dataset's names.
+@contextmanager
+def open_hdf5(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
+    """Give the channels of an HDF5 file, by name, and the conditions among its attributes.
 
     Raises
     ------
     RecordingError
-        The file is damaged, holds no channels, or these do not go together; or h5py is not
-        installed.
+        A dataset or an attribute is not what it announces.
     """
-    try:
-        import h5py
-    except ImportError:
-        raise RecordingError(not_installed(f"{path}: HDF5 files need", "h5py", "hdf5")) from None
-    with (
-        refusing(path, "HDF5 file"),
-        h5py.File(path, "r", locking=False) as file,
-        BoundedFile(path) as raw,
-    ):
-        if file.userblock_size or file.id.get_create_plist().get_sizes() != (8, 8):
-            raise RecordingError(f"{path}: has a user block or short addresses, expected neither")
+    import h5py
+
+    with h5py.File(path, "r", locking=False) as file:
         datasets: list[Any] = []
 
         def collect(_: str, item: Any) -> None:
@@ -76,15 +55,13 @@ def read_hdf5_file(path: Path) -> RawSamples:
                 datasets.append(item)
 
         file.visititems(collect)
-        for item in {holder for dataset in datasets for holder in (file, *_holders(dataset))}:
-            check_texts(path, raw, h5py.h5o.get_info(item.id).addr)
         logged = [
             _channel(path, dataset)
             for dataset in datasets
             if _last(dataset) not in _TIMES and dataset.size > 0
         ]
         properties = {key: _attribute(path, file, key) for key in CONDITIONS}
-        return raw_samples(path, [c for c in logged if c is not None], properties)
+        yield [channel for channel in logged if channel is not None], properties
 
 
 def _channel(path: Path, dataset: Any) -> LoggedChannel | None:

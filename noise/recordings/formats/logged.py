@@ -1,4 +1,4 @@
-"""From the channels of a data logger to raw samples: what TDMS, MDF4 and HDF5 have in common.
+"""Channels of data loggers as ours: what TDMS, MDF4 and HDF5 have in common.
 
 A channel is what its unit says, or, without a unit, what its name says if that is one of ours; its
 samples are brought to SI. Loggers record more than noise: a temperature or a voltage is passed
@@ -6,16 +6,13 @@ over, unless a sidecar names it. What contradicts itself is refused, and so are 
 different rates or lengths: to bring them together one would have to invent samples, and the delay
 of a resampling filter would look like one of the rig.
 
-Samples are copied block by block into the one array returned, so that reading takes the memory of
-the result and no more.
+Samples are read block by block, so that reading takes the memory of the result and no more.
 """
 
 from __future__ import annotations
 
-import logging
 import math
 import re
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -23,10 +20,10 @@ import numpy as np
 
 from models.errors import RecordingError
 from models.recording import CHANNEL_UNITS, Channel
-from noise.recordings.readers import RawSamples
-from noise.recordings.sampling import SAME_RATE
-from noise.recordings.stated_condition import stated_condition
-from noise.recordings.units import kind_of_unit, known_units
+from noise.recordings.files import RawSamples
+from noise.recordings.formats.sampling import SAME_RATE
+from noise.recordings.formats.stated_condition import stated_condition
+from noise.recordings.formats.units import kind_of_unit, known_units
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -35,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-__all__ = ["LoggedChannel", "is_ours", "raw_samples", "refusing"]
+__all__ = ["LoggedChannel", "describe_channels", "is_ours", "sample_blocks"]
 
 _BLOCK = 1 << 16  # samples a channel
 _OURS = re.compile(rf"({'|'.join(CHANNEL_UNITS)})(_([2-9]|[1-9]\d{{1,3}}))?")
@@ -63,10 +60,10 @@ class LoggedChannel:
     read: Callable[[int, int], NDArray[np.generic]]
 
 
-def raw_samples(
+def describe_channels(
     path: Path, logged: Sequence[LoggedChannel], properties: Mapping[str, object]
-) -> RawSamples:
-    """Choose, convert and read the channels of a logger's file.
+) -> tuple[RawSamples, list[tuple[LoggedChannel, float]]]:
+    """Choose the channels of a logger's file that make a recording.
 
     Parameters
     ----------
@@ -76,6 +73,13 @@ def raw_samples(
         In the order of the file.
     properties : mapping
         Of the file as a whole; those named as conditions are ours.
+
+    Returns
+    -------
+    raw : RawSamples
+        Without samples.
+    rows : list of (LoggedChannel, float)
+        The channel that each row is read from, and its unit [SI unit].
 
     Raises
     ------
@@ -87,8 +91,8 @@ def raw_samples(
     >>> from pathlib import Path
     >>> x = np.ones(400)
     >>> arm = LoggedChannel("Arm 1", "N mm", 400, 48e3, lambda a, b: x[a:b])
-    >>> raw = raw_samples(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
-    >>> raw.channels[0].name, float(raw.samples.max()), raw.condition.speed
+    >>> raw, rows = describe_channels(Path("run.h5"), [arm], {"speed_rad_s": 5.0})
+    >>> raw.channels[0].name, rows[0][1], raw.condition.speed
     ('torque', 0.001, 5.0)
     """
     if not logged:
@@ -119,17 +123,44 @@ def raw_samples(
             f"{path}: channel {first.name!r} has unit {first.unit!r}, expected {known_units()} "
             "(or name the channels in a sidecar)"
         )
-    samples = np.empty((len(rows), first.n_samples))
-    for row, (channel, kind) in zip(samples, rows, strict=True):
-        _fill(path, row, channel, kind[1] if kind else 1.0)
-    return RawSamples(
-        samples=samples,
+    raw = RawSamples(
+        samples=np.empty((len(rows), 0)),
         rate=first.rate,
         fractional=False,
         channels=_names([(channel.name, kind) for channel, kind in rows]),
         condition=stated_condition(properties, str(path)),
         unclear=doubts[0] if doubts else "",
     )
+    return raw, [(channel, kind[1] if kind else 1.0) for channel, kind in rows]
+
+
+def sample_blocks(
+    path: Path, rows: Sequence[tuple[LoggedChannel, float]]
+) -> Iterator[NDArray[np.float64]]:
+    """Read the rows of `describe_channels` one after the other, each in blocks, in SI.
+
+    Yields
+    ------
+    ndarray, shape (n,)
+        [SI unit of the channel]
+
+    Raises
+    ------
+    RecordingError
+        A channel ends before its file says.
+    """
+    for channel, factor in rows:
+        for start in range(0, channel.n_samples, _BLOCK):
+            stop = min(channel.n_samples, start + _BLOCK)
+            block = np.array(channel.read(start, stop), dtype=np.float64)
+            if block.shape != (stop - start,):
+                raise RecordingError(
+                    f"{path}: channel {channel.name!r} is truncated; {channel.n_samples} samples "
+                    f"are announced, {start + len(block)} can be read"
+                )
+            with np.errstate(over="ignore", invalid="ignore"):  # refused where it is not finite
+                block *= factor
+            yield block
 
 
 def is_ours(name: str, unit: str) -> bool:
@@ -141,57 +172,6 @@ def is_ours(name: str, unit: str) -> bool:
     (True, True, False)
     """
     return kind_of_unit(unit) is not None or _OURS.fullmatch(name.strip().lower()) is not None
-
-
-@contextmanager
-def refusing(path: Path, what: str, library: str = "") -> Iterator[None]:
-    """Turn whatever a library raises over a damaged file into one line, and keep it from talking.
-
-    Parameters
-    ----------
-    path : Path
-        For messages.
-    what : str
-        What the file should be.
-    library : str
-        Package whose log is silenced: what it warns of is refused here, or does not matter.
-
-    Raises
-    ------
-    RecordingError
-        In place of any other exception but a lack of memory.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> with tempfile.NamedTemporaryFile(suffix=".h5") as file:
-    ...     try:
-    ...         with refusing(Path(file.name), "HDF5 file"):
-    ...             {}["missing"]
-    ...     except RecordingError as error:
-    ...         print(str(error).partition(": ")[2])
-    is damaged or no HDF5 file (KeyError: 'missing')
-    """
-    path.open("rb").close()  # a file that may not be read is not damaged
-    names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] == library]
-    loggers = [logging.getLogger(name) for name in names]
-    for logger in loggers:
-        logger.addFilter(_silent)
-    try:
-        yield
-    except (RecordingError, MemoryError):
-        raise
-    except Exception as error:
-        reason = " ".join(f"{type(error).__name__}: {error}".split())[:200]
-        raise RecordingError(f"{path}: is damaged or no {what} ({reason})") from error
-    finally:
-        for logger in loggers:
-            logger.removeFilter(_silent)
-
-
-def _silent(_: logging.LogRecord) -> bool:
-    return False
 
 
 def _kind(channel: LoggedChannel, where: str) -> tuple[str, float] | None:
@@ -214,20 +194,6 @@ def _kind(channel: LoggedChannel, where: str) -> tuple[str, float] | None:
 def _together(one: LoggedChannel, other: LoggedChannel) -> bool:
     same_length = one.n_samples == other.n_samples
     return same_length and math.isclose(one.rate, other.rate, rel_tol=SAME_RATE)
-
-
-def _fill(path: Path, row: NDArray[np.float64], channel: LoggedChannel, factor: float) -> None:
-    for start in range(0, row.size, _BLOCK):
-        stop = min(row.size, start + _BLOCK)
-        block = channel.read(start, stop)
-        if len(block) != stop - start:
-            raise RecordingError(
-                f"{path}: channel {channel.name!r} is truncated; {row.size} samples are announced, "
-                f"{start + len(block)} can be read"
-            )
-        row[start:stop] = block
-    with np.errstate(over="ignore", invalid="ignore"):  # refused where it is not finite
-        row *= factor
 
 
 def _names(

@@ -7,26 +7,27 @@ invalid are refused; a measurement with holes is not the measurement.
 
 from __future__ import annotations
 
+import logging
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from models.errors import RecordingError, not_installed
-from noise.recordings.formats.bounded import BoundedFile
-from noise.recordings.formats.logged import LoggedChannel, is_ours, raw_samples, refusing
-from noise.recordings.formats.mdf_blocks import COMMENT_LINK, check_mdf_blocks
-from noise.recordings.formats.mdf_comment import comment_properties
-from noise.recordings.sampling import even_rate
+from models.errors import RecordingError
+from noise.recordings.formats.logged import LoggedChannel, is_ours
+from noise.recordings.formats.sampling import even_rate
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from noise.recordings.readers import RawSamples
+__all__ = ["open_mdf"]
 
-__all__ = ["read_mdf_file"]
-
+_HEAD = 64  # bytes before the first block
+_UNFINISHED = slice(60, 64)  # of the head: flags of what was still to be done
 _FIXED_LENGTH = 0  # type of a channel: a plain value
 _VIRTUAL = (3, 6)  # types of channels that have no bytes in a record
 _HAS_MARK = 1 << 1  # flag of a channel: a bit of each record says whether its value is valid
@@ -34,46 +35,45 @@ _NUMBERS = range(6)  # data types: integers and floating-point values, both byte
 _TO_TEXT = (7, 8, 9, 10)  # conversions from value or text to text
 
 
-def read_mdf_file(path: Path) -> RawSamples:
-    """Read the channels of an MDF4 file.
-
-    Parameters
-    ----------
-    path : Path
-        An existing file.
-
-    Returns
-    -------
-    RawSamples
-        Samples in SI, in the order of the file.
+@contextmanager
+def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
+    """Give the channels of an MDF4 file and the properties in its comment.
 
     Raises
     ------
     RecordingError
-        The file is damaged, holds no channels, or these do not go together; or asammdf is not
-        installed.
+        The file is of another version, was not finished, or a channel lies outside its records.
     """
-    try:
-        from asammdf import MDF
-    except ImportError:
-        raise RecordingError(not_installed(f"{path}: MDF files need", "asammdf", "mdf")) from None
-    with refusing(path, "MDF file", "asammdf"), _WithoutComment(path) as stream:
-        with BoundedFile(path) as whole:
-            properties = comment_properties(path, check_mdf_blocks(path, whole))
-        with MDF(stream) as file:
-            groups = range(len(file.groups))
-            logged = [channel for group in groups for channel in _group(path, file, group)]
-            return raw_samples(path, logged, properties)
+    from asammdf import MDF
+
+    _check_head(path)
+    logging.getLogger("asammdf").addFilter(_refuse_what_is_cut)
+    # Given a name, the library maps the file, and fails over parts of large ones.
+    with path.open("rb") as stream, MDF(stream) as file:
+        groups = range(len(file.groups))
+        logged = [channel for group in groups for channel in _group(path, file, group)]
+        comment = ET.fromstring(file.header.comment)
+        yield logged, {e.attrib["name"]: e.text or "" for e in comment.iter("e")}
 
 
-class _WithoutComment(BoundedFile):
-    """An MDF4 file whose header names no comment: the library prints what it cannot follow."""
+def _refuse_what_is_cut(record: logging.LogRecord) -> bool:
+    """Make an error of what the library only warns of: it goes on without what lies beyond."""
+    if "file size" in record.getMessage():
+        raise ValueError(record.getMessage())
+    return False
 
-    def read(self, size: int | None = -1, /) -> bytes:
-        start = self.tell()
-        data = super().read(size)
-        first, last = (min(max(at - start, 0), len(data)) for at in COMMENT_LINK)
-        return data[:first] + bytes(last - first) + data[last:] if last > first else data
+
+def _check_head(path: Path) -> None:
+    """Refuse what the library would convert or mend, and so hand out what was not measured."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if head[:8] not in (b"MDF     ", b"UnFinMF ") or not head[8:9].isdigit():
+        raise RecordingError(f"{path}: is no MDF file")
+    if head[8:10] != b"4.":
+        version = head[8:12].decode("latin-1")
+        raise RecordingError(f"{path}: is an MDF file of version {version!r}, expected 4")
+    if head[:8] == b"UnFinMF " or any(head[_UNFINISHED]):
+        raise RecordingError(f"{path}: was not finished by the program that wrote it")
 
 
 def _group(path: Path, file: Any, group: int) -> list[LoggedChannel]:

@@ -9,26 +9,25 @@ what the file says, or contradicts it.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.errors import RecordingError, not_installed
-from noise.recordings.formats.bounded import BoundedFile
-from noise.recordings.formats.logged import LoggedChannel, raw_samples, refusing
-from noise.recordings.formats.tdms_segments import check_tdms_segments
-from noise.recordings.sampling import even_rate, whole_rate
+from models.errors import RecordingError
+from noise.recordings.formats.logged import LoggedChannel
+from noise.recordings.formats.sampling import even_rate, whole_rate
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from noise.recordings.readers import RawSamples
+__all__ = ["open_tdms"]
 
-__all__ = ["read_tdms_file"]
-
+_BIG_ENDIAN = 1 << 6  # in the table of contents, which itself is little-endian
+_VERSIONS = (4712, 4713)
 _STEP = "wf_increment"
 _TIMES = ("time", "t", "time_s")
 _UNITS = ("unit_string", "NI_UnitDescription", "unit", "units")
@@ -39,44 +38,44 @@ _SCALES = (
 )
 
 
-def read_tdms_file(path: Path) -> RawSamples:
-    """Read the channels of a TDMS file.
-
-    Parameters
-    ----------
-    path : Path
-        An existing file.
-
-    Returns
-    -------
-    RawSamples
-        Samples in SI, in the order of the file.
+@contextmanager
+def open_tdms(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
+    """Give the channels of a TDMS file and its properties.
 
     Raises
     ------
     RecordingError
-        The file is damaged, holds no channels, or these do not go together; or nptdms is not
-        installed.
+        The file breaks off, or a channel announces what cannot be.
     """
-    try:
-        from nptdms import TdmsFile
-    except ImportError:
-        raise RecordingError(not_installed(f"{path}: TDMS files need", "nptdms", "tdms")) from None
-    with refusing(path, "TDMS file", "nptdms"), BoundedFile(path) as stream:
-        check_tdms_segments(path, stream)
-        file = TdmsFile.open(stream)
+    from nptdms import TdmsFile
+
+    _check_head(path)
+    with path.open("rb") as stream, TdmsFile.open(stream) as file:
+        if file.file_status.incomplete_final_segment:
+            raise RecordingError(f"{path}: is truncated; its last segment goes on")
         logged = []
         for group in file.groups():
-            channels = [c for c in group.channels() if _numeric(path, c, stream.size)]
+            channels = [c for c in group.channels() if _numeric(path, c)]
             times = next((c for c in channels if c.name.lower() in _TIMES), None)
             for channel in channels:
                 found = _channel(path, channel, times)
                 if channel is not times and found is not None:
                     logged.append(found)
-        return raw_samples(path, logged, file.properties)
+        yield logged, file.properties
 
 
-def _numeric(path: Path, channel: Any, size: int) -> bool:
+def _check_head(path: Path) -> None:
+    with path.open("rb") as file:
+        tag, contents, version = file.read(4), file.read(4), file.read(4)
+    if tag != b"TDSm":
+        raise RecordingError(f"{path}: is no TDMS file; 'TDSm' expected")
+    big = int.from_bytes(contents, "little") & _BIG_ENDIAN
+    number = int.from_bytes(version, "big" if big else "little")
+    if number not in _VERSIONS:
+        raise RecordingError(f"{path}: is of TDMS version {number}, expected 4712 or 4713")
+
+
+def _numeric(path: Path, channel: Any) -> bool:
     """Whether a channel holds real numbers; refused where it announces more than the file has."""
     where = f"{path}: channel {channel.name!r}"
     n = len(channel)
@@ -84,6 +83,7 @@ def _numeric(path: Path, channel: Any, size: int) -> bool:
         scaler = n > 0 and bool(getattr(channel, "_scaler_data_types", None))
         if not scaler:
             return False
+    size = path.stat().st_size
     if n > size:
         raise RecordingError(f"{where} announces {n} samples in a file of {size} bytes")
     if np.dtype(channel.dtype).kind not in "iuf":

@@ -1,1 +1,1 @@
-"""What is screened: a design, its use, its environments and its tolerances."""
+"""Bushing designs: their use, environments and tolerances."""

@@ -1,4 +1,4 @@
-"""A bushing design as a file, and how it is used.
+"""Bushing design: a rig, its use and its tolerances, read from a file.
 
 A design file is a rig file with two tables more: ``[design]`` says what the design is called and
 what it will meet in use, ``[tolerances]`` how far built ones lie from it. The name of a material
@@ -28,8 +28,14 @@ from typing import TYPE_CHECKING
 from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig, material_names, read_toml, rig_from
-from noise.screening.design.tolerances import ABSOLUTE_ZERO, read_tolerances
-from noise.screening.map.axes import axis_values
+from noise.screening.design.axis_values import (
+    FREQUENCY,
+    SPEED,
+    SUPPORT,
+    TEMPERATURE,
+    axis_values,
+)
+from noise.screening.design.tolerances import read_tolerances
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,13 +43,7 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from noise.screening.design.tolerances import Tolerance
 
-__all__ = ["FREQUENCY_STEP", "SPEED_STEP", "Design", "Swinging", "Use", "load_design"]
-
-SPEED_STEP = 0.125
-"""Of a range of speeds without points of its own [rad/s]."""
-
-FREQUENCY_STEP = 0.25
-"""Likewise of frequencies [Hz]."""
+__all__ = ["Design", "Swinging", "Use", "load_design"]
 
 _USE_KEYS = {
     "name",
@@ -187,24 +187,22 @@ def load_design(given: str | Path) -> Design:
 
 
 def _use(table: Mapping[str, object], where: str) -> Use:
-    speed, interference, support, temperature = (
-        table.get(key)
-        for key in ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad", "temperature_C")
-    )
-    fits = () if interference is None else axis_values(interference, f"{where}: interference_mm")
+    fits = axis_values(table.get("interference_mm"), f"{where}: interference_mm")
     if fits and fits[-1] >= 10.0:
         raise ParameterError(f"{where}: interference_mm = {fits[-1]:g} must be below 10")
+    speed, support, temperature = (
+        axis_values(table.get(key), f"{where}: {key}", rule)
+        for key, rule in (
+            ("speed_rad_s", SPEED),
+            ("support_stiffness_Nm_rad", SUPPORT),
+            ("temperature_C", TEMPERATURE),
+        )
+    )
     return Use(
-        speed=() if speed is None else axis_values(speed, f"{where}: speed_rad_s", step=SPEED_STEP),
+        speed=speed,
         interference=tuple(1e-3 * fit for fit in fits),
-        support_stiffness=()
-        if support is None
-        else axis_values(support, f"{where}: support_stiffness_Nm_rad", fixed=True),
-        temperature=()
-        if temperature is None
-        else axis_values(
-            temperature, f"{where}: temperature_C", points=3, low=ABSOLUTE_ZERO, open_low=False
-        ),
+        support_stiffness=support,
+        temperature=temperature,
         swinging=_swinging(table.get("oscillation"), where),
     )
 
@@ -218,5 +216,5 @@ def _swinging(given: object, where: str) -> Swinging | None:
     degrees = a_number(table, "amplitude_deg", where)
     if "frequency_hz" not in table:
         raise ParameterError(f"{where}: frequency_hz is missing")
-    frequency = axis_values(table["frequency_hz"], f"{where}: frequency_hz", step=FREQUENCY_STEP)
+    frequency = axis_values(table["frequency_hz"], f"{where}: frequency_hz", FREQUENCY)
     return Swinging(math.radians(degrees), frequency)

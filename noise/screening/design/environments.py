@@ -1,4 +1,4 @@
-"""Surroundings of a bushing: cold, hot, wet, dust, grease, as sets of friction parameters.
+"""Environments of a bushing: cold, hot, wet, dust, grease, as sets of friction parameters.
 
 The thesis recommends to study them (Recommendation 5) and measured none. Each set is assumed,
 number by number with its reasoning, in ``environments.toml`` beside this file; a rig in one of them
@@ -17,14 +17,20 @@ from models.errors import ParameterError
 from models.rig_files.rig_file import parse_spec
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from models.rig import Fit, LawSpec, Rig
 
-__all__ = ["DRY", "Environment", "environment", "environment_names", "in_environment"]
+__all__ = [
+    "DRY", "FIT_PARAMETERS", "Environment", "environment", "environment_names", "in_environment",
+    "scaled_fit",
+]  # fmt: skip
 
 DRY = "dry"
 """What is measured in, as a rule."""
 
-_FACTORS = ("elastomer_stiffness", "damping", "critical_torque", "kinetic_torque")
+FIT_PARAMETERS = ("elastomer_stiffness", "damping", "critical_torque", "kinetic_torque")
+"""Of a fit, what environments and tolerances multiply."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +42,8 @@ class Environment:
     name : str
     temperature : float
         [degree Celsius]
-    elastomer_stiffness, damping, critical_torque, kinetic_torque : float
-        Factors on those of each fit.
+    factors : dict of str to float
+        On parameters of each fit, by `FIT_PARAMETERS` [-].
     effects : tuple of LawSpec
         What the contact does beyond its friction law.
     why : tuple of str
@@ -46,10 +52,7 @@ class Environment:
 
     name: str
     temperature: float
-    elastomer_stiffness: float = 1.0
-    damping: float = 1.0
-    critical_torque: float = 1.0
-    kinetic_torque: float = 1.0
+    factors: dict[str, float]
     effects: tuple[LawSpec, ...] = ()
     why: tuple[str, ...] = ()
 
@@ -65,7 +68,7 @@ def _environments() -> dict[str, Environment]:
             temperature=table["temperature_C"],
             effects=tuple(parse_spec(effect) for effect in table.get("effects", ())),
             why=tuple(table["why"]),
-            **{key: table[key] for key in _FACTORS if key in table},
+            factors={key: table[key] for key in FIT_PARAMETERS if key in table},
         )
         for name, table in tomllib.loads(text).items()
     }
@@ -92,7 +95,7 @@ def environment(name: str) -> Environment:
 
     Examples
     --------
-    >>> environment("Grease").kinetic_torque
+    >>> environment("Grease").factors["kinetic_torque"]
     0.3
     """
     found = _environments().get(name.strip().lower())
@@ -118,19 +121,34 @@ def in_environment(rig: Rig, where: Environment) -> Rig:
     has = {effect.name for effect in rig.effects}
     return replace(
         rig,
-        fits=tuple(_changed(fit, where) for fit in rig.fits),
+        fits=tuple(scaled_fit(fit, where.factors) for fit in rig.fits),
         effects=(*rig.effects, *(e for e in where.effects if e.name not in has)),
         assumed=(*rig.assumed, *(f"{where.name}: {reason}" for reason in where.why)),
     )
 
 
-def _changed(fit: Fit, where: Environment) -> Fit:
-    kinetic = fit.kinetic_torque * where.kinetic_torque
+def scaled_fit(fit: Fit, factors: Mapping[str, float]) -> Fit:
+    """Return a fit with its parameters multiplied.
+
+    Parameters
+    ----------
+    fit : Fit
+    factors : mapping of str to float
+        By `FIT_PARAMETERS` [-]; others do nothing. What slides at a torque can be held by it, so a
+        critical torque is at least the kinetic one.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> fit = load_material_rig("fluorocarbon-thesis").fit(0.279e-3)
+    >>> scaled_fit(fit, {"kinetic_torque": 2.0}).critical_torque
+    16.0
+    """
+    stiffness, damping, critical, kinetic = (factors.get(name, 1.0) for name in FIT_PARAMETERS)
     return replace(
         fit,
-        elastomer_stiffness=fit.elastomer_stiffness * where.elastomer_stiffness,
-        # What slides at a torque can be held by it.
-        critical_torque=max(fit.critical_torque * where.critical_torque, kinetic),
-        kinetic_torque=kinetic,
-        damping={k: c * where.damping for k, c in fit.damping.items()},
+        elastomer_stiffness=fit.elastomer_stiffness * stiffness,
+        critical_torque=max(fit.critical_torque * critical, fit.kinetic_torque * kinetic),
+        kinetic_torque=fit.kinetic_torque * kinetic,
+        damping={support: value * damping for support, value in fit.damping.items()},
     )

@@ -1,4 +1,4 @@
-"""How far a built bushing may lie from its drawing: the ``[tolerances]`` of a design file.
+"""Tolerances of built bushings about their drawing: the ``[tolerances]`` of a design file.
 
 Each entry becomes a factor on the nominal value, which is what a population is drawn in: a number
 is a relative standard deviation, ``absolute`` a standard deviation in the unit of the design file,
@@ -11,9 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from noise.screening.parts.sampling import Distribution
 
 __all__ = ["ABSOLUTE_ZERO", "PARAMETERS", "Tolerance", "read_tolerances"]
 
@@ -33,6 +37,13 @@ PARAMETERS = {
 """What can vary, with the unit in which a design file says it."""
 
 
+_WIDEST_NORMAL = 1.0 / 6.0
+"""Relative standard deviation from which on a normal distribution is taken as lognormal."""
+
+_NARROWEST = 1e-300
+"""Standard deviation of what does not vary, of which `scipy.stats` takes none of 0."""
+
+
 @dataclass(frozen=True)
 class Tolerance:
     """How one parameter varies.
@@ -44,14 +55,13 @@ class Tolerance:
     kind : str
         ``relative`` or ``absolute``, a standard deviation of a normal distribution; or ``limits``.
     first, second : float
-        The standard deviation, and nothing; or the limits.
+        The standard deviation, as a share [-] or in the unit of `PARAMETERS`, and nothing; or the
+        limits, in that unit.
 
     Examples
     --------
-    >>> Tolerance("interference", "absolute", 0.0279).factors(0.279)
-    ('normal', 1.0, 0.1)
-    >>> Tolerance("damping", "limits", 0.08, 0.12).factors(0.1)
-    ('uniform', 0.8, 1.2)
+    >>> Tolerance("damping", "limits", 0.08, 0.12).factor(0.1).ppf([0.0, 0.5, 1.0])
+    array([0.8, 1. , 1.2])
     """
 
     name: str
@@ -59,22 +69,35 @@ class Tolerance:
     first: float
     second: float = math.nan
 
-    def factors(self, nominal: float) -> tuple[str, float, float]:
-        """Distribution of the factor on `nominal`, which is in the unit of `PARAMETERS`.
+    def factor(self, nominal: float) -> Distribution:
+        """Distribution of the factor on a nominal value.
+
+        A normal distribution so wide that it would reach to zero is taken as lognormal.
+
+        Parameters
+        ----------
+        nominal : float
+            In the unit of `PARAMETERS`, such as [Nm].
 
         Returns
         -------
-        tuple of str, float, float
-            ``normal`` with mean and standard deviation, or ``uniform`` with its limits.
+        Distribution
+            Of `scipy.stats`; its median is 1 unless there are limits.
         """
+        from scipy import stats
+
         offset = -ABSOLUTE_ZERO if self.name == "temperature" else 0.0
         scale = nominal + offset
-        if self.kind == "relative":
-            return "normal", 1.0, self.first
-        if self.kind == "absolute":
-            return "normal", 1.0, round(self.first / scale, 12)
-        low, high = ((limit + offset) / scale for limit in (self.first, self.second))
-        return "uniform", round(low, 12), round(high, 12)
+        if self.kind == "limits":
+            low, high = (round((each + offset) / scale, 12) for each in (self.first, self.second))
+            factor: Distribution = stats.uniform(low, high - low)
+            return factor
+        spread = self.first if self.kind == "relative" else round(self.first / scale, 12)
+        if spread < _WIDEST_NORMAL:
+            factor = stats.norm(1.0, max(spread, _NARROWEST))
+        else:
+            factor = stats.lognorm(math.sqrt(math.log1p(spread**2)))
+        return factor
 
 
 def read_tolerances(given: object, where: str) -> tuple[Tolerance, ...]:

@@ -1,4 +1,4 @@
-"""Points of a map, simulated on all cores or on a cluster.
+"""Evaluation of batches of map points, on all cores or on a cluster.
 
 A batch is points of one rig in one environment. It is cut into pieces that are independent, so that
 the numbers are the same whoever simulates them; the pieces follow supports, whose structure is
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +19,7 @@ from joblib import Parallel, delayed
 from models.errors import BushingNoiseError, ParameterError
 from noise.batch.cluster import cluster
 from noise.batch.work import one_thread
-from noise.screening.map.point import REGIMES, judge
-from sim.shaft import Oscillation
+from noise.screening.map.point import REGIMES, evaluate_point, shaft_motion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
 
-__all__ = ["LABELS", "Batch", "Judge", "judging"]
+__all__ = ["LABELS", "Batch", "Evaluator", "batch_evaluator"]
 
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
@@ -67,22 +66,16 @@ class Batch:
 
     def part(self, chosen: NDArray[np.int64]) -> Batch:
         """Return some of the points."""
-        return Batch(
-            self.rig,
-            self.speed[chosen],
-            self.frequency[chosen],
-            self.interference[chosen],
-            self.support_stiffness[chosen],
-            self.temperature[chosen],
-        )
+        _, *axes = (getattr(self, one.name) for one in fields(self))
+        return Batch(self.rig, *(axis[chosen] for axis in axes))
 
 
-Judge = Callable[[Batch], "NDArray[np.float64]"]
+Evaluator = Callable[[Batch], "NDArray[np.float64]"]
 """Returns codes of regime and label, and the level [dB], of each point; shape (n, 3)."""
 
 
 @contextmanager
-def judging(*, workers: int = -1, scheduler: str | None = None) -> Iterator[Judge]:
+def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Iterator[Evaluator]:
     """Give a function that simulates batches.
 
     Parameters
@@ -105,29 +98,31 @@ def judging(*, workers: int = -1, scheduler: str | None = None) -> Iterator[Judg
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
-    >>> one = np.ones(1)
-    >>> with judging() as judged:
-    ...     judged(Batch(load_material_rig("PDMS"), one, np.nan * one, 3e-4 * one, 2e3 * one, one))
+    >>> one, rig = np.ones(1), load_material_rig("PDMS")
+    >>> with batch_evaluator() as evaluate:
+    ...     evaluate(Batch(rig, one, np.nan * one, 3e-4 * one, 2e3 * one, one))
     array([[ 0.,  0., nan]])
     """
     if scheduler is None:
 
-        def here(batch: Batch) -> NDArray[np.float64]:
+        def on_threads(batch: Batch) -> NDArray[np.float64]:
             pieces = _pieces(batch, _PIECE)
             with one_thread():
                 found = Parallel(n_jobs=workers, prefer="threads", batch_size=1)(
-                    delayed(_judged)(batch.part(piece)) for piece in pieces
+                    delayed(_evaluate)(batch.part(piece)) for piece in pieces
                 )
             return _joined(batch, pieces, found)
 
-        yield here
+        yield on_threads
         return
     with cluster(scheduler) as spread:
 
-        def there(batch: Batch) -> NDArray[np.float64]:
+        def on_cluster(batch: Batch) -> NDArray[np.float64]:
             pieces = _pieces(batch, _FAR_PIECE)
             calls = [(batch.part(piece), index) for index, piece in enumerate(pieces)]
-            found: dict[int, NDArray[np.float64] | str | None] = dict(spread(_judged_there, calls))
+            found: dict[int, NDArray[np.float64] | str | None] = dict(
+                spread(_evaluate_on_cluster, calls)
+            )
             values: list[NDArray[np.float64]] = []
             for index in range(len(pieces)):
                 result = found[index]
@@ -136,7 +131,7 @@ def judging(*, workers: int = -1, scheduler: str | None = None) -> Iterator[Judg
                 values.append(result)
             return _joined(batch, pieces, values)
 
-        yield there
+        yield on_cluster
 
 
 def _pieces(batch: Batch, size: int) -> list[NDArray[np.int64]]:
@@ -147,28 +142,27 @@ def _pieces(batch: Batch, size: int) -> list[NDArray[np.int64]]:
 def _joined(
     batch: Batch, pieces: list[NDArray[np.int64]], found: list[NDArray[np.float64]]
 ) -> NDArray[np.float64]:
-    judged = np.empty((batch.speed.size, 3))
+    rows = np.empty((batch.speed.size, 3))
     for piece, values in zip(pieces, found, strict=True):
-        judged[piece] = values
-    return judged
+        rows[piece] = values
+    return rows
 
 
-def _judged_there(batch: Batch, index: int) -> tuple[int, NDArray[np.float64] | str]:
+def _evaluate_on_cluster(batch: Batch, index: int) -> tuple[int, NDArray[np.float64] | str]:
     try:
         with one_thread():
-            return index, _judged(batch)
+            return index, _evaluate(batch)
     except BushingNoiseError as error:
         return index, str(error)
 
 
-def _judged(batch: Batch) -> NDArray[np.float64]:
+def _evaluate(batch: Batch) -> NDArray[np.float64]:
     rows = np.empty((batch.speed.size, 3))
     for i in range(batch.speed.size):
         speed, frequency = float(batch.speed[i]), float(batch.frequency[i])
-        swings = math.isfinite(frequency)
-        found = judge(
+        found = evaluate_point(
             batch.rig,
-            Oscillation(speed / (2.0 * math.pi * frequency), frequency) if swings else speed,
+            shaft_motion(speed, frequency if math.isfinite(frequency) else None),
             interference=float(batch.interference[i]),
             support_stiffness=float(batch.support_stiffness[i]),
             temperature=float(batch.temperature[i]),

@@ -1,4 +1,4 @@
-"""Over which conditions a design is mapped: what the caller says, else its use, else its rig."""
+"""Grid of conditions over which a design is mapped: the caller's, its use's or its rig's."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
-from noise.screening.design.design import SPEED_STEP, Use
+from noise.screening.design.axis_values import SPEED_STEP, spread
+from noise.screening.design.design import Use
 from noise.screening.design.environments import DRY, environment
-from noise.screening.map.axes import spread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

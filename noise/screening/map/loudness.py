@@ -1,4 +1,4 @@
-"""Loudness of a map's noises: N10 of one point a region, carried to the rest by level.
+"""Loudness of a map's noises: N10 of one point a region, scaled to the rest by level.
 
 The procedure of ISO 532-1 for time-varying sounds takes as long as twenty runs, so it hears one
 point of each region of one label: the loudest. From there loudness goes with level by Stevens'
@@ -15,9 +15,8 @@ import numpy as np
 from scipy import ndimage
 
 from features.sound_quality import SHORTEST, loudness_n10
-from noise.screening.map.point import point_sound
+from noise.screening.map.point import point_sound, shaft_motion
 from noise.screening.ranking.ranking import loudness_weight
-from sim.shaft import Oscillation
 
 if TYPE_CHECKING:
     from models.rig import Rig
@@ -30,7 +29,7 @@ _MOST_REGIONS = 6
 
 
 @dataclass(frozen=True)
-class _Heard:
+class _LoudPoint:
     label: str
     level: float
     loudness: float
@@ -54,18 +53,13 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
     ParameterError
         The extra ``sound-quality`` is not installed.
     """
-    heard: list[_Heard] = []
+    heard: list[_LoudPoint] = []
     for where, label in _regions(found):
         t, k, i, v = where
         grid = found.grid
-        speed = grid.speed[v]
-        shaft: float | Oscillation = speed
-        if grid.frequency:
-            frequency = grid.frequency[v]
-            shaft = Oscillation(speed / (2.0 * np.pi * frequency), frequency)
         sound = point_sound(
             rig,
-            shaft,
+            shaft_motion(grid.speed[v], grid.frequency[v] if grid.frequency else None),
             interference=grid.interference[i],
             support_stiffness=grid.support_stiffness[k],
             temperature=grid.temperature[t],
@@ -73,16 +67,16 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
         rate = sound.motion.rate
         cycles = int(np.ceil(SHORTEST * rate / sound.pressure.size))  # of a fast swing
         n10 = loudness_n10(np.tile(sound.pressure, cycles), rate)
-        heard.append(_Heard(label, float(found.level[where]), n10))
+        heard.append(_LoudPoint(label, float(found.level[where]), n10))
     loudness = np.full(found.level.shape, np.nan)
     for label in {one.label for one in heard}:
         of_label = [one for one in heard if one.label == label]
         levels = np.array([one.level for one in of_label])
         sones = np.array([one.loudness for one in of_label])
-        places = (found.label == label) & np.isfinite(found.level)
-        level = found.level[places]
+        cells = (found.label == label) & np.isfinite(found.level)
+        level = found.level[cells]
         nearest = np.abs(level[:, None] - levels).argmin(axis=1)
-        loudness[places] = sones[nearest] * loudness_weight(40.0 + level - levels[nearest])
+        loudness[cells] = sones[nearest] * loudness_weight(40.0 + level - levels[nearest])
     return replace(found, loudness=loudness)
 
 

@@ -1,4 +1,4 @@
-"""The map of one design in one environment: what happens at each condition of a grid.
+"""Map of one design in one environment: regime, noise and level at each condition of a grid.
 
 Where the friction law does not know the temperature the map of one temperature is that of all, and
 its copies say so. Stability is asked at every point of constant speed; a swinging shaft has no
@@ -8,12 +8,12 @@ steady sliding, and its map is refined without.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from noise.screening.map.batches import LABELS, Batch
-from noise.screening.map.carry import carried
+from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES
 from noise.screening.map.refine import HOW, STRIDE, refined_map
 from sim.analysis.regime import Regime
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Rig
-    from noise.screening.map.batches import Judge
+    from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
 
 __all__ = ["UNCHANGED", "DesignMap", "map_design"]
@@ -51,14 +51,14 @@ class DesignMap:
         ``steady`` or ``swinging``.
     grid : Grid
         Shape (n_temperatures, n_supports, n_fits, n_speeds).
-    regime, label : ndarray of str
-    level : ndarray
+    regime, label : ndarray of str, shape of the grid
+    level : ndarray, shape of the grid
         L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
-    loudness : ndarray
+    loudness : ndarray, shape of the grid
         N10 [sone]; NaN where it was not asked for.
-    how : ndarray of str
+    how : ndarray of str, shape of the grid
         ``simulated``, ``stability``, ``refined`` or ``unchanged``.
-    growth : ndarray
+    growth : ndarray, shape of the grid
         Of a small vibration about steady sliding [1/s]; NaN where the shaft swings.
     open : int
         Points beside a boundary that were left to their nearest neighbour.
@@ -84,7 +84,7 @@ class DesignMap:
 def map_design(
     rig: Rig,
     grid: Grid,
-    judge: Judge,
+    evaluate: Evaluator,
     *,
     design: str,
     environment: str = "dry",
@@ -98,8 +98,8 @@ def map_design(
     rig : Rig
         In its environment.
     grid : Grid
-    judge : callable
-        Of `noise.screening.map.batches.judging`.
+    evaluate : callable
+        Of `noise.screening.map.batches.batch_evaluator`.
     design, environment : str
         Names.
     most : int, optional
@@ -129,7 +129,7 @@ def map_design(
 
     def simulate(points: NDArray[np.int64]) -> NDArray[np.int64]:
         plane, row, column = points.T
-        judged = judge(
+        rows = evaluate(
             Batch(
                 rig,
                 speed[column],
@@ -139,8 +139,8 @@ def map_design(
                 axes[0][plane // shape[1]],
             )
         )
-        level[plane, row, column] = judged[:, 2]
-        return (judged[:, 0] * len(LABELS) + judged[:, 1]).astype(np.int64)
+        level[plane, row, column] = rows[:, 2]
+        return (rows[:, 0] * len(LABELS) + rows[:, 1]).astype(np.int64)
 
     growth = np.full(planes, np.nan) if swings else _growth(rig, axes, speed).reshape(planes)
     found = refined_map(
@@ -152,7 +152,7 @@ def map_design(
         most=most,
         stride=stride or (_stride(axes[2], _FIT_APART), _stride(speed, _SPEED_APART)),
     )
-    level = carried(level, found.codes, found.how)
+    level = interpolate_levels(level, found.codes, found.how)
     how = np.array(HOW)[found.how].reshape(shape)
     result = DesignMap(
         design=design,
@@ -199,12 +199,6 @@ def _copied(found: DesignMap) -> DesignMap:
     n = len(found.grid.temperature)
     how = np.repeat(found.how, n, axis=0)
     how[1:] = UNCHANGED
-    return replace(
-        found,
-        regime=np.repeat(found.regime, n, axis=0),
-        label=np.repeat(found.label, n, axis=0),
-        level=np.repeat(found.level, n, axis=0),
-        loudness=np.repeat(found.loudness, n, axis=0),
-        how=how,
-        growth=np.repeat(found.growth, n, axis=0),
-    )
+    alike = ("regime", "label", "level", "loudness", "growth")
+    copies: dict[str, Any] = {name: np.repeat(getattr(found, name), n, axis=0) for name in alike}
+    return replace(found, how=how, **copies)

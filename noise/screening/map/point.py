@@ -1,4 +1,4 @@
-"""One point of a map: simulated, and named by its physics.
+"""Evaluation of one point of a map: simulated, and its noise named by its physics.
 
 What noise a condition makes is said by `noise.noise_definition`, the definition that the classifier
 learns: it looks at motion and sound without room and microphone, and costs no more than the run. So
@@ -8,7 +8,7 @@ vibration then neither grows nor dies, else after 1.5 s; some creaks set in that
 steps are as long as regimes and spectra allow, rather than single events.
 
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
-are those of the two stretches in which it moves at half its peak speed or more, whichever is
+are those of the two intervals in which it moves at half its peak speed or more, whichever is
 livelier. Every turning sticks, which by itself is neither regime nor noise.
 """
 
@@ -21,41 +21,38 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.levels import a_weighted, fast_levels
-from models.radiation.rig_response import radiate, response
+from models.radiation.rig_response import impulse_responses
 from models.rig import damping_at
-from noise.noise_definition import Evidence, evidence_of
-from noise.screening.map.stretches import stretches_of
+from noise.noise_definition import NoiseCriteria, noise_criteria
+from noise.screening.map.fast_intervals import fast_intervals
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import at_temperature
-from sim.motion import simulate_motion
+from sim.pipeline import Plan, radiate_motion, run_motion
 from sim.shaft import ConstantSpeed, Oscillation
+from sim.timing import SCREENING, SCREENING_SLOW
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Rig
     from sim.effects.effect import Effect
     from sim.motion import Motion
-    from sim.shaft import ShaftMotion
+    from sim.timing import Timing
 
-__all__ = ["REGIMES", "Judged", "Sound", "judge", "point_sound"]
+__all__ = ["REGIMES", "PointResult", "Sound", "evaluate_point", "point_sound", "shaft_motion"]
 
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""
 
-_RATE = 30e3
-"""Of motion and sound [Hz]: creaks reach 15 kHz."""
-
 _TOLERANCE = 1e-5
 
-_SHORT = 0.6, 1.2
-_LONG = 1.5, 2.1
-"""When a run begins to be judged, and when it ends [s]."""
+_EVALUATED = 0.6
+"""Length of what is judged, after settling [s]."""
 
 _SETTLED = 0.8
 """Least ratio of the vibration's strength, from one third of what is judged to the last."""
@@ -65,8 +62,8 @@ _DAMPING_STEP = 0.04
 
 
 @dataclass(frozen=True)
-class Judged:
-    """What a simulated point came to.
+class PointResult:
+    """Regime, noise and level of a simulated point.
 
     Parameters
     ----------
@@ -75,14 +72,11 @@ class Judged:
         ``creak``, ``squawk``, ``squeal`` or ``none``.
     level : float
         L_AFmax of the sound [dB re 20 uPa]; NaN where it slides steadily.
-    evidence : Evidence, optional
-        What the label follows from; None where it slides steadily.
     """
 
     regime: Regime
     label: str
     level: float
-    evidence: Evidence | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +98,27 @@ class Sound:
     before: NDArray[np.float64]
 
 
-def judge(
+def shaft_motion(speed: float, frequency: float | None) -> float | Oscillation:
+    """Return how the shaft turns at a point: steadily, or swinging as fast as that at most.
+
+    Parameters
+    ----------
+    speed : float
+        The largest [rad/s].
+    frequency : float, optional
+        Of the swing [Hz].
+
+    Examples
+    --------
+    >>> shaft_motion(5.0, None), shaft_motion(math.pi, 2.0).amplitude
+    (5.0, 0.25)
+    """
+    if frequency is None:
+        return speed
+    return Oscillation(speed / (2.0 * math.pi * frequency), frequency)
+
+
+def evaluate_point(
     rig: Rig,
     shaft: float | Oscillation,
     *,
@@ -113,7 +127,7 @@ def judge(
     temperature: float = 23.0,
     library: Mapping[str, Effect] = EFFECTS,
     structure: tuple[Rig, float] | None = None,
-) -> Judged:
+) -> PointResult:
     """Simulate a point, and say its regime, its noise and its level.
 
     Parameters
@@ -135,7 +149,7 @@ def judge(
 
     Returns
     -------
-    Judged
+    PointResult
 
     Raises
     ------
@@ -146,23 +160,24 @@ def judge(
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
-    >>> judge(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0).label
+    >>> evaluate_point(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0).label
     'squeal'
     """
-    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
-    motion, start = _settled(rig, shaft, interference, support_stiffness, _RATE, library)
-    stretches = stretches_of(motion.since(start), swings=isinstance(shaft, Oscillation))
-    if all(_swing(stretch) <= 1.0 for stretch in stretches):
-        return Judged(Regime.STEADY_SLIDING, "none", math.nan)
-    heard_by, support = structure or (rig, support_stiffness)
-    paths = _paths(heard_by, interference, support, motion.rate)
-    sound = _sound(rig, motion, start, paths, library)
-    found = _evidence(sound, stretches)
+    plan = _plan(rig, shaft, interference, support_stiffness, temperature, library, SCREENING)
+    plan, motion = _settled(plan)
+    swings = isinstance(shaft, Oscillation)
+    intervals = fast_intervals(motion.since(plan.n_settling), swings=swings)
+    if all(_oscillation(interval) <= 1.0 for interval in intervals):
+        return PointResult(Regime.STEADY_SLIDING, "none", math.nan)
+    made_of, support = structure or (plan.rig, support_stiffness)
+    paths = _paths(made_of, interference, support, plan.rate)
+    sound = _sound(plan, motion, paths)
+    found = _criteria(sound, intervals)
     regime = Regime.STICK_SLIP if found.stick > 1.0 else Regime.QUASI_HARMONIC
-    label = found.name
-    if isinstance(shaft, Oscillation) and label == "creak" and found.blows < 0.0:
+    label = found.label
+    if swings and label == "creak" and found.blows < 0.0:
         label = "squawk"  # lines that follow the speed, which no single spectrum shows
-    return Judged(regime, label, _loudest(sound), found)
+    return PointResult(regime, label, _loudest(sound))
 
 
 def point_sound(
@@ -175,34 +190,50 @@ def point_sound(
     rate: float = 48e3,
     library: Mapping[str, Effect] = EFFECTS,
 ) -> Sound:
-    """Return motion and sound of a point as `judge` looks at them, at another rate [Hz]."""
-    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
-    span = _LONG if not isinstance(shaft, Oscillation) else _swing_span(shaft)
-    motion = _motion(rig, shaft, interference, support_stiffness, rate, library, span[1])
-    paths = _paths(rig, interference, support_stiffness, rate)
-    return _sound(rig, motion, round(span[0] * rate), paths, library)
+    """Return motion and sound of a point as `evaluate_point` has them, at another rate [Hz]."""
+    plan = _plan(
+        rig, shaft, interference, support_stiffness, temperature, library, SCREENING_SLOW, rate
+    )
+    paths = _paths(plan.rig, interference, support_stiffness, rate)
+    return _sound(plan, run_motion(plan, tolerance=_TOLERANCE), paths)
 
 
-def _settled(
+def _plan(
     rig: Rig,
     shaft: float | Oscillation,
     interference: float,
     support_stiffness: float,
-    rate: float,
+    temperature: float,
     library: Mapping[str, Effect],
-) -> tuple[Motion, int]:
-    """Motion of a run, and the sample from which on it is judged."""
-    span = _swing_span(shaft) if isinstance(shaft, Oscillation) else _SHORT
-    motion = _motion(rig, shaft, interference, support_stiffness, rate, library, span[1])
-    settled = isinstance(shaft, Oscillation) or _is_settled(motion.since(round(span[0] * rate)))
-    if not settled:
-        span = _LONG
-        motion = _motion(rig, shaft, interference, support_stiffness, rate, library, span[1])
-    return motion, round(span[0] * rate)
+    timing: Timing,
+    rate: float | None = None,
+) -> Plan:
+    """Plan a run at a rate [Hz]; a swinging shaft settles for a quarter of its cycle instead."""
+    rate = rate or timing.least_rate
+    n_settling, n_kept = round(timing.settling * rate), round(_EVALUATED * rate)
+    if isinstance(shaft, Oscillation):
+        n_settling = round(0.25 / shaft.frequency * rate)
+        n_kept = round(1.25 / shaft.frequency * rate) - n_settling
+    return Plan(
+        rig=replace(rig, friction=at_temperature(rig.friction, temperature)),
+        shaft=shaft if isinstance(shaft, Oscillation) else ConstantSpeed(float(shaft)),
+        interference=interference,
+        support_stiffness=support_stiffness,
+        effects=activated(rig.effects, library),
+        rate=rate,
+        n_settling=n_settling,
+        n_kept=n_kept,
+        temperature=temperature,
+    )
 
 
-def _swing_span(shaft: Oscillation) -> tuple[float, float]:
-    return 0.25 / shaft.frequency, 1.25 / shaft.frequency
+def _settled(plan: Plan) -> tuple[Plan, Motion]:
+    """Motion that has settled where it is judged, and the plan of it."""
+    motion = run_motion(plan, tolerance=_TOLERANCE)
+    if isinstance(plan.shaft, Oscillation) or _is_settled(motion.since(plan.n_settling)):
+        return plan, motion
+    plan = replace(plan, n_settling=round(SCREENING_SLOW.settling * plan.rate))
+    return plan, run_motion(plan, tolerance=_TOLERANCE)
 
 
 def _is_settled(motion: Motion) -> bool:
@@ -214,70 +245,43 @@ def _is_settled(motion: Motion) -> bool:
     return _SETTLED * first <= last <= first / _SETTLED
 
 
-def _motion(
-    rig: Rig,
-    shaft: float | Oscillation,
-    interference: float,
-    support_stiffness: float,
-    rate: float,
-    library: Mapping[str, Effect],
-    seconds: float,
-) -> Motion:
-    turning: ShaftMotion = shaft if isinstance(shaft, Oscillation) else ConstantSpeed(float(shaft))
-    return simulate_motion(
-        rig,
-        turning,
-        interference=interference,
-        support_stiffness=support_stiffness,
-        seconds=seconds,
-        rate=rate,
-        effects=activated(rig.effects, library),
-        tolerance=_TOLERANCE,
-    )
-
-
-def _swing(motion: Motion) -> float:
+def _oscillation(motion: Motion) -> float:
     mean = abs(float(np.mean(motion.torque)))
     return float(np.std(motion.torque)) / (LEAST_OSCILLATION * mean) if mean > 0.0 else math.inf
 
 
-def _sound(
-    rig: Rig,
-    motion: Motion,
-    start: int,
-    paths: Response,
-    library: Mapping[str, Effect],
-) -> Sound:
-    force = np.zeros_like(motion.torque)
-    for active in activated(rig.effects, library):
-        if active.effect.force is not None:
-            force += active.effect.force(motion, active.form, active.values)
-    _, pressure = radiate(paths, motion.torque)
-    pulses = np.zeros_like(pressure)
-    if np.any(force):
-        _, pulses = radiate(paths, np.zeros_like(force), force)
-    pressure += pulses
-    return Sound(motion.since(start), pressure[start:], pulses[start:], pressure[:start])
+def _sound(plan: Plan, motion: Motion, paths: ImpulseResponses) -> Sound:
+    sound, start = radiate_motion(motion, paths, plan.effects), plan.n_settling
+    return Sound(
+        motion.since(start),
+        sound.pressure[start:],
+        sound.pulse_pressure[start:],
+        sound.pressure[:start],
+    )
 
 
 def _loudest(sound: Sound) -> float:
     """L_AFmax [dB re 20 uPa]."""
     rate = sound.motion.rate
-    heard = fast_levels(a_weighted(np.concatenate([sound.before, sound.pressure]), rate), rate)
-    return float(heard[sound.before.size :].max())
+    levels = fast_levels(a_weighted(np.concatenate([sound.before, sound.pressure]), rate), rate)
+    return float(levels[sound.before.size :].max())
 
 
-def _paths(rig: Rig, interference: float, support_stiffness: float, rate: float) -> Response:
+def _paths(
+    rig: Rig, interference: float, support_stiffness: float, rate: float
+) -> ImpulseResponses:
     """Responses of the structure, the beams' damping rounded so that few are made."""
     damping = damping_at(rig.fit(interference), support_stiffness)
     of_beams = (1.0 - rig.elastomer_damping_share) * damping
     if of_beams > 0.0 and math.isfinite(support_stiffness):
         rounded = math.exp(round(math.log(of_beams) / _DAMPING_STEP) * _DAMPING_STEP)
         rig = replace(rig, elastomer_damping_share=1.0 - rounded / damping)
-    return response(rig, interference, support_stiffness, rate)
+    return impulse_responses(rig, interference, support_stiffness, rate)
 
 
-def _evidence(sound: Sound, stretches: list[Motion]) -> Evidence:
-    """Evidence of the liveliest stretch, with the sound of all."""
-    found = [evidence_of(stretch, sound.pressure, sound.pulse_pressure) for stretch in stretches]
-    return max(found, key=lambda evidence: evidence.audible)
+def _criteria(sound: Sound, intervals: list[Motion]) -> NoiseCriteria:
+    """Criteria of the liveliest interval, with the sound of all."""
+    found = [
+        noise_criteria(interval, sound.pressure, sound.pulse_pressure) for interval in intervals
+    ]
+    return max(found, key=lambda criteria: criteria.audible)

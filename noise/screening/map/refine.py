@@ -1,4 +1,4 @@
-"""A map that is simulated finely only along its boundaries.
+"""Refinement of a map, which is simulated finely only along its boundaries.
 
 The map is a stack of planes of interference and speed. Each plane begins as coarse cells whose
 corners are simulated; a cell in which not all points simulated so far agree is cut in halves along
@@ -89,7 +89,7 @@ def refined_map(
         Codes that mean steady sliding.
     stable : ndarray of bool, `shape`, optional
         Where steady sliding is linearly stable; without it stability has no say.
-    label_of : ndarray of int, optional
+    label_of : ndarray of int, shape (n_codes,), optional
         Of each code what it is foremost; boundaries of that are simulated first.
     stride : int or tuple of int
         Points from corner to corner of the coarse cells; of rows and of columns.
@@ -116,7 +116,7 @@ def refined_map(
         for top, bottom in _rows(rows, down)
         for left, right in _intervals(columns, across)
     ]
-    judged = _Judgement(codes, silent, stable, label_of)
+    check = _CellCheck(codes, silent, stable, label_of)
     settled: list[Cell] = []
     spent = 0
     while cells:
@@ -126,9 +126,13 @@ def refined_map(
             codes[tuple(wanted.T)] = simulate(wanted)
             spent += len(wanted)
         # A corner may stand in the side of a cell that agreed before it was there.
-        ranked = [(judged.doubt(cell), cell) for cell in (*settled, *cells)]
-        worst = max((doubt for doubt, cell in ranked if doubt and _halves(cell)), default=None)
-        cut = [cell for doubt, cell in ranked if doubt and doubt == worst and _halves(cell)]
+        ranked = [(check.urgency(cell), cell) for cell in (*settled, *cells)]
+        most_urgent = max(
+            (urgency for urgency, cell in ranked if urgency and _halves(cell)), default=None
+        )
+        cut = [
+            cell for urgency, cell in ranked if urgency and urgency == most_urgent and _halves(cell)
+        ]
         if most is not None:
             cut = _spread_over(cut, max(0, most - spent) // _POINTS_A_CUT)
         taken = set(cut)
@@ -136,7 +140,7 @@ def refined_map(
         cells = [part for cell in cut for part in _halves(cell)]
     how = np.where(codes >= 0, SIMULATED, _REFINED)
     for cell in settled:
-        if judged.doubt(cell):
+        if check.urgency(cell):
             continue
         inside = _inside(cell)
         known = codes[inside]
@@ -188,7 +192,7 @@ def _inside(cell: Cell) -> tuple[int, slice, slice]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Judgement:
+class _CellCheck:
     """Whether what was simulated in a cell tells what lies between."""
 
     codes: NDArray[np.int64]
@@ -196,7 +200,7 @@ class _Judgement:
     stable: NDArray[np.bool_] | None
     label_of: NDArray[np.int64] | None
 
-    def doubt(self, cell: Cell) -> tuple[int, int] | None:
+    def urgency(self, cell: Cell) -> tuple[int, int] | None:
         """How urgent it is to cut a cell: what it does not tell, and its size; None where it tells.
 
         Labels go before codes that differ in something else, and large cells before small ones.

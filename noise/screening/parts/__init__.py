@@ -1,1 +1,1 @@
-"""Parts as they scatter: probability of each noise, sensitivities, advice."""
+"""Parts within their tolerances: probability of each noise, sensitivities, advice."""

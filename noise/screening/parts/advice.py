@@ -1,4 +1,4 @@
-"""Which change of which parameter buys how much margin, and which one ends a noise.
+"""Advice: the smallest change of each design variable that widens the margin or removes a noise.
 
 Margins jump, so a slope at the nominal design misleads; what a change brings is simulated where it
 is advised. One parameter is changed at a time: what two changes do together is not told.
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from noise.screening.parts.lever import Lever
+    from noise.screening.parts.design_variable import DesignVariable
     from noise.screening.parts.smallest_change import Found
 
-__all__ = ["Advice", "ending", "widening"]
+__all__ = ["Advice", "increase_margin", "remove_noise"]
 
 _SMALL = 0.02
 """Change, as a share of the nominal value, on either side over which a slope is taken."""
@@ -38,16 +38,18 @@ class Advice:
     name : str
         Of the parameter.
     value : float
-        To set it to.
+        To set it to, in the unit of the design variable, such as [-] of a factor.
     change : float
-        From the nominal value, as a share of it.
+        From the nominal value, as a share of it [-].
     cost : float
+        In the unit of the design variable's cost, any that all share [-].
     enough : bool
         Whether it brings what was asked for; otherwise it is what serves best within the range.
     steady : bool
         Whether a somewhat larger change brings it as well; otherwise it stands on an island.
     gain : float
-        Margin gained by it; NaN where no margin was asked for.
+        Margin gained by it, in the margin's unit, such as [rad/s]; NaN where no margin was asked
+        for.
     slope : float
         Margin gained by small changes, over the change as a share of the nominal value; NaN where
         no margin was asked for, or where it is infinite close by.
@@ -66,9 +68,9 @@ class Advice:
     label: str = ""
 
 
-def widening(
+def increase_margin(
     margin_of: Callable[[NDArray[np.float64]], ArrayLike],
-    levers: Sequence[Lever],
+    variables: Sequence[DesignVariable],
     gain: float,
     *,
     budget: float = math.inf,
@@ -79,16 +81,16 @@ def widening(
     ----------
     margin_of : callable
         Of parameters, shape (n, d), a row a design; returns n margins, which may be infinite.
-    levers : sequence of Lever, length d
+    variables : sequence of DesignVariable, length d
     gain : float
-        By which the margin shall grow, above 0.
+        By which the margin shall grow, above 0, in its unit, such as [rad/s].
     budget : float
-        That no change may cost more than.
+        That no change may cost more than, in the unit of the costs [-].
 
     Returns
     -------
     tuple of Advice
-        One a lever: those that bring enough first, the cheapest first; then the others, by what
+        One a variable: those that bring enough first, the cheapest first; then the others, by what
         they bring.
 
     Raises
@@ -98,9 +100,9 @@ def widening(
 
     Examples
     --------
-    >>> from noise.screening.parts.lever import Lever
-    >>> levers = [Lever("damping", 0.5, 2.0), Lever("stiffness", 0.9, 1.1)]
-    >>> best, other = widening(lambda x: 4.0 * x[:, 0] - x[:, 1], levers, 1.0)
+    >>> from noise.screening.parts.design_variable import DesignVariable
+    >>> variables = [DesignVariable("damping", 0.5, 2.0), DesignVariable("stiffness", 0.9, 1.1)]
+    >>> best, other = increase_margin(lambda x: 4.0 * x[:, 0] - x[:, 1], variables, 1.0)
     >>> best.name, round(best.value, 2), round(best.gain, 1), best.enough
     ('damping', 1.25, 1.0, True)
     >>> other.name, round(other.value, 2), round(other.gain, 1), other.enough
@@ -108,50 +110,50 @@ def widening(
     """
     if not 0.0 < gain < math.inf:
         raise ParameterError(f"advice: gain = {gain:g} must be above 0 and finite")
-    ranges = _ranges(levers, budget)
+    ranges = _ranges(variables, budget)
     small = [
         (index, min(max(nominal + side * _SMALL * abs(nominal), low), high))
         for index, (low, nominal, high) in enumerate(ranges)
         for side in (-1.0, 1.0)
     ]
-    now, *around = _margins(margin_of, levers, [(0, levers[0].nominal), *small])
+    now, *around = _margins(margin_of, variables, [(0, variables[0].nominal), *small])
     if math.isinf(now):
         raise ParameterError("advice: the margin is infinite as it is; there is nothing to widen")
 
     def gains(changes: Sequence[tuple[int, float]]) -> NDArray[np.float64]:
-        return np.asarray(_margins(margin_of, levers, changes) - now)
+        return np.asarray(_margins(margin_of, variables, changes) - now)
 
     advice = []
     for i, found in enumerate(smallest_changes(gains, ranges, gain)):
-        slope = _slope(small[2 * i : 2 * i + 2], around[2 * i : 2 * i + 2], levers[i].nominal)
-        advice.append(_advice(levers[i], found, gain=found.score, slope=slope))
+        slope = _slope(small[2 * i : 2 * i + 2], around[2 * i : 2 * i + 2], variables[i].nominal)
+        advice.append(_advice(variables[i], found, gain=found.score, slope=slope))
     return tuple(sorted(advice, key=_order))
 
 
-def ending(
+def remove_noise(
     label_of: Callable[[NDArray[np.float64]], ArrayLike],
-    levers: Sequence[Lever],
+    variables: Sequence[DesignVariable],
     noises: Collection[str],
     *,
     budget: float = math.inf,
 ) -> tuple[Advice, ...]:
-    """Find the smallest change of each parameter that ends a noise.
+    """Find the smallest change of each parameter that removes a noise.
 
     Parameters
     ----------
     label_of : callable
         Of parameters, shape (n, d), a row a design; returns n labels.
-    levers : sequence of Lever, length d
+    variables : sequence of DesignVariable, length d
     noises : collection of str
         The labels that shall not be.
     budget : float
-        That no change may cost more than.
+        That no change may cost more than, in the unit of the costs [-].
 
     Returns
     -------
     tuple of Advice
-        As of `widening`, with the label in place of a gain; a change of 0 if there is none of
-        these noises as it is.
+        As of `increase_margin`, with the label in place of a gain; a change of 0 if there is none
+        of these noises as it is.
 
     Raises
     ------
@@ -160,9 +162,11 @@ def ending(
 
     Examples
     --------
-    >>> from noise.screening.parts.lever import Lever
-    >>> levers = [Lever("damping", 0.5, 2.0)]
-    >>> [found] = ending(lambda x: np.where(x[:, 0] < 1.3, "creak", "none"), levers, {"creak"})
+    >>> from noise.screening.parts.design_variable import DesignVariable
+    >>> variables = [DesignVariable("damping", 0.5, 2.0)]
+    >>> def label_of(designs):
+    ...     return np.where(designs[:, 0] < 1.3, "creak", "none")
+    >>> [found] = remove_noise(label_of, variables, {"creak"})
     >>> round(found.value, 2), found.label, found.enough
     (1.3, 'none', True)
     """
@@ -170,16 +174,16 @@ def ending(
         raise ParameterError("advice: no noise to end is named")
 
     def labels(changes: Sequence[tuple[int, float]]) -> NDArray[np.object_]:
-        return _called(label_of, levers, changes, object)
+        return _called(label_of, variables, changes, object)
 
     def quiet(changes: Sequence[tuple[int, float]]) -> NDArray[np.float64]:
         return np.array([0.0 if label in noises else 1.0 for label in labels(changes)])
 
-    found = smallest_changes(quiet, _ranges(levers, budget), 1.0)
+    found = smallest_changes(quiet, _ranges(variables, budget), 1.0)
     after = labels([(index, one.value) for index, one in enumerate(found)])
     advice = [
-        _advice(lever, one, label=str(label))
-        for lever, one, label in zip(levers, found, after, strict=True)
+        _advice(variable, one, label=str(label))
+        for variable, one, label in zip(variables, found, after, strict=True)
     ]
     return tuple(sorted(advice, key=_order))
 
@@ -191,19 +195,15 @@ def _slope(changes: Sequence[tuple[int, float]], margins: Sequence[float], nomin
     return float((margins[1] - margins[0]) / run)
 
 
-def _advice(
-    lever: Lever, found: Found, gain: float = math.nan, slope: float = math.nan, label: str = ""
-) -> Advice:
+def _advice(variable: DesignVariable, found: Found, **brought: Any) -> Advice:
     return Advice(
-        name=lever.name,
+        name=variable.name,
         value=found.value,
-        change=found.value / lever.nominal - 1.0,
-        cost=lever.price(found.value),
+        change=found.value / variable.nominal - 1.0,
+        cost=variable.price(found.value),
         enough=found.enough,
         steady=found.steady,
-        gain=gain,
-        slope=slope,
-        label=label,
+        **brought,
     )
 
 
@@ -212,22 +212,25 @@ def _order(advice: Advice) -> tuple[bool, float, float, str]:
     return not advice.enough, -brought, advice.cost, advice.name
 
 
-def _ranges(levers: Sequence[Lever], budget: float) -> list[tuple[float, float, float]]:
-    """Least, nominal and largest value of each lever."""
-    if not levers:
-        raise ParameterError("advice: there is no lever")
+def _ranges(variables: Sequence[DesignVariable], budget: float) -> list[tuple[float, float, float]]:
+    """Least, nominal and largest value of each variable."""
+    if not variables:
+        raise ParameterError("advice: there is no design variable")
     if not budget > 0.0:
         raise ParameterError(f"advice: budget = {budget:g} must be above 0")
-    within = [lever.within(budget) for lever in levers]
-    return [(low, lever.nominal, high) for lever, (low, high) in zip(levers, within, strict=True)]
+    within = [variable.within(budget) for variable in variables]
+    return [
+        (low, variable.nominal, high)
+        for variable, (low, high) in zip(variables, within, strict=True)
+    ]
 
 
 def _margins(
     margin_of: Callable[[NDArray[np.float64]], ArrayLike],
-    levers: Sequence[Lever],
+    variables: Sequence[DesignVariable],
     changes: Sequence[tuple[int, float]],
 ) -> NDArray[np.float64]:
-    margins: NDArray[np.float64] = _called(margin_of, levers, changes, np.float64)
+    margins: NDArray[np.float64] = _called(margin_of, variables, changes, np.float64)
     if np.isnan(margins).any():
         raise ParameterError("advice: a margin is not a number")
     return margins
@@ -235,12 +238,12 @@ def _margins(
 
 def _called(
     call: Callable[[NDArray[np.float64]], ArrayLike],
-    levers: Sequence[Lever],
+    variables: Sequence[DesignVariable],
     changes: Sequence[tuple[int, float]],
     kind: type,
 ) -> NDArray[Any]:
-    """Results for designs with one lever changed each."""
-    designs = np.tile([lever.nominal for lever in levers], (len(changes), 1))
+    """Results for designs with one variable changed each."""
+    designs = np.tile([variable.nominal for variable in variables], (len(changes), 1))
     for design, (index, value) in zip(designs, changes, strict=True):
         design[index] = value
     found: NDArray[Any] = np.asarray(call(designs), dtype=kind)

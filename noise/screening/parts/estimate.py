@@ -1,4 +1,4 @@
-"""A number that was estimated from samples, with the bounds it has at a stated confidence."""
+"""Estimate of a number from samples, with its confidence interval."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ class Estimate:
     Parameters
     ----------
     value : float
+        In the unit of what is estimated; of a probability [-].
     low, high : float
-        Bounds, at the confidence that whoever made the estimate was given.
+        Bounds in that unit, at the confidence that whoever made the estimate was given.
 
     Examples
     --------
@@ -29,5 +30,5 @@ class Estimate:
 
     @property
     def half_width(self) -> float:
-        """Half the length of the interval."""
+        """Half the length of the interval, in the unit of the value [-]."""
         return 0.5 * (self.high - self.low)

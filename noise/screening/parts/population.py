@@ -1,4 +1,4 @@
-"""Many bushings of one design, each with its own deviations: what noise each makes, and its margin.
+"""Simulation of many bushings of one design: the noise that each makes, and its margin.
 
 A label is simulated. Critical speeds are by stability where the friction has a slope, which costs
 a fiftieth of simulating them and, for the calibrated fluorocarbon, differs by less than a step of
@@ -19,7 +19,7 @@ from joblib import Parallel, delayed
 from models.errors import ParameterError
 from noise.batch.work import one_thread
 from noise.screening.map.grid import DEFAULT_SPEEDS
-from noise.screening.map.point import judge
+from noise.screening.map.point import evaluate_point
 from noise.screening.parts.variation import UsePoint, use_point, varied
 from noise.screening.ranking.margins import margin_of, range_of
 from sim.analysis.critical_speeds import regime_at
@@ -56,12 +56,12 @@ class Outcomes:
 
     Parameters
     ----------
-    labels : ndarray of str
+    labels : ndarray of str, shape (n,)
         Noise at the point of use; empty texts where it was not asked for.
-    v_crit1, v_crit2 : ndarray
+    v_crit1, v_crit2 : ndarray, shape (n,)
         [rad/s], as of `noise.screening.ranking.margins`; NaN where they were not asked for, v_crit1
         also where stability, which does not know it, tells v_crit2.
-    margin : ndarray
+    margin : ndarray, shape (n,)
         Of the use to what vibrates [rad/s], positive where nothing does; ``inf`` where nothing
         vibrates at any speed tried, and NaN where it was not asked for.
     """
@@ -142,7 +142,7 @@ def _outcome(
     rig, point = varied(rig, point, factors)
     label = ""
     if labels:
-        label = judge(
+        label = evaluate_point(
             rig,
             point.speed,
             interference=point.interference,

@@ -1,4 +1,4 @@
-"""How probable each noise is among parts made within their tolerances.
+"""Probability of each noise among parts within their tolerances, with intervals.
 
 Thirty-two scramblings of one quasi-random sequence run side by side and are doubled in length
 until every interval is as narrow as was asked for. How far the scramblings differ tells what a
@@ -20,14 +20,14 @@ from scipy.stats import beta, chi2
 
 from models.errors import ParameterError
 from noise.screening.parts.estimate import Estimate
-from noise.screening.parts.scatter import names_of, parts, sobol_points
+from noise.screening.parts.sampling import parts, sobol_points
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from noise.screening.parts.scatter import Scatter
+    from noise.screening.parts.sampling import Distribution
 
 __all__ = ["NOISES", "Probabilities", "label_probabilities"]
 
@@ -53,7 +53,7 @@ class Probabilities:
     samples : int
         Parts that were looked at.
     confidence : float
-        That an interval holds the true probability.
+        That an interval holds the true probability [-].
     reached : bool
         Whether all intervals are as narrow as was asked for.
     """
@@ -65,7 +65,7 @@ class Probabilities:
 
     @property
     def half_width(self) -> float:
-        """Of the widest interval."""
+        """Of the widest interval [-]."""
         return max(estimate.half_width for estimate in self.by_label.values())
 
     def any_but(self, label: str = "none") -> Estimate:
@@ -83,7 +83,7 @@ class Probabilities:
 
 def label_probabilities(
     labels_of: Callable[[NDArray[np.float64]], ArrayLike],
-    scatters: Sequence[Scatter],
+    distributions: Mapping[str, Distribution],
     rng: np.random.Generator,
     *,
     labels: Sequence[str] = NOISES,
@@ -91,21 +91,21 @@ def label_probabilities(
     confidence: float = 0.95,
     most: int = 8192,
 ) -> Probabilities:
-    """Estimate how probable each label is among parts that scatter.
+    """Estimate how probable each label is among parts that vary.
 
     Parameters
     ----------
     labels_of : callable
         Of parameters, shape (n, d), a row a part; returns n labels.
-    scatters : sequence of Scatter, length d
+    distributions : mapping of str to Distribution, length d
     rng : numpy.random.Generator
         Of the scramblings.
     labels : sequence of str
         To be told of even if no part has them; others are told of once they occur.
     half_width : float
-        Of each interval, at most.
+        Of each interval, at most [-].
     confidence : float
-        Of each interval, from 0 to 1.
+        Of each interval, from 0 to 1 [-].
     most : int
         Parts to look at, at most; from 64 on they double.
 
@@ -120,15 +120,15 @@ def label_probabilities(
 
     Examples
     --------
-    >>> from noise.screening.parts.scatter import Scatter
-    >>> stiffness = Scatter("stiffness", "normal", 0.05)
+    >>> from scipy.stats import norm
     >>> def creaks_when_soft(parts):
     ...     return np.where(parts[:, 0] < 0.95, "creak", "none")
-    >>> found = label_probabilities(creaks_when_soft, [stiffness], np.random.default_rng(0))
+    >>> found = label_probabilities(
+    ...     creaks_when_soft, {"stiffness": norm(1.0, 0.05)}, np.random.default_rng(0)
+    ... )
     >>> round(found.by_label["creak"].value, 2), found.samples, found.reached
     (0.16, 256, True)
     """
-    names_of(scatters)
     if not (0.0 < half_width < 0.5 and 0.0 < confidence < 1.0):
         raise ParameterError(
             f"probabilities: half_width = {half_width:g} must lie between 0 and 0.5, "
@@ -138,12 +138,12 @@ def label_probabilities(
         raise ParameterError(
             f"probabilities: most = {most} must be {_SCRAMBLINGS * _FIRST} or more"
         )
-    sequences = [sobol_points(len(scatters), rng) for _ in range(_SCRAMBLINGS)]
+    sequences = [sobol_points(len(distributions), rng) for _ in range(_SCRAMBLINGS)]
     seen = np.empty((_SCRAMBLINGS, 0), dtype=object)
     while True:
         new = max(seen.shape[1], _FIRST)
         points = np.concatenate([sequence.random(new) for sequence in sequences])
-        found = np.asarray(labels_of(parts(scatters, points)), dtype=object)
+        found = np.asarray(labels_of(parts(distributions, points)), dtype=object)
         if found.shape != (len(points),):
             raise ParameterError(
                 f"probabilities: {len(points)} parts got labels of shape {found.shape}"

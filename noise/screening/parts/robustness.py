@@ -1,6 +1,6 @@
-"""How a design stands with the parts that are made of it, and what would make it stand better.
+"""Robustness of a design: what its tolerances do, and which change would help.
 
-One answer joins what the other pages of this package compute: how probable each noise is among
+One answer joins what the other modules of this package compute: how probable each noise is among
 parts at any speed of their use, how probably a part keeps clear of vibration over all of its use,
 which tolerance matters most to that margin, what a change buys, and the risk number. Labels are
 simulated. Margins are by stability where friction has a slope, a thousand of them in the time of
@@ -13,23 +13,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.stats import uniform
 
 from noise.screening.design.tolerances import Tolerance
-from noise.screening.parts.advice import ending, widening
-from noise.screening.parts.lever import Lever
+from noise.screening.parts.advice import increase_margin, remove_noise
+from noise.screening.parts.design_variable import DesignVariable
 from noise.screening.parts.population import outcomes
 from noise.screening.parts.probability import NOISES, label_probabilities
-from noise.screening.parts.scatter import Scatter, Shape
 from noise.screening.parts.sensitivity import sobol_indices
 from noise.screening.parts.variation import nominal_values, use_point
-from noise.screening.ranking.risk import Candidate
 from noise.screening.ranking.use_risk import use_risk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -37,10 +37,11 @@ if TYPE_CHECKING:
     from noise.screening.parts.advice import Advice
     from noise.screening.parts.estimate import Estimate
     from noise.screening.parts.probability import Probabilities
+    from noise.screening.parts.sampling import Distribution
     from noise.screening.parts.sensitivity import Sensitivity
     from noise.screening.parts.variation import UsePoint
 
-__all__ = ["ASSUMED", "LEVERS", "Robustness", "robustness", "scatters_of"]
+__all__ = ["ASSUMED", "DESIGN_VARIABLES", "Robustness", "factor_distributions", "robustness"]
 
 ASSUMED = (
     Tolerance("elastomer_stiffness", "relative", 0.05),
@@ -52,25 +53,22 @@ ASSUMED = (
 )
 """Tolerances where a design states none: orders of magnitude for moulded rubber, no source."""
 
-LEVERS = (
-    Lever("elastomer_stiffness", 0.7, 1.4),
-    Lever("damping", 0.5, 2.0),
-    Lever("critical_torque", 0.6, 1.4),
-    Lever("kinetic_torque", 0.6, 1.4),
-    Lever("support_stiffness", 0.6, 1.7),
-    Lever("interference", 0.7, 1.3),
+DESIGN_VARIABLES = (
+    DesignVariable("elastomer_stiffness", 0.7, 1.4),
+    DesignVariable("damping", 0.5, 2.0),
+    DesignVariable("critical_torque", 0.6, 1.4),
+    DesignVariable("kinetic_torque", 0.6, 1.4),
+    DesignVariable("support_stiffness", 0.6, 1.7),
+    DesignVariable("interference", 0.7, 1.3),
 )
-"""Factors on the nominal design within which advice is sought unless other levers are given."""
-
-_WIDEST_NORMAL = 1.0 / 6.0
-"""Relative standard deviation from which on a normal distribution is taken as lognormal."""
+"""Factors on the nominal design within which advice is sought unless other variables are given."""
 
 _QUIET = "none"
 
 
 @dataclass(frozen=True, eq=False)
 class Robustness:
-    """How a design stands with the parts that are made of it.
+    """What a design's tolerances do, and which change would help.
 
     Parameters
     ----------
@@ -85,9 +83,9 @@ class Robustness:
         Of the nominal design [rad/s]; ``inf`` where nothing vibrates.
     sensitivities : tuple of Sensitivity
         Of the margin, what matters most first.
-    widening : tuple of Advice
+    margin_advice : tuple of Advice
         What each change buys of margin; empty where nothing vibrates.
-    ending : tuple of Advice
+    noise_advice : tuple of Advice
         Which change ends the noise in the middle of the use; empty where there is none.
     risk : int
         From 1 to 10.
@@ -99,7 +97,7 @@ class Robustness:
     >>> from noise.screening.design.design import load_design
     >>> design = load_design("PDMS")
     >>> found = robustness(design, np.random.default_rng(0), half_width=0.1, samples=64)
-    >>> found.clear.value, found.candidate.margin, "assumed" in found._repr_html_()
+    >>> found.clear.value, found.margin, "assumed" in found._repr_html_()
     (1.0, inf, True)
     """
 
@@ -109,15 +107,10 @@ class Robustness:
     clear: Estimate
     margin: float
     sensitivities: tuple[Sensitivity, ...]
-    widening: tuple[Advice, ...]
-    ending: tuple[Advice, ...]
+    margin_advice: tuple[Advice, ...]
+    noise_advice: tuple[Advice, ...]
     risk: int
     assumed: bool
-
-    @property
-    def candidate(self) -> Candidate:
-        """What the ranking needs to know of it."""
-        return Candidate(self.design, self.risk, self.noises.any_but(_QUIET), self.margin)
 
     def _repr_html_(self) -> str:
         """Show what parts do, what matters, and what helps."""
@@ -134,12 +127,12 @@ def robustness(
     confidence: float = 0.95,
     samples: int = 128,
     gain: float = 1.0,
-    levers: Sequence[Lever] = LEVERS,
+    variables: Sequence[DesignVariable] = DESIGN_VARIABLES,
     budget: float = math.inf,
     risk: int | None = None,
     workers: int = -1,
 ) -> Robustness:
-    """Tell how a design stands with the parts that are made of it.
+    """Compute what a design's tolerances do, and which change would help.
 
     Parameters
     ----------
@@ -147,16 +140,16 @@ def robustness(
     rng : numpy.random.Generator
         Of the parts.
     half_width, confidence : float
-        Of the probabilities' intervals, and the confidence of all intervals.
+        Of the probabilities' intervals, and the confidence of all intervals [-].
     samples : int
         Of the Sobol' indices, a power of two from 64 on.
     gain : float
         Margin that advice shall bring [rad/s].
-    levers : sequence of Lever
+    variables : sequence of DesignVariable
         What may be changed, as factors by the names of
         `noise.screening.design.tolerances.PARAMETERS`.
     budget : float
-        That no change may cost more than, in the unit of the levers' costs.
+        That no change may cost more than, in the unit of the variables' costs [-].
     risk : int, optional
         The design's risk number, where it is known already.
     workers : int
@@ -180,57 +173,42 @@ def robustness(
     (1.0, inf, 1, True)
     """
     point = use_point(design)
-    scatters = scatters_of(design, point)
-    known = [scatter for scatter in scatters if scatter.name != "speed"]
-    changed = [lever.name for lever in levers]
+    vary = factor_distributions(design, point)
+    of_a_part = {name: one for name, one in vary.items() if name != "speed"}
+    changed = [variable.name for variable in variables]
+    run = partial(outcomes, design, point=point, workers=workers)
 
-    def labels(names: Sequence[str]) -> Callable[[NDArray[np.float64]], NDArray[np.str_]]:
-        return lambda factors: (
-            outcomes(
-                design, factors, names=names, point=point, critical="none", workers=workers
-            ).labels
-        )
+    def labels(names: Iterable[str], factors: NDArray[np.float64]) -> NDArray[np.str_]:
+        return run(factors, names=tuple(names), critical="none").labels
 
-    def margins(names: Sequence[str]) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
-        return lambda factors: (
-            outcomes(
-                design, factors, names=names, point=point, labels=False, workers=workers
-            ).margin
-        )
-
-    margin_of = margins([scatter.name for scatter in known])
+    def margins(names: Iterable[str], factors: NDArray[np.float64]) -> NDArray[np.float64]:
+        return run(factors, names=tuple(names), labels=False).margin
 
     def finite(factors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Where nothing vibrates any more, as if vibration ended where the shaft stands still."""
-        found = margin_of(factors)
+        found = margins(of_a_part, factors)
         return np.where(np.isinf(found), point.use[0], found)
 
     def clear(factors: NDArray[np.float64]) -> NDArray[np.str_]:
-        return np.where(margin_of(factors) > 0.0, "clear", "vibrates")
+        return np.where(margins(of_a_part, factors) > 0.0, "clear", "vibrates")
 
-    def probabilities(
-        labels_of: Callable[[NDArray[np.float64]], NDArray[np.str_]],
-        scatters: Sequence[Scatter],
-        expected: Sequence[str],
-    ) -> Probabilities:
-        return label_probabilities(
-            labels_of, scatters, rng, labels=expected, half_width=half_width, confidence=confidence
-        )
-
-    nominal = [[1.0] * len(levers)]
-    margin = float(margins(changed)(np.array(nominal))[0])
-    noise = str(labels(changed)(np.array(nominal))[0])
+    estimate = partial(label_probabilities, rng=rng, half_width=half_width, confidence=confidence)
+    nominal = np.ones((1, len(variables)))
+    margin = float(margins(changed, nominal)[0])
+    noise = str(labels(changed, nominal)[0])
     return Robustness(
         design=design.name,
         point=point,
-        noises=probabilities(labels([scatter.name for scatter in scatters]), scatters, NOISES),
-        clear=probabilities(clear, known, ("clear", "vibrates")).by_label["clear"],
+        noises=estimate(partial(labels, vary), vary, labels=NOISES),
+        clear=estimate(clear, of_a_part, labels=("clear", "vibrates")).by_label["clear"],
         margin=margin,
-        sensitivities=sobol_indices(finite, known, rng, samples=samples, confidence=confidence),
-        widening=widening(margins(changed), levers, gain, budget=budget)
+        sensitivities=sobol_indices(finite, of_a_part, rng, samples=samples, confidence=confidence),
+        margin_advice=increase_margin(partial(margins, changed), variables, gain, budget=budget)
         if math.isfinite(margin)
         else (),
-        ending=ending(labels(changed), levers, set(NOISES) - {_QUIET}, budget=budget)
+        noise_advice=remove_noise(
+            partial(labels, changed), variables, set(NOISES) - {_QUIET}, budget=budget
+        )
         if noise != _QUIET
         else (),
         risk=use_risk(design, workers=workers) if risk is None else risk,
@@ -238,10 +216,10 @@ def robustness(
     )
 
 
-def scatters_of(design: Design, point: UsePoint) -> tuple[Scatter, ...]:
-    """How factors on a design's parameters scatter; all speeds of use alike if it states no other.
+def factor_distributions(design: Design, point: UsePoint) -> dict[str, Distribution]:
+    """Distributions of the factors on a design's parameters, from its tolerances or `ASSUMED`.
 
-    A normal distribution so wide that it would reach to zero is taken as lognormal.
+    All speeds of use are alike if no tolerance of the speed is stated.
 
     Parameters
     ----------
@@ -250,29 +228,21 @@ def scatters_of(design: Design, point: UsePoint) -> tuple[Scatter, ...]:
 
     Returns
     -------
-    tuple of Scatter
+    dict of str to Distribution
 
     Examples
     --------
     >>> from noise.screening.design.design import load_design
     >>> design = load_design("fluorocarbon")
-    >>> [(one.name, one.spread) for one in scatters_of(design, use_point(design))][-1]
-    ('speed', 0.96...)
+    >>> factor_distributions(design, use_point(design))["speed"].ppf([0.0, 1.0]).round(2)
+    array([0.04, 1.96])
     """
     nominal = nominal_values(design, point)
-    scatters = [
-        _scatter(tolerance.name, *tolerance.factors(nominal[tolerance.name]))
+    found = {
+        tolerance.name: tolerance.factor(nominal[tolerance.name])
         for tolerance in design.tolerances or ASSUMED
-    ]
-    if all(scatter.name != "speed" for scatter in scatters):
-        low, high = point.use
-        scatters.append(_scatter("speed", "uniform", low / point.speed, high / point.speed))
-    return tuple(scatters)
-
-
-def _scatter(name: str, kind: str, first: float, second: float) -> Scatter:
-    if kind == "uniform":
-        middle, half = 0.5 * (first + second), 0.5 * (second - first)
-        return Scatter(name, Shape.UNIFORM, half, nominal=middle, relative=False)
-    shape = Shape.NORMAL if second < _WIDEST_NORMAL else Shape.LOGNORMAL
-    return Scatter(name, shape, second, nominal=first)
+    }
+    if "speed" not in found:
+        low, high = (limit / point.speed for limit in point.use)
+        found["speed"] = uniform(low, high - low)
+    return found

@@ -1,13 +1,12 @@
-"""Which tolerance matters most: Sobol' indices of an output, with intervals.
+"""Sobol' indices: which parameter's tolerance makes a margin scatter most, with intervals.
 
 The first index of a parameter is the share of the output's variance that goes when the parameter
 no longer scatters; the total one the share that stays when it alone scatters. What they differ by,
-it does together with others. The estimators are those of A. Saltelli and others, *Variance based
-sensitivity analysis of model output*, Computer Physics Communications 181 (2010), Table 2 (b) and
-(f), as in `scipy.stats.sobol_indices`. Its bootstrap takes Sobol' points for drawn by chance, of
-which the first few hundred in many dimensions are worth less; so some dozen scramblings stand side
-by side here, and the bootstrap draws those (T. C. Hesterberg, *What teachers should know about the
-bootstrap*, American Statistician 69, 2015, for the width of intervals from a few dozen).
+it does together with others. The estimators are those of `scipy.stats.sobol_indices`. Its bootstrap
+takes Sobol' points for drawn by chance, of which the first few hundred in many dimensions are worth
+less; so some dozen scramblings stand side by side here, and the bootstrap draws those (T. C.
+Hesterberg, *What teachers should know about the bootstrap*, American Statistician 69, 2015, for the
+width of intervals from a few dozen).
 """
 
 from __future__ import annotations
@@ -17,18 +16,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import norm, t
+from scipy import stats
 
 from models.errors import ParameterError
 from noise.screening.parts.estimate import Estimate
-from noise.screening.parts.scatter import names_of, parts, sobol_points
+from noise.screening.parts.sampling import parts, sobol_points
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
-    from noise.screening.parts.scatter import Scatter
+    from noise.screening.parts.sampling import Distribution
 
 __all__ = ["Sensitivity", "sobol_indices"]
 
@@ -47,7 +46,7 @@ class Sensitivity:
     name : str
         Of the parameter.
     first, total : Estimate
-        Sobol' indices; what is estimated may lie a little below 0 or above 1.
+        Sobol' indices [-]; what is estimated may lie a little below 0 or above 1.
     """
 
     name: str
@@ -57,7 +56,7 @@ class Sensitivity:
 
 def sobol_indices(
     output: Callable[[NDArray[np.float64]], ArrayLike],
-    scatters: Sequence[Scatter],
+    distributions: Mapping[str, Distribution],
     rng: np.random.Generator,
     *,
     samples: int = 256,
@@ -70,13 +69,13 @@ def sobol_indices(
     output : callable
         Of parameters, shape (n, d), a row a part; returns n finite numbers. It is called once,
         with ``samples * (d + 2)`` rows.
-    scatters : sequence of Scatter, length d
+    distributions : mapping of str to Distribution, length d
     rng : numpy.random.Generator
         Of the samples and of the bootstrap.
     samples : int
         A power of two from 64 on; the more parameters and the rougher the output, the more.
     confidence : float
-        Of each interval, from 0 to 1.
+        Of each interval, from 0 to 1 [-].
 
     Returns
     -------
@@ -90,15 +89,15 @@ def sobol_indices(
 
     Examples
     --------
-    Of a product of two factors that scatter alike, each matters as much:
+    Of a product of two factors that vary alike, each matters as much:
 
-    >>> from noise.screening.parts.scatter import Scatter
-    >>> both = [Scatter(name, "uniform", 0.1) for name in ("stiffness", "friction")]
+    >>> from scipy.stats import uniform
+    >>> both = {name: uniform(0.9, 0.2) for name in ("stiffness", "friction")}
     >>> found = sobol_indices(lambda x: x[:, 0] * x[:, 1], both, np.random.default_rng(0))
     >>> sorted((index.name, round(index.total.value, 1)) for index in found)
     [('friction', 0.5), ('stiffness', 0.5)]
     """
-    names = names_of(scatters)
+    names = tuple(distributions)
     if samples < 2 * _SCRAMBLINGS or samples & (samples - 1) or not 0.0 < confidence < 1.0:
         raise ParameterError(
             f"Sobol' indices: samples = {samples} must be a power of two from "
@@ -109,22 +108,22 @@ def sobol_indices(
     points = np.vstack([sobol_points(2 * d, rng).random(each) for _ in range(_SCRAMBLINGS)])
     a, b = points[:, :d], points[:, d:]
     mixed = [np.where(np.arange(d) == i, b, a) for i in range(d)]
-    values = np.asarray(output(parts(scatters, np.vstack([a, b, *mixed]))), dtype=np.float64)
+    values = np.asarray(output(parts(distributions, np.vstack([a, b, *mixed]))), dtype=np.float64)
     if values.shape != (samples * (d + 2),) or not np.isfinite(values).all():
         raise ParameterError(
             f"Sobol' indices: the output must be {samples * (d + 2)} finite numbers, one a part"
         )
-    values = values.reshape(d + 2, samples)
-    once = np.ones((1, samples))
+    scrambled = values.reshape(d + 2, _SCRAMBLINGS, each)
     chances = np.full(_SCRAMBLINGS, 1.0 / _SCRAMBLINGS)
-    again = np.repeat(rng.multinomial(_SCRAMBLINGS, chances, size=_DRAWS), each, axis=1)
-    value, drawn = _indices(values, once), _indices(values, again.astype(np.float64))
+    counts = rng.multinomial(_SCRAMBLINGS, chances, size=_DRAWS)
+    value = _indices(scrambled)
+    drawn = [_indices(np.repeat(scrambled, times, axis=1)) for times in counts]
     tail = _tail(confidence)
-    low, high = np.quantile(drawn, [tail, 1.0 - tail], axis=1)
+    low, high = np.quantile(drawn, [tail, 1.0 - tail], axis=0)
     found = [
         Sensitivity(
             name,
-            *(Estimate(float(value[k, 0, i]), float(low[k, i]), float(high[k, i])) for k in (0, 1)),
+            *(Estimate(float(value[k, i]), float(low[k, i]), float(high[k, i])) for k in (0, 1)),
         )
         for i, name in enumerate(names)
     ]
@@ -134,21 +133,14 @@ def sobol_indices(
 def _tail(confidence: float) -> float:
     """Where to cut the bootstrap's distribution, which few scramblings make too narrow."""
     freedom = _SCRAMBLINGS - 1
-    cut = float(t.ppf(0.5 + 0.5 * confidence, freedom)) * math.sqrt(_SCRAMBLINGS / freedom)
-    return float(norm.cdf(-cut))
+    cut = float(stats.t.ppf(0.5 + 0.5 * confidence, freedom)) * math.sqrt(_SCRAMBLINGS / freedom)
+    return float(stats.norm.cdf(-cut))
 
 
-def _indices(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """First and total indices, shape (2, draws, d); rows of `values` are f(A), f(B), f(AB_i)."""
-    centred = values - values[:2].mean()
-    of_a, of_b, mixed = centred[0], centred[1], centred[2:]
-    weights = weights / weights.sum(axis=1, keepdims=True)
-    mean = 0.5 * weights @ (of_a + of_b)
-    variance = 0.5 * weights @ (of_a**2 + of_b**2) - mean**2
-    first = weights @ (of_b * (mixed - of_a)).T
-    total = 0.5 * weights @ ((of_a - mixed) ** 2).T
-    found = np.zeros((2, *first.shape))
-    varies = variance > 0.0
-    found[0, varies] = first[varies] / variance[varies, np.newaxis]
-    found[1, varies] = total[varies] / variance[varies, np.newaxis]
-    return found
+def _indices(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """First and total indices, shape (2, d), of outputs f(A), f(B), f(AB_i) of some scramblings."""
+    of_a, of_b, *mixed = values.reshape(len(values), 1, -1)
+    found = stats.sobol_indices(
+        func={"f_A": of_a, "f_B": of_b, "f_AB": np.array(mixed)}, n=of_a.size
+    )
+    return np.array([found.first_order, found.total_order]).reshape(2, -1)

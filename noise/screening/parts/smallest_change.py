@@ -1,4 +1,4 @@
-"""The smallest change of each of several parameters that does what is wanted.
+"""Search for the smallest change of each of several parameters that does what is wanted.
 
 Whether a change does it may go to and fro, as stick does with the phase of the clamp. So all of
 each range is tried first, coarsely; then the innermost bracket of a value that does it and one
@@ -33,8 +33,9 @@ class Found:
     Parameters
     ----------
     value : float
+        In the unit of the parameter, such as [-] of a factor.
     score : float
-        What it scores.
+        What it scores [-].
     enough : bool
         Whether that is as wanted; otherwise it is the best of those tried.
     steady : bool
@@ -79,7 +80,8 @@ def smallest_changes(
     scores_of : callable
         Of n changes, each the index of a parameter and its value; returns n numbers.
     ranges : sequence of (float, float, float)
-        The least value of each parameter, its nominal one and the largest.
+        The least value of each parameter, its nominal one and the largest, in its unit, such as
+        [-] of a factor.
     wanted : float
         Least score that is enough.
 

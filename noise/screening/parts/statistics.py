@@ -1,4 +1,4 @@
-"""What a screen tells of a mapped design beyond its map: its risk, and what its tolerances do.
+"""Risk number and robustness of a mapped design.
 
 The risk number costs a hundred short runs and is told of every design. What tolerances do costs
 several times that, and is told where a design states some, or where it is asked for. Both are of

@@ -1,4 +1,4 @@
-"""A design with its parameters changed by factors: what a population and an advice are made of."""
+"""Variation of a design: rig and condition with parameters changed by factors."""
 
 from __future__ import annotations
 
@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig import damping_at
+from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.design.tolerances import ABSOLUTE_ZERO, PARAMETERS
 from noise.screening.map.grid import grid_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from models.rig import Fit, Rig
+    from models.rig import Rig
     from noise.screening.design.design import Design
 
 __all__ = ["UsePoint", "nominal_values", "use_point", "varied"]
-
-_OF_THE_FIT = ("elastomer_stiffness", "damping", "critical_torque", "kinetic_torque")
 
 
 @dataclass(frozen=True)
@@ -102,8 +101,8 @@ def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig
     rig : Rig
     point : UsePoint
     factors : mapping of str to float
-        By the names of `noise.screening.design.tolerances.PARAMETERS`. That of the temperature is
-        one of absolute temperature; a critical torque is at least the kinetic one.
+        By the names of `noise.screening.design.tolerances.PARAMETERS` [-]. That of the temperature
+        is one of absolute temperature; a critical torque is at least the kinetic one.
 
     Raises
     ------
@@ -123,8 +122,8 @@ def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig
             raise ParameterError(f"{name!r} cannot vary; what can is {', '.join(PARAMETERS)}")
         if not 0.0 < factor < math.inf:
             raise ParameterError(f"the factor {factor:g} on {name} must be above 0 and finite")
-    if any(name in factors for name in _OF_THE_FIT):
-        rig = replace(rig, fits=tuple(_changed(fit, factors) for fit in rig.fits))
+    if any(name in factors for name in FIT_PARAMETERS):
+        rig = replace(rig, fits=tuple(scaled_fit(fit, factors) for fit in rig.fits))
     absolute = point.temperature - ABSOLUTE_ZERO
     point = replace(
         point,
@@ -136,14 +135,3 @@ def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig
         else point.temperature,
     )
     return rig, point
-
-
-def _changed(fit: Fit, factors: Mapping[str, float]) -> Fit:
-    stiffness, damping, critical, kinetic = (factors.get(name, 1.0) for name in _OF_THE_FIT)
-    return replace(
-        fit,
-        elastomer_stiffness=fit.elastomer_stiffness * stiffness,
-        critical_torque=max(fit.critical_torque * critical, fit.kinetic_torque * kinetic),
-        kinetic_torque=fit.kinetic_torque * kinetic,
-        damping={support: value * damping for support, value in fit.damping.items()},
-    )

@@ -44,11 +44,12 @@ class CriticalPoint:
     support_stiffness : float
         [Nm/rad]
     v_crit1, v_crit2 : float
-        By simulation; 0 if there is none, ``inf`` if it is the fastest of the map.
+        By simulation [rad/s]; 0 if there is none, ``inf`` if it is the fastest of the map.
     v_crit2_stability : float
-        By stability; likewise.
+        By stability [rad/s]; likewise.
     margin_v_crit1, margin_v_crit2, margin_stability : float
-        Of the use to what sticks, to what vibrates, and to where sliding is unstable.
+        Of the use to what sticks, to what vibrates, and to where sliding is unstable [rad/s];
+        positive where no speed of use does.
     """
 
     design: str
@@ -72,27 +73,24 @@ def critical_points(found: DesignMap) -> list[CriticalPoint]:
     sticks = found.regime == Regime.STICK_SLIP.value
     vibrates = found.regime != Regime.STEADY_SLIDING.value
     points = []
-    for t, temperature in enumerate(found.grid.temperature):
-        for k, support in enumerate(found.grid.support_stiffness):
-            for i, fit in enumerate(found.grid.interference):
-                growth = found.growth[t, k, i]
-                ranges = (
-                    range_of(speed, sticks[t, k, i]),
-                    range_of(speed, vibrates[t, k, i]),
-                    range_of(speed, growth > 0.0, growth),
-                )
-                margins = (margin_of(span, found.grid.use) for span in ranges)
-                points.append(
-                    CriticalPoint(
-                        found.design,
-                        found.environment,
-                        temperature,
-                        fit,
-                        support,
-                        *(span[1] for span in ranges),
-                        *margins,
-                    )
-                )
+    for at in np.ndindex(found.growth.shape[:3]):
+        growth = found.growth[at]
+        ranges = (
+            range_of(speed, sticks[at]),
+            range_of(speed, vibrates[at]),
+            range_of(speed, growth > 0.0, growth),
+        )
+        points.append(
+            CriticalPoint(
+                found.design,
+                found.environment,
+                found.grid.temperature[at[0]],
+                found.grid.interference[at[2]],
+                found.grid.support_stiffness[at[1]],
+                *(span[1] for span in ranges),
+                *(margin_of(span, found.grid.use) for span in ranges),
+            )
+        )
     return points
 
 
@@ -109,7 +107,7 @@ def range_of(
         Rising [rad/s].
     happens : ndarray of bool, shape (n,)
     crossing : ndarray, shape (n,), optional
-        What is above zero where it happens; the speeds are then those at which it is zero.
+        Any measure above zero where it happens [-]; the speeds are then those at which it is zero.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""How each design does in each environment and motion, and its rank among all.
+"""Standing of each design in each environment and motion, and its rank among all.
 
 The rank is that of `noise.screening.ranking.risk.ranked`: by risk, by how probably there is noise,
 and by margin, the worst of a design's environments and motions counting. How probably is told by
@@ -45,9 +45,9 @@ class Standing:
     risk : int, optional
         From 1 to 10 at constant speed; None if it is not known.
     exposure : float
-        Mean of the points of use, 1 being 40 dB(A) throughout.
+        Mean of the points of use [-], 1 being 40 dB(A) throughout.
     shares : dict of str to float
-        Of the points of use, by label.
+        Of the points of use, by label [-].
     loudest_level : float
         L_AFmax of the loudest point of use with a noise [dB re 20 uPa]; NaN if there is none.
     loudest_label : str
@@ -55,7 +55,7 @@ class Standing:
     v_crit1, v_crit2 : float
         Largest of all fits, supports and temperatures [rad/s]; NaN where the shaft swings.
     margin_v_crit1, margin_v_crit2, margin_stability : float
-        Smallest likewise.
+        Smallest likewise [rad/s].
     """
 
     rank: int
@@ -76,6 +76,16 @@ class Standing:
 
 def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how loud levels are, 1 at 40 dB(A), doubled every 10 dB.
+
+    Parameters
+    ----------
+    level : ndarray, any shape
+        [dB(A)]
+
+    Returns
+    -------
+    ndarray
+        Of the same shape [-].
 
     Examples
     --------
@@ -108,10 +118,9 @@ def standings(
     found = [
         _standing(mapped, critical, risks[mapped.design, mapped.environment]) for mapped in maps
     ]
-    places = ranked(_candidates(found, statistics))
-    rank = {place.candidate.name: place.place for place in places}
-    placed = [replace(one, rank=rank.get(one.design, 1 + len(places))) for one in found]
-    return tuple(sorted(placed, key=lambda one: (one.rank, one.design)))
+    rank = ranked(_candidates(found, statistics))
+    all_ranked = [replace(one, rank=rank.get(one.design, 1 + len(rank))) for one in found]
+    return tuple(sorted(all_ranked, key=lambda one: (one.rank, one.design)))
 
 
 def _candidates(found: Sequence[Standing], statistics: Sequence[Statistics]) -> list[Candidate]:

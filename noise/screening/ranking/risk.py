@@ -1,4 +1,4 @@
-"""A risk number of a design on the scale of one to ten that the field knows, and the ranking.
+"""Risk number of a design, from 1 to 10 as the field grades stick-slip, and the ranking by it.
 
 Taken from the field: stick-slip of a pair of materials is graded from 1 to 10, 10 being worst
 (VDA 230-206), and specifications read the grade in three bands: 1 to 3 no risk, 4 and 5 at risk
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from noise.screening.parts.estimate import Estimate
 
-__all__ = ["Candidate", "Place", "design_risk", "ranked", "risk_band", "risk_grades"]
+__all__ = ["Candidate", "design_risk", "ranked", "risk_band", "risk_grades"]
 
 _ACCELERATION = 1.0, 1000.0
 """Peaks graded 1 and 10, at the accelerometer [m/s2]; decades between count alike."""
@@ -59,12 +59,12 @@ def risk_grades(
     impulse_rate : array_like
         Slips, or periods of a vibration without stick, on the way of the shaft [1/rad].
     friction_ratio : array_like
-        Static over kinetic friction, 1 or more. They are broadcast against each other.
+        Static over kinetic friction, 1 or more [-]. They are broadcast against each other.
 
     Returns
     -------
-    ndarray
-        Not rounded.
+    ndarray, shape of the arguments
+        From 1 to 10 [-], not rounded.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def design_risk(
     weights : array_like, optional
         How much each counts, shaped as `grades`; by default alike.
     beyond : float
-        Share of the use that may be graded worse; the very worst is often a single condition
+        Share of the use that may be graded worse [-]; the very worst is often a single condition
         between others that are quiet.
 
     Returns
@@ -171,9 +171,9 @@ class Candidate:
     risk : int
         From 1 to 10.
     noise : Estimate
-        Probability of any noise among parts.
+        Probability of any noise among parts [-].
     margin : float
-        Of the use to what vibrates; NaN if it is not known.
+        Of the use to what vibrates [rad/s]; NaN if it is not known.
     """
 
     name: str
@@ -182,15 +182,7 @@ class Candidate:
     margin: float
 
 
-@dataclass(frozen=True)
-class Place:
-    """A candidate and its place, 1 being the quietest; who cannot be told apart share one."""
-
-    place: int
-    candidate: Candidate
-
-
-def ranked(candidates: Sequence[Candidate]) -> tuple[Place, ...]:
+def ranked(candidates: Sequence[Candidate]) -> dict[str, int]:
     """Rank designs by risk, then by probability of noise, then by margin.
 
     Probabilities are tied with the least of their group if they exceed it by no more than the
@@ -203,27 +195,27 @@ def ranked(candidates: Sequence[Candidate]) -> tuple[Place, ...]:
 
     Returns
     -------
-    tuple of Place
-        Quietest first; those of one place by their names.
+    dict of str to int
+        Ranks by name, 1 being the quietest, who comes first; who cannot be told apart share one,
+        and stand by their names.
 
     Examples
     --------
     >>> from noise.screening.parts.estimate import Estimate
     >>> some, few = Estimate(0.4, 0.35, 0.45), Estimate(0.38, 0.33, 0.43)
-    >>> found = ranked([Candidate("soft", 4, few, -2.0), Candidate("stiff", 4, some, 1.0)])
-    >>> [(one.place, one.candidate.name) for one in found]
-    [(1, 'stiff'), (2, 'soft')]
+    >>> ranked([Candidate("soft", 4, few, -2.0), Candidate("stiff", 4, some, 1.0)])
+    {'stiff': 1, 'soft': 2}
     """
-    keys: list[tuple[tuple[int, float], Candidate]] = []
+    keys: list[tuple[tuple[int, float], str]] = []
     group, least = 0, None
     for candidate in sorted(candidates, key=lambda one: (one.risk, one.noise.value)):
         if least is None or candidate.risk != least.risk or _noisier(candidate, least):
             group, least = group + 1, candidate
         margin = -math.inf if math.isnan(candidate.margin) else candidate.margin
-        keys.append(((group, -margin), candidate))
-    keys.sort(key=lambda one: (one[0], one[1].name))
+        keys.append(((group, -margin), candidate.name))
+    keys.sort()
     order = [key for key, _ in keys]
-    return tuple(Place(1 + order.index(key), candidate) for key, candidate in keys)
+    return {name: 1 + order.index(key) for key, name in keys}
 
 
 def _noisier(one: Candidate, other: Candidate) -> bool:

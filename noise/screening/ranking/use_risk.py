@@ -1,4 +1,4 @@
-"""The risk number of a design over its use, from runs of its nominal rig.
+"""Risk number of a design over its use, from runs of its nominal rig.
 
 How hard a blow is, is told by the torque: by how much its swing would accelerate the free clamp
 where the beams hold it. That is what the accelerometer reads in stick-slip, within a factor of two,
@@ -18,13 +18,10 @@ from joblib import Parallel, delayed
 from noise.batch.work import one_thread
 from noise.screening.map.grid import grid_of
 from noise.screening.ranking.risk import design_risk, risk_grades
+from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import Regime, friction_regime
 from sim.analysis.sweep_features import FEATURES, motion_features
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.friction import at_temperature
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,8 +34,7 @@ __all__ = ["use_grades", "use_risk"]
 _SPEEDS = 12
 
 _SECONDS = 1.0
-_RATE = 15e3
-"""Of the runs, judged on their last half as critical speeds are [s, Hz]."""
+"""Of the runs, judged on their last half as critical speeds are [s]."""
 
 
 def use_risk(design: Design, *, workers: int = -1) -> int:
@@ -105,15 +101,7 @@ def _measured(
     rig = replace(rig, friction=at_temperature(rig.friction, temperature))
     fit = rig.fit(interference)
     ratio = fit.critical_torque / fit.kinetic_torque if fit.kinetic_torque > 0.0 else np.inf
-    motion = simulate_motion(
-        rig,
-        ConstantSpeed(speed),
-        interference=interference,
-        support_stiffness=support_stiffness,
-        seconds=_SECONDS,
-        rate=_RATE,
-        effects=activated(rig.effects, EFFECTS),
-    )
+    motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=_SECONDS)
     regime = friction_regime(motion)
     if regime is Regime.STEADY_SLIDING:
         return 0.0, 0.0, ratio

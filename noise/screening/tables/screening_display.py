@@ -1,4 +1,4 @@
-"""How designs, screens and robustness show themselves in a notebook."""
+"""Display of designs, screenings and robustness in a notebook."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.html_table import html_table
 from noise.screening.design.tolerances import PARAMETERS
-from noise.screening.ranking.risk import risk_band
-from noise.screening.tables.parts_tables import probability_words, sensitivity_words
+from noise.screening.tables.summary import probability_words, risk_words, sensitivity_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,18 +17,7 @@ if TYPE_CHECKING:
     from noise.screening.outcome import Screening
     from noise.screening.parts.robustness import Robustness
 
-__all__ = ["design_html", "risk_words", "robustness_html", "screening_html"]
-
-
-def risk_words(risk: int | None) -> str:
-    """Tell a risk number with its band.
-
-    Examples
-    --------
-    >>> risk_words(4), risk_words(None)
-    ('4 (conditional)', 'not known')
-    """
-    return "not known" if risk is None else f"{risk} ({risk_band(risk)})"
+__all__ = ["design_html", "robustness_html", "screening_html"]
 
 
 def screening_html(found: Screening) -> str:
@@ -116,7 +104,7 @@ def robustness_html(found: Robustness) -> str:
     tables.append(html_table("Sobol' indices of the margin", sensitivities, header=header))
     advice = [
         [one.name, f"{one.change:+.1%}", "yes" if one.enough else "no", brings]
-        for advised in (found.widening, found.ending)
+        for advised in (found.margin_advice, found.noise_advice)
         for one in advised
         for brings in [one.label or f"{one.gain:+.2g} rad/s of margin"]
     ]

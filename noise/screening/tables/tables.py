@@ -1,4 +1,4 @@
-"""What a screen found as tables: the map, the critical speeds, the designs; and as a few lines."""
+"""Tables of a screening: map, critical speeds, designs, sensitivities and advice."""
 
 from __future__ import annotations
 
@@ -7,232 +7,187 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.screening.design.tolerances import PARAMETERS
 from noise.screening.map.batches import LABELS
+from noise.screening.parts.probability import NOISES
 from noise.screening.ranking.risk import risk_band
-from noise.screening.tables.parts_tables import PROBABILITY_COLUMNS, parts_lines, probability_cells
-from noise.screening.tables.screening_display import risk_words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterable, Mapping
+    from typing import Any
 
-    from noise.screening.map.mapping import DesignMap
     from noise.screening.outcome import Screening
+    from noise.screening.parts.estimate import Estimate
+    from noise.screening.parts.robustness import Robustness
     from noise.screening.parts.statistics import Statistics
-    from noise.screening.ranking.margins import CriticalPoint
-    from noise.screening.ranking.ranking import Standing
 
-__all__ = [
-    "CRITICAL_COLUMNS",
-    "DESIGN_COLUMNS",
-    "MAP_COLUMNS",
-    "critical_rows",
-    "design_rows",
-    "map_rows",
-    "summary_lines",
-]
+    Columns = Mapping[str, Callable[..., object]]
+    Table = tuple[tuple[str, ...], list[dict[str, object]]]
 
-MAP_COLUMNS = (
-    "design",
-    "environment",
-    "motion",
-    "temperature_C",
-    "speed_rad_s",
-    "frequency_hz",
-    "interference_mm",
-    "support_stiffness_Nm_rad",
-    "regime",
-    "label",
-    "level_db",
-    "loudness",
-    "how",
-)
-
-CRITICAL_COLUMNS = (
-    "design",
-    "environment",
-    "temperature_C",
-    "interference_mm",
-    "support_stiffness_Nm_rad",
-    "v_crit1_rad_s",
-    "v_crit2_rad_s",
-    "v_crit2_stability_rad_s",
-    "margin_v_crit1_rad_s",
-    "margin_v_crit2_rad_s",
-    "margin_stability_rad_s",
-)
-
-DESIGN_COLUMNS = (
-    "rank",
-    "design",
-    "environment",
-    "motion",
-    "risk",
-    "risk_band",
-    *PROBABILITY_COLUMNS,
-    "exposure",
-    *(f"share_{label}" for label in LABELS),
-    "loudest_level_db",
-    "loudest_label",
-    "v_crit1_rad_s",
-    "v_crit2_rad_s",
-    "margin_v_crit1_rad_s",
-    "margin_v_crit2_rad_s",
-    "margin_stability_rad_s",
-    "error",
-)
+__all__ = ["screening_tables"]
 
 
-def map_rows(screening: Screening) -> Iterator[dict[str, object]]:
-    """Rows of ``map.csv``, one a point."""
-    for found in screening.maps:
-        yield from _map_rows(found)
+def screening_tables(screening: Screening) -> dict[str, Table]:
+    """Return all tables of a screening; the last two only where tolerances were looked at.
 
-
-def _map_rows(found: DesignMap) -> Iterator[dict[str, object]]:
-    grid = found.grid
-    for t, k, i, v in np.ndindex(found.label.shape):
-        where = t, k, i, v
-        yield {
-            "design": found.design,
-            "environment": found.environment,
-            "motion": found.motion,
-            "temperature_C": grid.temperature[t],
-            "speed_rad_s": _short(grid.speed[v]),
-            "frequency_hz": grid.frequency[v] if grid.frequency else None,
-            "interference_mm": _short(1e3 * grid.interference[i]),
-            "support_stiffness_Nm_rad": _support(grid.support_stiffness[k]),
-            "regime": str(found.regime[where]),
-            "label": str(found.label[where]),
-            "level_db": round(float(found.level[where]), 2),
-            "loudness": round(float(found.loudness[where]), 3),
-            "how": str(found.how[where]),
-        }
-
-
-def critical_rows(screening: Screening) -> Iterator[dict[str, object]]:
-    """Rows of ``critical_speeds.csv``, one a temperature, fit and support."""
-    for point in screening.critical:
-        yield _critical_row(point)
-
-
-def _critical_row(point: CriticalPoint) -> dict[str, object]:
-    return {
-        "design": point.design,
-        "environment": point.environment,
-        "temperature_C": point.temperature,
-        "interference_mm": _short(1e3 * point.interference),
-        "support_stiffness_Nm_rad": _support(point.support_stiffness),
-        "v_crit1_rad_s": _short(point.v_crit1),
-        "v_crit2_rad_s": _short(point.v_crit2),
-        "v_crit2_stability_rad_s": _short(point.v_crit2_stability),
-        "margin_v_crit1_rad_s": _short(point.margin_v_crit1),
-        "margin_v_crit2_rad_s": _short(point.margin_v_crit2),
-        "margin_stability_rad_s": _short(point.margin_stability),
-    }
-
-
-def design_rows(screening: Screening) -> Iterator[dict[str, object]]:
-    """Rows of ``designs.csv``, the quietest first, those refused last."""
-    for one in screening.standings:
-        yield _design_row(one, screening.statistics_of(one.design, one.environment))
-    for name, reason in screening.refused:
-        yield {"design": name, "error": reason}
-
-
-def _design_row(one: Standing, told: Statistics) -> dict[str, object]:
-    return {
-        "rank": one.rank,
-        "design": one.design,
-        "environment": one.environment,
-        "motion": one.motion,
-        "risk": one.risk,
-        "risk_band": None if one.risk is None else risk_band(one.risk),
-        **probability_cells(told),
-        "exposure": _short(one.exposure),
-        **{f"share_{label}": round(share, 4) for label, share in one.shares.items()},
-        "loudest_level_db": round(one.loudest_level, 2),
-        "loudest_label": one.loudest_label,
-        "v_crit1_rad_s": _short(one.v_crit1),
-        "v_crit2_rad_s": _short(one.v_crit2),
-        "margin_v_crit1_rad_s": _short(one.margin_v_crit1),
-        "margin_v_crit2_rad_s": _short(one.margin_v_crit2),
-        "margin_stability_rad_s": _short(one.margin_stability),
-        "error": "; ".join(told.failed) or None,
-    }
-
-
-def summary_lines(screening: Screening) -> list[str]:
-    """Tell what a screen found, a line a design and motion, its parts below, and how it is known.
+    Returns
+    -------
+    dict of str to (tuple of str, list of dict)
+        Columns and rows by the name of the file: ``map.csv`` with a row a point,
+        ``critical_speeds.csv`` with one a temperature, fit and support, ``designs.csv`` with the
+        quietest first and those refused last, ``sensitivities.csv`` of Sobol' indices of the margin
+        with a row a parameter, and ``advice.csv`` of changes that widen the margin, then of those
+        that end the noise.
 
     Examples
     --------
     >>> from noise.screening.design.design import Use
     >>> from noise.screening.screen import screen
-    >>> lines = summary_lines(screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,))))
-    >>> lines[0]
-    '1. PDMS, dry: risk 1 (no risk); quiet at all 4 points of use; nothing vibrates'
+    >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,)))
+    >>> columns, rows = screening_tables(found)["designs.csv"]
+    >>> columns[:3], rows[0]["risk_band"]
+    (('rank', 'design', 'environment'), 'no risk')
     """
-    lines = []
-    told: set[tuple[str, str]] = set()
-    for one in screening.standings:
-        lines.append(_standing_line(one, screening))
-        where = one.design, one.environment
-        if where not in told:
-            told.add(where)
-            lines += [f"   {line}" for line in parts_lines(screening.statistics_of(*where))]
-    how = ", ".join(
-        f"{screening.count(way)} {words}"
-        for way, words in (
-            ("simulated", "simulated"),
-            ("stability", "by stability"),
-            ("refined", "by refinement"),
-            ("unchanged", "alike at another temperature"),
+    told = [(one, one.robustness) for one in screening.statistics if one.robustness is not None]
+    points = ((found, at) for found in screening.maps for at in np.ndindex(found.label.shape))
+    standings = (
+        (one, screening.statistics_of(one.design, one.environment)) for one in screening.standings
+    )
+    columns, rows = _table(_DESIGNS, standings)
+    rows += [{"design": name, "error": reason} for name, reason in screening.refused]
+    tables = {
+        "map.csv": _table(_MAP, points),
+        "critical_speeds.csv": _table(_CRITICAL, ((point,) for point in screening.critical)),
+        "designs.csv": (columns, rows),
+    }
+    if told:
+        sensitivities = ((*both, found) for both in told for found in both[1].sensitivities)
+        advice = (
+            (one, aim, found)
+            for one, robust in told
+            for aim, advised in (("margin", robust.margin_advice), ("noise", robust.noise_advice))
+            for found in advised
         )
-        if screening.count(way)
-    )
-    left = sum(found.open for found in screening.maps)
-    boundary = f" ({left} beside a boundary, as their nearest neighbour)" if left else ""
-    lines.append(f"{screening.points} points in {screening.seconds:.1f} s: {how}{boundary}")
-    lines.append(f"risk and tolerances in {screening.statistics_seconds:.1f} s")
-    return lines
+        tables["sensitivities.csv"] = _table(_SENSITIVITIES, sensitivities)
+        tables["advice.csv"] = _table(_ADVICE, advice)
+    return tables
 
 
-def _standing_line(one: Standing, screening: Screening) -> str:
-    where = one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
-    mapped = next(
-        found
-        for found in screening.maps
-        if (found.design, found.environment, found.motion)
-        == (one.design, one.environment, one.motion)
-    )
-    low, high = mapped.grid.use
-    speed = np.array(mapped.grid.speed)
-    used = mapped.label[..., (speed >= low * 0.999999) & (speed <= high * 1.000001)].size
-    head = f"{one.rank}. {one.design}, {where}: risk {risk_words(one.risk)}; "
-    noisy = {name: share for name, share in one.shares.items() if name != "none" and share > 0.0}
-    if not noisy:
-        text = f"quiet at all {used} points of use"
-    else:
-        said = ", ".join(f"{name} {share:.0%}" for name, share in noisy.items())
-        text = f"{said} of {used} points of use, up to {one.loudest_level:.0f} dB(A)"
-        text += f" ({one.loudest_label}), exposure {one.exposure:.3g}"
-    if one.motion != "steady":
-        return head + text
-    if one.v_crit2 == 0.0:
-        return f"{head}{text}; nothing vibrates"
-    return (
-        f"{head}{text}; V_crit1 {_speed(one.v_crit1)}, V_crit2 {_speed(one.v_crit2)}, "
-        f"margin {one.margin_v_crit2:+.3g} rad/s"
-    )
+def _table(columns: Columns, items: Iterable[tuple[Any, ...]]) -> Table:
+    return tuple(columns), [{name: cell(*item) for name, cell in columns.items()} for item in items]
 
 
-def _speed(value: float) -> str:
-    return "beyond the map" if math.isinf(value) else f"{value:.3g}"
+def _short(value: float) -> float:
+    return value if math.isnan(value) else float(f"{value:.6g}")
 
 
 def _support(stiffness: float) -> float | str:
     return "fixed" if math.isinf(stiffness) else stiffness
 
 
-def _short(value: float) -> float:
-    return float(f"{value:.6g}")
+def _source(robust: Robustness | None) -> str | None:
+    return None if robust is None else "assumed" if robust.assumed else "stated"
+
+
+_BOUNDS = {"": "value", "_low": "low", "_high": "high"}
+
+
+def _with_bounds(name: str, estimate: Callable[..., object]) -> Columns:
+    """Columns of an estimate and of the ends of its interval."""
+
+    def cell(attribute: str) -> Callable[..., object]:
+        def rounded(*item: object) -> float | None:
+            found = estimate(*item)
+            return None if found is None else round(getattr(found, attribute), 4)
+
+        return rounded
+
+    return {f"{name}{ending}": cell(attribute) for ending, attribute in _BOUNDS.items()}
+
+
+def _probability(label: str) -> Columns:
+    def estimate(_: object, told: Statistics) -> Estimate | None:
+        robust = told.robustness
+        return None if robust is None else robust.noises.by_label[label]
+
+    return _with_bounds(f"p_{label}", estimate)
+
+
+def _share(label: str) -> Columns:
+    return {f"share_{label}": lambda one, _: round(one.shares[label], 4)}
+
+
+_MAP: Columns = {
+    "design": lambda found, _: found.design,
+    "environment": lambda found, _: found.environment,
+    "motion": lambda found, _: found.motion,
+    "temperature_C": lambda found, at: found.grid.temperature[at[0]],
+    "speed_rad_s": lambda found, at: _short(found.grid.speed[at[3]]),
+    "frequency_hz": lambda found, at: found.grid.frequency[at[3]] if found.grid.frequency else None,
+    "interference_mm": lambda found, at: _short(1e3 * found.grid.interference[at[2]]),
+    "support_stiffness_Nm_rad": lambda found, at: _support(found.grid.support_stiffness[at[1]]),
+    "regime": lambda found, at: str(found.regime[at]),
+    "label": lambda found, at: str(found.label[at]),
+    "level_db": lambda found, at: round(float(found.level[at]), 2),
+    "loudness": lambda found, at: round(float(found.loudness[at]), 3),
+    "how": lambda found, at: str(found.how[at]),
+}
+
+_SPEEDS: Columns = {
+    f"{name}_rad_s": lambda one, *_, name=name: _short(getattr(one, name))
+    for name in (
+        "v_crit1", "v_crit2", "v_crit2_stability",
+        "margin_v_crit1", "margin_v_crit2", "margin_stability",
+    )
+}  # fmt: skip
+
+_CRITICAL: Columns = {
+    "design": lambda point: point.design,
+    "environment": lambda point: point.environment,
+    "temperature_C": lambda point: point.temperature,
+    "interference_mm": lambda point: _short(1e3 * point.interference),
+    "support_stiffness_Nm_rad": lambda point: _support(point.support_stiffness),
+    **_SPEEDS,
+}
+
+_DESIGNS: Columns = {
+    "rank": lambda one, _: one.rank,
+    "design": lambda one, _: one.design,
+    "environment": lambda one, _: one.environment,
+    "motion": lambda one, _: one.motion,
+    "risk": lambda one, _: one.risk,
+    "risk_band": lambda one, _: None if one.risk is None else risk_band(one.risk),
+    "tolerances": lambda _, told: _source(told.robustness),
+    **{name: cell for label in NOISES for name, cell in _probability(label).items()},
+    "exposure": lambda one, _: _short(one.exposure),
+    **{name: cell for label in LABELS for name, cell in _share(label).items()},
+    "loudest_level_db": lambda one, _: round(one.loudest_level, 2),
+    "loudest_label": lambda one, _: one.loudest_label,
+    **{name: cell for name, cell in _SPEEDS.items() if name != "v_crit2_stability_rad_s"},
+    "error": lambda _, told: "; ".join(told.failed) or None,
+}
+
+_SENSITIVITIES: Columns = {
+    "design": lambda one, *_: one.design,
+    "environment": lambda one, *_: one.environment,
+    "tolerances": lambda _, robust, __: _source(robust),
+    "parameter": lambda *item: item[-1].name,
+    **_with_bounds("first", lambda *item: item[-1].first),
+    **_with_bounds("total", lambda *item: item[-1].total),
+}
+
+_ADVICE: Columns = {
+    "design": lambda one, *_: one.design,
+    "environment": lambda one, *_: one.environment,
+    "aim": lambda _, aim, __: aim,
+    "parameter": lambda *item: item[-1].name,
+    "unit": lambda *item: PARAMETERS[item[-1].name],
+    "nominal": lambda one, _, found: _short(one.nominal[found.name]),
+    "advised": lambda one, _, found: _short(one.nominal[found.name] * found.value),
+    "change": lambda *item: _short(item[-1].change),
+    "enough": lambda *item: item[-1].enough,
+    "steady": lambda *item: item[-1].steady,
+    "gain_rad_s": lambda *item: _short(item[-1].gain),
+    "slope_rad_s": lambda *item: _short(item[-1].slope),
+    "label": lambda *item: item[-1].label or None,
+}

@@ -1,4 +1,4 @@
-"""How the shipped fluorocarbon was found: ``python -m noise.training.calibrate``.
+"""Calibration of the shipped fluorocarbon: ``python -m noise.training.calibrate``.
 
 What is unknown of contact and damping (`unknowns`) is searched (`search`) so that the regimes and
 noises of Section 5 come out (`cells`, `objective`), and the search is repeated with one of the six

@@ -1,4 +1,4 @@
-"""Fit the fluorocarbon to the thesis's tables, and hold out: ``python -m noise.training.calibrate``.
+"""Fit of the fluorocarbon to the thesis's tables: ``python -m noise.training.calibrate``.
 
 Without options it judges the shipped material. ``--generations N`` searches; ``--leave-out``
 searches again with each of the six critical speeds at 0.279 mm left out, from round numbers.

@@ -1,4 +1,4 @@
-"""What the thesis measured of the fluorocarbon, as the calibration is judged by it.
+"""Measurements of the fluorocarbon in the thesis, by which the calibration is judged.
 
 A cell is one number of Tables 5.1 and 5.2. The six critical speeds at 0.279 mm are what is fitted,
 and what can be left out. The rest steers the search with less weight: V_crit2 at 0.178 mm, stick
@@ -8,7 +8,7 @@ beyond 13 rad/s at 0.381 mm, and the noises of 5.2.3.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, log
 
 __all__ = ["CELLS", "NOISES", "STICKING", "SUPPORTS", "THIN_CELLS", "Cell", "NoiseCell"]
 
@@ -36,6 +36,10 @@ class Cell:
     support_stiffness: float
     item: str
     speed: float
+
+    def log_error(self, speed: float) -> float:
+        """Logarithm of a simulated speed [rad/s] over the measured one [-]."""
+        return log(speed / self.speed) if speed > 0.0 else -inf
 
     def __str__(self) -> str:
         support = (

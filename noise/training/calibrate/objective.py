@@ -1,4 +1,4 @@
-"""How far a rig is from what was measured: one number, smooth enough to be searched.
+"""Objective of the calibration: the distance of a rig from what was measured, in one number.
 
 The measure that is reported is the root mean square of log(simulated / measured) over the critical
 speeds. It weighs most; the other terms are hinges, nil where the thesis's finding is met. Critical
@@ -20,9 +20,8 @@ from joblib import Parallel, delayed
 
 from models.errors import ParameterError
 from noise.training.calibrate.cells import CELLS, NOISES, STICKING, SUPPORTS, THIN_CELLS, Cell
-from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
+from sim.analysis.critical_speeds import falls_below, motion_from_rest
+from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK, stick_and_oscillation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -43,7 +42,6 @@ _WINDOW = 0.8, 1.35
 """Over what was measured: where the grid is fine."""
 
 _SECONDS = 0.8
-_RATE = 15e3
 
 _CRITICAL_SPEEDS, _THIN, _FLATNESS, _STICK, _NOISE = 20.0, 1.25, 2.0, 0.15, 0.25
 """Weights."""
@@ -84,7 +82,7 @@ class Score:
     Parameters
     ----------
     cost : float
-        To be minimised.
+        To be minimised [-].
     speeds : dict of Cell to float
         Critical speeds as the search sees them [rad/s].
     """
@@ -93,8 +91,8 @@ class Score:
     speeds: Mapping[Cell, float]
 
     def log_error(self, cells: Iterable[Cell]) -> float:
-        """Root mean square of log(simulated / measured)."""
-        errors = [math.log(self.speeds[cell] / cell.speed) for cell in cells]
+        """Root mean square of log(simulated / measured) [-]."""
+        errors = [cell.log_error(self.speeds[cell]) for cell in cells]
         return math.sqrt(sum(error * error for error in errors) / len(errors))
 
 
@@ -166,19 +164,13 @@ def _grid(support_stiffness: float) -> NDArray[np.float64]:
 
 def _settled(rig: Rig, task: Task) -> _Settled:
     interference, support, speed = task
-    motion = simulate_motion(
-        rig,
-        ConstantSpeed(speed),
-        interference=interference,
-        support_stiffness=support,
-        seconds=_SECONDS,
-        rate=_RATE,
-    )
+    motion = motion_from_rest(rig, speed, interference, support, seconds=_SECONDS)
+    stick, oscillation = stick_and_oscillation(motion)
     last = motion.since(motion.torque.size // 2)
     mean = float(np.mean(last.torque))
     torque = last.torque - mean
     amplitude = np.abs(np.fft.rfft(torque * np.hanning(torque.size)))
-    frequency = np.fft.rfftfreq(torque.size, 1.0 / _RATE)
+    frequency = np.fft.rfftfreq(torque.size, 1.0 / motion.rate)
 
     def highest(band: tuple[float, float]) -> float:
         return float(amplitude[(frequency >= band[0]) & (frequency < band[1])].max())
@@ -186,8 +178,8 @@ def _settled(rig: Rig, task: Task) -> _Settled:
     top = int(np.argmax(amplitude[frequency < 2500.0]))
     strongest = max(float(amplitude[top]), 1e-12)
     return _Settled(
-        stick=float(np.mean(last.stuck)),
-        oscillation=float(np.std(torque)) / abs(mean),
+        stick=stick,
+        oscillation=oscillation,
         mean=mean,
         slip_line=highest(_SLIP_BAND) / strongest,
         middle_line=highest(_MIDDLE_BAND) / strongest,
@@ -212,9 +204,7 @@ def _last_crossing(speed: NDArray[np.float64], values: list[float], limit: float
     last = above[-1]
     if last == len(values) - 1:
         return 1.1 * float(speed[-1])
-    here, after = values[last], max(values[last + 1], 0.1 * limit)
-    share = math.log(here / limit) / math.log(here / after)
-    return float(speed[last] * (speed[last + 1] / speed[last]) ** share)
+    return falls_below(limit, speed[last], values[last], speed[last + 1], values[last + 1])
 
 
 def _above(value: float, limit: float) -> float:

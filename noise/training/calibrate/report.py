@@ -1,13 +1,13 @@
-"""What a calibration comes to, as a page of text, and the material file that it makes."""
+"""Report of a calibration as a page of text, and the material file that it makes."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
-from noise.noise_definition import noise_of
+from noise.noise_definition import label_by_physics
 from noise.training.calibrate.cells import CELLS, NOISES, THIN_CELLS, Cell
+from noise.training.calibrate.objective import Score
 from noise.training.calibrate.unknowns import UNKNOWNS
 from sim.analysis.critical_speeds import critical_speeds
 from sim.run import simulate
@@ -37,12 +37,6 @@ def measured_speeds(rig: Rig, cells: Sequence[Cell] = CELLS + THIN_CELLS) -> dic
     return speeds
 
 
-def _log_error(speeds: Mapping[Cell, float]) -> float:
-    """Root mean square of log(simulated / measured)."""
-    errors = [_log(speed / cell.speed) for cell, speed in speeds.items()]
-    return math.sqrt(sum(error * error for error in errors) / len(errors))
-
-
 def speeds_page(title: str, speeds: Mapping[Cell, float]) -> str:
     """Table of measured and simulated critical speeds, with their error.
 
@@ -52,10 +46,10 @@ def speeds_page(title: str, speeds: Mapping[Cell, float]) -> str:
     Fitted: log-rms error 0.118
       v_crit1 at 0.279 mm, 2214 Nm/rad      measured   4.50  simulated   4.00  log -0.118
     """
-    lines = [f"{title}: log-rms error {_log_error(speeds):.3f}"]
+    lines = [f"{title}: log-rms error {Score(0.0, speeds).log_error(speeds):.3f}"]
     lines += [
         f"  {cell!s:<37} measured {cell.speed:6.2f}  simulated {speed:6.2f}  "
-        f"log {_log(speed / cell.speed):+.3f}"
+        f"log {cell.log_error(speed):+.3f}"
         for cell, speed in speeds.items()
     ]
     return "\n".join(lines)
@@ -71,7 +65,7 @@ def noises_page(rig: Rig) -> str:
         )  # fmt: skip
         lines.append(
             f"  {1e3 * cell.interference:.3f} mm, {cell.support_stiffness:.0f} Nm/rad, "
-            f"{cell.speed:g} rad/s  named {cell.noise:<7} simulated {noise_of(run)}"
+            f"{cell.speed:g} rad/s  named {cell.noise:<7} simulated {label_by_physics(run)}"
         )
     return "\n".join(lines)
 
@@ -107,7 +101,3 @@ def material_toml(rig: Rig) -> str:
             + " }",
         ]
     return "\n".join(lines) + "\n"
-
-
-def _log(ratio: float) -> float:
-    return math.log(ratio) if ratio > 0.0 else -math.inf

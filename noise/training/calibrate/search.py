@@ -1,4 +1,4 @@
-"""The search: evolution of a Gaussian cloud of candidates (CMA-ES) on logarithmic scales.
+"""Search for the unknowns: evolution of a Gaussian cloud of candidates (CMA-ES), on log scales.
 
 The cost has many valleys and no gradient, since a regime changes at a stroke. N. Hansen and A.
 Ostermeier (2001), *Evolutionary Computation* 9(2), through the package ``cma``.
@@ -37,7 +37,7 @@ class Found:
     Parameters
     ----------
     values : mapping of str to float
-        Of the unknowns.
+        Of the unknowns [each in its `unit`].
     score : Score
     """
 
@@ -92,10 +92,7 @@ def search(
         return Found(
             values,
             score(
-                rig_of(values),
-                fitted,
-                critical_speeds_alone=critical_speeds_alone,
-                workers=workers,
+                rig_of(values), fitted, critical_speeds_alone=critical_speeds_alone, workers=workers
             ),
         )
 

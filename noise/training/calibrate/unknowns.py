@@ -1,4 +1,4 @@
-"""What no source gives of the fluorocarbon: unknown numbers, and the rig that they make.
+"""Unknowns of the fluorocarbon, which no source gives, and the rig that they make.
 
 The contact has memory (`sim.friction.contact_with_memory`). Its torque at 5 rad/s is held at the
 8 Nm of Appendix F, so the level is no unknown. Torque, stiffness and damping of the contact at
@@ -47,7 +47,7 @@ class Unknown:
     ----------
     start, round_start, low, high : float
         Where the search begins, where it does with a cell left out, which must not know what
-        searches on all cells found, and what it may not leave, in `unit`.
+        searches on all cells found, and what it may not leave [in `unit`].
     unit, description : str
     """
 

@@ -1,1 +1,1 @@
-"""Simulated cases whose causes are known, for the diagnosis to learn from."""
+"""Training of the cause posterior, on simulated cases whose causes are known."""

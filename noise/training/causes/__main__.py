@@ -1,4 +1,4 @@
-"""``python -m noise.training.causes``: build the library and train the cause posterior on it."""
+"""``python -m noise.training.causes``: draw cases and train the cause posterior on them."""
 
 from __future__ import annotations
 

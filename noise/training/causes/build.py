@@ -1,8 +1,7 @@
-"""The library: many drawn cases, each summarised as a user's case would be."""
+"""Training cases: drawn, simulated, and each summarised as a user's case would be."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +10,13 @@ from joblib import Parallel, delayed
 from models.errors import ParameterError
 from noise.diagnosis.cases.draw import SHARED, draw_case
 from noise.diagnosis.evidence.summary import NominalNumbers, case_table
-from noise.training.causes.fit import Known
+from noise.training.causes.fit import Known, with_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from noise.diagnosis.evidence.summary import CaseTable
 
 __all__ = ["known_cases", "known_cases_of_a_rig"]
 
@@ -37,7 +35,7 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
         try:
             case = draw_case(seed)
             nominal = nominal or NominalNumbers(case.rig)
-            table = _rounded(case_table(case.recordings, case.rig, nominal=nominal))
+            table = with_rows(case_table(case.recordings, case.rig, nominal=nominal), _single)
             known.append(Known(table, case.truth, seed // SHARED))
         except ParameterError:
             continue
@@ -53,15 +51,6 @@ def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
     return (case for cases in drawn for case in cases)
 
 
-def _rounded(table: CaseTable) -> CaseTable:
-    """Round to single precision: a library stored in half the space is still the same one."""
-    return replace(
-        table,
-        measured=_single(table.measured),
-        nominal=_single(table.nominal),
-        scatter=_single(table.scatter),
-    )
-
-
 def _single(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Round to single precision: cases stored in half the space are still the same ones."""
     return x.astype(np.float32).astype(np.float64)

@@ -1,4 +1,4 @@
-"""Training the cause posterior on simulated cases.
+"""Training of the cause posterior on simulated cases.
 
 The cases of four rigs of five grow the trees, those of the fifth calibrate the probabilities and
 set the alarm; what is scored shares no draw with either. Each case is learned again from some of
@@ -10,21 +10,21 @@ signals are answered less surely rather than wrongly.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.classifier.trees import as_arrays
 from noise.diagnosis.causes.location import null_maxima
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.evidence import evidence, scale_of
+from noise.training.trees import boosted_trees, boosting
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from noise.classifier.trees import Trees
+    from noise.base.trees import BoostedTrees
     from noise.diagnosis.cases.truth import Truth
     from noise.diagnosis.evidence.summary import CaseTable
 
@@ -133,38 +133,32 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
     return np.sort(most).astype(np.int64)
 
 
-def _boosted(x: NDArray[np.float32], y: NDArray[np.int64], n_rounds: int, seed: int) -> Trees:
+def _boosted(
+    x: NDArray[np.float32], y: NDArray[np.int64], n_rounds: int, seed: int
+) -> BoostedTrees:
     """Trees of each cause against all that is not it."""
     from joblib import Parallel, delayed
 
     # A cause that no case has, or all have, needs no trees.
     met = [k for k in range(y.shape[1]) if 0 < y[:, k].sum() < len(y)]
-    trees = as_arrays(
+    trees = boosted_trees(
         Parallel(n_jobs=-1, prefer="threads")(
-            delayed(_grown)(x, y[:, k], n_rounds, seed) for k in met
+            delayed(boosting)(
+                x,
+                y[:, k],
+                n_rounds=n_rounds,
+                seed=seed,
+                learning_rate=0.06,
+                max_leaf_nodes=12,
+                min_samples_leaf=12,
+                max_features=0.15,
+            )
+            for k in met
         )
     )
     base = np.where(y.any(axis=0), _CERTAIN, -_CERTAIN)
     base[met] = trees.base
     return replace(trees, base=base, classes=np.array(met, dtype=np.int16)[trees.classes])
-
-
-def _grown(x: NDArray[np.float32], y: NDArray[np.int64], n_rounds: int, seed: int) -> Any:
-    from sklearn.ensemble import HistGradientBoostingClassifier
-    from threadpoolctl import threadpool_limits
-
-    model = HistGradientBoostingClassifier(
-        max_iter=n_rounds,
-        learning_rate=0.06,
-        max_leaf_nodes=12,
-        min_samples_leaf=12,
-        max_features=0.15,
-        l2_regularization=1.0,
-        early_stopping=False,
-        random_state=seed,
-    )
-    with threadpool_limits(1):  # sums are the same on every machine
-        return model.fit(x, y)
 
 
 def causes_of(truth: Truth) -> NDArray[np.int64]:
@@ -185,13 +179,7 @@ def with_channels(case: Known, channels: Sequence[str]) -> Known:
     def without(rows: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(kept, rows, np.nan)
 
-    changed = replace(
-        table,
-        measured=without(table.measured),
-        nominal=without(table.nominal),
-        scatter=without(table.scatter),
-    )
-    return replace(case, table=changed)
+    return replace(case, table=with_rows(table, without))
 
 
 def with_fewer(case: Known, rng: np.random.Generator) -> Known:
@@ -201,29 +189,27 @@ def with_fewer(case: Known, rng: np.random.Generator) -> Known:
     if n <= _FEWEST_RECORDINGS:
         return case
     chosen = np.sort(rng.choice(n, int(rng.integers(_FEWEST_RECORDINGS, n)), replace=False))
-    changed = replace(
+    conditions = tuple(table.conditions[i] for i in chosen)
+    changed = with_rows(table, lambda rows: rows[chosen])
+    return replace(case, table=replace(changed, conditions=conditions))
+
+
+def with_rows(
+    table: CaseTable, change: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+) -> CaseTable:
+    """Return a table with the same change of measured, nominal and scattered numbers."""
+    return replace(
         table,
-        measured=table.measured[chosen],
-        nominal=table.nominal[chosen],
-        scatter=table.scatter[chosen],
-        conditions=tuple(table.conditions[i] for i in chosen),
+        measured=change(table.measured),
+        nominal=change(table.nominal),
+        scatter=change(table.scatter),
     )
-    return replace(case, table=changed)
 
 
 _OWN = (
-    "top",
-    "bottom",
-    "crest",
-    "asymmetry",
-    "skewness",
-    "flat",
-    "dwell",
-    "offset",
-    "floor",
-    "band",
+    "top", "bottom", "crest", "asymmetry", "skewness", "flat", "dwell", "offset", "floor", "band",
     "raw",
-)
+)  # fmt: skip
 """Numbers that a channel has of itself alone."""
 
 

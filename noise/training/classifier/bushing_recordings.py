@@ -1,4 +1,4 @@
-"""A simulated bushing as it is recorded: by anybody's microphone, or on a rig's three channels."""
+"""Recordings of simulated bushings: by anybody's microphone, or on a rig's three channels."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.recording import Channel, Recording
-from noise.training.classifier.augmentation import as_recorded, hear
+from noise.training.classifier.augmentation.recorder import augmented, recorded
 from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:
@@ -51,33 +51,32 @@ def bushing_recording(
     >>> 0.5 <= span[1] - span[0] <= 3.0
     True
     """
-    recorded = drawn.run.recording
+    run = drawn.run.recording
     # What is below hearing shall not be lifted above the noise again.
-    pressure = recorded["pressure"]
-    if drawn.label == "none" and not _has_noise(recorded):
+    pressure = run["pressure"]
+    if drawn.label == "none" and not _has_noise(run):
         pressure = np.zeros_like(pressure)
     if rng.random() < _PRESSURE_ALONE:
-        heard = hear(pressure, recorded.rate, rng)
-        samples, rate, span = heard.samples[None, :], float(heard.rate), heard.span
+        clip = augmented(pressure, run.rate, rng)
+        samples, rate, span = clip.samples[None, :], float(clip.rate), clip.span
         kept = ["pressure"]
     else:
         rows = (
-            _as_computed(recorded, rng)
+            _as_computed(run, rng)
             if rng.random() < _AS_COMPUTED
             else {
-                "torque": _noisy(recorded["torque"], rng.uniform(-3.5, -1.5), mean=True, rng=rng),
+                "torque": _noisy(run["torque"], rng.uniform(-3.5, -1.5), mean=True, rng=rng),
                 "acceleration": _noisy(
-                    recorded["acceleration"], rng.uniform(-3.0, 0.5), mean=False, rng=rng
+                    run["acceleration"], rng.uniform(-3.0, 0.5), mean=False, rng=rng
                 ),
-                "pressure": as_recorded(pressure, recorded.rate, rng)
-                * 10.0 ** rng.uniform(-3.0, -0.5),
+                "pressure": recorded(pressure, run.rate, rng) * 10.0 ** rng.uniform(-3.0, -0.5),
             }
         )
         kept = list(rows)
         samples = np.stack(list(rows.values()))
-        rate, span = recorded.rate, (0.0, recorded.duration)
+        rate, span = run.rate, (0.0, run.duration)
     channels = tuple(Channel(name) for name in kept)
-    recording = Recording(samples, rate, channels, recorded.condition, calibrated=False)
+    recording = Recording(samples, rate, channels, run.condition, calibrated=False)
     return recording, span
 
 

@@ -1,10 +1,10 @@
 """Simulated bushings of the classifier's samples, called by their physics.
 
-A run is called by `noise.noise_definition.noise_of` alone. That is defined at constant speed, so a
-run whose speed varies, or that has not settled, is looked at in pieces of a quarter of a second,
-and only the longest stretch with one noise is kept; a run without half a second of one noise is
-drawn again. Runs that would be much of one noise are thinned by a short preview, and half of the
-squawks that it did not foresee are let go.
+A run is called by `noise.noise_definition.label_by_physics` alone. That is defined at constant
+speed, so a run whose speed varies, or that has not settled, is looked at in pieces of a quarter of
+a second, and only the longest stretch with one noise is kept; a run without half a second of one
+noise is drawn again. Runs that would be much of one noise are thinned by a short preview, and half
+of the squawks that it did not foresee are let go.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ import numpy as np
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.errors import ParameterError
-from noise.noise_definition import evidence, is_ambiguous, noise_of
-from noise.training.classifier.augmentation import RATES
-from noise.training.classifier.designs import random_design
-from noise.training.classifier.extras import random_extras
+from noise.noise_definition import is_ambiguous, label_by_physics, run_criteria
+from noise.training.classifier.augmentation.recorder import RATES
+from noise.training.classifier.designs import random_design, random_extras
+from noise.training.draws import log_uniform
 from sim.acquisition import Acquisition
 from sim.analysis.regime import Regime, friction_regime
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.motion import simulate_motion
+from sim.pipeline import pulse_force
 from sim.run import Run, simulate
 from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion, SpeedRamp
 
@@ -85,8 +86,7 @@ def random_run(rng: np.random.Generator) -> LabelledRun:
         design = replace(
             design,
             rig=replace(
-                design.rig,
-                effects=design.rig.effects + random_extras(design.rig.effects, rng),
+                design.rig, effects=design.rig.effects + random_extras(design.rig.effects, rng)
             ),
         )
         try:
@@ -131,8 +131,7 @@ def _guessed(design: Design) -> str:
     regime = friction_regime(motion)
     if regime is Regime.STEADY_SLIDING:
         return "none"
-    blows = [a.effect.force(motion, a.form, a.values) for a in effects if a.effect.force]
-    if any(force[force.size // 2 :].any() for force in blows):
+    if pulse_force(motion, effects)[motion.torque.size // 2 :].any():
         return "creak"
     lines = find_lines(
         autospectrum(motion.torque[motion.torque.size // 2 :], motion.rate), low=20.0, high=5e3
@@ -158,11 +157,11 @@ def _labelled(design: Design, rng: np.random.Generator) -> LabelledRun | None:
         rng=rng,
     )
     if isinstance(shaft, ConstantSpeed):
-        seen = evidence(run)
-        label = seen.name
+        seen = run_criteria(run)
+        label = seen.label
         half = run.pressure.size // 2 / run.motion.rate
         found: LabelledRun | None = LabelledRun(run, label, is_ambiguous(seen))
-        if seconds > 2 * _SHORTEST and noise_of(stretch(run, 0.0, half)) != label:
+        if seconds > 2 * _SHORTEST and label_by_physics(stretch(run, 0.0, half)) != label:
             found = _uniform_part(run)
     else:
         found = _uniform_part(run)
@@ -179,7 +178,7 @@ def _random_shaft(speed: float, seconds: float, rng: np.random.Generator) -> Sha
     if chance < 0.85:
         share = math.exp(rng.uniform(-0.4, 0.4))
         return SpeedRamp(speed, speed * share, 0.2 + seconds)
-    frequency = math.exp(rng.uniform(math.log(0.15), math.log(1.5)))
+    frequency = log_uniform(0.15, 1.5, rng)
     amplitude = speed / (2.0 * math.pi * frequency)
     return Oscillation(amplitude, frequency)
 
@@ -196,27 +195,21 @@ def stretch(run: Run, start: float, end: float) -> Run:
     """
     rate = run.motion.rate
     first, last = round(start * rate), round(end * rate)
-    motion = run.motion.since(first)
-    n = last - first
-    kept = {
-        name: getattr(motion, name)[:n]
-        for name in vars(motion)
-        if isinstance(getattr(motion, name), np.ndarray)
-    }
     recorded = slice(round(start * run.recording.rate), round(end * run.recording.rate))
     return Run(
         recording=replace(run.recording, samples=run.recording.samples[:, recorded]),
-        motion=replace(motion, **kept),
+        motion=run.motion.part(first, last),
         pressure=run.pressure[first:last],
         pulse_pressure=run.pulse_pressure[first:last],
+        settling=run.settling + start,
     )
 
 
 def _uniform_part(run: Run) -> LabelledRun | None:
     """Return the longest stretch with one noise; ``None`` where it is short."""
     n = int(run.pressure.size / run.motion.rate / _PIECE)
-    seen = [evidence(stretch(run, i * _PIECE, (i + 1) * _PIECE)) for i in range(n)]
-    labels = [found.name for found in seen]
+    seen = [run_criteria(stretch(run, i * _PIECE, (i + 1) * _PIECE)) for i in range(n)]
+    labels = [found.label for found in seen]
     runs = [(label, len(list(group))) for label, group in itertools.groupby(labels)]
     longest = max(range(len(runs)), key=lambda i: runs[i][1])
     label, length = runs[longest]

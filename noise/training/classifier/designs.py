@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from models.rig import Fit, LawSpec, Microphone, Plate, Rig
 from models.rig_files.rig_file import load_material_rig
+from noise.training.draws import log_uniform
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from sim.parameters import Parameter
 
-__all__ = ["Design", "random_design"]
+__all__ = ["SHAPES", "Design", "random_design", "random_extras", "scaled"]
 
 _MATERIALS = {
     "fluorocarbon": 0.6,
@@ -31,7 +32,7 @@ _MATERIALS = {
 }
 """Share of the designs that start from each."""
 
-_SHAPES = {"weakening_exponent"}
+SHAPES = {"weakening_exponent"}
 """Parameters that make the law what it is, and so do not differ from design to design."""
 
 _NEAR = 0.35
@@ -42,6 +43,38 @@ _INTERFERENCES = (0.178e-3, 0.279e-3, 0.381e-3)
 
 _SUPPORTS = (2214.0, 3745.0, math.inf)
 """Of the thesis's rig [Nm/rad]."""
+
+
+_RANGES: dict[str, dict[str, tuple[float, float]]] = {
+    "velocity_weakening": {"share": (0.01, 0.2), "speed": (2.0, 40.0)},
+    "velocity_strengthening": {"gain": (0.005, 0.15)},
+    "static_ageing": {"share": (0.1, 0.8), "ageing_time": (1e-4, 1e-2)},
+    "critical_torque_scatter": {"scatter": (0.01, 0.3)},
+    "amplitude_softening": {"share": (0.05, 0.4)},
+    "viscoelastic_stiffness": {"stiffening": (0.03, 0.6)},
+    "transfer_film": {"coverage": (0.1, 1.0), "roughness": (0.002, 0.03)},
+    "speed_fluctuation": {"depth": (0.003, 0.15), "bandwidth": (1.0, 60.0)},
+    "beam_modes": {"amount": (0.1, 3.0), "frequency": (800.0, 8e3)},
+    "plate_modes": {"amount": (0.1, 3.0), "frequency": (200.0, 3e3), "spacing": (150.0, 1e3)},
+    "room_reflections": {"amount": (0.1, 2.0), "reverberation_time": (0.1, 1.2)},
+    "background_noise": {"amount": (0.3, 3.0), "pressure_level": (25.0, 50.0)},
+    "mains_hum": {"amount": (0.1, 1.0), "pressure_level": (30.0, 55.0)},
+    "mount_resonance": {"amount": (0.1, 1.0), "frequency": (1e3, 12e3)},
+    "clipping": {"amount": (0.03, 0.6)},
+    "gain_error": {"error": (0.02, 0.4)},
+    "channel_delay": {"delay": (1e-5, 5e-3)},
+    "slip_pulse": {"amplitude": (20.0, 150.0), "threshold": (2.0, 6.5)},
+}
+"""What is drawn, evenly in its logarithm; the other parameters keep their defaults."""
+
+_DEAR: dict[str, dict[str, tuple[float, float]]] = {
+    "frictional_heating": {"softening": (1e-3, 0.03)},
+    "shaft_compliance": {"compliance": (2e-5, 6e-4)},
+    "partial_slip": {"share": (0.1, 0.9)},
+}
+"""What takes thirty times the plain model's time, and so comes seldom."""
+
+_SHARE_OF_DEAR = 0.02
 
 
 @dataclass(frozen=True)
@@ -88,7 +121,7 @@ def random_design(rng: np.random.Generator) -> Design:
         elastomer_damping_share=min(
             0.9, rig.elastomer_damping_share * math.exp(scatter * rng.normal(0.0, 0.3))
         ),
-        fits=tuple(_scaled(fit, stiffness, torque) for fit in rig.fits),
+        fits=tuple(scaled(fit, stiffness, torque) for fit in rig.fits),
         friction=_jittered(
             rig.friction, friction_law(rig.friction.name).parameters, 0.2 * scatter, rng
         ),
@@ -103,11 +136,9 @@ def random_design(rng: np.random.Generator) -> Design:
     if near and math.isfinite(support):
         support *= math.exp(rng.normal(0.0, 0.02))
     elif rng.random() < 0.4:
-        support = math.exp(rng.uniform(math.log(1700.0), math.log(10000.0)))
-    if tight:  # slow creaks have few slips a second
-        speed = math.exp(rng.uniform(math.log(0.1), math.log(15.0)))
-    else:
-        speed = float(rng.uniform(0.5, 13.0))
+        support = log_uniform(1700.0, 10000.0, rng)
+    # Slow creaks have few slips a second.
+    speed = log_uniform(0.1, 15.0, rng) if tight else float(rng.uniform(0.5, 13.0))
     return Design(rig, speed, interference, support)
 
 
@@ -116,20 +147,35 @@ def _material_rig(material: str) -> Rig:
     return load_material_rig(material)
 
 
-def _scaled(fit: Fit, stiffness: float, torque: float) -> Fit:
+def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> Fit:
+    """Return a fit whose properties are multiplied.
+
+    Parameters
+    ----------
+    fit : Fit
+    stiffness, torque, damping : float
+        Factors [-].
+
+    Returns
+    -------
+    Fit
+
+    Examples
+    --------
+    >>> scaled(Fit(0.279e-3, 6000.0, 9.0, 6.0, {}), 2.0, 1.0).elastomer_stiffness
+    12000.0
+    """
     return replace(
         fit,
         elastomer_stiffness=fit.elastomer_stiffness * stiffness,
         critical_torque=fit.critical_torque * torque,
         kinetic_torque=fit.kinetic_torque * torque,
+        damping={support: c * damping for support, c in fit.damping.items()},
     )
 
 
 def _jittered(
-    spec: LawSpec,
-    declared: Mapping[str, Parameter],
-    scatter: float,
-    rng: np.random.Generator,
+    spec: LawSpec, declared: Mapping[str, Parameter], scatter: float, rng: np.random.Generator
 ) -> LawSpec:
     """Scatter a law's or an effect's parameters within their admitted ranges."""
     return LawSpec(
@@ -139,7 +185,7 @@ def _jittered(
                 max(value * math.exp(min(0.5, rng.normal(0.0, scatter))), declared[name].low),
                 declared[name].high,
             )
-            if isinstance(value, float) and name not in _SHAPES
+            if isinstance(value, float) and name not in SHAPES
             else value
             for name, value in spec.parameters.items()
         },
@@ -148,11 +194,7 @@ def _jittered(
 
 def _random_microphone(rng: np.random.Generator) -> Microphone:
     return Microphone(
-        (
-            float(rng.uniform(-0.8, 0.8)),
-            float(rng.uniform(-0.8, 0.8)),
-            float(rng.uniform(0.2, 1.5)),
-        )
+        (float(rng.uniform(-0.8, 0.8)), float(rng.uniform(-0.8, 0.8)), float(rng.uniform(0.2, 1.5)))
     )
 
 
@@ -170,3 +212,37 @@ def _random_plate(plate: Plate, rng: np.random.Generator) -> Plate:
             width * float(rng.uniform(-0.3, 0.3)),
         ),
     )
+
+
+def random_extras(present: tuple[LawSpec, ...], rng: np.random.Generator) -> tuple[LawSpec, ...]:
+    """Return none, on a third of the calls one or two effects that are not `present`.
+
+    The strengths go from hardly there to well beyond what repeats differ by.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> extras = [random_extras((), np.random.default_rng(seed)) for seed in range(60)]
+    >>> sum(map(bool, extras)), max(map(len, extras))
+    (18, 2)
+    """
+    chance = rng.random()
+    if chance < _SHARE_OF_DEAR:
+        pool, n = _DEAR, 1
+    elif chance < 0.35:
+        pool, n = _RANGES, int(rng.integers(1, 3))
+    else:
+        return ()
+    taken = {spec.name for spec in present}
+    names = [name for name in pool if name not in taken]
+    return tuple(
+        _drawn(names[i], pool[names[i]], rng) for i in rng.permutation(len(names))[:n].tolist()
+    )
+
+
+def _drawn(name: str, ranges: dict[str, tuple[float, float]], rng: np.random.Generator) -> LawSpec:
+    forms = EFFECTS[name].forms
+    values: dict[str, float | str] = {"form": forms[int(rng.integers(len(forms)))]}
+    for key, (low, high) in ranges.items():
+        values[key] = log_uniform(low, high, rng)
+    return LawSpec(name, values)

@@ -1,10 +1,10 @@
-"""Training the classifier, on simulation and on made-up strangers alone.
+"""Training of the classifier, on simulation and on made-up background sounds alone.
 
 Three sets that share no draw: one grows the trees, one calibrates its probabilities, and one is
 scored and written into the card. What a sample is called follows from its physics
 (`noise.training.classifier.samples`), never from its features; samples whose name hangs on a bound
 of the definition are in none of the three. The classifier has to work with whatever channels there
-are, so each recording of three channels is shown several times, with some of them masked. The
+are, so each recording of three channels is learned several times, with some of them masked. The
 user's own recordings are learned beside the simulated ones, and neither calibrate nor change the
 score.
 """
@@ -21,16 +21,14 @@ from joblib import Parallel, delayed
 
 from features.windows.table import HOP, LENGTH
 from models.errors import ParameterError
-from noise.classifier.calibration import means_of_groups
-from noise.classifier.model import LABELS, Classifier, has_more_than_sound
-from noise.classifier.trees import grow_trees
+from noise.base.label_names import LABELS
+from noise.classifier.model import Classifier, has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings.blocks import RecordingBlocks
-from noise.training.classifier.operating_point import fit_calibration
+from noise.training.classifier.operating_point import fit_calibration, means_of_groups, scores
 from noise.training.classifier.own_samples import OWN_WEIGHT, own_card, split_files
-from noise.training.classifier.samples import draw
-from noise.training.classifier.scores import scores
-from noise.training.classifier.swells import swelling
+from noise.training.classifier.samples import draw, swelling
+from noise.training.trees import grow_boosted_trees
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -85,7 +83,8 @@ class Sample:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        Of the windows in which the label holds, by `noise.labels.windows.FEATURE_NAMES`.
+        Of the windows in which the label holds, by `noise.labels.windows.FEATURE_NAMES`
+        [unit of each feature].
     label : str
     ambiguous : bool
         Whether the label hangs on a bound of its definition.
@@ -176,7 +175,13 @@ def learn(
     seed: int,
     added: Sequence[OwnSample] = (),
 ) -> Classifier:
-    """Learn from the first samples, calibrate on the next, and score on what is left."""
+    """Learn from the first samples, calibrate on the next, and score on what is left.
+
+    Raises
+    ------
+    ParameterError
+        Too few training samples to hold every label.
+    """
     found = {sample.label for sample in samples[:n_training]}
     absent = ", ".join(label for label in LABELS if label not in found)
     if absent:
@@ -206,27 +211,24 @@ def learn(
 
 
 def _grown(
-    training: Sequence[Sample],
-    own: Sequence[OwnSample],
-    calibration: Sequence[Sample],
-    seed: int,
+    training: Sequence[Sample], own: Sequence[OwnSample], calibration: Sequence[Sample], seed: int
 ) -> Classifier:
     """Grow trees and calibrate them."""
-    x, y, weight = _shown(training, own)
+    x, y, weight = _masked_rows(training, own)
     known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
     names = tuple(name for name, k in zip(FEATURE_NAMES, known, strict=True) if k)
-    trees = grow_trees(x[:, known], y, weight=weight, n_rounds=N_ROUNDS, seed=seed)
+    trees = grow_boosted_trees(x[:, known], y, weight=weight, n_rounds=N_ROUNDS, seed=seed)
     calibrations = []
     for kinds in _SUBSETS[:2]:
-        heard = _masked(calibration, kinds)
-        x, group = _windows(heard)
-        labels = np.array([LABELS.index(sample.label) for sample in heard], dtype=np.int64)
+        kept = _masked(calibration, kinds)
+        x, group = _windows(kept)
+        labels = np.array([LABELS.index(sample.label) for sample in kept], dtype=np.int64)
         votes = trees.probabilities(x[:, known])
         calibrations.append(fit_calibration(votes, group, labels, LABELS.index("unknown")))
     return Classifier(names, trees, (calibrations[0], calibrations[1]), {})
 
 
-def _shown(
+def _masked_rows(
     samples: Sequence[Sample], own: Sequence[OwnSample]
 ) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.float64]]:
     """Windows of all samples under several masks, their labels, and weights of balanced labels."""

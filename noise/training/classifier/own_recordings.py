@@ -1,4 +1,4 @@
-r"""The user's own labelled recordings, as windows to learn from.
+r"""Own labelled recordings of the user, as windows to learn from.
 
 A label is said in one of three ways, the finest of which counts where there are several: by a label
 track as Audacity exports it (``run07.txt`` or ``run07.wav.txt`` beside ``run07.wav``), by a row of
@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, RecordingError
+from noise.base.label_names import LABELS
 from noise.base.tables import TABLE_ENDINGS
-from noise.classifier.model import LABELS
 from noise.labels.audacity import read_label_track
-from noise.labels.reading import read_label_table
+from noise.labels.table import read_label_table
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.registry import KINDS
-from noise.classifier.model import LABELS
-from noise.labels.windows import describe
+from noise.base.label_names import LABELS
+from noise.labels.windows import can_be_described, describe
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
@@ -30,9 +29,6 @@ __all__ = ["OWN_WEIGHT", "OwnSample", "own_card", "own_samples", "split_files"]
 OWN_WEIGHT = 5.0
 """Simulated samples that an own window counts as."""
 
-LEAST_RATE = 1000.0
-"""A recording sampled more slowly shows nothing of a noise [Hz]."""
-
 _EVERY = 3
 """One file of so many is held out."""
 
@@ -44,7 +40,8 @@ class OwnSample:
     Parameters
     ----------
     features : ndarray of float32, shape (n_windows, n_features)
-        Of the windows that the classifier sees in it, by `noise.labels.windows.FEATURE_NAMES`.
+        Of the windows that the classifier sees in it, by `noise.labels.windows.FEATURE_NAMES`
+        [unit of each feature].
     label : str
         One of `noise.classifier.LABELS`.
     name : str
@@ -69,7 +66,7 @@ def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[OwnSample], list[str
     refused: dict[str, str] = {}
     for window in windows:
         blocks = RecordingBlocks.of(window.recording)
-        if blocks.rate >= LEAST_RATE and any(blocks.first(kind) is not None for kind in KINDS):
+        if can_be_described(blocks):
             features = describe(blocks).features
             if np.isfinite(features).any():
                 samples.append(OwnSample(features, window.label, window.name))

@@ -1,33 +1,29 @@
-"""What the classifier learns from: recordings drawn at random, each with the name of its noise.
+"""Samples of the classifier: recordings drawn at random, each with the name of its noise.
 
 Nothing is measured: bushings are simulated and called by their physics
 (`noise.noise_definition`), other bodies creak, squawk and squeal by the same mechanisms
-(`noise.training.classifier.friction_sources`), strangers and quiet are recipes. All are heard
+(`noise.training.classifier.friction_sources`), background sounds and quiet are recipes. All go
 through rooms, microphones, recorders and codecs (`noise.training.classifier.augmentation`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.training.classifier.augmentation import hear
-from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, stranger
+from noise.training.classifier.augmentation.backgrounds import quiet
+from noise.training.classifier.augmentation.recorder import augmented
+from noise.training.classifier.background_sounds import RECIPES, WEIGHTS, background_sound
 from noise.training.classifier.bushing_recordings import bushing_recording
 from noise.training.classifier.bushings import random_run
-from noise.training.classifier.friction_sources import (
-    CREAKS,
-    SQUAWKS,
-    SQUEALS,
-    creak,
-    squawk,
-    squeal,
-)
-from noise.training.classifier.quiet import quiet
+from noise.training.classifier.friction_sources.creaks import CREAKS, creak
+from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
+from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
+from noise.training.draws import log_uniform, wandering
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,26 +32,34 @@ if TYPE_CHECKING:
 
     from models.condition import Condition
 
-__all__ = ["SHARES", "SOURCES", "Drawn", "draw", "draw_from"]
+__all__ = ["SHARES", "SOURCES", "Drawn", "draw", "draw_from", "swelling"]
 
 _RATE = 48_000.0
-"""At which bodies and strangers sound [Hz]."""
+"""Sampling rate of friction sources and background sounds [Hz]."""
 
-_BODIES = {
-    **{f"body:{kind}_creak": ("creak", kind) for kind in CREAKS},
-    **{f"body:{kind}_squeal": ("squeal", kind) for kind in SQUEALS},
-    **{f"body:{kind}_squawk": ("squawk", kind) for kind in SQUAWKS},
+_FRICTION = {
+    **{f"friction:{kind}_creak": ("creak", kind) for kind in CREAKS},
+    **{f"friction:{kind}_squeal": ("squeal", kind) for kind in SQUEALS},
+    **{f"friction:{kind}_squawk": ("squawk", kind) for kind in SQUAWKS},
 }
 """Label and kind by source."""
 
-SHARES = {"bushing": 0.33, "body": 0.27, "stranger": 0.33, "quiet": 0.07}
-"""Of the samples."""
+SHARES = {"bushing": 0.33, "friction": 0.27, "background": 0.33, "quiet": 0.07}
+"""Of the samples [-]."""
 
 _LABEL_SHARES = {"creak": 0.42, "squeal": 0.42, "squawk": 0.16}
-"""Of the bodies."""
+"""Of the friction sources [-]."""
 
-SOURCES = ("bushing", *_BODIES, *(f"stranger:{name}" for name in RECIPES), "quiet")
+SOURCES = ("bushing", *_FRICTION, *(f"background:{name}" for name in RECIPES), "quiet")
 """All that is drawn from."""
+
+
+_EVEN = 0.35
+"""Share of the samples that stay as they are."""
+
+_FADES_OUT, _FADES_IN = 0.5, 0.35
+_LOWEST = -80.0
+"""Where a fade ends [dB]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,11 +111,11 @@ def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
     """
     shares = {group: share for group, share in SHARES.items() if bushings or group != "bushing"}
     group = _picked(shares, rng)
-    if group == "stranger":
-        return draw_from(f"stranger:{_picked(WEIGHTS, rng)}", rng)
-    if group == "body":
+    if group == "background":
+        return draw_from(f"background:{_picked(WEIGHTS, rng)}", rng)
+    if group == "friction":
         label = _picked(_LABEL_SHARES, rng)
-        kinds = [source for source, (own, _) in _BODIES.items() if own == label]
+        kinds = [source for source, (own, _) in _FRICTION.items() if own == label]
         return draw_from(kinds[int(rng.integers(len(kinds)))], rng)
     return draw_from(group, rng)
 
@@ -132,7 +136,7 @@ def draw_from(source: str, rng: np.random.Generator) -> Drawn:
 
     Examples
     --------
-    >>> draw_from("body:chalk_squeal", np.random.default_rng(0)).label
+    >>> draw_from("friction:chalk_squeal", np.random.default_rng(0)).label
     'squeal'
     """
     if source not in SOURCES:
@@ -143,13 +147,13 @@ def draw_from(source: str, rng: np.random.Generator) -> Drawn:
         return Drawn(recording, run.label, recording.condition, source, span, run.ambiguous)
     n = int(_length(rng) * _RATE)
     if source == "quiet":
-        return _heard(quiet(n, _RATE, rng), "none", source, rng)
+        return _augmented(quiet(n, _RATE, rng), "none", source, rng)
     group, _, name = source.partition(":")
-    if group == "stranger":
-        return _heard(stranger(n, _RATE, rng, name), "unknown", source, rng)
-    label, kind = _BODIES[source]
+    if group == "background":
+        return _augmented(background_sound(n, _RATE, rng, name), "unknown", source, rng)
+    label, kind = _FRICTION[source]
     make = {"creak": creak, "squeal": squeal, "squawk": squawk}[label]
-    return _heard(make(kind, n, _RATE, rng), label, source, rng)
+    return _augmented(make(kind, n, _RATE, rng), label, source, rng)
 
 
 def _length(rng: np.random.Generator) -> float:
@@ -157,17 +161,55 @@ def _length(rng: np.random.Generator) -> float:
     return float(rng.uniform(0.6, 3.0) if rng.random() < 0.6 else rng.uniform(0.6, 1.2))
 
 
-def _heard(sound: NDArray[np.float64], label: str, source: str, rng: np.random.Generator) -> Drawn:
+def _augmented(
+    sound: NDArray[np.float64], label: str, source: str, rng: np.random.Generator
+) -> Drawn:
     if not sound.any():  # digital silence stays so
         recording = Recording(sound[None, :], _RATE, (Channel("pressure"),), calibrated=False)
         return Drawn(recording, label, None, source, (0.0, recording.duration))
-    heard = hear(sound, _RATE, rng)
+    clip = augmented(sound, _RATE, rng)
     recording = Recording(
-        heard.samples[None, :], float(heard.rate), (Channel("pressure"),), calibrated=False
+        clip.samples[None, :], float(clip.rate), (Channel("pressure"),), calibrated=False
     )
-    return Drawn(recording, label, None, source, heard.span)
+    return Drawn(recording, label, None, source, clip.span)
 
 
 def _picked(shares: Mapping[str, float], rng: np.random.Generator) -> str:
     weights = np.array(list(shares.values()))
     return list(shares)[int(rng.choice(weights.size, p=weights / weights.sum()))]
+
+
+def swelling(drawn: Drawn, rng: np.random.Generator) -> Drawn:
+    """Return a sample with a course of level; one of several channels stays as it is.
+
+    What a simulated machine does for a second it does evenly; whoever opens a door, or cuts the
+    recording of it, does not. All that a microphone alone records, background sounds too, gets a
+    course of level of its own, so that a level that changes says nothing about what sounds.
+
+    Examples
+    --------
+    >>> drawn = draw_from("friction:chalk_squeal", np.random.default_rng(0))
+    >>> other = swelling(drawn, np.random.default_rng(1))
+    >>> bool(np.abs(other.recording.samples).max() <= 2.0 * np.abs(drawn.recording.samples).max())
+    True
+    """
+    recording = drawn.recording
+    if len(recording.channels) > 1 or rng.random() < _EVEN:
+        return drawn
+    n, rate = recording.samples.shape[1], recording.rate
+    gain = 10.0 ** (_course(n, rate, rng) / 20.0)
+    return replace(drawn, recording=replace(recording, samples=recording.samples * gain))
+
+
+def _course(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Level over time [dB], 0 at most."""
+    time = np.arange(n) / rate
+    depth, speed = rng.uniform(0.0, 8.0), rng.uniform(0.3, 4.0)
+    level = depth * wandering(n, rate, speed, rng)
+    if rng.random() < _FADES_OUT:
+        start = rng.uniform(0.1, 1.0) * time[-1]
+        level -= log_uniform(15.0, 250.0, rng) * np.maximum(time - start, 0.0)
+    if rng.random() < _FADES_IN:
+        end = rng.uniform(0.0, 0.5) * time[-1]
+        level -= log_uniform(30.0, 600.0, rng) * np.maximum(end - time, 0.0)
+    return np.asarray(np.maximum(level - level.max(), _LOWEST))

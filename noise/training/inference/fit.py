@@ -1,9 +1,9 @@
-"""Training the inference of conditions, on simulation alone.
+"""Training of the inference of conditions, on simulation alone.
 
-Three sets of runs that share no draw: one grows the forests, one says where to cut the tails of
-what they tell, and one is counted for the card. The features of a run's channels do not depend on
+Three sets of runs that share no draw: one grows the forests, one calibrates the intervals, and one
+is counted for the card. The features of a run's channels do not depend on
 one another, so one run stands for all subsets of its channels and of what is logged; the forests
-see some of them, drawn at random, and the tails are cut for each.
+see some of them, drawn at random, and the intervals are calibrated for each.
 """
 
 from __future__ import annotations
@@ -16,25 +16,24 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from features.registry import recording_feature_names, recording_features
-from noise.inference.described import KINDS, described, of_subset
+from noise.inference.inputs import KINDS, QUANTITIES, of_channels, scaled, segment_features
 from noise.inference.model import Inference
-from noise.inference.quantile_forest import PER_LEAF, grow_quantile_forest
-from noise.inference.quantities import QUANTITIES, places
-from noise.training.inference.conformal import Runs, counted, cut_tails, placed
-from noise.training.inference.population import draw_heard
+from noise.training.inference.conformal import Runs, calibrate_intervals, interval_coverage, rounded
+from noise.training.inference.population import draw_audible_run
+from noise.training.trees import PER_LEAF, grow_quantile_forest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from numpy.typing import NDArray
 
-__all__ = ["HeardSample", "coverage", "draw_heard_sample", "train_inference"]
+__all__ = ["RunSample", "coverage", "draw_run_sample", "train_inference"]
 
 N_TRAINING = 1800
 """Runs that grow the forests."""
 
 N_CALIBRATION = 1600
-"""Runs that say where to cut the tails."""
+"""Runs that calibrate the intervals."""
 
 N_TEST = 200
 """Runs that are counted."""
@@ -42,31 +41,31 @@ N_TEST = 200
 N_TREES = 50
 LEAST_LEAF = 5
 
-_VIEWS = 4
+_TIMES = 4
 """Subsets of channels and of logged conditions that a recording is learned with."""
 
 _SHARE = 0.4
 """Of the samples that a tree is grown on."""
 
 _PRESSURE_ALONE = 0.35
-"""Share of the views with the sound alone; the others keep any subset of the channels."""
+"""Share of those with the sound alone; the others keep any subset of the channels."""
 
 
 @dataclass(frozen=True, eq=False)
-class HeardSample:
+class RunSample:
     """Features of one audible run, and what made it.
 
     Parameters
     ----------
     label : str
-    places : ndarray, shape (3,)
-        Where its condition stands on the scales of `QUANTITIES`.
+    scaled : ndarray, shape (3,)
+        Its condition, as `noise.inference.inputs.scaled` gives it.
     features : tuple of (mapping of str to float)
-        In the field, and on the rig.
+        In the field, and on the rig [unit of each feature].
     """
 
     label: str
-    places: NDArray[np.float64]
+    scaled: NDArray[np.float64]
     features: tuple[Mapping[str, float], Mapping[str, float]]
 
 
@@ -76,7 +75,7 @@ def train_inference(
     n_training: int = N_TRAINING,
     n_calibration: int = N_CALIBRATION,
     n_test: int = N_TEST,
-    progress: Callable[[Iterable[HeardSample], int], Iterable[HeardSample]] | None = None,
+    progress: Callable[[Iterable[RunSample], int], Iterable[RunSample]] | None = None,
 ) -> Inference:
     """Train the inference of conditions; the same seed gives the same model.
 
@@ -101,8 +100,8 @@ def train_inference(
     """
     total = n_training + n_calibration + n_test
     children = np.random.SeedSequence(seed).spawn(total)
-    drawn: Iterable[HeardSample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw_heard_sample)(child) for child in children
+    drawn: Iterable[RunSample] = Parallel(n_jobs=-1, return_as="generator")(
+        delayed(draw_run_sample)(child) for child in children
     )
     samples = list(progress(drawn, total) if progress else drawn)
     names = tuple(
@@ -112,30 +111,30 @@ def train_inference(
     )
     runs = _as_arrays(samples, names)
     grown = _grown(runs[:n_training], names, seed)
-    cut = cut_tails(grown, runs[n_training : n_training + n_calibration])
-    tested = coverage(cut, samples[n_training + n_calibration :])
+    calibrated = calibrate_intervals(grown, runs[n_training : n_training + n_calibration])
+    tested = coverage(calibrated, samples[n_training + n_calibration :])
     card = {
         "seed": seed,
         "samples": dict(Counter(sample.label for sample in samples[:n_training])),
         "test": tested,
     }
-    return replace(cut, card=card)
+    return replace(calibrated, card=card)
 
 
-def draw_heard_sample(seed: np.random.SeedSequence) -> HeardSample:
+def draw_run_sample(seed: np.random.SeedSequence) -> RunSample:
     """Draw one audible run and take its features."""
-    heard = draw_heard(np.random.default_rng(seed))
-    features = recording_features(heard.field), recording_features(heard.rig)
-    return HeardSample(heard.label, places(heard.condition), features)
+    run = draw_audible_run(np.random.default_rng(seed))
+    features = recording_features(run.field), recording_features(run.rig)
+    return RunSample(run.label, scaled(run.condition), features)
 
 
-def coverage(model: Inference, samples: Iterable[HeardSample]) -> dict[str, dict[str, float | int]]:
+def coverage(model: Inference, samples: Iterable[RunSample]) -> dict[str, dict[str, float | int]]:
     """Count how often intervals hold, and how often there is one.
 
     Parameters
     ----------
     model : Inference
-    samples : iterable of HeardSample
+    samples : iterable of RunSample
         Not those that it was trained on.
 
     Returns
@@ -144,44 +143,44 @@ def coverage(model: Inference, samples: Iterable[HeardSample]) -> dict[str, dict
         By quantity, recording, channels and what is logged, such as ``speed/rig/pressure/none``:
         ``n`` samples, share ``told`` of them with an interval, share ``covered`` of those told.
     """
-    return counted(model, _as_arrays(list(samples), model.names))
+    return interval_coverage(model, _as_arrays(list(samples), model.names))
 
 
-def _as_arrays(samples: list[HeardSample], names: tuple[str, ...]) -> Runs:
+def _as_arrays(samples: list[RunSample], names: tuple[str, ...]) -> Runs:
     tables = [
         [[sample.features[calibrated][name] for name in names] for sample in samples]
         for calibrated in (0, 1)
     ]
-    return Runs(np.array(tables), np.array([sample.places for sample in samples]))
+    return Runs(np.array(tables), np.array([sample.scaled for sample in samples]))
 
 
 def _grown(runs: Runs, names: tuple[str, ...], seed: int) -> Inference:
     rng = np.random.default_rng([seed, 1])
-    n = len(runs.places)
+    n = len(runs.scaled)
     forests = []
     for index in range(len(QUANTITIES)):
         rows = []
         for table in runs.tables:
-            for _ in range(_VIEWS):
+            for _ in range(_TIMES):
                 subsets = np.where(
                     rng.random(n) < _PRESSURE_ALONE, 1, rng.integers(1, 1 << len(KINDS), n)
                 )
-                known = np.where(rng.random((n, 3)) < 0.5, runs.places, np.nan)
+                known = np.where(rng.random((n, 3)) < 0.5, runs.scaled, np.nan)
                 known[:, index] = np.nan
-                view = of_subset(table, names, subsets)
-                rows.append(described(view, names, known))
+                table_seen = of_channels(table, names, subsets)
+                rows.append(segment_features(table_seen, names, known))
         forests.append(
             grow_quantile_forest(
                 np.concatenate(rows),
-                np.tile(runs.places[:, index], len(rows)),
+                np.tile(runs.scaled[:, index], len(rows)),
                 n_trees=N_TREES,
                 least_leaf=LEAST_LEAF,
                 share=_SHARE,
                 seed=seed,
             )
         )
-    prior = placed(np.quantile(runs.places, np.linspace(0.0, 1.0, PER_LEAF), axis=0).T)
+    prior = rounded(np.quantile(runs.scaled, np.linspace(0.0, 1.0, PER_LEAF), axis=0).T)
     cases = (len(QUANTITIES), 1 << len(KINDS), 2, 4)
-    asked = np.zeros(cases, dtype=np.int16)
-    cuts = np.full((*cases, 4), -1, dtype=np.int16)
-    return Inference(names, tuple(forests), prior, asked, cuts, {})
+    used = np.zeros(cases, dtype=np.int16)
+    outside = np.full((*cases, 4), -1, dtype=np.int16)
+    return Inference(names, tuple(forests), prior, used, outside, {})

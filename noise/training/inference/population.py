@@ -1,4 +1,4 @@
-"""The rigs, conditions and recordings that the inferred intervals hold for.
+"""Population of rigs, conditions and recordings that the inferred intervals hold for.
 
 An interval of 90 % is a statement about a population, so the population is written down in one
 place: fluorocarbon bushings whose stiffness, torques, inertia and friction differ from the shipped
@@ -22,53 +22,37 @@ import numpy as np
 
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
-from models.rig import Fit, LawSpec, Rig
+from models.rig import LawSpec, Rig
 from models.rig_files.rig_file import load_material_rig
-from noise.inference.hearing import RATES, as_recorded
-from noise.noise_definition import noise_of
-from noise.training.classifier.augmentation import resampled
+from noise.inference.inputs import (
+    INTERFERENCE_RANGE,
+    LONGEST,
+    MATERIAL,
+    RATES,
+    SHORTEST,
+    SPEED_RANGE,
+    SUPPORT_RANGE,
+)
+from noise.noise_definition import label_by_physics
+from noise.training.classifier.augmentation.recorder import resampled
+from noise.training.classifier.designs import SHAPES, scaled
+from noise.training.draws import log_uniform
+from noise.training.inference.recording_chain import recorded
 from sim.run import simulate
 
 if TYPE_CHECKING:
     from sim.run import Run
 
-__all__ = [
-    "INTERFERENCE_RANGE",
-    "LONGEST_LOOK",
-    "MATERIAL",
-    "SHORTEST_LOOK",
-    "SPEED_RANGE",
-    "SUPPORT_RANGE",
-    "Heard",
-    "draw_heard",
-]
-
-MATERIAL = "fluorocarbon"
-"""Of all bushings."""
-
-SPEED_RANGE = (0.1, 15.0)
-"""[rad/s]"""
-
-INTERFERENCE_RANGE = (0.15e-3, 0.42e-3)
-"""[m]"""
-
-SUPPORT_RANGE = (1e3, 1e4)
-"""Of the clamp on beams [Nm/rad]."""
-
-SHORTEST_LOOK, LONGEST_LOOK = 0.25, 1.0
-"""Lengths of what is looked at [s]."""
+__all__ = ["AudibleRun", "draw_audible_run"]
 
 _FIXED_SHARE = 0.25
 _SCATTER = 0.03
-_SHAPES = {"weakening_exponent"}
-"""Parameters that make the friction law what it is, and so do not scatter."""
-
 _GAIN_SCATTER = 0.03
 """Of calibrations [1]."""
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class AudibleRun:
     """One audible run, recorded twice.
 
     Parameters
@@ -87,36 +71,36 @@ class Heard:
     field: Recording
 
 
-def draw_heard(rng: np.random.Generator) -> Heard:
-    """Draw runs until one is heard.
+def draw_audible_run(rng: np.random.Generator) -> AudibleRun:
+    """Draw runs until one is audible.
 
     Examples
     --------
-    >>> heard = draw_heard(np.random.default_rng(0))
-    >>> heard.label in ("creak", "squawk", "squeal"), heard.rig.calibrated, heard.field.calibrated
+    >>> run = draw_audible_run(np.random.default_rng(0))
+    >>> run.label in ("creak", "squawk", "squeal"), run.rig.calibrated, run.field.calibrated
     (True, True, False)
     """
     while True:
         run = _draw_run(rng)
-        label = noise_of(run)
+        label = label_by_physics(run)
         if label != "none":
             break
     whole = rng.random() < 0.5
-    seconds = LONGEST_LOOK if whole else float(rng.uniform(SHORTEST_LOOK, LONGEST_LOOK))
-    start = float(rng.uniform(0.0, LONGEST_LOOK - seconds))
+    seconds = LONGEST if whole else float(rng.uniform(SHORTEST, LONGEST))
+    start = float(rng.uniform(0.0, LONGEST - seconds))
     rig = _on_the_rig(run, rng)
     field = _in_the_field(run, rng)
     condition = run.recording.condition
-    return Heard(label, condition, _cut(rig, start, seconds), _cut(field, start, seconds))
+    return AudibleRun(label, condition, _cut(rig, start, seconds), _cut(field, start, seconds))
 
 
 def _draw_run(rng: np.random.Generator) -> Run:
     low, high = SPEED_RANGE
     # Evenly by logarithm, for the slow creaks, and evenly, where squawk and squeal part.
     even = rng.random() < 0.5
-    speed = rng.uniform(low, high) if even else math.exp(rng.uniform(math.log(low), math.log(high)))
+    speed = rng.uniform(low, high) if even else log_uniform(low, high, rng)
     softest, stiffest = SUPPORT_RANGE
-    support = math.exp(rng.uniform(math.log(softest), math.log(stiffest)))
+    support = log_uniform(softest, stiffest, rng)
     if rng.random() < _FIXED_SHARE:
         support = FIXED
     return simulate(
@@ -124,7 +108,7 @@ def _draw_run(rng: np.random.Generator) -> Run:
         float(speed),
         interference=float(rng.uniform(*INTERFERENCE_RANGE)),
         support_stiffness=support,
-        seconds=LONGEST_LOOK,
+        seconds=LONGEST,
         rng=rng,
     )
 
@@ -139,7 +123,7 @@ def _specimen(rng: np.random.Generator) -> Rig:
         return LawSpec(
             spec.name,
             {
-                name: about(value) if isinstance(value, float) and name not in _SHAPES else value
+                name: about(value) if isinstance(value, float) and name not in SHAPES else value
                 for name, value in spec.parameters.items()
             },
         )
@@ -150,19 +134,9 @@ def _specimen(rng: np.random.Generator) -> Rig:
         elastomer_inertia=about(rig.elastomer_inertia),
         clamp_inertia=about(rig.clamp_inertia),
         elastomer_damping_share=about(rig.elastomer_damping_share),
-        fits=tuple(_scaled(fit, stiffness, torque, damping) for fit in rig.fits),
+        fits=tuple(scaled(fit, stiffness, torque, damping) for fit in rig.fits),
         friction=jittered(rig.friction),
         effects=tuple(jittered(spec) for spec in rig.effects),
-    )
-
-
-def _scaled(fit: Fit, stiffness: float, torque: float, damping: float) -> Fit:
-    return replace(
-        fit,
-        elastomer_stiffness=fit.elastomer_stiffness * stiffness,
-        critical_torque=fit.critical_torque * torque,
-        kinetic_torque=fit.kinetic_torque * torque,
-        damping={support: c * damping for support, c in fit.damping.items()},
     )
 
 
@@ -187,7 +161,7 @@ def _in_the_field(run: Run, rng: np.random.Generator) -> Recording:
     rows = (
         resampled(torque, recording.rate, rate),
         resampled(acceleration, recording.rate, rate),
-        resampled(as_recorded(run.pressure, computed, rng), computed, rate),
+        resampled(recorded(run.pressure, computed, rng), computed, rate),
     )
     n = min(row.size for row in rows)
     channels = (Channel("torque"), Channel("acceleration"), Channel("pressure"))

@@ -1,1 +1,1 @@
-"""What several friction laws have in common."""
+"""Parts that several friction laws have in common."""

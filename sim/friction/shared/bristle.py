@@ -14,17 +14,12 @@ untouched, and w differs from v only where the contact follows its strength at o
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-import numpy as np
 from numba import njit
 
 from sim.parameters import Parameter
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["BRISTLE_PARAMETERS", "FASTEST", "shear_speed", "unbent"]
+__all__ = ["BRISTLE_PARAMETERS", "FASTEST", "shear_speed"]
 
 FASTEST = 4e5
 """Rate lambda beyond which a contact follows at once [1/s], as steps of 8 us can."""
@@ -38,17 +33,6 @@ BRISTLE_PARAMETERS = {
     ),
 }
 """The first two of each such law."""
-
-
-def unbent(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:  # noqa: ARG001
-    """Return the state of a contact at rest: no shear.
-
-    Examples
-    --------
-    >>> unbent(np.ones(5))
-    array([0.])
-    """
-    return np.zeros(1)
 
 
 def _shear_speed(v: float, slip_shear: float) -> float:

@@ -1,4 +1,4 @@
-r"""What the Stribeck laws have in common: two scales of weakening on an elastic contact.
+r"""The common part of the Stribeck laws: two scales of weakening on an elastic contact.
 
 .. math::
     g = T_{kin} + (T_{crit} - T_{kin}) [(1 - s) f(v / v_1) + s f(v / v_2)], \qquad f(0) = 1

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from noise.diagnosis.gap.distance import closed_fraction
 from tests.studies.oscillator_terms.blocks import BlockErrors, block_errors, cut, drawn_blocks
 from tests.studies.oscillator_terms.finding import Gap, OscillatorDiagnosis, TermFinding
 from tests.studies.oscillator_terms.fit import Model, fit_model, linear_guess
@@ -190,8 +191,9 @@ class _Scores:
             return None
         start, end = self.blocks[name][reference].rms, self.blocks[name][model].rms
         starts, ends = self._drawn[name][reference], self._drawn[name][model]
-        shares = (starts - ends) / np.maximum(starts - self._floors, 1e-12 * start)
-        return _interval((start - end) / (start - self._floor.rms), shares)
+        floors = np.minimum(self._floors, starts - 1e-12 * start)
+        shares = closed_fraction(starts, ends, floors)
+        return _interval(closed_fraction(start, end, self._floor.rms), shares)
 
     def above_floor(self, name: str, model: int) -> bool:
         return self.gap(name, model).low > _MARGIN * self.floor_gap.high

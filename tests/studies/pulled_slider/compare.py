@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from models.errors import ParameterError
+from noise.diagnosis.gap.distance import closed_fraction
 from tests.studies.pulled_slider.cycles import (
     FEATURES,
     block_features,
@@ -219,7 +220,7 @@ def _left_out(
 
 
 def _share(reference: float, gap: float) -> float | None:
-    return None if reference < 2.0 else (reference - gap) / (reference - 1.0)
+    return None if reference < 2.0 else closed_fraction(reference, gap)
 
 
 def _without(targets: list[_Target], left_out: int) -> list[_Target]:

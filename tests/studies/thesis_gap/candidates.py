@@ -1,4 +1,4 @@
-"""What is put in against the gap: one effect, a pair, or the parameters alone.
+"""Candidates against the gap: one effect, a pair, or the parameters alone.
 
 An effect brings its strength, at most two further parameters and its functional form; all other
 parameters stay at their defaults. Ranges are wide and were set before anything was fitted. The

@@ -1,4 +1,4 @@
-"""Cell left out by cell left out: what a candidate predicts where it was not fitted.
+"""Cross-validation: what a candidate predicts at each cell that it was not fitted to.
 
 Closed is (before - after) / (before - floor), each the root mean square over the cells: before is
 the constant-torque model, after the candidate fitted to the five other cells, floor what reading
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.diagnosis.gap.distance import closed_fraction
 from noise.training.calibrate.cells import CELLS
 from tests.studies.thesis_gap.candidates import Candidate
 from tests.studies.thesis_gap.fit import Trials, fitted_point
@@ -160,4 +161,4 @@ def _shares(
     b, a, f = (
         np.sqrt(np.mean(np.square(values)[chosen], axis=1)) for values in (before, after, floor)
     )
-    return np.where(b > f, (b - a) / np.where(b > f, b - f, 1.0), 0.0)
+    return np.where(b > f, closed_fraction(b, a, np.where(b > f, f, b - 1.0)), 0.0)

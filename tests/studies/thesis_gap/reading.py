@@ -1,4 +1,4 @@
-"""What the figures say of the thesis's own explanations: kept beside the page that shows them."""
+"""Reading of the figures: what they say of the thesis's own explanations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The second measure: slip frequencies, which no candidate is fitted to.
+"""Slip frequencies as a second measure, which no candidate is fitted to.
 
 Conclusion 3: with beams the slip frequency never exceeds the first torsional mode, 250 or 310 Hz.
 5.2.1: at 0.381 mm it rises by 10 to 25 Hz with each 2.5 rad/s. With the clamp fixed, at 1 rad/s and
@@ -16,12 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.harmonics import analyse_harmonics
-from features.kernels.slip_drops import torque_slips
+from features.kernels.slip_drops import repetition_rate
 from models.errors import ParameterError
 from sim.analysis.regime import LEAST_OSCILLATION
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -112,18 +109,13 @@ def _slip_rate(rig: Rig, interference: float, support: float, speed: float) -> f
             support_stiffness=support,
             seconds=_SECONDS,
             rate=_RATE,
-            effects=activated(rig.effects, EFFECTS),
         )
     except ParameterError:
         return None
     torque = motion.since(motion.torque.size // 4).torque
     if float(torque.std()) <= LEAST_OSCILLATION * abs(float(torque.mean())):
         return None
-    interval = torque_slips(torque, _RATE).mean_interval
-    if math.isfinite(interval):
-        return 1.0 / interval
-    period = analyse_harmonics(torque, _RATE).fundamental
-    return period if math.isfinite(period) else None
+    return repetition_rate(torque, _RATE)
 
 
 def _rise_error(steps: float, before: float | None, after: float | None) -> float:

@@ -18,12 +18,14 @@ import numpy as np
 
 from models.errors import ParameterError
 from noise.training.calibrate.cells import CELLS, SUPPORTS, THIN_CELLS
-from sim.analysis.critical_speeds import CriticalSpeeds, critical_speeds, regime_at
-from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK, Regime
-from sim.effects import EFFECTS
-from sim.effects.effect import activated
-from sim.motion import simulate_motion
-from sim.shaft import ConstantSpeed
+from sim.analysis.critical_speeds import (
+    CriticalSpeeds,
+    critical_speeds,
+    falls_below,
+    motion_from_rest,
+    regime_at,
+)
+from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK, Regime, stick_and_oscillation
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,7 +40,6 @@ _NONE, _MOST = 0.5, 16.0
 
 _COARSE = tuple(float(v) for v in np.geomspace(1.0, _MOST, 16))
 _COARSE_SECONDS = 0.7
-_COARSE_RATE = 15e3
 _STEP = 0.5
 _LAST_MEASURED = 13.0
 
@@ -155,24 +156,13 @@ def _coarse(rig: Rig, support: float) -> CriticalSpeeds:
 
 
 def _stick_and_oscillation(rig: Rig, speed: float, support: float) -> tuple[float, float]:
-    motion = simulate_motion(
-        rig,
-        ConstantSpeed(speed),
-        interference=_INTERFERENCE,
-        support_stiffness=support,
-        seconds=_COARSE_SECONDS,
-        rate=_COARSE_RATE,
-        effects=activated(rig.effects, EFFECTS),
+    return stick_and_oscillation(
+        motion_from_rest(rig, speed, _INTERFERENCE, support, seconds=_COARSE_SECONDS)
     )
-    last = motion.since(motion.torque.size // 2)
-    oscillation = float(np.std(last.torque)) / abs(float(np.mean(last.torque)))
-    return float(np.mean(last.stuck)), oscillation
 
 
 def _crossing(speed: float, value: float, above: float, value_above: float, limit: float) -> float:
     """Speed at which a value falls below its limit, on logarithmic scales."""
-    after = max(value_above, 0.1 * limit)
-    if speed == above or after >= limit:
+    if speed == above or value_above >= limit:
         return above
-    share = math.log(value / limit) / math.log(value / after)
-    return float(speed * (above / speed) ** share)
+    return falls_below(limit, speed, value, above, value_above)

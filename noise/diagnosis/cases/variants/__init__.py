@@ -68,7 +68,7 @@ def draw_variant(name: str, strength: float, rng: np.random.Generator) -> Effect
     name : str
         Of `VARIANTS`.
     strength : float
-        From 0, the plain model, to 1, which nobody overlooks.
+        From 0, the plain model, to 1, which nobody overlooks [-].
     rng : numpy.random.Generator
 
     Returns

@@ -1,4 +1,4 @@
-"""What the variants have in common: how they are made, and the shapes that many are drawn from.
+"""Parts of the variants: constructors of effects, and random curves and signals.
 
 A monotone shape with random increments stands for the forms that nobody foresees: whoever has
 learnt a hundred such shapes has learnt the effect rather than a formula of it.
@@ -22,23 +22,41 @@ from sim.parameters import Parameter
 if TYPE_CHECKING:
     from typing import Any
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
 
 Array = NDArray[np.float64]
+Rng = np.random.Generator
 
-Recipe = Callable[[float, np.random.Generator], Effect]
+Recipe = Callable[[float, Rng], Effect]
 """Of a strength from 0 to 1, and a generator."""
 
 _N_CURVE = 129
-_SENSED = ("torque", "acceleration", "pressure")
+SENSED = ("torque", "acceleration", "pressure")
 
 
-def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+def log_uniform(rng: Rng, low: float, high: float) -> float:
     """Draw a number whose logarithm is uniform."""
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
-def _made(name: str, form: str, strength: float, **acting: Any) -> Effect:
+def log_uniforms(rng: Rng, low: float, high: float, n: int) -> Array:
+    """Draw numbers whose logarithms are uniform."""
+    return np.exp(rng.uniform(np.log(low), np.log(high), n))
+
+
+def family(
+    make: Callable[[str, float, Rng, Array], Effect],
+    *shapes: tuple[str, Callable[[Rng], Array]],
+) -> tuple[Recipe, ...]:
+    """Make a recipe of each form and the shape that is drawn for it."""
+
+    def recipe(form: str, shape: Callable[[Rng], Array]) -> Recipe:
+        return lambda strength, rng: make(form, strength, rng, shape(rng))
+
+    return tuple(recipe(form, shape) for form, shape in shapes)
+
+
+def _variant(name: str, form: str, strength: float, **acting: Any) -> Effect:
     plain = EFFECTS[name]
     given = {"strength": Parameter(strength, "", 0.0, 1.0, "nothing at 0")}
     return Effect(name, plain.stage, (form,), given, "strength", **acting)
@@ -49,11 +67,11 @@ def on_contact(
     form: str,
     strength: float,
     hook: Any,
-    numbers: Callable[[np.random.Generator], Array],
+    numbers: Callable[[Rng], Array],
     n_states: int = 0,
 ) -> Effect:
     """Make an effect on the contact; a run's own generator draws the numbers of its hook."""
-    return _made(
+    return _variant(
         name, form, strength, contact=hook, pack=lambda _form, _values, rng: numbers(rng),
         n_states=n_states,
     )  # fmt: skip
@@ -63,32 +81,32 @@ def on_drive(
     name: str,
     form: str,
     strength: float,
-    course: Callable[[Array, float, np.random.Generator], Array],
+    change: Callable[[Array, float, Rng], Array],
 ) -> Effect:
-    """Make an effect on the speed, the relative change of which is `course`."""
-    return _made(
+    """Make an effect on the speed, the relative change of which is `change`."""
+    return _variant(
         name, form, strength,
-        drive=lambda speed, rate, _form, _values, rng: speed * (1.0 + course(speed, rate, rng)),
+        drive=lambda speed, rate, _form, _values, rng: speed * (1.0 + change(speed, rate, rng)),
     )  # fmt: skip
 
 
 def on_joint(name: str, form: str, strength: float, force: Callable[[Any], Array]) -> Effect:
     """Make an effect that strikes the joint of the anchors."""
-    return _made(name, form, strength, force=lambda motion, _form, _values: force(motion))
+    return _variant(name, form, strength, force=lambda motion, _form, _values: force(motion))
 
 
 def on_chain(
     name: str,
     form: str,
     strength: float,
-    change: Callable[[Response, np.random.Generator], Response],
+    change: Callable[[ImpulseResponses, Rng], ImpulseResponses],
 ) -> Effect:
     """Make an effect on the way from torque to sound; neutral at strength 0."""
 
-    def chain(response: Response, _form: str, _values: Any, rng: np.random.Generator) -> Response:
+    def chain(response: ImpulseResponses, _form: str, _values: Any, rng: Rng) -> ImpulseResponses:
         return change(response, rng) if strength > 0.0 else response
 
-    return _made(name, form, strength, chain=chain)
+    return _variant(name, form, strength, chain=chain)
 
 
 def on_sensors(
@@ -96,13 +114,11 @@ def on_sensors(
     form: str,
     strength: float,
     shares: dict[str, float],
-    change: Callable[[Array, float, float, np.random.Generator], Array],
+    change: Callable[[Array, float, float, Rng], Array],
 ) -> Effect:
     """Make an effect on channels; ``change(x, share, rate, rng)`` where the share is not 0."""
 
-    def sensors(
-        signals: Signals, rate: float, _form: str, _values: Any, rng: np.random.Generator
-    ) -> Signals:
+    def sensors(signals: Signals, rate: float, _form: str, _values: Any, rng: Rng) -> Signals:
         return {
             channel: change(x, shares.get(channel, 0.0), rate, rng)
             if strength > 0.0 and shares.get(channel, 0.0) != 0.0
@@ -110,11 +126,11 @@ def on_sensors(
             for channel, x in signals.items()
         }
 
-    return _made(name, form, strength, sensors=sensors)
+    return _variant(name, form, strength, sensors=sensors)
 
 
 def draw_shares(
-    rng: np.random.Generator, names: tuple[str, ...] = _SENSED, *, signed: bool = False
+    rng: Rng, names: tuple[str, ...] = SENSED, *, signed: bool = False
 ) -> dict[str, float]:
     """Draw shares of a fault: mostly of one channel alone."""
     chosen = [str(rng.choice(names))]
@@ -135,7 +151,17 @@ def far_curve(shape: Callable[[Array], Array]) -> Array:
     return curve(lambda u: shape(u / np.maximum(1.0 - u, 1e-6)))
 
 
-def drawn_curve(rng: np.random.Generator) -> Array:
+def hill(power: float) -> Array:
+    """Tabulate a rise from 0 to 1 that begins late."""
+    return far_curve(lambda x: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** power))
+
+
+def overshoot(left: float) -> Array:
+    """Tabulate a rise to a peak, and a fall to what is left of it."""
+    return far_curve(lambda x: (1 - left) * x * np.exp(1 - np.minimum(x, 99)) - left * np.expm1(-x))
+
+
+def drawn_curve(rng: Rng) -> Array:
     """Draw a monotone shape from 0 to 1, with few steep parts or many even ones."""
     n, evenness = int(rng.integers(4, 9)), log_uniform(rng, 0.6, 4.0)
     steps = np.cumsum(rng.dirichlet(np.full(n, evenness)))
@@ -143,24 +169,24 @@ def drawn_curve(rng: np.random.Generator) -> Array:
     return curve(PchipInterpolator(knots, np.concatenate([[0.0], steps])))
 
 
-def noise(rng: np.random.Generator, n: int, rate: float, low: float, high: float) -> Array:
+def noise(rng: Rng, n: int, rate: float, low: float, high: float) -> Array:
     """Draw periodic noise of a band, of unit variance."""
     frequency = np.fft.rfftfreq(n, 1.0 / rate)
     inside = (frequency >= low) & (frequency <= high)
     inside[1] |= not inside[1:].any()
     spectrum = inside * np.exp(2j * np.pi * rng.random(frequency.size))
-    course = np.fft.irfft(spectrum, n)
-    return np.asarray(course / course.std())
+    time_series = np.fft.irfft(spectrum, n)
+    return np.asarray(time_series / time_series.std())
 
 
-def wander(rng: np.random.Generator, n: int, rate: float, corner: float) -> Array:
-    """Draw a slow random course of about unit variance."""
+def wander(rng: Rng, n: int, rate: float, corner: float) -> Array:
+    """Draw a slow random time series of about unit variance."""
     b, a = butter(2, min(2.0 * corner / rate, 0.9))
     settling = round(min(2.0 * rate / corner, 4.0 * n))
-    course = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
-    return np.asarray(course * math.sqrt(0.5 * rate / (1.11 * corner)))
+    time_series = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
+    return np.asarray(time_series * math.sqrt(0.5 * rate / (1.11 * corner)))
 
 
-def telegraph(rng: np.random.Generator, n: int, rate: float, often: float) -> Array:
-    """Draw a course that switches between -1 and 1, so often a second [Hz]."""
+def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:
+    """Draw a time series that switches between -1 and 1, so often a second [Hz]."""
     return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)

@@ -8,13 +8,15 @@ import numpy as np
 from scipy.signal import butter, lfilter
 
 from noise.diagnosis.cases.variants.common import (
+    SENSED,
     Array,
     Recipe,
+    Rng,
     log_uniform,
     on_sensors,
     telegraph,
     wander,
-)
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,10 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["HUM", "NOISE"]
 
-Rng = np.random.Generator
-
-_CHANNELS = ("torque", "acceleration", "pressure")
-
 
 def _adds(
     name: str,
@@ -34,23 +32,25 @@ def _adds(
     a: float,
     rng: Rng,
     levels: tuple[float, float, float],
-    course: Callable[[int, float, Rng], Array],
+    time_series: Callable[[int, float, Rng], Array],
 ) -> Effect:
-    """Add a course of rms 1 times a level to all channels, or to one or two of them."""
+    """Add a time series of rms 1 times a level to all channels, or to one or two of them."""
     sizes = np.array(levels) * rng.uniform(0.2, 1.0, 3)
     if rng.random() < 0.4:
         sizes[rng.choice(3, int(rng.integers(1, 3)), replace=False)] = 0.0
-    shares = dict(zip(_CHANNELS, (a * sizes).tolist(), strict=True))
+    shares = dict(zip(SENSED, (a * sizes).tolist(), strict=True))
 
     def change(x: Array, level: float, rate: float, rng: Rng) -> Array:
-        added = course(x.size, rate, rng)
+        added = time_series(x.size, rate, rng)
         return np.asarray(x + level * added / (float(np.sqrt(np.mean(added**2))) + 1e-30))
 
     return on_sensors(name, form, a, shares, change)
 
 
-def _noisy(form: str, a: float, rng: Rng, course: Callable[[int, float, Rng], Array]) -> Effect:
-    return _adds("background_noise", form, a, rng, (0.15, 8.0, 0.3), course)
+def _noisy(
+    form: str, a: float, rng: Rng, time_series: Callable[[int, float, Rng], Array]
+) -> Effect:
+    return _adds("background_noise", form, a, rng, (0.15, 8.0, 0.3), time_series)
 
 
 def _coloured(n: int, rate: float, rng: Rng, exponent: float) -> Array:
@@ -62,30 +62,34 @@ def _bursts(a: float, rng: Rng) -> Effect:
     often, quiet = log_uniform(rng, 6.0, 80.0), float(rng.uniform(0.0, 0.2))
     exponent = float(rng.uniform(0.0, 2.0))
 
-    def course(n: int, rate: float, rng: Rng) -> Array:
+    def time_series(n: int, rate: float, rng: Rng) -> Array:
         b, c = butter(1, 2.0 * 300.0 / rate)
         gate = lfilter(b, c, telegraph(rng, n, rate, often) > 0.0)
         return np.asarray((quiet + gate) * _coloured(n, rate, rng, exponent))
 
-    return _noisy("bursts", a, rng, course)
+    return _noisy("bursts", a, rng, time_series)
 
 
 def _clicks(a: float, rng: Rng) -> Effect:
     often, frequency = log_uniform(rng, 8.0, 300.0), log_uniform(rng, 400.0, 10e3)
     cycles, tails = log_uniform(rng, 0.2, 5.0), float(rng.uniform(0.3, 1.0))
 
-    def course(n: int, rate: float, rng: Rng) -> Array:
+    def time_series(n: int, rate: float, rng: Rng) -> Array:
         heights = rng.standard_normal(n) * np.exp(tails * rng.standard_normal(n))
-        blows = heights * (rng.random(n) < often / rate)
-        blows[int(rng.integers(n))] += 1.0
+        impacts = heights * (rng.random(n) < often / rate)
+        impacts[int(rng.integers(n))] += 1.0
         turn = frequency * np.arange(round(6.0 * cycles / frequency * rate) + 2) / rate
         ring = np.cos(2.0 * np.pi * turn) * np.exp(-turn / cycles)
-        return np.asarray(lfilter(ring, [1.0], blows)) if ring.size < 64 else _through(blows, ring)
+        return (
+            np.asarray(lfilter(ring, [1.0], impacts))
+            if ring.size < 64
+            else _convolved(impacts, ring)
+        )
 
-    return _noisy("clicks", a, rng, course)
+    return _noisy("clicks", a, rng, time_series)
 
 
-def _through(x: Array, taps: Array) -> Array:
+def _convolved(x: Array, taps: Array) -> Array:
     n = x.size + taps.size
     return np.asarray(np.fft.irfft(np.fft.rfft(x, n) * np.fft.rfft(taps, n), n)[: x.size])
 
@@ -93,24 +97,24 @@ def _through(x: Array, taps: Array) -> Array:
 def _band(a: float, rng: Rng) -> Effect:
     middle, octaves = log_uniform(rng, 60.0, 8000.0), log_uniform(rng, 0.1, 2.0)
 
-    def course(n: int, rate: float, rng: Rng) -> Array:
+    def time_series(n: int, rate: float, rng: Rng) -> Array:
         frequency = np.maximum(np.fft.rfftfreq(n, 1.0 / rate), 1.0)
         gain = np.exp(-0.5 * (np.log2(frequency / middle) / octaves) ** 2)
         return np.asarray(np.fft.irfft(gain * np.fft.rfft(rng.standard_normal(n)), n))
 
-    return _noisy("band", a, rng, course)
+    return _noisy("band", a, rng, time_series)
 
 
 def _swelling(a: float, rng: Rng) -> Effect:
     corner, exponent = log_uniform(rng, 1.0, 30.0), float(rng.uniform(-0.5, 2.0))
     depth = float(rng.uniform(0.5, 1.5))
 
-    def course(n: int, rate: float, rng: Rng) -> Array:
+    def time_series(n: int, rate: float, rng: Rng) -> Array:
         slow = wander(rng, n // 64 + 2, rate / 64.0, corner)
         swell = np.interp(np.arange(n), 64.0 * np.arange(slow.size), np.exp(depth * slow))
         return np.asarray(swell * _coloured(n, rate, rng, exponent))
 
-    return _noisy("swelling", a, rng, course)
+    return _noisy("swelling", a, rng, time_series)
 
 
 def _hums(
@@ -126,7 +130,7 @@ def _hums(
     frequency = float(rng.choice([50.0, 60.0])) * (1.0 + 2e-3 * float(rng.standard_normal()))
     corner = log_uniform(rng, 1.0, 15.0)
 
-    def course(n: int, rate: float, rng: Rng) -> Array:
+    def time_series(n: int, rate: float, rng: Rng) -> Array:
         time = np.arange(n) / rate
         phases = rng.random(3)
         turns = (
@@ -135,7 +139,7 @@ def _hums(
         level = 1.0 + depth * np.sin(2 * np.pi * (0.7 * corner * time + phases[2]))
         return np.asarray(level * wave(turns, rate, rng))
 
-    return _adds("mains_hum", form, a, rng, (0.3, 6.0, 0.25), course)
+    return _adds("mains_hum", form, a, rng, (0.3, 6.0, 0.25), time_series)
 
 
 def _partials(rng: Rng) -> Callable[[Array, float, Rng], Array]:

@@ -9,12 +9,16 @@ import numpy as np
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     drawn_curve,
+    family,
     far_curve,
     log_uniform,
+    log_uniforms,
     on_contact,
-)
-from noise.diagnosis.cases.variants.hooks import bristled, flowed, softened
+    overshoot,
+)  # fmt: skip
+from noise.diagnosis.cases.variants.hooks import bristle_hook, dashpot_hook, softening_hook
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -22,28 +26,14 @@ if TYPE_CHECKING:
 
 __all__ = ["SOFTENING", "VISCOELASTICITY"]
 
-Rng = np.random.Generator
-
 _SHORTEST = 2e-5
 
 
 def _softens(form: str, a: float, rng: Rng, shape: Array, held: float = 0.0) -> Effect:
     header = [0.6 * a, log_uniform(rng, 4e-4, 6e-3), log_uniform(rng, 0.02, 0.2), held]
     return on_contact(
-        "amplitude_softening", form, a, softened,
+        "amplitude_softening", form, a, softening_hook,
         lambda _rng: np.concatenate([header, shape]), n_states=2,
-    )  # fmt: skip
-
-
-def _soft_table(a: float, rng: Rng) -> Effect:
-    return _softens("table", a, rng, drawn_curve(rng))
-
-
-def _soft_rehardening(a: float, rng: Rng) -> Effect:
-    left = float(rng.uniform(-0.2, 0.6))
-    return _softens(
-        "rehardening", a, rng,
-        far_curve(lambda x: (1 - left) * x * np.exp(1 - np.minimum(x, 99)) - left * np.expm1(-x)),
     )  # fmt: skip
 
 
@@ -51,18 +41,11 @@ def _soft_held(a: float, rng: Rng) -> Effect:
     return _softens("held", a, rng, drawn_curve(rng), log_uniform(rng, 3e-3, 0.1))
 
 
-def _soft_threshold(a: float, rng: Rng) -> Effect:
-    at = float(rng.uniform(0.1, 0.6))
-    return _softens(
-        "threshold", a, rng, far_curve(lambda x: np.maximum(x - at, 0) ** 1.5 / (1.0 + x**1.5))
-    )
-
-
 def _soft_bristles(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 7))
-    twists = np.exp(rng.uniform(np.log(4e-4), np.log(8e-3), n))
+    twists = log_uniforms(rng, 4e-4, 8e-3, n)
     return on_contact(
-        "amplitude_softening", "bristles", a, bristled,
+        "amplitude_softening", "bristles", a, bristle_hook,
         lambda _rng: np.concatenate([[0.6 * a, n], twists]), n_states=n,
     )  # fmt: skip
 
@@ -83,7 +66,7 @@ def _springpot(a: float, rng: Rng) -> Effect:
 
 def _drawn_branches(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 6))
-    times = np.exp(rng.uniform(np.log(3e-5), np.log(3e-2), n))
+    times = log_uniforms(rng, 3e-5, 3e-2, n)
     return _branches("drawn_branches", a, rng.dirichlet(np.ones(n)), times)
 
 
@@ -94,10 +77,10 @@ def _slow_and_fast(a: float, rng: Rng) -> Effect:
 
 def _flows(form: str, a: float, rng: Rng, thinning: float, twist: float) -> Effect:
     n = int(rng.integers(1, 3))
-    rates = 1.0 / np.exp(rng.uniform(np.log(2e-4), np.log(1e-2), n))
+    rates = 1.0 / log_uniforms(rng, 2e-4, 1e-2, n)
     shares = 0.9 * a * rng.dirichlet(np.ones(n))
     return on_contact(
-        "viscoelastic_stiffness", form, a, flowed,
+        "viscoelastic_stiffness", form, a, dashpot_hook,
         lambda _rng: np.concatenate([[n, thinning, twist], shares, rates]), n_states=n,
     )  # fmt: skip
 
@@ -110,8 +93,15 @@ def _thickening(a: float, rng: Rng) -> Effect:
     return _flows("thickening_dashpot", a, rng, 0.0, log_uniform(rng, 5e-4, 4e-3))
 
 
+def _threshold(rng: Rng) -> Array:
+    at = float(rng.uniform(0.1, 0.6))
+    return far_curve(lambda x: np.maximum(x - at, 0) ** 1.5 / (1.0 + x**1.5))
+
+
 SOFTENING: tuple[Recipe, ...] = (
-    _soft_table, _soft_rehardening, _soft_held, _soft_threshold, _soft_bristles,
+    *family(_softens, ("table", drawn_curve),
+            ("rehardening", lambda rng: overshoot(float(rng.uniform(-0.2, 0.6))))),
+    _soft_held, *family(_softens, ("threshold", _threshold)), _soft_bristles,
 )  # fmt: skip
 VISCOELASTICITY: tuple[Recipe, ...] = (
     _springpot, _drawn_branches, _slow_and_fast, _thinning, _thickening,

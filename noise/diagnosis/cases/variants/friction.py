@@ -10,14 +10,23 @@ from scipy.signal import lfilter
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     curve,
     drawn_curve,
+    family,
     far_curve,
+    hill,
     log_uniform,
     noise,
     on_contact,
+    overshoot,
+)  # fmt: skip
+from noise.diagnosis.cases.variants.hooks import (
+    ageing_hook,
+    creep_hook,
+    patch_hook,
+    rate_dependence_hook,
 )
-from noise.diagnosis.cases.variants.hooks import aged, crept, patched, sped
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -27,8 +36,6 @@ if TYPE_CHECKING:
 
 __all__ = ["AGEING", "CREEP", "SCATTER", "STRENGTHENING", "WEAKENING"]
 
-Rng = np.random.Generator
-
 _RENEWAL = 4e-4
 _N_DRAWS = 4096
 
@@ -37,7 +44,7 @@ def _over_speed(
     name: str, form: str, a: float, gain: float, speed: float, shape: Array, lag: float = 0.0
 ) -> Effect:
     return on_contact(
-        name, form, a, sped,
+        name, form, a, rate_dependence_hook,
         lambda _rng: np.concatenate([[gain, speed, lag], shape]), n_states=1,
     )  # fmt: skip
 
@@ -45,27 +52,6 @@ def _over_speed(
 def _weakens(form: str, a: float, rng: Rng, shape: Array, lag: float = 0.0) -> Effect:
     speed = log_uniform(rng, 2.0, 20.0)
     return _over_speed("velocity_weakening", form, a, -0.5 * a, speed, shape, lag)
-
-
-def _arctangent(a: float, rng: Rng) -> Effect:
-    return _weakens("arctangent", a, rng, far_curve(lambda x: np.arctan(x) * 2.0 / np.pi))
-
-
-def _weak_table(a: float, rng: Rng) -> Effect:
-    return _weakens("table", a, rng, drawn_curve(rng))
-
-
-def _weak_late(a: float, rng: Rng) -> Effect:
-    n = float(rng.uniform(1.5, 4.0))
-    return _weakens("hill", a, rng, far_curve(lambda x: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** n)))
-
-
-def _weak_recovering(a: float, rng: Rng) -> Effect:
-    left = float(rng.uniform(0.2, 0.8))
-    return _weakens(
-        "recovering", a, rng,
-        far_curve(lambda x: (1 - left) * x * np.exp(1.0 - np.minimum(x, 99)) - left * np.expm1(-x)),
-    )  # fmt: skip
 
 
 def _weak_lagging(a: float, rng: Rng) -> Effect:
@@ -82,98 +68,34 @@ def _strong_table(a: float, rng: Rng) -> Effect:
     return _strengthens("table", a, rng, drawn_curve(rng), float(rng.uniform(1.0, 2.5)))
 
 
-def _strong_power(a: float, rng: Rng) -> Effect:
-    p = float(rng.uniform(0.35, 0.8))
-    return _strengthens(
-        "power", a, rng, far_curve(lambda x: (np.minimum(x, 20.0) + 0.01) ** p - 0.01**p)
-    )
-
-
 def _strong_late(a: float, rng: Rng) -> Effect:
     n = float(rng.uniform(1.5, 3.0))
-    return _strengthens(
-        "hill", a, rng, far_curve(lambda x: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** n)), 2.0
-    )
-
-
-def _strong_softplus(a: float, rng: Rng) -> Effect:
-    at, wide = float(rng.uniform(0.2, 1.0)), float(rng.uniform(0.1, 0.4))
-
-    def shape(x: Array) -> Array:
-        risen = wide * np.logaddexp(0.0, (np.minimum(x, 8.0) - at) / wide)
-        return np.asarray(risen - wide * np.log1p(np.exp(-at / wide)))
-
-    return _strengthens("threshold", a, rng, far_curve(shape))
+    return _strengthens("hill", a, rng, hill(n), 2.0)
 
 
 def _ages(form: str, a: float, rng: Rng, shape: Array) -> Effect:
     time = log_uniform(rng, 5e-4, 2e-2)
     return on_contact(
-        "static_ageing", form, a, aged,
+        "static_ageing", form, a, ageing_hook,
         lambda _rng: np.concatenate([[0.97 * a, time, _RENEWAL], shape]), n_states=1,
     )  # fmt: skip
 
 
-def _aged_power(a: float, rng: Rng) -> Effect:
-    p = log_uniform(rng, 0.2, 2.0)
-    return _ages("any_power", a, rng, far_curve(lambda x: 1.0 - (1.0 + x) ** -p))
-
-
-def _aged_hill(a: float, rng: Rng) -> Effect:
-    n = float(rng.uniform(1.4, 4.0))
-    return _ages("hill", a, rng, far_curve(lambda x: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** n)))
-
-
-def _aged_delayed(a: float, rng: Rng) -> Effect:
-    at, steep = float(rng.uniform(0.2, 1.0)), float(rng.uniform(1.0, 4.0))
-    return _ages(
-        "delayed", a, rng, far_curve(lambda x: -np.expm1(-steep * np.maximum(x - at, 0.0) ** 1.5))
-    )
-
-
-def _aged_stretched(a: float, rng: Rng) -> Effect:
-    p = float(rng.uniform(0.35, 0.75))
-    return _ages("stretched", a, rng, far_curve(lambda x: -np.expm1(-(x**p))))
-
-
-def _aged_table(a: float, rng: Rng) -> Effect:
-    return _ages("table", a, rng, drawn_curve(rng))
-
-
-def _creeps(form: str, a: float, shape: Array, lag: float = 0.0) -> Effect:
+def _creeps(form: str, a: float, _rng: Rng, shape: Array, lag: float = 0.0) -> Effect:
     return on_contact(
-        "partial_slip", form, a, crept,
+        "partial_slip", form, a, creep_hook,
         lambda _rng: np.concatenate([[0.92 * a, lag], shape]), n_states=1,
     )  # fmt: skip
 
 
-def _crept_table(a: float, rng: Rng) -> Effect:
-    return _creeps("table", a, drawn_curve(rng))
-
-
-def _crept_threshold(a: float, rng: Rng) -> Effect:
-    at, n = float(rng.uniform(0.2, 0.85)), float(rng.uniform(1.0, 2.5))
-    return _creeps("threshold", a, curve(lambda r: np.maximum((r - at) / (1.0 - at), 0.0) ** n))
-
-
-def _crept_logarithm(a: float, rng: Rng) -> Effect:
-    k = 1.0 - log_uniform(rng, 1e-3, 0.1)
-    return _creeps("logarithmic", a, curve(lambda r: np.log1p(-k * r) / np.log1p(-k)))
-
-
-def _crept_bristles(a: float, rng: Rng) -> Effect:
-    k = log_uniform(rng, 1.0, 20.0)
-    return _creeps("bristles", a, curve(lambda r: r / (1.0 + k * (1.0 - r))))
-
-
-def _crept_lagging(a: float, rng: Rng) -> Effect:
+def _creep_lagging(a: float, rng: Rng) -> Effect:
     n, lag = log_uniform(rng, 1.0, 6.0), log_uniform(rng, 1e-4, 3e-3)
-    return _creeps("lagging", a, curve(lambda r: r**n), lag)
+    return _creeps("lagging", a, rng, curve(lambda r: r**n), lag)
 
 
-def _scatters(form: str, a: float, course: Callable[[Rng], Array]) -> Effect:
+def _scatters(form: str, a: float, time_series: Callable[[Rng], Array]) -> Effect:
     def numbers(rng: Rng) -> Array:
-        z = course(rng)
+        z = time_series(rng)
         share = np.maximum(0.0, 1.0 + 0.5 * a * (z - z.mean()) / z.std())
         return np.concatenate([[5e-3], share])
 
@@ -191,17 +113,17 @@ def _scatter_heavy(a: float, rng: Rng) -> Effect:
 def _scatter_long(a: float, rng: Rng) -> Effect:
     power = float(rng.uniform(0.25, 0.7))
 
-    def course(rng: Rng) -> Array:
+    def time_series(rng: Rng) -> Array:
         size = np.maximum(np.arange(_N_DRAWS // 2 + 1), 8.0) ** -power
         return np.fft.irfft(size * np.exp(2j * np.pi * rng.random(size.size)), _N_DRAWS)
 
-    return _scatters("long_memory", a, course)
+    return _scatters("long_memory", a, time_series)
 
 
 def _scatter_states(a: float, rng: Rng) -> Effect:
     down, up = rng.uniform(0.05, 0.6, 2)
 
-    def course(rng: Rng) -> Array:
+    def time_series(rng: Rng) -> Array:
         chance, state, states = rng.random(_N_DRAWS), 0, np.zeros(_N_DRAWS)
         for i in range(_N_DRAWS):
             if chance[i] < (down if state else up):
@@ -209,7 +131,7 @@ def _scatter_states(a: float, rng: Rng) -> Effect:
             states[i] = state
         return np.asarray(states + 0.1 * rng.standard_normal(_N_DRAWS))
 
-    return _scatters("two_states", a, course)
+    return _scatters("two_states", a, time_series)
 
 
 def _scatter_skewed(a: float, rng: Rng) -> Effect:
@@ -231,23 +153,78 @@ def _scatter_surface(a: float, rng: Rng) -> Effect:
     finest = log_uniform(rng, 5.0, 80.0)  # periods a radian
 
     def numbers(rng: Rng) -> Array:
-        course = noise(rng, _N_DRAWS, 8.0 * finest, 0.05 * finest, finest)
-        return np.concatenate([[8.0 * finest, _N_DRAWS], 1.0 + 0.5 * a * course])
+        time_series = noise(rng, _N_DRAWS, 8.0 * finest, 0.05 * finest, finest)
+        return np.concatenate([[8.0 * finest, _N_DRAWS], 1.0 + 0.5 * a * time_series])
 
-    return on_contact("critical_torque_scatter", "surface", a, patched, numbers)
+    return on_contact("critical_torque_scatter", "surface", a, patch_hook, numbers)
+
+
+def _power(rng: Rng) -> Array:
+    p = float(rng.uniform(0.35, 0.8))
+    return far_curve(lambda x: (np.minimum(x, 20.0) + 0.01) ** p - 0.01**p)
+
+
+def _softplus(rng: Rng) -> Array:
+    at, wide = float(rng.uniform(0.2, 1.0)), float(rng.uniform(0.1, 0.4))
+
+    def shape(x: Array) -> Array:
+        risen = wide * np.logaddexp(0.0, (np.minimum(x, 8.0) - at) / wide)
+        return np.asarray(risen - wide * np.log1p(np.exp(-at / wide)))
+
+    return far_curve(shape)
+
+
+def _any_power(rng: Rng) -> Array:
+    p = log_uniform(rng, 0.2, 2.0)
+    return far_curve(lambda x: 1.0 - (1.0 + x) ** -p)
+
+
+def _delayed(rng: Rng) -> Array:
+    at, steep = float(rng.uniform(0.2, 1.0)), float(rng.uniform(1.0, 4.0))
+    return far_curve(lambda x: -np.expm1(-steep * np.maximum(x - at, 0.0) ** 1.5))
+
+
+def _stretched(rng: Rng) -> Array:
+    p = float(rng.uniform(0.35, 0.75))
+    return far_curve(lambda x: -np.expm1(-(x**p)))
+
+
+def _threshold(rng: Rng) -> Array:
+    at, n = float(rng.uniform(0.2, 0.85)), float(rng.uniform(1.0, 2.5))
+    return curve(lambda r: np.maximum((r - at) / (1.0 - at), 0.0) ** n)
+
+
+def _logarithm(rng: Rng) -> Array:
+    k = 1.0 - log_uniform(rng, 1e-3, 0.1)
+    return curve(lambda r: np.log1p(-k * r) / np.log1p(-k))
+
+
+def _bristles(rng: Rng) -> Array:
+    k = log_uniform(rng, 1.0, 20.0)
+    return curve(lambda r: r / (1.0 + k * (1.0 - r)))
 
 
 WEAKENING: tuple[Recipe, ...] = (
-    _arctangent, _weak_table, _weak_table, _weak_late, _weak_recovering, _weak_lagging,
+    *family(
+        _weakens, ("arctangent", lambda _rng: far_curve(lambda x: np.arctan(x) * 2.0 / np.pi)),
+        ("table", drawn_curve), ("table", drawn_curve),
+        ("hill", lambda rng: hill(float(rng.uniform(1.5, 4.0)))),
+        ("recovering", lambda rng: overshoot(float(rng.uniform(0.2, 0.8)))),
+    ),
+    _weak_lagging,
 )  # fmt: skip
 STRENGTHENING: tuple[Recipe, ...] = (
-    _strong_table, _strong_table, _strong_power, _strong_late, _strong_softplus,
+    _strong_table, _strong_table, *family(_strengthens, ("power", _power)), _strong_late,
+    *family(_strengthens, ("threshold", _softplus)),
 )  # fmt: skip
-AGEING: tuple[Recipe, ...] = (
-    _aged_power, _aged_hill, _aged_delayed, _aged_stretched, _aged_table,
+AGEING = family(
+    _ages, ("any_power", _any_power), ("hill", lambda rng: hill(float(rng.uniform(1.4, 4.0)))),
+    ("delayed", _delayed), ("stretched", _stretched), ("table", drawn_curve),
 )  # fmt: skip
-CREEP: tuple[Recipe, ...] = (
-    _crept_table, _crept_threshold, _crept_logarithm, _crept_bristles, _crept_lagging,
+CREEP = (
+    *family(_creeps, ("table", drawn_curve), ("threshold", _threshold),
+            ("logarithmic", _logarithm), ("bristles", _bristles)),
+    _creep_lagging,
 )  # fmt: skip
 SCATTER: tuple[Recipe, ...] = (
     _scatter_heavy, _scatter_long, _scatter_states, _scatter_skewed, _scatter_alternating,

@@ -36,8 +36,16 @@ from sim.contact import (
 )
 
 __all__ = [
-    "aged", "bristled", "compliant", "crept", "filmed", "flowed", "heated", "patched", "softened",
-    "sped",
+    "ageing_hook",
+    "bristle_hook",
+    "compliance_hook",
+    "creep_hook",
+    "dashpot_hook",
+    "film_hook",
+    "heating_hook",
+    "patch_hook",
+    "rate_dependence_hook",
+    "softening_hook",
 ]  # fmt: skip
 
 
@@ -76,7 +84,7 @@ def _periodic(values, first, place):
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def sped(context, values, state, state_rates, contact) -> None:
+def rate_dependence_hook(context, values, state, state_rates, contact) -> None:
     """Torque over sliding speed: gain, speed, lag; curve over x / (1 + x)."""
     speed = abs(context[SLIDING_SPEED])
     if values[2] > 0.0:
@@ -89,7 +97,7 @@ def sped(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def aged(context, values, state, state_rates, contact) -> None:
+def ageing_hook(context, values, state, state_rates, contact) -> None:
     """Critical torque over age: share, time, angle of renewal; curve over x / (1 + x)."""
     own_age = max(state[0], 0.0)
     unslipped = context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]
@@ -102,7 +110,7 @@ def aged(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def crept(context, values, state, state_rates, contact) -> None:
+def creep_hook(context, values, state, state_rates, contact) -> None:
     """Creep over torque: share, lag; curve over the torque's share of the critical one."""
     r = min(abs(context[TORQUE]) / contact[CRITICAL], 1.0)
     f = _curve(values, 2, r)
@@ -114,14 +122,14 @@ def crept(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def patched(context, values, state, state_rates, contact) -> None:
+def patch_hook(context, values, state, state_rates, contact) -> None:
     """Drop over the shaft's angle: points a radian; a periodic table of factors."""
     share = max(_periodic(values, 1, context[SHAFT_ANGLE] * values[0]), 0.0)
     contact[CRITICAL] = contact[KINETIC] + share * (contact[CRITICAL] - contact[KINETIC])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def filmed(context, values, state, state_rates, contact) -> None:
+def film_hook(context, values, state, state_rates, contact) -> None:
     """Torque and drop on a film.
 
     Coverage, torque ratio, drop left, roughness, whether over the shaft's angle rather than the
@@ -144,7 +152,7 @@ def filmed(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def heated(context, values, state, state_rates, contact) -> None:
+def heating_hook(context, values, state, state_rates, contact) -> None:
     """Torque over heat.
 
     Share lost, rise [K] over which, whether heat passes from one capacity to the next, their
@@ -168,7 +176,7 @@ def heated(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def softened(context, values, state, state_rates, contact) -> None:
+def softening_hook(context, values, state, state_rates, contact) -> None:
     """Stiffness over departure from a mean.
 
     Share, twist, time of the mean, time for which the amplitude is held; curve over x / (1 + x).
@@ -188,7 +196,7 @@ def softened(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def bristled(context, values, state, state_rates, contact) -> None:
+def bristle_hook(context, values, state, state_rates, contact) -> None:
     """Part of the stiffness in bristles that yield: share, number, the twist of each."""
     n = int(values[1])
     held = 0.0
@@ -202,7 +210,7 @@ def bristled(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def flowed(context, values, state, state_rates, contact) -> None:
+def dashpot_hook(context, values, state, state_rates, contact) -> None:
     """Branches with a dashpot that is not linear.
 
     Number, whether it thins (1) or thickens (0), twist; shares and rates.
@@ -223,7 +231,7 @@ def flowed(context, values, state, state_rates, contact) -> None:
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
-def compliant(context, values, state, state_rates, contact) -> None:
+def compliance_hook(context, values, state, state_rates, contact) -> None:
     """Shaft that yields.
 
     Inertia (0 for a rigid one), stiffness, share that softens, share that is cubic, lag over which,

@@ -17,15 +17,18 @@ def droop(x, limit, deep, rate):
     Parameters
     ----------
     x : ndarray, shape (n,)
+        Signal over its peak [-].
     limit : float
+        At which it is clipped, over the peak [-].
     deep : float
         Share of the gain that is lost in a long overload.
     rate : float
-        At which it comes back, a sample.
+        At which it comes back, a sample [-].
 
     Returns
     -------
     ndarray, shape (n,)
+        As `x` [-].
 
     Examples
     --------

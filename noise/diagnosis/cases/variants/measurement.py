@@ -12,22 +12,22 @@ from scipy.signal import bilinear, butter, lfilter, lfilter_zi
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     draw_shares,
     drawn_curve,
     log_uniform,
+    log_uniforms,
     on_sensors,
     telegraph,
     wander,
-)
+)  # fmt: skip
 from noise.diagnosis.cases.variants.limits import droop
 
 if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
 __all__ = ["CLIPPING", "DELAY", "GAIN", "MOUNT"]
-
-Rng = np.random.Generator
-Course = Callable[[int, float, Rng], Array]
+TimeSeries = Callable[[int, float, Rng], Array]
 
 
 def _slowly(rng: Rng, n: int, rate: float, corner: float) -> Array:
@@ -36,11 +36,13 @@ def _slowly(rng: Rng, n: int, rate: float, corner: float) -> Array:
     return np.interp(np.arange(n), coarse * np.arange(slow.size), slow)
 
 
-def _gains(form: str, a: float, rng: Rng, course: Course) -> Effect:
+def _gains(form: str, a: float, rng: Rng, time_series: TimeSeries) -> Effect:
     error = float(rng.choice([-0.5, 0.8])) * a
 
     def change(x: Array, share: float, rate: float, rng: Rng) -> Array:
-        return np.asarray(x * np.maximum(1.0 + error * share * course(x.size, rate, rng), 0.02))
+        return np.asarray(
+            x * np.maximum(1.0 + error * share * time_series(x.size, rate, rng), 0.02)
+        )
 
     return on_sensors("gain_error", form, a, draw_shares(rng), change)
 
@@ -62,11 +64,11 @@ def _gain_switching(a: float, rng: Rng) -> Effect:
 def _gain_settling(a: float, rng: Rng) -> Effect:
     time, sign = log_uniform(rng, 0.02, 0.5), bool(rng.integers(2))
 
-    def course(n: int, rate: float, _rng: Rng) -> Array:
+    def time_series(n: int, rate: float, _rng: Rng) -> Array:
         gone = np.exp(-np.arange(n) / (time * rate))
         return gone if sign else 1.0 - gone
 
-    return _gains("settling", a, rng, course)
+    return _gains("settling", a, rng, time_series)
 
 
 def _gain_tilted(a: float, rng: Rng) -> Effect:
@@ -145,7 +147,7 @@ def _clip_table(a: float, rng: Rng) -> Effect:
     knots = np.linspace(0.0, 1.0, shape.size)
 
     def limited(x: Array, cut: float, _rate: float) -> Array:
-        # True up to a knee, from there by a random course to the peak's reading.
+        # True up to a knee, from there by a random time series to the peak's reading.
         size, knee = np.abs(x), max(1.0 - 2.0 * cut, 0.2)
         above = np.interp((size - knee) / (1.0 - knee), knots, shape)
         top = max(1.0 - cut - knee, 0.0)
@@ -155,11 +157,11 @@ def _clip_table(a: float, rng: Rng) -> Effect:
     return _clips("table", a, rng, limited)
 
 
-def _delays(form: str, a: float, rng: Rng, course: Course) -> Effect:
+def _delays(form: str, a: float, rng: Rng, time_series: TimeSeries) -> Effect:
     delay = a * log_uniform(rng, 5e-4, 3e-3)
 
     def change(x: Array, share: float, rate: float, rng: Rng) -> Array:
-        when = np.arange(x.size) - share * delay * rate * course(x.size, rate, rng)
+        when = np.arange(x.size) - share * delay * rate * time_series(x.size, rate, rng)
         return np.interp(when, np.arange(x.size), x)
 
     return on_sensors("channel_delay", form, a, draw_shares(rng, signed=True), change)
@@ -168,11 +170,11 @@ def _delays(form: str, a: float, rng: Rng, course: Course) -> Effect:
 def _delay_packets(a: float, rng: Rng) -> Effect:
     length = log_uniform(rng, 2e-3, 0.05)
 
-    def course(n: int, rate: float, rng: Rng) -> Array:
+    def time_series(n: int, rate: float, rng: Rng) -> Array:
         late = rng.exponential(0.7, math.ceil(n / (length * rate)) + 1)
         return np.asarray(late[(np.arange(n) / (length * rate)).astype(np.int64)])
 
-    return _delays("packets", a, rng, course)
+    return _delays("packets", a, rng, time_series)
 
 
 def _delay_wandering(a: float, rng: Rng) -> Effect:
@@ -239,8 +241,8 @@ def _moving(x: Array, rate: float, frequency: float, damping: float) -> Array:
 
 def _mount_several(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(3, 6))
-    modes = np.exp(rng.uniform(np.log(900.0), np.log(12e3), n)).tolist()
-    dampings = np.exp(rng.uniform(np.log(0.012), np.log(0.15), n)).tolist()
+    modes = log_uniforms(rng, 900.0, 12e3, n).tolist()
+    dampings = log_uniforms(rng, 0.012, 0.15, n).tolist()
     parts = rng.dirichlet(np.full(n, 2.0)).tolist()
     listed = list(zip(modes, dampings, parts, strict=True))
     return _mounts(

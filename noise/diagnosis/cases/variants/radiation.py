@@ -7,33 +7,38 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import butter, lfilter
 
-from noise.diagnosis.cases.variants.common import Array, Recipe, log_uniform, on_chain
+from noise.diagnosis.cases.variants.common import (
+    Array,
+    Recipe,
+    Rng,
+    log_uniform,
+    log_uniforms,
+    on_chain,
+)  # fmt: skip
 from noise.diagnosis.cases.variants.structure import waveguide
-from sim.chain import HIGHEST_SHARE, resonance, through, total
+from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Effect
 
 __all__ = ["PLATE", "ROOM"]
-
-Rng = np.random.Generator
 
 
 def _added(name: str, form: str, a: float, taps: Callable[[float, Rng], Array]) -> Effect:
     """Add to the direct sound what ``taps(rate, rng)`` makes of it."""
 
-    def change(paths: Response, rng: Rng) -> Response:
-        return through(paths, total([np.ones(1), a * taps(paths.rate, rng)]))
+    def change(paths: ImpulseResponses, rng: Rng) -> ImpulseResponses:
+        return filter_pressure(paths, padded_sum([np.ones(1), a * taps(paths.rate, rng)]))
 
     return on_chain(name, form, a, change)
 
 
 def _rings(rate: float, modes: list[tuple[float, float, float]]) -> Array:
     """Resonances of unit peak: frequency [Hz], damping ratio, sense and strength."""
-    return total(
+    return padded_sum(
         [np.zeros(1)]
         + [
             strength * resonance([0.0, 2.0 * damping, 0.0], frequency, damping, rate)
@@ -45,8 +50,8 @@ def _rings(rate: float, modes: list[tuple[float, float, float]]) -> Array:
 
 def _several(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 7))
-    frequencies = np.exp(rng.uniform(np.log(150.0), np.log(8000.0), n)).tolist()
-    dampings = np.exp(rng.uniform(np.log(0.005), np.log(0.1), n)).tolist()
+    frequencies = log_uniforms(rng, 150.0, 8000.0, n).tolist()
+    dampings = log_uniforms(rng, 0.005, 0.1, n).tolist()
     strengths = (2.0 * rng.choice([-1.0, 1.0], n) * rng.uniform(0.3, 1.0, n)).tolist()
     modes = list(zip(frequencies, dampings, strengths, strict=True))
     return _added("plate_modes", "several", a, lambda rate, _rng: _rings(rate, modes))
@@ -73,7 +78,7 @@ def _plate_waveguide(a: float, rng: Rng) -> Effect:
 
 def _notched(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(1, 5))
-    frequencies = np.exp(rng.uniform(np.log(200.0), np.log(6000.0), n)).tolist()
+    frequencies = log_uniforms(rng, 200.0, 6000.0, n).tolist()
     damping = log_uniform(rng, 0.02, 0.2)
     modes = [(f, damping, -1.0) for f in frequencies]
     return _added("plate_modes", "notches", a, lambda rate, _rng: _rings(rate, modes))
@@ -97,14 +102,14 @@ def _corridor(a: float, rng: Rng) -> Effect:
     def taps(rate: float, _rng: Rng) -> Array:
         flutter = _spaced(orders * way, 1.5 * wall**orders / np.sqrt(orders), rate)
         few = np.arange(1.0, 4.0)
-        return total([flutter, _spaced(few * apart, 1.5 * side**few, rate)])
+        return padded_sum([flutter, _spaced(few * apart, 1.5 * side**few, rate)])
 
     return _added("room_reflections", "corridor", a, taps)
 
 
 def _few_echoes(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 10))
-    times = np.exp(rng.uniform(np.log(1.5e-3), np.log(0.08), n))
+    times = log_uniforms(rng, 1.5e-3, 0.08, n)
     gains = 3.0 * rng.choice([-1.0, 1.0], n, p=[0.25, 0.75]) * rng.uniform(0.2, 1.0, n) / np.sqrt(n)
     return _added("room_reflections", "few", a, lambda rate, _rng: _spaced(times, gains, rate))
 
@@ -123,7 +128,7 @@ def _coupled(a: float, rng: Rng) -> Effect:
 
     def taps(rate: float, rng: Rng) -> Array:
         near, far = _decay(rate, rng, fast, starts[0]), _decay(rate, rng, slow, starts.sum())
-        return size * total([(1.0 - share) * near, share * far])
+        return size * padded_sum([(1.0 - share) * near, share * far])
 
     return _added("room_reflections", "coupled", a, taps)
 

@@ -1,4 +1,4 @@
-"""Further forms of what clamp, beams and anchors add: modes, waves and blows."""
+"""Further forms of what clamp, beams and anchors add: modes, waves and impacts."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from scipy.signal import butter, fftconvolve, lfilter
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     log_uniform,
+    log_uniforms,
     on_chain,
     on_joint,
-)
-from sim.chain import HIGHEST_SHARE, resonance, total
+)  # fmt: skip
+from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 from sim.effects.slip_pulse import torque_drops
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from sim.effects.effect import Effect
     from sim.motion import Motion
 
 __all__ = ["BEAMS", "PULSES", "waveguide"]
-
-Rng = np.random.Generator
 
 _REFERENCE_DROP = 6.94
 _LONGEST = 0.25
@@ -42,13 +42,15 @@ def waveguide(rate: float, first: float, reflection: float, dullness: float) -> 
     rate, first : float
         Sampling rate; how often a second it returns [Hz].
     reflection : float
-        Signed, below 1 in magnitude.
+        Signed, below 1 in magnitude [-].
     dullness : float
-        From 0 to 0.5: of what is reflected, how much is smoothed away at the highest frequencies.
+        From 0 to 0.5: of what is reflected, how much is smoothed away at the highest frequencies
+        [-].
 
     Returns
     -------
-    ndarray
+    ndarray, shape (n,)
+        Over the impulse [-].
 
     Examples
     --------
@@ -70,7 +72,7 @@ def _with_modes(form: str, a: float, rng: Rng, modes: list[tuple[float, float, f
     """Add modes: frequency [Hz], damping ratio, constant."""
     mass = log_uniform(rng, 0.005, 0.08)
 
-    def change(paths: Response, _rng: Rng) -> Response:
+    def change(paths: ImpulseResponses, _rng: Rng) -> ImpulseResponses:
         if not np.any(paths.pulse_to_acceleration):
             return paths  # the clamp is bolted down
         accelerations, forces = [paths.torque_to_acceleration], [np.zeros(1)]
@@ -80,25 +82,25 @@ def _with_modes(form: str, a: float, rng: Rng, modes: list[tuple[float, float, f
             mode = frequency, damping, paths.rate
             accelerations.append(a * constant * resonance([1.0, 0.0, 0.0], *mode))
             forces.append(a * mass * constant * resonance([0.0, 0.0, 1.0], *mode))
-        return _heard(paths, total(accelerations), total(forces))
+        return _with_force(paths, padded_sum(accelerations), padded_sum(forces))
 
     return on_chain("beam_modes", form, a, change)
 
 
-def _heard(paths: Response, acceleration: Array, force: Array) -> Response:
-    heard = fftconvolve(force, paths.pulse_to_pressure)
+def _with_force(paths: ImpulseResponses, acceleration: Array, force: Array) -> ImpulseResponses:
+    pressure = fftconvolve(force, paths.pulse_to_pressure)
     return replace(
         paths,
         torque_to_acceleration=acceleration,
-        torque_to_pressure=total([paths.torque_to_pressure, heard]),
+        torque_to_pressure=padded_sum([paths.torque_to_pressure, pressure]),
     )
 
 
 def _several(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(3, 8))
-    frequencies = np.exp(rng.uniform(np.log(350.0), np.log(9000.0), n))
+    frequencies = log_uniforms(rng, 350.0, 9000.0, n)
     constants = log_uniform(rng, 8.0, 40.0) * rng.choice([-1.0, 1.0], n) * rng.uniform(0.2, 1.0, n)
-    dampings = np.exp(rng.uniform(np.log(0.004), np.log(0.06), n))
+    dampings = log_uniforms(rng, 0.004, 0.06, n)
     columns = (frequencies.tolist(), dampings.tolist(), constants.tolist())
     return _with_modes("several", a, rng, list(zip(*columns, strict=True)))
 
@@ -126,29 +128,29 @@ def _beam_waveguide(a: float, rng: Rng) -> Effect:
     reflection = float(rng.choice([-1.0, 1.0])) * (1.0 - log_uniform(rng, 0.02, 0.25))
     dullness, mass = float(rng.uniform(0.05, 0.5)), log_uniform(rng, 0.005, 0.08)
 
-    def change(paths: Response, _rng: Rng) -> Response:
+    def change(paths: ImpulseResponses, _rng: Rng) -> ImpulseResponses:
         if not np.any(paths.pulse_to_acceleration):
             return paths
         echoes = waveguide(paths.rate, first, reflection, dullness)
         b, c = butter(2, 2.0 * 0.4 * first / paths.rate, "highpass")
-        moved = a * constant * np.asarray(lfilter(b, c, np.append(echoes, np.zeros(512))))
+        acceleration = a * constant * np.asarray(lfilter(b, c, np.append(echoes, np.zeros(512))))
         b, c = butter(2, 2.0 * min(6.0 * first, 0.4 * paths.rate) / paths.rate)
-        both = total([paths.torque_to_acceleration, moved])
-        return _heard(paths, both, mass * np.asarray(lfilter(b, c, moved)))
+        both = padded_sum([paths.torque_to_acceleration, acceleration])
+        return _with_force(paths, both, mass * np.asarray(lfilter(b, c, acceleration)))
 
     return on_chain("beam_modes", "waveguide", a, change)
 
 
-def _blows(
+def _impacts(
     form: str,
     a: float,
     rng: Rng,
-    blow: Callable[[float, Rng], Array],
+    impact: Callable[[float, Rng], Array],
     *,
     power: float = 0.5,
     late: float = 0.0,
 ) -> Effect:
-    """Put a blow ``blow(rate, rng)`` of unit peak at each drop, late by so much at most [s]."""
+    """Put a impact ``impact(rate, rng)`` of unit peak at each drop, late by so much at most [s]."""
     threshold, seed = float(rng.choice([0.0, 0.0, 1.0, 3.0])), int(rng.integers(2**31))
 
     def force(motion: Motion) -> Array:
@@ -156,13 +158,13 @@ def _blows(
         if a == 0.0:
             return struck
         where, drops = torque_drops(motion.torque, max(threshold, 1e-6))
-        # Other blows in each run, but the same in the same run.
+        # Other impacts in each run, but the same in the same run.
         chance = np.random.default_rng([seed, where.size, int(where.sum())])
         excess = np.maximum((drops - threshold) / (_REFERENCE_DROP - threshold), 0.0)
         for at, peak in zip(where, 250.0 * a * excess**power, strict=True):
             if peak < 1e-3:
                 continue
-            shape = blow(motion.rate, chance)
+            shape = impact(motion.rate, chance)
             start = int(at + late * motion.rate * chance.random())
             stop = min(start + shape.size, struck.size)
             struck[start:stop] += peak * shape[: max(stop - start, 0)]
@@ -180,7 +182,7 @@ def _bounce(a: float, rng: Rng) -> Effect:
     duration, apart = log_uniform(rng, 2e-5, 2e-4), log_uniform(rng, 4e-4, 4e-3)
     kept, n = float(rng.uniform(0.4, 0.85)), int(rng.integers(3, 8))
 
-    def blow(rate: float, _rng: Rng) -> Array:
+    def impact(rate: float, _rng: Rng) -> Array:
         pulse = _half_sine(rate, duration)
         starts = np.concatenate([[0.0], np.cumsum(apart * kept ** np.arange(n))])
         shape = np.zeros(int(starts[-1] * rate) + pulse.size + 2)
@@ -189,14 +191,14 @@ def _bounce(a: float, rng: Rng) -> Effect:
             shape[at : at + pulse.size] += kept**i * pulse
         return shape
 
-    return _blows("bounce", a, rng, blow)
+    return _impacts("bounce", a, rng, impact)
 
 
 def _crunch(a: float, rng: Rng) -> Effect:
     length, dull = log_uniform(rng, 5e-4, 6e-3), log_uniform(rng, 2e-5, 2e-4)
     sparse = float(rng.uniform(0.05, 1.0))
 
-    def blow(rate: float, rng: Rng) -> Array:
+    def impact(rate: float, rng: Rng) -> Array:
         n = max(8, round(3.0 * length * rate))
         grains = rng.standard_normal(n) * (rng.random(n) < sparse)
         grains[0] = 1.0
@@ -204,31 +206,31 @@ def _crunch(a: float, rng: Rng) -> Effect:
         shape = np.convolve(grains * decay, _half_sine(rate, dull))
         return np.asarray(shape / np.abs(shape).max())
 
-    return _blows("crunch", a, rng, blow)
+    return _impacts("crunch", a, rng, impact)
 
 
 def _ring(a: float, rng: Rng) -> Effect:
     frequency, cycles = log_uniform(rng, 1500.0, 12e3), float(rng.uniform(0.7, 4.0))
 
-    def blow(rate: float, _rng: Rng) -> Array:
+    def impact(rate: float, _rng: Rng) -> Array:
         turn = frequency * np.arange(round(4.0 * cycles / frequency * rate)) / rate
         return np.asarray(np.sin(2.0 * np.pi * turn) * np.exp(-turn / cycles))
 
-    return _blows("ringing", a, rng, blow)
+    return _impacts("ringing", a, rng, impact)
 
 
 def _proportional(a: float, rng: Rng) -> Effect:
     duration, power = log_uniform(rng, 2e-5, 2.5e-4), float(rng.uniform(0.8, 2.0))
-    return _blows("power", a, rng, lambda rate, _rng: _half_sine(rate, duration), power=power)
+    return _impacts("power", a, rng, lambda rate, _rng: _half_sine(rate, duration), power=power)
 
 
 def _late(a: float, rng: Rng) -> Effect:
     duration, late = log_uniform(rng, 2e-5, 2.5e-4), log_uniform(rng, 2e-4, 3e-3)
 
-    def blow(rate: float, rng: Rng) -> Array:
+    def impact(rate: float, rng: Rng) -> Array:
         return np.asarray(np.exp(0.5 * rng.standard_normal()) * _half_sine(rate, duration))
 
-    return _blows("late", a, rng, blow, late=late)
+    return _impacts("late", a, rng, impact, late=late)
 
 
 BEAMS: tuple[Recipe, ...] = (_several, _split, _crowd, _beam_waveguide)

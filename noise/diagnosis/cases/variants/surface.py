@@ -9,21 +9,24 @@ import numpy as np
 from noise.diagnosis.cases.variants.common import (
     Array,
     Recipe,
+    Rng,
     curve,
     drawn_curve,
+    family,
     far_curve,
+    hill,
     log_uniform,
+    log_uniforms,
     noise,
     on_contact,
-)
-from noise.diagnosis.cases.variants.hooks import filmed, heated
+    overshoot,
+)  # fmt: skip
+from noise.diagnosis.cases.variants.hooks import film_hook, heating_hook
 
 if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
 __all__ = ["FILM", "HEAT"]
-
-Rng = np.random.Generator
 
 _N_NOISE = 2**14
 
@@ -41,14 +44,10 @@ def _films(
 
     def numbers(rng: Rng) -> Array:
         header = [a, ratio, left, rough, float(patches > 0.0), scale, float(fixed), per]
-        course = noise(rng, _N_NOISE, points, low, high)
-        return np.concatenate([header, shape, [_N_NOISE], course])
+        time_series = noise(rng, _N_NOISE, points, low, high)
+        return np.concatenate([header, shape, [_N_NOISE], time_series])
 
-    return on_contact("transfer_film", form, a, filmed, numbers, n_states=1)
-
-
-def _film_table(a: float, rng: Rng) -> Effect:
-    return _films("table", a, rng, drawn_curve(rng))
+    return on_contact("transfer_film", form, a, film_hook, numbers, n_states=1)
 
 
 def _film_patches(a: float, rng: Rng) -> Effect:
@@ -66,14 +65,6 @@ def _film_patches(a: float, rng: Rng) -> Effect:
     return _films("patches", a, rng, curve(shape), patches=log_uniform(rng, 0.1, 6.28), fixed=True)
 
 
-def _film_torn(a: float, rng: Rng) -> Effect:
-    left = float(rng.uniform(0.1, 0.7))
-    return _films(
-        "torn_off", a, rng,
-        far_curve(lambda x: (1 - left) * x * np.exp(1 - np.minimum(x, 99)) - left * np.expm1(-x)),
-    )  # fmt: skip
-
-
 def _film_grown(a: float, rng: Rng) -> Effect:
     n = float(rng.uniform(0.4, 0.9))
     return _films("power", a, rng, far_curve(lambda x: 1.0 - (1.0 + x) ** -n), fixed=True)
@@ -85,7 +76,7 @@ def _heats(
 ) -> Effect:  # fmt: skip
     header = [lost, rise, float(passed_on), float(rates.size)]
     return on_contact(
-        "frictional_heating", form, a, heated,
+        "frictional_heating", form, a, heating_hook,
         lambda _rng: np.concatenate([header, weights, rates, shape]), n_states=rates.size,
     )  # fmt: skip
 
@@ -97,7 +88,7 @@ def _exponential(softening: float) -> tuple[Array, float, float]:
 
 def _heat_several(a: float, rng: Rng) -> Effect:
     n = int(rng.integers(2, 6))
-    rates = 1.0 / np.exp(rng.uniform(np.log(3e-3), np.log(1.5), n))
+    rates = 1.0 / log_uniforms(rng, 3e-3, 1.5, n)
     weights = log_uniform(rng, 0.3, 2.0) * rng.dirichlet(np.ones(n)) * rates
     shape, lost, rise = _exponential(0.02 * a)
     return _heats("several", a, shape, lost, rise, weights, rates)
@@ -121,10 +112,9 @@ def _heat_table(a: float, rng: Rng) -> Effect:
 
 def _heat_transition(a: float, rng: Rng) -> Effect:
     n, rise = float(rng.uniform(2.0, 5.0)), log_uniform(rng, 2.0, 12.0)
-    rates = 1.0 / np.exp(rng.uniform(np.log(0.01), np.log(0.6), 2))
+    rates = 1.0 / log_uniforms(rng, 0.01, 0.6, 2)
     weights = log_uniform(rng, 0.3, 2.0) * rng.dirichlet(np.ones(2)) * rates
-    shape = far_curve(lambda x: 1.0 / (1.0 + (1.0 / (x + 1e-9)) ** n))
-    return _heats("transition", a, shape, 0.5 * a, rise, weights, rates)
+    return _heats("transition", a, hill(n), 0.5 * a, rise, weights, rates)
 
 
 def _heat_delayed(a: float, rng: Rng) -> Effect:
@@ -135,7 +125,12 @@ def _heat_delayed(a: float, rng: Rng) -> Effect:
     return _heats("delayed", a, shape, lost, rise, weights, rates, passed_on=True)
 
 
-FILM: tuple[Recipe, ...] = (_film_table, _film_patches, _film_torn, _film_grown)
+FILM: tuple[Recipe, ...] = (
+    *family(_films, ("table", drawn_curve)),
+    _film_patches,
+    *family(_films, ("torn_off", lambda rng: overshoot(float(rng.uniform(0.1, 0.7))))),
+    _film_grown,
+)
 HEAT: tuple[Recipe, ...] = (
     _heat_several, _heat_power, _heat_table, _heat_transition, _heat_delayed,
 )  # fmt: skip

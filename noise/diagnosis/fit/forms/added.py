@@ -1,4 +1,4 @@
-"""What is added to channels, estimated: noise by its bands, hum by its lines."""
+"""Noise and hum added to channels, estimated: noise by its bands, hum by its lines."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from noise.diagnosis.fit.forms.filters import made_effect
-from noise.diagnosis.fit.forms.form import Form
+from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.gap.signature import KINDS, NAMES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Effect, Signals
+    from sim.effects.effect import Signals, Values
 
 __all__ = ["hum_forms", "noise_forms"]
 
@@ -59,22 +58,17 @@ def noise_forms(compared: Sequence[Compared]) -> list[Form]:
     if not bands:
         return []
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def sensors(
+        signals: Signals, rate: float, _form: str, values: Values, rng: np.random.Generator
+    ) -> Signals:
+        noisy = dict(signals)
+        for kind, (edges, density) in bands.items():
+            noisy[kind] = noisy[kind] + values["amount"] * _noise(
+                noisy[kind].size, rate, edges, density, rng
+            )
+        return noisy
 
-        def sensors(
-            signals: Signals, rate: float, _form: str, _values: object, rng: np.random.Generator
-        ) -> Signals:
-            noisy = dict(signals)
-            for kind, (edges, density) in bands.items():
-                noisy[kind] = noisy[kind] + amount * _noise(
-                    noisy[kind].size, rate, edges, density, rng
-                )
-            return noisy
-
-        return made_effect("background_noise", amount, sensors=sensors)
-
-    return [Form("background_noise", "estimated", {"amount": 1.0}, {"amount": 4.0}, make)]
+    return [amount_form("background_noise", "estimated", sensors=sensors)]
 
 
 def _noise(
@@ -116,26 +110,20 @@ def hum_forms(compared: Sequence[Compared]) -> list[Form]:
     if not any(x.any() for x in lines.values()):
         return []
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def sensors(
+        signals: Signals, rate: float, _form: str, values: Values, rng: np.random.Generator
+    ) -> Signals:
+        humming = dict(signals)
+        for kind, power in lines.items():
+            time, phases = np.arange(humming[kind].size) / rate, rng.random(_HARMONICS)
+            added = np.zeros(time.size)
+            for k in np.flatnonzero(power).tolist():
+                turns = (k + 1) * frequency * time + phases[k]
+                added += np.sqrt(2.0 * power[k]) * np.sin(2.0 * np.pi * turns)
+            humming[kind] = humming[kind] + values["amount"] * added
+        return humming
 
-        def sensors(
-            signals: Signals, rate: float, _form: str, _values: object, rng: np.random.Generator
-        ) -> Signals:
-            humming = dict(signals)
-            for kind, power in lines.items():
-                time, phases = np.arange(humming[kind].size) / rate, rng.random(_HARMONICS)
-                added = np.zeros(time.size)
-                for k in np.flatnonzero(power).tolist():
-                    turns = (k + 1) * frequency * time + phases[k]
-                    added += np.sqrt(2.0 * power[k]) * np.sin(2.0 * np.pi * turns)
-                humming[kind] = humming[kind] + amount * added
-            return humming
-
-        return made_effect("mains_hum", amount, sensors=sensors)
-
-    return [Form("mains_hum", f"{frequency:.1f} Hz, estimated", {"amount": 1.0},
-                 {"amount": 4.0}, make)]  # fmt: skip
+    return [amount_form("mains_hum", f"{frequency:.1f} Hz, estimated", sensors=sensors)]
 
 
 def _spectrum(signal: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,7 +1,7 @@
 """Recordings beside what their own torque should have made of them: what forms are estimated from.
 
-A torque that was measured is sent along the ways of the rig file, so that nothing that the contact
-does stands between; the shaft's own course is taken from its angle.
+A torque that was measured is sent through the transfer functions of the rig file, so that nothing
+that the contact does stands between; the shaft's own modulation is taken from its angle.
 """
 
 from __future__ import annotations
@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import shaft_speed
-from noise.diagnosis.simulated.paths import predict
+from noise.diagnosis.simulated.transfer_functions import predict
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from noise.diagnosis.fit.bench import Bench
-    from noise.diagnosis.simulated.paths import Way
+    from models.transfer_functions.transfer_function import TransferFunction
+    from noise.diagnosis.fit.case_comparison import CaseComparison
 
 __all__ = ["Compared", "compared"]
 
@@ -36,35 +37,36 @@ class Compared:
         [Hz]
     free : bool
         Whether the clamp stands on beams, rather than on the baseplate itself.
-    measured : dict of str to ndarray
-        By kind of channel; those that were recorded.
-    expected : dict of str to ndarray
-        Of acceleration and pressure, by the measured torque.
-    ways : mapping of str to Way
-        That they were sent along.
-    course : ndarray, optional
-        Shaft speed over its mean, less 1.
-    signature, nominal, scale : ndarray
-        Of the recording; middle of the simulated repeats, and what they scatter by.
+    measured : dict of str to ndarray, shape (n,)
+        By kind of channel; those that were recorded [unit of the channel].
+    expected : dict of str to ndarray, shape (n,)
+        Of acceleration and pressure, by the measured torque [unit of the channel].
+    transfer_functions : mapping of str to TransferFunction
+        That it was sent through.
+    modulation : ndarray, shape (n,), optional
+        Shaft speed over its mean, less 1 [-].
+    signature, nominal, scale : ndarray, shape (n_values,)
+        Of the recording; middle of the simulated repeats, and what they scatter by As of
+        `noise.diagnosis.gap.signature`.
     """
 
     rate: float
     free: bool
     measured: dict[str, NDArray[np.float64]]
     expected: dict[str, NDArray[np.float64]]
-    ways: Mapping[str, Way]
-    course: NDArray[np.float64] | None
+    transfer_functions: Mapping[str, TransferFunction]
+    modulation: NDArray[np.float64] | None
     signature: NDArray[np.float64]
     nominal: NDArray[np.float64]
     scale: NDArray[np.float64]
 
 
-def compared(bench: Bench, chosen: Sequence[int]) -> list[Compared]:
-    """Compare recordings of a bench.
+def compared(comparison: CaseComparison, chosen: Sequence[int]) -> list[Compared]:
+    """Compare recordings of a comparison.
 
     Parameters
     ----------
-    bench : Bench
+    comparison : CaseComparison
     chosen : sequence of int
 
     Returns
@@ -72,34 +74,32 @@ def compared(bench: Bench, chosen: Sequence[int]) -> list[Compared]:
     list of Compared
         One a recording.
     """
-    return [_one(bench, i) for i in chosen]
+    return [_one(comparison, i) for i in chosen]
 
 
-def _one(bench: Bench, i: int) -> Compared:
-    recording = bench.recordings[i]
-    c, rate = recording.condition, recording.rate
-    assert c.interference is not None
-    assert c.support_stiffness is not None
+def _one(comparison: CaseComparison, i: int) -> Compared:
+    recording = comparison.recordings[i]
+    c, rate = known_condition(recording.condition), recording.rate
     measured = {
         kind: recording.samples[row].astype(np.float64)
         for kind in ("torque", "acceleration", "pressure", "angle")
         if (row := recording.first(kind)) is not None
     }
     expected: dict[str, NDArray[np.float64]] = {}
-    ways: Mapping[str, Way] = {}
+    transfers: Mapping[str, TransferFunction] = {}
     if "torque" in measured:
-        ways = bench.runs.known_ways.at(c.interference, c.support_stiffness)
+        transfers = comparison.runs.transfer_functions.of(recording)
         expected = {
-            kind: predict(measured["torque"], rate, ways[kind])
+            kind: predict(measured["torque"], rate, transfers[kind])
             for kind in ("acceleration", "pressure")
             if kind in measured
         }
-    course = None
+    modulation = None
     if "angle" in measured:
         speed = shaft_speed(measured.pop("angle"), rate)
-        course = np.asarray(speed / (speed.mean() or 1.0) - 1.0)
-    reference = bench.references[i]
+        modulation = np.asarray(speed / (speed.mean() or 1.0) - 1.0)
+    reference = comparison.references[i]
     return Compared(
-        rate, not math.isinf(c.support_stiffness), measured, expected, ways, course,
-        bench.signatures[i], reference.mean, reference.scale,
+        rate, not math.isinf(c.support_stiffness), measured, expected, transfers, modulation,
+        comparison.signatures[i], reference.mean, reference.scale,
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Which forms are estimated of which effect.
+"""Estimated forms of effects, by the name of the effect.
 
 What is linear, added or a curve is there to be seen in the recordings themselves, more exactly than
 any search over formulas finds it. What the contact does is not, as it changes its own input.
@@ -10,28 +10,28 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.fit.forms.added import hum_forms, noise_forms
-from noise.diagnosis.fit.forms.blows import blow_forms
 from noise.diagnosis.fit.forms.compared import compared
-from noise.diagnosis.fit.forms.courses import gain_forms, speed_forms
 from noise.diagnosis.fit.forms.filters import beam_forms, radiation_forms, sensor_forms
+from noise.diagnosis.fit.forms.impacts import impact_forms
+from noise.diagnosis.fit.forms.modulation import gain_forms, speed_forms
 from noise.diagnosis.fit.forms.overloads import overload_forms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from noise.diagnosis.fit.bench import Bench
+    from noise.diagnosis.fit.case_comparison import CaseComparison
     from noise.diagnosis.fit.forms.compared import Compared
     from noise.diagnosis.fit.forms.form import Form
 
 __all__ = ["estimated_forms"]
 
 
-def estimated_forms(bench: Bench, chosen: Sequence[int], name: str) -> list[Form]:
+def estimated_forms(comparison: CaseComparison, chosen: Sequence[int], name: str) -> list[Form]:
     """Estimate forms of an effect.
 
     Parameters
     ----------
-    bench : Bench
+    comparison : CaseComparison
     chosen : sequence of int
         Recordings to estimate from.
     name : str
@@ -44,9 +44,9 @@ def estimated_forms(bench: Bench, chosen: Sequence[int], name: str) -> list[Form
     """
     if name not in _ESTIMATED:
         return []
-    rates = Counter(bench.recordings[i].rate for i in chosen)
+    rates = Counter(comparison.recordings[i].rate for i in chosen)
     usual = rates.most_common(1)[0][0]
-    having = compared(bench, [i for i in chosen if bench.recordings[i].rate == usual])
+    having = compared(comparison, [i for i in chosen if comparison.recordings[i].rate == usual])
     return _ESTIMATED[name](having)
 
 
@@ -63,6 +63,6 @@ _ESTIMATED: dict[str, Callable[[Sequence[Compared]], list[Form]]] = {
         *radiation_forms("room_reflections", c, 0.05),
         *radiation_forms("room_reflections", c, 0.2),
     ],
-    "slip_pulse": blow_forms,
+    "slip_pulse": impact_forms,
     "speed_fluctuation": speed_forms,
 }

@@ -7,29 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.fit.forms.form import Form
-from noise.diagnosis.fit.forms.transfer import Noise, Transfer, estimated_transfer, filtered_by
-from noise.diagnosis.simulated.impulse import impulse_of
-from noise.diagnosis.simulated.paths import Way
-from sim.chain import through, total
-from sim.effects import EFFECTS
-from sim.effects.effect import Effect
-from sim.parameters import Parameter
+from models.transfer_functions.filtering import filter_signal
+from models.transfer_functions.impulse_response import impulse_response
+from models.transfer_functions.transfer_function import TransferFunction
+from noise.diagnosis.fit.forms.form import Form, amount_form
+from noise.diagnosis.fit.forms.wiener import Noise, wiener_estimate
+from sim.chain import filter_pressure, padded_sum
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
-    from models.radiation.impulse_responses import Response
+    from models.radiation.impulse_responses import ImpulseResponses
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Signals
+    from sim.effects.effect import Signals, Values
 
-__all__ = ["beam_forms", "made_effect", "radiation_forms", "sensor_forms"]
-
-AMOUNT = {"amount": Parameter(1.0, "", 0.0, 4.0, "over what was estimated")}
-
-_HIGHEST = {"amount": 4.0}
+__all__ = ["beam_forms", "radiation_forms", "sensor_forms"]
 
 _NOISE = {"acceleration": 0.03, "pressure": 1e-3}
 """White noise of a channel over a change of one, rms in its unit; assumed."""
@@ -39,13 +31,6 @@ _OF_TORQUE = 0.005
 
 _FREE = 0.06
 """How long beams ring [s]."""
-
-
-def made_effect(name: str, amount: float, **acting: object) -> Effect:
-    """Make an effect whose strength is how much of the estimated one there is."""
-    plain = EFFECTS[name]
-    given = {"amount": replace(AMOUNT["amount"], default=amount)}
-    return Effect(name, plain.stage, ("estimated",), given, "amount", **acting)  # type: ignore[arg-type]
 
 
 def radiation_forms(name: str, compared: Sequence[Compared], length: float) -> list[Form]:
@@ -63,19 +48,14 @@ def radiation_forms(name: str, compared: Sequence[Compared], length: float) -> l
     if found is None:
         return []
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def chain(
+        paths: ImpulseResponses, _form: str, values: Values, _rng: np.random.Generator
+    ) -> ImpulseResponses:
+        taps = values["amount"] * impulse_response(found, paths.rate, round(length * paths.rate))
+        taps[0] += 1.0
+        return filter_pressure(paths, taps)
 
-        def chain(
-            paths: Response, _form: str, _values: object, _rng: np.random.Generator
-        ) -> Response:
-            taps = amount * _taps(found, paths.rate, length)
-            taps[0] += 1.0
-            return through(paths, taps)
-
-        return made_effect(name, amount, chain=chain)
-
-    return [Form(name, f"estimated {1e3 * length:.0f} ms", {"amount": 1.0}, _HIGHEST, make)]
+    return [amount_form(name, f"estimated {1e3 * length:.0f} ms", chain=chain)]
 
 
 def sensor_forms(
@@ -89,7 +69,7 @@ def sensor_forms(
         ``mount_resonance``, ``gain_error`` or ``channel_delay``.
     compared : sequence of Compared
     length, before : float
-        Of the impulse response, after and before the blow [s].
+        Of the impulse response, after and before the impulse [s].
     """
     transfers = {
         kind: found
@@ -99,29 +79,24 @@ def sensor_forms(
     if len(transfers) == 2:
         both = sum(1.0 + found.response for found in transfers.values()) / 2.0
         size = np.maximum(np.abs(both), 0.2)
-        frequency = next(iter(transfers.values())).frequency
+        frequency = next(iter(transfers.values())).frequencies
         inverse = np.conj(both) / size**2 - 1.0
-        transfers["torque"] = Transfer(frequency, np.asarray(inverse))
+        transfers["torque"] = TransferFunction(frequency, np.asarray(inverse))
     forms = [_sensor_form(name, {kind: found}) for kind, found in transfers.items()]
     if "torque" in transfers:
         forms.append(_sensor_form(name, {k: transfers[k] for k in ("acceleration", "pressure")}))
     return forms
 
 
-def _sensor_form(name: str, transfers: Mapping[str, Transfer]) -> Form:
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
-
-        def sensors(
-            signals: Signals, rate: float, _form: str, _values: object, _rng: np.random.Generator
-        ) -> Signals:
-            more = {k: filtered_by(signals[k], rate, t) for k, t in transfers.items()}
-            return signals | {k: signals[k] + amount * x for k, x in more.items()}
-
-        return made_effect(name, amount, sensors=sensors)
+def _sensor_form(name: str, transfers: Mapping[str, TransferFunction]) -> Form:
+    def sensors(
+        signals: Signals, rate: float, _form: str, values: Values, _rng: np.random.Generator
+    ) -> Signals:
+        more = {k: filter_signal(signals[k], rate, t) for k, t in transfers.items()}
+        return signals | {k: signals[k] + values["amount"] * x for k, x in more.items()}
 
     of = " and ".join(transfers)
-    return Form(name, f"estimated of {of}", {"amount": 1.0}, _HIGHEST, make)
+    return amount_form(name, f"estimated of {of}", sensors=sensors)
 
 
 def beam_forms(compared: Sequence[Compared]) -> list[Form]:
@@ -138,47 +113,41 @@ def _beam_form(having: Sequence[Compared], where: str) -> Form:
     only_free = all(c.free for c in having)
     kinds = [k for k in ("acceleration", "pressure") if all(k in c.expected for c in having)]
     found = {
-        kind: estimated_transfer(
+        kind: wiener_estimate(
             [(c.measured["torque"], c.measured[kind] - c.expected[kind]) for c in having],
             having[0].rate, _FREE, noise=[Noise(_OF_TORQUE) for _ in having],
         )
         for kind in kinds
     }  # fmt: skip
 
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
+    def chain(
+        paths: ImpulseResponses, _form: str, values: Values, _rng: np.random.Generator
+    ) -> ImpulseResponses:
+        if only_free and not np.any(paths.pulse_to_acceleration):
+            return paths  # the clamp is bolted down
+        n = round(_FREE * paths.rate)
+        more = {k: values["amount"] * impulse_response(t, paths.rate, n) for k, t in found.items()}
+        nothing = np.zeros(1)
+        return replace(
+            paths,
+            torque_to_acceleration=padded_sum(
+                [paths.torque_to_acceleration, more.get("acceleration", nothing)]
+            ),
+            torque_to_pressure=padded_sum(
+                [paths.torque_to_pressure, more.get("pressure", nothing)]
+            ),
+        )
 
-        def chain(
-            paths: Response, _form: str, _values: object, _rng: np.random.Generator
-        ) -> Response:
-            if only_free and not np.any(paths.pulse_to_acceleration):
-                return paths  # the clamp is bolted down
-            more = {k: amount * _taps(t, paths.rate, _FREE) for k, t in found.items()}
-            nothing = np.zeros(1)
-            return replace(
-                paths,
-                torque_to_acceleration=total(
-                    [paths.torque_to_acceleration, more.get("acceleration", nothing)]
-                ),
-                torque_to_pressure=total([paths.torque_to_pressure, more.get("pressure", nothing)]),
-            )
-
-        return made_effect("beam_modes", amount, chain=chain)
-
-    return Form("beam_modes", f"estimated {where}", {"amount": 1.0}, _HIGHEST, make)
+    return amount_form("beam_modes", f"estimated {where}", chain=chain)
 
 
 def _relative(
     compared: Sequence[Compared], kind: str, length: float, before: float
-) -> Transfer | None:
+) -> TransferFunction | None:
     """Estimate what a channel has too much of what was expected of it."""
     having = [c for c in compared if kind in c.expected]
     if not having:
         return None
     pairs = [(c.expected[kind], c.measured[kind] - c.expected[kind]) for c in having]
-    noise = [Noise(_NOISE[kind], c.ways[kind]) for c in having]
-    return estimated_transfer(pairs, having[0].rate, length, before, noise=noise)
-
-
-def _taps(found: Transfer, rate: float, length: float) -> NDArray[np.float64]:
-    return impulse_of(Way(found.frequency, found.response), rate, round(length * rate))
+    noise = [Noise(_NOISE[kind], c.transfer_functions[kind]) for c in having]
+    return wiener_estimate(pairs, having[0].rate, length, before, noise=noise)

@@ -11,13 +11,18 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig import LawSpec
+from sim.effects import EFFECTS
+from sim.effects.effect import Effect
+from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from sim.effects.effect import ActiveEffect, Effect
+    from sim.effects.effect import ActiveEffect
 
-__all__ = ["Form"]
+__all__ = ["Form", "amount_form"]
+
+_AMOUNT = Parameter(1.0, "", 0.0, 4.0, "over what was estimated")
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,13 +34,14 @@ class Form:
     effect, name : str
         Of the effect; its own, which no other form of the effect may have.
     start : mapping of str to float
-        What it is made of, as a fit begins with it.
+        What it is made of, as a fit begins with it [unit of the number].
     highest : mapping of str to float
-        How far each may rise.
+        How far each may rise [unit of the number].
     make : callable
         ``make(values)``: the effect with these numbers.
     tried : tuple of float
-        Of the first of these numbers, what a fit looks at; by default where it begins.
+        Of the first of these numbers, what a fit looks at; by default where it begins [unit of the
+        number].
     """
 
     effect: str
@@ -73,3 +79,38 @@ class Form:
     def spec(self, **values: float) -> LawSpec:
         """Return it as models name it."""
         return LawSpec(self.effect, {"form": self.name, **self.start, **values})
+
+
+def amount_form(
+    effect: str,
+    name: str,
+    *,
+    highest: float = 4.0,
+    tried: tuple[float, ...] = (),
+    **acting: object,
+) -> Form:
+    """Make a form of one number, ``amount``: how much there is of what was estimated.
+
+    Parameters
+    ----------
+    effect, name : str
+        As of `Form`.
+    highest : float
+        How far the amount may rise [-].
+    tried : tuple of float
+        Amounts that a fit looks at [-]; by default 1.
+    **acting : callable
+        Hooks, as of `sim.effects.effect.Effect`; they find the amount among their values.
+
+    Examples
+    --------
+    >>> amount_form("clipping", "hard", tried=(0.05, 0.2)).start
+    {'amount': 0.05}
+    """
+
+    def make(values: Mapping[str, float]) -> Effect:
+        given = {"amount": replace(_AMOUNT, default=values["amount"])}
+        stage = EFFECTS[effect].stage
+        return Effect(effect, stage, ("estimated",), given, "amount", **acting)  # type: ignore[arg-type]
+
+    return Form(effect, name, {"amount": (*tried, 1.0)[0]}, {"amount": highest}, make, tried)

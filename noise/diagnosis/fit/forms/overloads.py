@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.fit.forms.filters import made_effect
-from noise.diagnosis.fit.forms.form import Form
+from noise.diagnosis.fit.forms.form import Form, amount_form
 from noise.diagnosis.gap.signature import KINDS
 
 if TYPE_CHECKING:
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from noise.diagnosis.fit.forms.compared import Compared
-    from sim.effects.effect import Effect, Signals
+    from sim.effects.effect import Signals, Values
 
 __all__ = ["overload_forms"]
 
@@ -49,45 +48,35 @@ def _sets(kinds: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 def _form(curves: Mapping[str, NDArray[np.float64]]) -> Form:
-    def make(values: Mapping[str, float]) -> Effect:
-        amount = values["amount"]
-
-        def sensors(
-            signals: Signals, _rate: float, _form: str, _values: object, _rng: np.random.Generator
-        ) -> Signals:
-            read = dict(signals)
-            for kind, curve in curves.items():
-                away, peak = _scaled(signals[kind])
-                bent = np.interp(away, np.linspace(-1.0, 1.0, _KNOTS), curve)
-                read[kind] = signals[kind] + amount * peak * (bent - away)
-            return read
-
-        return made_effect("clipping", amount, sensors=sensors)
+    def sensors(
+        signals: Signals, _rate: float, _form: str, values: Values, _rng: np.random.Generator
+    ) -> Signals:
+        read = dict(signals)
+        for kind, curve in curves.items():
+            away, peak = _scaled(signals[kind])
+            bent = np.interp(away, np.linspace(-1.0, 1.0, _KNOTS), curve)
+            read[kind] = signals[kind] + values["amount"] * peak * (bent - away)
+        return read
 
     name = f"estimated of {' and '.join(curves)}"
-    return Form("clipping", name, {"amount": 1.0}, {"amount": 2.0}, make)
+    return amount_form("clipping", name, highest=2.0, sensors=sensors)
 
 
 def _about_mean(kinds: tuple[str, ...], how: str) -> Form:
     """Overload about a channel's mean, as behind a capacitor; `amount` is the share cut off."""
 
-    def make(values: Mapping[str, float]) -> Effect:
-        cut = values["amount"]
-
-        def sensors(
-            signals: Signals, _rate: float, _form: str, _values: object, _rng: np.random.Generator
-        ) -> Signals:
-            read = dict(signals)
-            for kind in kinds:
-                away, peak = _scaled(signals[kind])
-                limit = 1.0 - cut
-                read[kind] = signals[kind] + peak * (_HOW[how](away, limit) - away)
-            return read
-
-        return made_effect("clipping", cut, sensors=sensors)
+    def sensors(
+        signals: Signals, _rate: float, _form: str, values: Values, _rng: np.random.Generator
+    ) -> Signals:
+        read = dict(signals)
+        for kind in kinds:
+            away, peak = _scaled(signals[kind])
+            limit = 1.0 - values["amount"]
+            read[kind] = signals[kind] + peak * (_HOW[how](away, limit) - away)
+        return read
 
     name = f"{how} about the mean of {' and '.join(kinds)}"
-    return Form("clipping", name, {"amount": _TRIED[0]}, {"amount": 0.9}, make, _TRIED)
+    return amount_form("clipping", name, highest=0.9, tried=_TRIED, sensors=sensors)
 
 
 _HOW: Mapping[str, Callable[[NDArray[np.float64], float], NDArray[np.float64]]] = {

@@ -1,4 +1,4 @@
-"""Noise that is there anyway: hiss of a room, a cabin, a road, wind on the microphone."""
+"""Background noise, of a room, a cabin, a road, of wind; and quiet, which is no noise at all."""
 
 from __future__ import annotations
 
@@ -8,27 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
+from noise.training.draws import coloured_noise, log_uniform
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["background", "coloured_noise"]
+__all__ = ["background", "quiet"]
 
-
-def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``.
-
-    Examples
-    --------
-    >>> noise = coloured_noise(1000, 1.0, np.random.default_rng(0))
-    >>> round(float(noise.std()), 6)
-    1.0
-    """
-    m = next_fast_len(n, real=True)
-    spectrum = rfft(rng.standard_normal(m))
-    frequency = np.arange(spectrum.size, dtype=float)
-    frequency[0] = 1.0
-    noise = irfft(spectrum * frequency ** (-0.5 * slope), m)[:n]
-    return np.asarray(noise / noise.std())
+_QUIETS = ("hiss", "hum", "background", "sliding", "silence")
+_SHARES = (0.28, 0.32, 0.2, 0.17, 0.03)
+"""Kinds of quiet, and the share of each [-]."""
 
 
 def background(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -36,6 +25,19 @@ def background(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.floa
 
     A cabin's noise falls by 6 to 10 dB an octave and carries weak engine orders; a tyre's has its
     hump at 150-1000 Hz; wind is low and comes in gusts.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------
@@ -74,7 +76,60 @@ def _hump(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     m = next_fast_len(n, real=True)
     spectrum = rfft(rng.standard_normal(m))
     frequency = np.maximum(np.arange(spectrum.size) * rate / m, 1.0)
-    centre = math.exp(rng.uniform(math.log(150.0), math.log(1000.0)))
+    centre = log_uniform(150.0, 1000.0, rng)
     octaves = np.log2(frequency / centre) / rng.uniform(0.5, 1.5)
     noise = irfft(spectrum * np.exp(-0.5 * octaves**2), m)[:n]
     return np.asarray(noise / noise.std())
+
+
+def quiet(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Return `n` samples of what a microphone records where nothing sounds.
+
+    Hum is the mains' or a transformer's, 50 to 120 Hz, with up to 20 harmonics, odd ones stronger;
+    steady sliding hisses without a line, as strongly as it may.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> quiet(480, 48e3, np.random.default_rng(0)).shape
+    (480,)
+    """
+    kind = _QUIETS[int(rng.choice(len(_QUIETS), p=_SHARES))]
+    if kind == "silence":
+        return np.zeros(n)
+    if kind == "background":
+        return background(n, rate, rng)
+    noise = coloured_noise(n, rng.uniform(0.0, 2.2), rng)
+    if kind == "hum":
+        return noise + _hum(n, rate, rng)
+    if kind == "sliding":
+        octaves = coloured_noise(n, rng.uniform(0.0, 1.5), rng)
+        return np.asarray(noise + rng.uniform(0.0, 2.0) * np.diff(octaves, prepend=octaves[0]))
+    return noise
+
+
+def _hum(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    time = np.arange(n) / rate
+    mains = float(rng.choice((50.0, 60.0, 100.0, 120.0))) * rng.uniform(0.999, 1.001)
+    loud = 10.0 ** rng.uniform(-0.3, 1.7)
+    roll_off = rng.uniform(0.3, 2.5)
+    odd = rng.random() < 0.5
+    hum = np.zeros(n)
+    for k in range(1, int(rng.integers(2, 21))):
+        strength = loud * k**-roll_off * rng.lognormal(0.0, 0.5)
+        if odd and k % 2 == 0:
+            strength *= 0.1
+        hum += strength * np.sin(2 * math.pi * (k * mains * time + rng.random()))
+    return hum

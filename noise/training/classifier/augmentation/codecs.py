@@ -1,4 +1,4 @@
-"""What storage takes from a sound: lossy codecs and few bits.
+"""Losses of storage: lossy codecs and few bits.
 
 Vorbis and MP3 are the real ones, through memory, where libsndfile has them; elsewhere their steep
 low-pass stands in.
@@ -30,7 +30,7 @@ def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> ND
     Parameters
     ----------
     sound : ndarray, shape (n,)
-        Within -1 to 1.
+        Within -1 to 1 [full scale].
     rate : int
         [Hz]
     rng : numpy.random.Generator
@@ -38,27 +38,39 @@ def coded(sound: NDArray[np.float64], rate: int, rng: np.random.Generator) -> ND
     Examples
     --------
     >>> tone = 0.5 * np.sin(2 * np.pi * 1e3 * np.arange(24_000) / 48e3)
-    >>> heard = coded(tone, 48_000, np.random.default_rng(0))
-    >>> heard.shape, bool(np.corrcoef(tone, heard)[0, 1] > 0.9)
+    >>> decoded = coded(tone, 48_000, np.random.default_rng(0))
+    >>> decoded.shape, bool(np.corrcoef(tone, decoded)[0, 1] > 0.9)
     ((24000,), True)
     """
     kind, quality = rng.random(), float(rng.uniform(0.1, 0.8))
     cutoff = min(rng.uniform(10e3, 17e3), 0.45 * rate)
     if kind < 0.45:
-        heard = _round_trip(sound, rate, "OGG", "VORBIS", quality)
+        decoded = _round_trip(sound, rate, "OGG", "VORBIS", quality)
     elif kind < 0.75 and rate in _MP3_RATES:
-        heard = _round_trip(sound, rate, "MP3", "MPEG_LAYER_III", quality)
+        decoded = _round_trip(sound, rate, "MP3", "MPEG_LAYER_III", quality)
     else:
-        heard = None
-    if heard is None:
+        decoded = None
+    if decoded is None:
         return np.asarray(oaconvolve(sound, firwin(101, cutoff, fs=rate), mode="same"))
-    return heard
+    return decoded
 
 
 def quantised(
     sound: NDArray[np.float64], bits: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
     """Round to so many bits of full scale 1, with or without dither; clip at full scale.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [full scale]
+    bits : int
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [full scale]
 
     Examples
     --------
@@ -84,9 +96,9 @@ def _round_trip(
             for first in range(0, sound.size, _AT_ONCE):
                 file.write(sound[first : first + _AT_ONCE])
         memory.seek(0)
-        heard, _ = soundfile.read(memory)
+        decoded, _ = soundfile.read(memory)
     except (soundfile.LibsndfileError, TypeError):  # an older soundfile has no quality to set
         return None
-    if heard.size < sound.size:
-        heard = np.pad(heard, (0, sound.size - heard.size))
-    return np.asarray(heard[: sound.size])
+    if decoded.size < sound.size:
+        decoded = np.pad(decoded, (0, sound.size - decoded.size))
+    return np.asarray(decoded[: sound.size])

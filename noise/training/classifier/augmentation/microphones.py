@@ -9,6 +9,8 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import lfilter
 
+from noise.training.draws import log_uniform
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -16,16 +18,26 @@ __all__ = ["clipped", "levelled", "through_a_microphone"]
 
 
 def through_a_microphone(
-    sound: NDArray[np.float64],
-    rate: float,
-    rng: np.random.Generator,
-    *,
-    phone: bool = False,
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, phone: bool = False
 ) -> NDArray[np.float64]:
     """Colour by slopes at both ends of the band and a gentle ripple between.
 
     A phone's band is narrower, 100 Hz to 8 kHz or so, and steeper, of second order; its ripple
     larger.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+    phone : bool
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `sound`]
 
     Examples
     --------
@@ -38,8 +50,8 @@ def through_a_microphone(
         low, high = rng.uniform(80.0, 250.0), rng.uniform(6.5e3, 12e3)
         order, most = 4, 7.0
     else:
-        low = math.exp(rng.uniform(math.log(15.0), math.log(250.0)))
-        high = math.exp(rng.uniform(math.log(5e3), math.log(20e3)))
+        low = log_uniform(15.0, 250.0, rng)
+        high = log_uniform(5e3, 20e3, rng)
         order, most = 2, 4.0
     gain = 1.0 / np.sqrt(
         (1.0 + (low / np.maximum(frequency, 1.0)) ** order) * (1.0 + (frequency / high) ** order)
@@ -57,11 +69,24 @@ def levelled(
 
     The level of the output rises by 1 dB where that of the input rises by 1.3 to 4 dB.
 
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
     Examples
     --------
     >>> quiet_then_loud = np.repeat([0.01, 1.0], 48_000) * np.sin(np.arange(96_000))
-    >>> heard = levelled(quiet_then_loud, 48e3, np.random.default_rng(0))
-    >>> bool(np.std(heard[60_000:]) < 60.0 * np.std(heard[:40_000]))
+    >>> even = levelled(quiet_then_loud, 48e3, np.random.default_rng(0))
+    >>> bool(np.std(even[60_000:]) < 60.0 * np.std(even[:40_000]))
     True
     """
     time = rng.uniform(0.02, 0.4)
@@ -74,6 +99,17 @@ def levelled(
 
 def clipped(sound: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
     """Limit to 30-90 % of the peak, hard or softly.
+
+    Parameters
+    ----------
+    sound : ndarray, shape (n,)
+        [any unit]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `sound`]
 
     Examples
     --------

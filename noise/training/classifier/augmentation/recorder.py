@@ -1,4 +1,4 @@
-"""A sound becomes a recording: through a room, noise, a microphone, at some rate and gain."""
+"""Recording chain of the augmentation: room, noise, microphone, rate, gain, codec and cut."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from noise.training.classifier.augmentation.rooms import in_a_room
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["RATES", "Heard", "as_recorded", "hear", "resampled"]
+__all__ = ["RATES", "RecordedSound", "augmented", "recorded", "resampled"]
 
 RATES = (16_000, 22_050, 30_000, 32_000, 44_100, 48_000, 96_000)
 """Sampling rates that recordings come in [Hz]."""
@@ -31,15 +31,15 @@ _LONGEST = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class RecordedSound:
     """A sound as it was recorded.
 
     Parameters
     ----------
     samples : ndarray, shape (n,)
-        In fractions of full scale.
+        In fractions of full scale [-].
     rate : int
-        [Hz]
+        Sampling rate [Hz].
     span : tuple of float
         From when to when the sound lasts within the clip [s]; the rest is silence or background.
     """
@@ -51,6 +51,18 @@ class Heard:
 
 def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArray[np.float64]:
     """Resample to another rate, band-limited; rates are taken to the nearest hertz.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        [any unit]
+    rate, wanted : float
+        Its rate, and the other [Hz].
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        [unit of `signal`]
 
     Examples
     --------
@@ -64,17 +76,17 @@ def resampled(signal: NDArray[np.float64], rate: float, wanted: float) -> NDArra
     return np.asarray(resample_poly(signal, up // common, down // common, padtype="line"))
 
 
-def as_recorded(
+def recorded(
     sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, phone: bool = False
 ) -> NDArray[np.float64]:
-    """Hear a sound in some room through some microphone, with some noise.
+    """Record a sound in some room through some microphone, with some noise.
 
     Parameters
     ----------
     sound : ndarray, shape (n,)
-        Pressure close to the source.
+        Pressure close to the source [Pa].
     rate : float
-        [Hz]
+        Sampling rate [Hz].
     rng : numpy.random.Generator
     phone : bool
         Whether the microphone is a phone's.
@@ -82,53 +94,53 @@ def as_recorded(
     Returns
     -------
     ndarray, shape (n,)
-        Of unit standard deviation or, where the sound is zero, noise alone.
+        Of unit standard deviation [-] or, where the sound is zero, noise alone.
     """
-    heard = in_a_room(sound, rate, rng) if rng.random() < 0.7 else sound
-    heard = through_a_microphone(heard, rate, rng, phone=phone)
-    level = float(heard.std())
+    signal = in_a_room(sound, rate, rng) if rng.random() < 0.7 else sound
+    signal = through_a_microphone(signal, rate, rng, phone=phone)
+    level = float(signal.std())
     snr = rng.uniform(6.0, 50.0) if rng.random() < 0.8 else 60.0
     noise_level = level * 10.0 ** (-snr / 20.0) if level > 0.0 else 1.0
-    heard = heard + noise_level * background(heard.size, rate, rng)
-    return np.asarray(heard / heard.std())
+    signal = signal + noise_level * background(signal.size, rate, rng)
+    return np.asarray(signal / signal.std())
 
 
-def hear(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> Heard:
+def augmented(sound: NDArray[np.float64], rate: float, rng: np.random.Generator) -> RecordedSound:
     """Record a sound as anybody might: any microphone, rate, gain, codec and cut.
 
     Parameters
     ----------
     sound : ndarray, shape (n,)
-        Pressure close to the source.
+        Pressure close to the source [Pa].
     rate : float
-        [Hz]
+        Sampling rate [Hz].
     rng : numpy.random.Generator
 
     Examples
     --------
-    >>> heard = hear(np.sin(np.arange(24_000.0)), 48e3, np.random.default_rng(0))
-    >>> heard.rate in RATES, bool(np.abs(heard.samples).max() <= 1.0)
+    >>> clip = augmented(np.sin(np.arange(24_000.0)), 48e3, np.random.default_rng(0))
+    >>> clip.rate in RATES, bool(np.abs(clip.samples).max() <= 1.0)
     (True, True)
     """
     wanted = int(rng.choice(RATES))
     phone = bool(rng.random() < 0.3)
-    heard = resampled(as_recorded(sound, rate, rng, phone=phone), rate, wanted)
+    signal = resampled(recorded(sound, rate, rng, phone=phone), rate, wanted)
     if rng.random() < 0.15:  # it was stored at a lower rate before
         lower = min(wanted, int(rng.choice((16_000, 22_050, 32_000))))
-        heard = resampled(resampled(heard, wanted, lower), lower, wanted)
+        signal = resampled(resampled(signal, wanted, lower), lower, wanted)
     if rng.random() < (0.6 if phone else 0.1):
-        heard = levelled(heard, wanted, rng)
+        signal = levelled(signal, wanted, rng)
     if rng.random() < 0.08:
-        heard = clipped(heard, rng)
+        signal = clipped(signal, rng)
     # To the peak, as editors do, or to any level.
     peak = 10.0 ** (rng.uniform(-50.0, -1.0) / 20.0) if rng.random() < 0.7 else 0.98
-    heard = heard * (peak / float(np.abs(heard).max()))
-    samples, span = _cut(heard, wanted, rng)
+    signal = signal * (peak / float(np.abs(signal).max()))
+    samples, span = _cut(signal, wanted, rng)
     if rng.random() < 0.3:
         samples = np.clip(coded(samples, wanted, rng), -1.0, 1.0)
     if rng.random() < 0.5:
         samples = quantised(samples, 8 if rng.random() < 0.06 and peak > 0.3 else 16, rng)
-    return Heard(samples, wanted, span)
+    return RecordedSound(samples, wanted, span)
 
 
 def _cut(

@@ -2,7 +2,7 @@
 
 Reflections come at random within the first 40 ms, weaker the later; the tail decays exponentially,
 its high frequencies first, as air and furniture have it. Nothing of it is any room's geometry: the
-classifier should hear through all rooms, not know one.
+classifier should know all rooms, not know one.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import fftconvolve, lfilter
+from scipy.signal import fftconvolve
+
+from noise.training.draws import log_uniform, low_pass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,17 +30,16 @@ def in_a_room(
     --------
     >>> click = np.zeros(4800)
     >>> click[0] = 1.0
-    >>> heard = in_a_room(click, 48e3, np.random.default_rng(0))
-    >>> heard.shape, round(float(heard[0]), 6)
+    >>> echoing = in_a_room(click, 48e3, np.random.default_rng(0))
+    >>> echoing.shape, round(float(echoing[0]), 6)
     ((4800,), 1.0)
     """
-    t60 = math.exp(rng.uniform(math.log(0.1), math.log(1.2)))
+    t60 = log_uniform(0.1, 1.2, rng)
     n = int(min(t60, 0.6) * rate)
     time = np.arange(n) / rate
     taps = rng.standard_normal(n) * 10.0 ** (-3.0 * time / t60)
     taps[: int(rng.uniform(0.002, 0.01) * rate)] = 0.0
-    pole = math.exp(-2.0 * math.pi * rng.uniform(2e3, 12e3) / rate)
-    taps = lfilter([1.0 - pole], [1.0, -pole], taps)
+    taps = low_pass(taps, rng.uniform(2e3, 12e3), rate)
     taps *= 10.0 ** (rng.uniform(-20.0, 0.0) / 20.0) / math.sqrt(float(np.sum(taps**2)))
     early = int(rng.integers(0, 9))
     if early:

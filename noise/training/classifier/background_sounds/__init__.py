@@ -7,68 +7,52 @@ a creak (crackle, typing, croaks), as harmonic as a squawk (hum, engines, horns)
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import lfilter
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.background_sounds import (
+    animals,
     blows,
-    insects,
     machines,
-    music,
     outdoors,
     people,
     signals,
-    strokes,
-    voices,
 )
+from noise.training.draws import coloured_noise, log_uniform, low_pass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-__all__ = ["RECIPES", "WEIGHTS", "stranger"]
+__all__ = ["RECIPES", "WEIGHTS", "background_sound"]
 
 Recipe = Callable[[int, float, np.random.Generator], "NDArray[np.float64]"]
 
-RECIPES: Mapping[str, Recipe] = {
-    name: getattr(family, name)
-    for family in (voices, people, insects, outdoors, blows, machines, signals, strokes, music)
-    for name in family.__all__
-}
-"""Every recipe takes the number of samples, the rate [Hz] and a generator."""
-
-_HARD = {
-    *("hen", "sheep", "crickets", "fly", "snoring", "speech", "music", "clapping", "footsteps"),
-    *(
-        "keyboard",
-        "bells",
-        "tone",
-        "fire",
-        "engine",
-        "train",
-        "washing_machine",
-        "frog",
-        "laughing",
-    ),
-}
-_HARDEST = {
-    *("dog", "rooster", "pig", "cat", "crow", "baby", "birds", "alarm", "siren", "horn"),
-    *("helicopter", "chainsaw", "clock_tick", "hand_saw"),
-}
-
 WEIGHTS: Mapping[str, float] = {
-    name: 3.0 if name in _HARDEST else 2.0 if name in _HARD else 1.0 for name in RECIPES
-}
+    "cat": 3.0, "cow": 1.0, "crow": 3.0, "dog": 3.0, "frog": 2.0, "hen": 2.0, "pig": 3.0,
+    "rooster": 3.0, "sheep": 2.0, "baby": 3.0, "breathing": 1.0, "cough": 1.0, "laughing": 2.0,
+    "sipping": 1.0, "sneeze": 1.0, "snoring": 2.0, "speech": 2.0, "birds": 3.0, "cicada": 1.0,
+    "crickets": 2.0, "fly": 2.0, "drops": 1.0, "fire": 2.0, "flush": 1.0, "pouring": 1.0,
+    "rain": 1.0, "sea": 1.0, "thunder": 1.0, "wind": 1.0, "can_opening": 1.0, "clapping": 2.0,
+    "clock_tick": 3.0, "door_knock": 1.0, "fireworks": 1.0, "footsteps": 2.0, "glass": 1.0,
+    "keyboard": 2.0, "mouse_click": 1.0, "slam": 1.0, "airplane": 1.0, "chainsaw": 3.0,
+    "engine": 2.0, "helicopter": 3.0, "train": 2.0, "vacuum_cleaner": 1.0, "washing_machine": 2.0,
+    "alarm": 3.0, "bells": 2.0, "horn": 3.0, "siren": 3.0, "tone": 2.0, "brushing": 1.0,
+    "hand_saw": 3.0, "scraping": 1.0, "music": 2.0,
+}  # fmt: skip
 """How often a recipe is drawn, relative to the others."""
 
+_FAMILIES = (animals, blows, machines, outdoors, people, signals)
+_MADE = {recipe.__name__: recipe for family in _FAMILIES for recipe in family.RECIPES}
 
-def stranger(
+RECIPES: Mapping[str, Recipe] = {name: _MADE[name] for name in WEIGHTS}
+"""Every recipe takes the number of samples, the rate [Hz] and a generator."""
+
+
+def background_sound(
     n: int, rate: float, rng: np.random.Generator, name: str | None = None
 ) -> NDArray[np.float64]:
     """Return `n` samples of a sound of unit peak; now and then a second one sounds besides.
@@ -82,9 +66,14 @@ def stranger(
     name : str, optional
         Of a recipe in `RECIPES`; by default one is drawn.
 
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
     Examples
     --------
-    >>> sound = stranger(4800, 48e3, np.random.default_rng(2))
+    >>> sound = background_sound(4800, 48e3, np.random.default_rng(2))
     >>> sound.shape, round(float(np.abs(sound).max()), 6)
     ((4800,), 1.0)
     """
@@ -98,10 +87,8 @@ def stranger(
         other = _alone(n - cut, rate, rng, drawn_name(rng))
         sound[cut:] = rng.uniform(0.2, 1.0) * other
     if rng.random() < 0.2:  # far away, or behind a wall
-        corner = math.exp(rng.uniform(math.log(300.0), math.log(4000.0)))
-        pole = math.exp(-2.0 * math.pi * corner / rate)
-        for _ in range(2):
-            sound = lfilter([1.0 - pole], [1.0, -pole], sound)
+        corner = log_uniform(300.0, 4000.0, rng)
+        sound = low_pass(low_pass(sound, corner, rate), corner, rate)
     return np.asarray(sound / np.abs(sound).max())
 
 

@@ -11,26 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
-from noise.training.classifier.background_sounds.building import blow, log_uniform, resonance
+from noise.training.classifier.background_sounds.building import blow, resonance
+from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "can_opening",
-    "clapping",
-    "clock_tick",
-    "door_knock",
-    "fireworks",
-    "footsteps",
-    "glass",
-    "keyboard",
-    "mouse_click",
-    "slam",
-]
+__all__ = ["RECIPES"]
 
 
 def _struck(
@@ -185,3 +174,10 @@ def slam(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
         n, rate, times, lambda: blow(rate, (low, 12 * low), (0.2 * lasting, lasting), rng,
                                      n_modes=12, noise=2.0), 0.5, rng,
     )  # fmt: skip
+
+
+RECIPES = (
+    can_opening, clapping, clock_tick, door_knock, fireworks, footsteps, glass, keyboard,
+    mouse_click, slam,
+)  # fmt: skip
+"""Each takes the number of samples, the rate [Hz] and a generator."""

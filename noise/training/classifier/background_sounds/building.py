@@ -1,4 +1,4 @@
-"""What strangers are built of: pulses, voices, resonances, blows, envelopes."""
+"""Building blocks of background sounds: pulses, voices, resonances, blows, envelopes."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import coloured_noise, log_uniform, wandering
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,7 +19,6 @@ __all__ = [
     "arch",
     "blow",
     "harmonics",
-    "log_uniform",
     "placed",
     "repeated",
     "resonance",
@@ -29,21 +27,26 @@ __all__ = [
 ]
 
 
-def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
-    """Draw evenly in the logarithm.
-
-    Examples
-    --------
-    >>> 1.0 <= log_uniform(1.0, 100.0, np.random.default_rng(0)) <= 100.0
-    True
-    """
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-
 def harmonics(
     pitch: NDArray[np.float64], rate: float, roll_off: float, n_most: int = 30
 ) -> NDArray[np.float64]:
     """Sum of the harmonics of a pitch [Hz], whose amplitudes fall as ``k ** -roll_off``.
+
+    Parameters
+    ----------
+    pitch : ndarray, shape (n,)
+        [Hz]
+    rate : float
+        [Hz]
+    roll_off : float
+        [-]
+    n_most : int
+        No more of them.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------
@@ -66,6 +69,18 @@ def resonance(
 ) -> NDArray[np.float64]:
     """Filter by one resonance [Hz].
 
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [any unit]
+    centre, bandwidth, rate : float
+        [Hz]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `x`]
+
     Examples
     --------
     >>> resonance(np.ones(4), 1e3, 100.0, 48e3).shape
@@ -81,6 +96,21 @@ def through_formants(
 ) -> NDArray[np.float64]:
     """Put a source through the resonances of a throat, in parallel, besides itself.
 
+    Parameters
+    ----------
+    source : ndarray, shape (n,)
+        [any unit]
+    formants : tuple of float
+        [Hz]
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `source`]
+
     Examples
     --------
     >>> through_formants(np.ones(8), (500.0, 1500.0), 48e3, np.random.default_rng(0)).shape
@@ -95,6 +125,19 @@ def through_formants(
 
 def arch(n: int, rng: np.random.Generator, attack: float = 0.15) -> NDArray[np.float64]:
     """Envelope of a call: it rises, holds, and fades.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rng : numpy.random.Generator
+    attack : float
+        Share of the length in which it rises [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------
@@ -131,9 +174,14 @@ def voiced(
         [Hz]
     rng : numpy.random.Generator
     roughness : float
-        0 is a clear voice; 1 doubles and breaks its periods.
+        0 is a clear voice; 1 doubles and breaks its periods [-].
     breath : float
-        Noise over the voice.
+        Noise over the voice [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------
@@ -163,6 +211,23 @@ def repeated(
 ) -> NDArray[np.float64]:
     """Draw calls one after the other, of lengths and gaps in seconds; the first may have begun.
 
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    lengths, gaps : pair of float
+        [s]
+    make : callable
+        Call of so many samples, an ndarray of shape (m,).
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of the calls]
+
     Examples
     --------
     >>> rng = np.random.default_rng(0)
@@ -183,6 +248,22 @@ def placed(
     n: int, times: NDArray[np.float64], strength: NDArray[np.float64], rate: float
 ) -> NDArray[np.float64]:
     """Impulses at times [s].
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    times : ndarray, shape (m,)
+        [s]
+    strength : ndarray, shape (m,)
+        [any unit]
+    rate : float
+        [Hz]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `strength`]
 
     Examples
     --------
@@ -206,6 +287,24 @@ def blow(
     noise: float = 0.5,
 ) -> NDArray[np.float64]:
     """One blow: modes in a band [Hz] that die within decay times (to 1/e) [s], and a noisy knock.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    band : pair of float
+        [Hz]
+    decay : pair of float
+        [s]
+    rng : numpy.random.Generator
+    n_modes : int
+    noise : float
+        Most of the knock, over the modes [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------

@@ -11,20 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import fftconvolve, lfilter
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
-from noise.training.classifier.background_sounds.building import (
-    blow,
-    log_uniform,
-    placed,
-    repeated,
-    resonance,
-)
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.classifier.background_sounds.building import blow, placed, repeated, resonance
+from noise.training.draws import coloured_noise, log_uniform, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["drops", "fire", "flush", "pouring", "rain", "sea", "thunder", "wind"]
+__all__ = ["RECIPES"]
 
 
 def rain(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -130,3 +123,7 @@ def _random_blows(
     count = rng.poisson(per_second * n / rate) + 1
     strength = np.minimum(rng.pareto(tail, count) + 0.05, 60.0) * rng.choice((-1.0, 1.0), count)
     return placed(n, rng.uniform(0.0, n / rate, count), strength, rate)
+
+
+RECIPES = (drops, fire, flush, pouring, rain, sea, thunder, wind)
+"""Each takes the number of samples, the rate [Hz] and a generator."""

@@ -6,23 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.background_sounds.building import (
     arch,
     harmonics,
-    log_uniform,
     placed,
     repeated,
     resonance,
     through_formants,
     voiced,
 )
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import coloured_noise, log_uniform, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["baby", "breathing", "cough", "laughing", "sipping", "sneeze", "snoring", "speech"]
+__all__ = ["RECIPES"]
 
 
 def speech(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -152,3 +150,7 @@ def sipping(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64
         return np.asarray(noise / (noise.std() + 1e-12) * (0.1 + gate) * arch(m, rng, 0.5))
 
     return repeated(n, rate, (0.2, 1.2), (0.2, 1.5), one, rng)
+
+
+RECIPES = (baby, breathing, cough, laughing, sipping, sneeze, snoring, speech)
+"""Each takes the number of samples, the rate [Hz] and a generator."""

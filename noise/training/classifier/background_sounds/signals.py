@@ -1,8 +1,8 @@
-"""Sounds made to be heard: alarms, phones, sirens, horns, bells; steady tones and chords.
+"""Sounds made to be heard: alarms, phones, sirens, horns, bells, steady tones, music.
 
 They are as tonal as a squeal, but exact: a frequency that does not move or moves by a rule, a
 switched rhythm, an attack within a cycle or an exponential decay, harmonics of one series or a
-bell's partials.
+bell's partials, the notes of a scale.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
-from noise.training.classifier.background_sounds.building import harmonics, log_uniform
+from noise.training.classifier.background_sounds.building import blow, harmonics
+from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["alarm", "bells", "horn", "siren", "tone"]
+__all__ = ["RECIPES"]
 
 
 def alarm(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -104,3 +104,39 @@ def tone(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     sound = harmonics(np.full(n, note), rate, rng.uniform(0.8, 4.0), int(rng.integers(1, 12)))
     level = 10.0 ** (rng.uniform(-50.0, -3.0) / 20.0)
     return np.asarray(sound + level * coloured_noise(n, rng.uniform(0.0, 2.0), rng))
+
+
+def music(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Draw notes of the tempered scale on a beat, decaying or held, now and then over drums."""
+    sound = np.zeros(n)
+    beat = log_uniform(0.1, 0.7, rng)
+    held = rng.random() < 0.5
+    roll_off = rng.uniform(0.7, 2.5)
+    low, n_notes = int(rng.integers(0, 30)), int(rng.integers(1, 5))
+    start = 0
+    while start < n:
+        length = beat * float(rng.choice((1, 1, 2, 4)))
+        m = min(n - start, int((length if held else length + 1.0) * rate))
+        time = np.arange(m) / rate
+        for _ in range(n_notes):
+            pitch = 55.0 * 2.0 ** ((low + rng.integers(0, 30)) / 12.0)
+            if held:
+                vibrato = rng.uniform(0.0, 0.012) * np.sin(2 * np.pi * rng.uniform(4.5, 7) * time)
+                rise = np.minimum(1.0, np.minimum(time, time[::-1]) / rng.uniform(0.01, 0.08))
+                note = rise * harmonics(pitch * (1.0 + vibrato), rate, roll_off, n_most=20)
+            else:
+                note = np.exp(-time / rng.uniform(0.08, 1.2)) * harmonics(
+                    np.full(m, pitch), rate, roll_off, n_most=20
+                )
+            sound[start : start + m] += note
+        start += int(length * rate)
+    if rng.random() < 0.4:
+        for at in np.arange(0.0, n / rate, beat):
+            hit = blow(rate, (60.0, 5000.0), (0.01, 0.08), rng, noise=4.0)[: n - int(at * rate)]
+            first = int(at * rate)
+            sound[first : first + hit.size] += hit * rng.uniform(0.3, 2.0)
+    return sound
+
+
+RECIPES = (alarm, bells, horn, music, siren, tone)
+"""Each takes the number of samples, the rate [Hz] and a generator."""

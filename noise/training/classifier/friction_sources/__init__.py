@@ -1,26 +1,7 @@
 """Friction that creaks, squawks and squeals in other bodies than the bushing.
 
-The classifier that knows one rig's sound alone takes a door for a stranger. What makes a creak or a
-squeal is not the rig but friction: slips that strike a body, or a mode that friction feeds. Here
-are both mechanisms, on bodies and drives drawn at random, in SI units but for the level, which is
-arbitrary.
+The classifier that knows one rig's sound alone takes a door for any other sound. What makes a creak
+or a squeal is not the rig but friction: slips that strike a body, or a mode that friction feeds.
+Here are both mechanisms, on bodies and drives drawn at random, in SI units but for the level, which
+is arbitrary.
 """
-
-from noise.training.classifier.friction_sources.creaks import CREAKS, creak
-from noise.training.classifier.friction_sources.modal_body import ModalBody, random_body
-from noise.training.classifier.friction_sources.slider import Slips, slide
-from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
-from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
-
-__all__ = [
-    "CREAKS",
-    "SQUAWKS",
-    "SQUEALS",
-    "ModalBody",
-    "Slips",
-    "creak",
-    "random_body",
-    "slide",
-    "squawk",
-    "squeal",
-]

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import fftconvolve
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.friction_sources.modal_body import overlapping_modes, random_body
 from noise.training.classifier.friction_sources.slider import Slips, random_drive, slide
+from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -94,8 +94,8 @@ def random_slips(material: str, n: int, rate: float, rng: np.random.Generator) -
         slips = slide(
             drive,
             rate,
-            ageing_time=math.exp(rng.uniform(math.log(3e-4), math.log(3e-2))),
-            scatter=math.exp(rng.uniform(math.log(0.02), math.log(0.35))),
+            ageing_time=log_uniform(3e-4, 3e-2, rng),
+            scatter=log_uniform(0.02, 0.35, rng),
             rng=rng,
         )
         if slips.time.size >= 8.0 * n / rate and slips.time.size < 900.0 * n / rate:
@@ -104,6 +104,20 @@ def random_slips(material: str, n: int, rate: float, rng: np.random.Generator) -
 
 def pulses(slips: Slips, n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Force of the slips: pulses of random strength about their size, with a rattle.
+
+    Parameters
+    ----------
+    slips : Slips
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
 
     Examples
     --------
@@ -121,7 +135,7 @@ def pulses(slips: Slips, n: int, rate: float, rng: np.random.Generator) -> NDArr
     train = np.zeros(n)
     np.add.at(train, first, strength * (1.0 - part))
     np.add.at(train, first + 1, strength * part)
-    m = max(2, int(math.exp(rng.uniform(math.log(3e-5), math.log(5e-4))) * rate))
+    m = max(2, int(log_uniform(3e-5, 5e-4, rng) * rate))
     shape = np.sin(np.pi * (np.arange(m) + 0.5) / m)
     rattle = rng.standard_normal(4 * m) * np.exp(-np.arange(4 * m) / m)
     shape = np.concatenate([shape, np.zeros(3 * m)]) + rng.uniform(0.0, 0.8) * rattle

@@ -45,12 +45,13 @@ def amplitudes(
     coupling : ndarray, shape (n_modes, n_modes)
         c [1/s].
     noise : ndarray, shape (n_modes,)
-        epsilon, of an amplitude of one in the root of a second.
+        epsilon, of an amplitude of one in the root of a second [1/s^0.5].
     rng : numpy.random.Generator
 
     Returns
     -------
-    ndarray, shape (n_modes, m)
+    ndarray of complex128, shape (n_modes, m)
+        [-]
 
     Examples
     --------
@@ -102,7 +103,8 @@ def carried(
 
     Parameters
     ----------
-    amplitude : ndarray, shape (m,)
+    amplitude : ndarray of complex128, shape (m,)
+        [-]
     frequency : float
         Of the carrier [Hz].
     harmonics : ndarray, shape (n_harmonics,)

@@ -1,4 +1,4 @@
-r"""A body as its modes: what a blow sounds like.
+r"""A body as its modes, which a blow lets ring.
 
 .. math::
     h(t) = \sum_i w_i \, e^{-\zeta_i \omega_i t} \sin(\omega_i \sqrt{1 - \zeta_i^2} \, t)
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
+from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,15 +36,16 @@ MATERIALS = {
 
 @dataclass(frozen=True, eq=False)
 class ModalBody:
-    """Modes of a body; arrays of shape (n_modes,).
+    """Modes of a body.
 
     Parameters
     ----------
-    frequency : ndarray
+    frequency : ndarray, shape (n_modes,)
         Natural frequencies [Hz].
-    damping_ratio : ndarray
-    weight : ndarray
-        Signed, arbitrary unit.
+    damping_ratio : ndarray, shape (n_modes,)
+        [-]
+    weight : ndarray, shape (n_modes,)
+        Signed [arbitrary unit].
     """
 
     frequency: NDArray[np.float64]
@@ -53,6 +54,18 @@ class ModalBody:
 
     def impulse_response(self, rate: float, longest: float = 0.4) -> NDArray[np.float64]:
         """Sound of a blow at `rate` [Hz], until it has died away but no longer than `longest` [s].
+
+        Parameters
+        ----------
+        rate : float
+            [Hz]
+        longest : float
+            [s]
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [unit of the weights]
 
         Examples
         --------
@@ -106,13 +119,24 @@ def random_body(material: str, rng: np.random.Generator) -> ModalBody:
 def overlapping_modes(rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Impulse response of unit peak of modes that overlap: coloured noise, dying in 1 to 25 ms.
 
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
     Examples
     --------
     >>> sound = overlapping_modes(48e3, np.random.default_rng(0))
     >>> bool(np.abs(sound[:100]).max() > np.abs(sound[-100:]).max())
     True
     """
-    lasting = math.exp(rng.uniform(math.log(0.001), math.log(0.025)))
+    lasting = log_uniform(0.001, 0.025, rng)
     n = int(7.0 * lasting * rate)
     sound = coloured_noise(n, rng.uniform(-0.6, 1.2), rng)
     sound *= np.exp(-np.arange(n) / (lasting * rate))

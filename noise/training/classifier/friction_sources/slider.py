@@ -24,10 +24,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
+from noise.training.draws import log_uniform, wandering
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Slips", "random_drive", "slide", "wandering"]
+__all__ = ["Slips", "random_drive", "slide"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,28 +40,6 @@ class Slips:
     size: NDArray[np.float64]
 
 
-def wandering(
-    n: int, rate: float, frequency: float, rng: np.random.Generator
-) -> NDArray[np.float64]:
-    """Return a smooth random course, mostly within -1 to 1, that turns `frequency` times a second.
-
-    Examples
-    --------
-    >>> course = wandering(4800, 48e3, 2.0, np.random.default_rng(0))
-    >>> course.shape, bool(np.abs(np.diff(course)).max() < 0.01)
-    ((4800,), True)
-    """
-    step = rate / (2.0 * frequency)
-    knots = rng.uniform(-1.0, 1.0, int(n / step) + 4)
-    place = np.arange(n) / step + 1.0 + rng.random()
-    left = place.astype(int)
-    x = place - left
-    # Catmull-Rom through the knots.
-    a, b, c, d = (knots[np.minimum(left + shift, knots.size - 1)] for shift in (-1, 0, 1, 2))
-    course = b + 0.5 * x * (c - a + x * (2 * a - 5 * b + 4 * c - d + x * (3 * (b - c) + d - a)))
-    return np.asarray(course)
-
-
 def random_drive(
     n: int, rate: float, slowest: float, fastest: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
@@ -68,6 +48,21 @@ def random_drive(
     A hand or a gust: its logarithm wanders between `slowest` and `fastest`; at times it comes to
     rest, or begins fast and dies away.
 
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate : float
+        [Hz]
+    slowest, fastest : float
+        [1/s]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [1/s]
+
     Examples
     --------
     >>> drive = random_drive(48_000, 48e3, 5.0, 250.0, np.random.default_rng(0))
@@ -75,7 +70,7 @@ def random_drive(
     (True, True)
     """
     middle, half = 0.5 * math.log(slowest * fastest), 0.5 * math.log(fastest / slowest)
-    course = wandering(n, rate, math.exp(rng.uniform(math.log(0.3), math.log(4.0))), rng)
+    course = wandering(n, rate, log_uniform(0.3, 4.0, rng), rng)
     x = np.linspace(0.0, 1.0, n)
     if rng.random() < 0.5:  # a trend: it dies away, starts up, or both
         trend = rng.choice((-1.0, 1.0)) * (1.0 - 2.0 * x ** rng.uniform(0.5, 2.0))
@@ -109,7 +104,7 @@ def slide(
     ageing_time : float
         tau [s].
     scatter : float
-        sigma.
+        sigma [-].
     rng : numpy.random.Generator
 
     Examples

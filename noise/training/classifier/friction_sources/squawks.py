@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import fftconvolve
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.friction_sources.limit_cycle import (
     ENVELOPE_RATE,
     amplitudes,
     carried,
 )
 from noise.training.classifier.friction_sources.modal_body import ModalBody
-from noise.training.classifier.friction_sources.slider import slide, wandering
+from noise.training.classifier.friction_sources.slider import slide
+from noise.training.draws import coloured_noise, log_uniform, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,7 +57,7 @@ def squawk(kind: str, n: int, rate: float, rng: np.random.Generator) -> NDArray[
 
 
 def _chatter(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    slips_a_second = math.exp(rng.uniform(math.log(60.0), math.log(500.0)))
+    slips_a_second = log_uniform(60.0, 500.0, rng)
     drive = np.full(n, slips_a_second)
     drive *= 1.0 + rng.uniform(0.0, 0.03) * wandering(n, rate, rng.uniform(0.5, 5.0), rng)
     slips = slide(

@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.training.classifier.augmentation.backgrounds import coloured_noise
 from noise.training.classifier.friction_sources.limit_cycle import (
     ENVELOPE_RATE,
     amplitudes,
     carried,
 )
-from noise.training.classifier.friction_sources.slider import wandering
+from noise.training.draws import coloured_noise, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,13 +39,13 @@ class Squealer:
     bout : tuple of float
         Length of a contact [s]; gaps between are a third as long.
     growth : tuple of float
-        Over the angular frequency; below zero the contact's noise alone sounds.
+        Over the angular frequency [-]; below zero the contact's noise alone sounds.
     roughness : tuple of float
-        epsilon over the root of the decay's or growth's size.
+        epsilon over the root of the decay's or growth's size [-].
     harmonics : tuple of float
         Of the sound's second harmonic [dB]; each further one is as much lower again.
     modulation : tuple of float
-        Depth of the load's fast changes.
+        Depth of the load's fast changes [-].
     modulation_frequency : tuple of float
         Their frequency [Hz].
     """

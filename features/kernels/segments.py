@@ -1,0 +1,115 @@
+"""Spectra of overlapping Hann-windowed segments, which averages and changes in time are made of.
+
+Averages take segments that are spread evenly, so that the last one ends with the last sample: a
+block of 0.25 s has no samples to throw away. The diagnosis takes segments that overlap by exactly
+half and keeps their phases, for it compares two channels.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy import fft
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["segment_powers", "segment_spectra"]
+
+_OVERLAP_SLACK = 0.02
+"""Segments that a signal may lack for an overlap of half: no further one for a few samples."""
+
+
+def segment_powers(
+    x: NDArray[np.float64], length: int, *, transform_length: int | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Squared magnitudes of the transforms of segments that are spread over a signal.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        In any [unit].
+    length : int
+        Samples of a segment, at most `n_samples`.
+    transform_length : int, optional
+        Zeros fill each segment up to it.
+
+    Returns
+    -------
+    power : ndarray, shape (n_segments, n_bins)
+        [unit^2]
+    window : ndarray, shape (length,)
+        [-]
+
+    Examples
+    --------
+    >>> power, window = segment_powers(np.zeros(1000), 256)
+    >>> power.shape
+    (7, 129)
+    """
+    n_segments = 1 + math.ceil((x.size - length) / (length / 2) - _OVERLAP_SLACK)
+    starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
+    segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
+    window = _hann(length)
+    bins = _windowed_transforms(segments, window, transform_length or length)
+    power = bins.real**2
+    power += bins.imag**2
+    return power, window
+
+
+def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
+    """Complex spectra of segments that overlap by half; samples that fill no segment are left out.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n_samples,)
+        In any [unit].
+    length : int
+        Samples of a segment, an even number and at most `n_samples`.
+
+    Returns
+    -------
+    ndarray of complex, shape (n_segments, length // 2 + 1)
+        Each about its own mean [unit]; their mean square is the signal's, summed over both sides.
+
+    Notes
+    -----
+    Where the segments begin, and the last bits of the window, are not those of `segment_powers`:
+    the shipped model of the diagnosis has learned from these.
+
+    Examples
+    --------
+    >>> segment_spectra(np.ones(1024), 256).shape
+    (7, 129)
+    """
+    segments = np.lib.stride_tricks.sliding_window_view(x, length)[:: length // 2]
+    return _windowed_transforms(segments, _unit_hann(length), length)
+
+
+def _windowed_transforms(
+    segments: NDArray[np.float64], window: NDArray[np.float64], length: int
+) -> NDArray[np.complex128]:
+    """Transform the rows, each about its mean, windowed and filled up to `length`."""
+    windowed = segments - segments.mean(axis=1, keepdims=True)
+    windowed *= window
+    return np.asarray(fft.rfft(windowed, length, axis=1))
+
+
+@lru_cache(maxsize=8)
+def _unit_hann(length: int) -> NDArray[np.float64]:
+    """Hann window of unit energy."""
+    window = 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, length + 1)[:-1])
+    window /= math.sqrt(float((window**2).sum()))
+    window.setflags(write=False)
+    return np.asarray(window)
+
+
+@lru_cache(maxsize=16)
+def _hann(length: int) -> NDArray[np.float64]:
+    """Hann window; the same few lengths come again and again."""
+    window = np.sin(np.pi * np.arange(length) / length) ** 2
+    window.setflags(write=False)
+    return window

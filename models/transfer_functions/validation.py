@@ -1,0 +1,120 @@
+"""Checks of a transfer function that was read from a file.
+
+They are made here once, whatever the format, so that all that follows may trust it: lines rise,
+numbers are finite, units are those of the quantity asked for. Values are never guessed, only
+spellings of the same unit are alike.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from models.transfer_functions.transfer_function import TransferFunction
+
+__all__ = ["check_transfer_function", "check_units", "same_unit"]
+
+FEWEST_LINES = 8
+"""Fewer lines describe no resonance."""
+
+
+def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
+    """Refuse a response that nothing can be done with.
+
+    Raises
+    ------
+    ParameterError
+        Shapes that do not fit, values that are not finite, lines that do not rise, a coherence
+        outside 0 to 1, or nothing but zeros.
+
+    Examples
+    --------
+    >>> from models.transfer_functions.transfer_function import TransferFunction
+    >>> falling = TransferFunction(np.arange(9.0)[::-1], np.ones(9) + 0j, name="hit.csv")
+    >>> check_transfer_function(falling)
+    Traceback (most recent call last):
+    models.errors.ParameterError: hit.csv: frequency_hz falls from 8 to 7 Hz at line 2; it must rise
+    """
+    f, n = transfer.frequencies, transfer.frequencies.size
+    if transfer.frequencies.ndim != 1 or n < FEWEST_LINES:
+        raise ParameterError(
+            f"{transfer.name}: frequency_hz has shape {f.shape}; it must be at least "
+            f"{FEWEST_LINES} frequencies in a row"
+        )
+    columns = {"frequency_hz": f, "response": transfer.response}
+    if transfer.coherence is not None:
+        columns["coherence"] = transfer.coherence
+    for key, values in columns.items():
+        if values.shape != (n,):
+            raise ParameterError(
+                f"{transfer.name}: {key} has shape {values.shape}, frequency_hz {f.shape}; "
+                "they must be alike"
+            )
+        if not np.isfinite(values).all():
+            first = int(np.argmin(np.isfinite(values)))
+            raise ParameterError(
+                f"{transfer.name}: {key} is {values[first]} at line {first + 1}; it must be finite"
+            )
+    if f[0] < 0.0:
+        raise ParameterError(
+            f"{transfer.name}: frequency_hz starts at {f[0]:g} Hz; it must be 0 or more"
+        )
+    steps = np.diff(f)
+    if not (steps > 0.0).all():
+        first = int(np.argmin(steps > 0.0))
+        verb = "stays at" if steps[first] == 0 else f"falls from {f[first]:g} to"
+        raise ParameterError(
+            f"{transfer.name}: frequency_hz {verb} {f[first + 1]:g} Hz at line {first + 2}; "
+            "it must rise"
+        )
+    coherence = transfer.coherence
+    if coherence is not None and not (coherence.min() >= 0.0 and coherence.max() <= 1 + 1e-9):
+        raise ParameterError(
+            f"{transfer.name}: coherence goes from {coherence.min():g} to {coherence.max():g}; "
+            "it must lie between 0 and 1"
+        )
+    if not transfer.response.any():
+        raise ParameterError(f"{transfer.name}: response is zero throughout")
+    return transfer
+
+
+def check_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> None:
+    """Refuse a response of other quantities than those asked for.
+
+    Raises
+    ------
+    ParameterError
+        A unit is another one.
+
+    Examples
+    --------
+    >>> from models.transfer_functions.transfer_function import TransferFunction
+    >>> f = np.arange(9.0)
+    >>> check_units(TransferFunction(f, 1j * f, None, "Nm", "m/s²"), "N m", "m/s^2")
+    """
+    for key, found, wanted in (
+        ("input_unit", transfer.input_unit, input_unit),
+        ("output_unit", transfer.output_unit, output_unit),
+    ):
+        if not same_unit(found, wanted):
+            raise ParameterError(f"{transfer.name}: {key} is {found!r}; it must be {wanted!r}")
+
+
+def same_unit(one: str, other: str) -> bool:
+    """Whether two texts spell the same unit.
+
+    Examples
+    --------
+    >>> same_unit("N·m", "N m"), same_unit("m/s**2", "m/s²"), same_unit("mN", "N m")
+    (True, True, False)
+    """
+    return _spelling(one) == _spelling(other)
+
+
+def _spelling(unit: str) -> str:
+    plain = unit.replace("²", "2").replace("**", "")
+    return plain.translate({ord(sign): None for sign in " ^·⋅*.()"})

@@ -1,0 +1,54 @@
+"""Table of the sound power of a run: one-third octaves and their sum, plain and A-weighted."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.kernels.bands import NOMINAL_THIRD_OCTAVES, a_weighting
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sim.analysis.sound_power import PlateSoundPower
+
+__all__ = ["COLUMNS", "TOTAL", "sound_power_rows"]
+
+COLUMNS = ("band_hz", "level_db", "level_dba", "free_level_db", "free_level_dba")
+"""Nominal middle of the band, sound power levels [dB re 1 pW] in a baffle and standing free."""
+
+TOTAL = "total"
+"""What stands for the band in the last row, the sum of all bands."""
+
+
+def sound_power_rows(power: PlateSoundPower) -> list[dict[str, object]]:
+    """Rows by `COLUMNS`, one a band and one of their sum.
+
+    Parameters
+    ----------
+    power : PlateSoundPower
+
+    Returns
+    -------
+    list of dict
+        Levels in dB re 1 pW to 0.01 dB; None for a band without power.
+    """
+    level, free = power.baffled.level, power.baffled.level.copy()
+    free[: power.free.level.size] = power.free.level
+    weighting = a_weighting(power.baffled.centre)
+    levels = [level, level + weighting, free, free + weighting]
+    first = NOMINAL_THIRD_OCTAVES.index(f"{power.baffled.centre[0]:.0f}")
+    bands = (*NOMINAL_THIRD_OCTAVES[first : first + level.size], TOTAL)
+    columns = [[*map(_level, column), _level(_sum(column))] for column in levels]
+    return [dict(zip(COLUMNS, row, strict=True)) for row in zip(bands, *columns, strict=True)]
+
+
+def _sum(levels: NDArray[np.float64]) -> float:
+    with np.errstate(divide="ignore"):
+        return float(10.0 * np.log10(np.sum(10.0 ** (levels / 10.0))))
+
+
+def _level(value: float) -> float | None:
+    return round(float(value), 2) if math.isfinite(value) else None

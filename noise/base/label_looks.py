@@ -1,0 +1,50 @@
+"""Colours, patterns and marks of the labels, as all pictures and pages show them.
+
+A label is shown by a colour that no eye takes for another's, by a pattern and by two letters: a
+projector washes colours out, a printer drops them, and one man in twelve does not see them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from noise.base.label_names import LABELS
+
+__all__ = ["DARK_LABELS", "LABEL_COLOURS", "LABEL_LOOKS", "Look"]
+
+
+class Look(NamedTuple):
+    """How one label is shown.
+
+    Parameters
+    ----------
+    colour : str
+        Of an area.
+    line : str
+        Of its pattern and of its outline.
+    pattern : str
+        ``stripes``, ``dots``, ``lines``, ``plain`` or ``crosses``.
+    mark : str
+        Where there is no room for the label itself.
+    """
+
+    colour: str
+    line: str
+    pattern: str
+    mark: str
+
+
+LABEL_LOOKS = {
+    "creak": Look("#d55e00", "#7a3600", "stripes", "Cr"),
+    "squawk": Look("#e69f00", "#7d5600", "dots", "Sk"),
+    "squeal": Look("#b5478a", "#6b1f4e", "lines", "Sl"),
+    "none": Look("#c3d4df", "#6f8596", "plain", "\N{EN DASH}"),
+    "unknown": Look("#f6f6f6", "#55606b", "crosses", "?"),
+}
+"""By label; vermilion and orange are those of Okabe and Ito (Color universal design, 2008)."""
+
+DARK_LABELS = ("creak", "squeal")
+"""On whose colours text is white."""
+
+LABEL_COLOURS = {label: LABEL_LOOKS[label].colour for label in LABELS}
+"""Of areas."""

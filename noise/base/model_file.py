@@ -1,0 +1,145 @@
+"""Model files: a header in JSON and plain arrays in one NPZ file, read and written whole.
+
+Opening such a file runs no code. The header says what the model is (``kind``), in which form it is
+kept (``format``), the names of what it takes and gives, and under ``card`` how it was made.
+"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+import zlib
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from models.errors import ParameterError
+from noise.base.atomic import atomic
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    Header = Mapping[str, Any]
+    Arrays = Mapping[str, NDArray[Any]]
+
+__all__ = ["ModelKind", "load_model", "save_model"]
+
+_Model = TypeVar("_Model")
+
+_DAMAGES = (
+    OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError,
+    ValueError, KeyError, IndexError, TypeError, AttributeError,
+)  # fmt: skip
+"""What reading a file raises that is none, or not whole."""
+
+
+class ModelKind(NamedTuple):
+    """A kind of model, and the form in which this version of the program keeps it.
+
+    Parameters
+    ----------
+    name : str
+        As messages call it.
+    version : int
+        Of the form.
+    made_by : str
+        The command that makes such a file, whose name follows.
+    shipped : tuple of str
+        Package and name of the file that is used where none is named.
+    """
+
+    name: str
+    version: int
+    made_by: str
+    shipped: tuple[str, str]
+
+
+def save_model(path: str | Path, kind: ModelKind, header: Header, arrays: Arrays) -> None:
+    """Write a model, whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        NPZ file; parent folders are made.
+    kind : ModelKind
+    header : mapping
+        What JSON can hold: names of what the model takes and gives, and its ``card``.
+    arrays : mapping of str to ndarray
+        Of any shape and unit, by any name but ``header``.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> mean = ModelKind("mean", 1, "make-mean --out", ("", ""))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "mean.npz"
+    ...     save_model(path, mean, {"unit": "Nm"}, {"value": np.array(3.0)})
+    ...     load_model(path, mean, lambda header, arrays: (header["unit"], float(arrays["value"])))
+    ('Nm', 3.0)
+    """
+    text = json.dumps({"kind": kind.name, "format": kind.version, **header})
+    with atomic(path) as temporary, temporary.open("wb") as file:
+        np.savez_compressed(file, **{"header": np.array(text), **arrays})  # type: ignore[arg-type]
+
+
+def load_model(
+    path: str | Path | None, kind: ModelKind, build: Callable[[Header, Arrays], _Model]
+) -> _Model:
+    """Load a model.
+
+    Parameters
+    ----------
+    path : path-like or None
+        NPZ file that `save_model` wrote; None is the one that is shipped, which is read once.
+    kind : ModelKind
+    build : callable
+        ``build(header, arrays)`` returns the model; it raises ValueError where they do not fit
+        together, in words that go on from "its file".
+
+    Raises
+    ------
+    ParameterError
+        There is no such file, or it holds no model of this kind and form.
+    """
+    return _shipped(kind, build) if path is None else _read(Path(path), kind, build)
+
+
+@cache
+def _shipped(kind: ModelKind, build: Callable[[Header, Arrays], _Model]) -> _Model:
+    package, name = kind.shipped
+    with resources.as_file(resources.files(package) / "data" / name) as path:
+        return _read(path, kind, build)
+
+
+def _read(path: Path, kind: ModelKind, build: Callable[[Header, Arrays], _Model]) -> _Model:
+    refused = f"{kind.name} {path}"
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        header = json.loads(str(arrays.pop("header")))
+        other = header.get("kind", kind.name)
+        if other != kind.name:
+            raise ParameterError(f"{refused}: is a {other}, expected a {kind.name}")
+        if header["format"] != kind.version:
+            raise ParameterError(
+                f"{refused}: of format {header['format']!r}, expected {kind.version}; make it "
+                f"again with `{kind.made_by} {path.name}`"
+            )
+        return build(header, arrays)
+    except FileNotFoundError:
+        raise ParameterError(f"{refused}: no such file") from None
+    except ParameterError:
+        raise
+    except _DAMAGES as error:
+        reason = f"lacks {error}" if isinstance(error, KeyError) else error
+        raise ParameterError(f"{refused}: no file that `{kind.made_by}` wrote ({reason})") from None

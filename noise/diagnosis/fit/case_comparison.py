@@ -1,0 +1,231 @@
+"""Recordings of a case, ready to be compared with any model of their rig again and again.
+
+Every model is simulated with the same few seeds, so that two of them differ by what they are and
+not by chance. A fit compares with one run that has no scatter, which is the middle of what the
+model can do; a score with as many scattered repeats as tell the floor.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from noise.diagnosis.evidence.evidence import aligned
+from noise.diagnosis.evidence.summary import same_channels, summary
+from noise.diagnosis.gap.distance import group_costs
+from noise.diagnosis.gap.floor import references_of
+from noise.diagnosis.gap.signature import signature
+from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.nominal import condition_key
+from noise.diagnosis.simulated.repeats import Scatter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from models.recording import Recording
+    from models.rig import Rig
+    from noise.diagnosis.evidence.summary import CaseTable
+    from noise.diagnosis.fit.forms.form import Form
+    from noise.diagnosis.gap.distance import Reference
+    from sim.effects.effect import Effect
+
+__all__ = ["CaseComparison", "Model"]
+
+N_REPEATS = 12
+"""Simulated repeats that tell what repeats differ by, and where a model lies."""
+
+_LEAST_SEED = 100
+"""Of the repeats; below are the seeds of single runs."""
+
+_SATURATION = 4.0
+"""Deviations beyond so many standard deviations hardly count in `CaseComparison.residuals`."""
+
+_WIDEST = 2.0
+"""A model's own repeats widen the floor by so much at most."""
+
+_SEEDS = (0, 1)
+"""Of runs without scatter; one is enough but for effects that are chance themselves."""
+
+_BY_CHANCE = (
+    "background_noise", "channel_delay", "critical_torque_scatter", "gain_error", "mains_hum",
+    "speed_fluctuation",
+)  # fmt: skip
+
+
+@dataclass(eq=False)
+class CaseComparison:
+    """Recordings of a case beside the simulator.
+
+    Parameters
+    ----------
+    rig : Rig
+    recordings : tuple of Recording
+    library : mapping of str to Effect
+    table : CaseTable
+        Of the same recordings.
+    names : tuple of str
+        Numbers that `residuals` has.
+    scale : ndarray, shape (n_names,)
+        Their scatter without a cause [unit of the number].
+    forms : dict of (str, str) to Form
+        Further forms of effects, by the name of the effect and their own.
+    """
+
+    rig: Rig
+    recordings: tuple[Recording, ...]
+    library: Mapping[str, Effect]
+    table: CaseTable
+    names: tuple[str, ...]
+    scale: NDArray[np.float64]
+    forms: dict[tuple[str, str], Form] = field(default_factory=dict)
+    signatures: list[NDArray[np.float64]] = field(init=False)
+    references: list[Reference] = field(init=False)
+    runs: ModelRuns = field(init=False)
+    _signed: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
+    _numbers: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.runs = ModelRuns(self.rig, self.library, self.forms)
+        self.signatures = [signature(recording) for recording in self.recordings]
+        repeats = {
+            condition_key(r): list(self._repeats(Model(), r)) for r in reversed(self.recordings)
+        }
+        self.references = references_of(self.recordings, self.signatures, repeats)[0]
+
+    def simulated(self, model: Model, template: Recording, seed: int) -> Recording:
+        """Simulate a repeat by a model, at the condition, rate and length of a recording."""
+        return self.runs.simulated(model, template, seed)
+
+    def deviations(self, model: Model, chosen: Sequence[int]) -> list[NDArray[np.float64]]:
+        """How far each chosen recording lies from a model, in units of what repeats differ by.
+
+        Where the model's own repeats differ by more than those of the rig file, as with an effect
+        that is chance itself, they tell what repeats of it differ by.
+
+        Parameters
+        ----------
+        model : Model
+        chosen : sequence of int
+
+        Returns
+        -------
+        list of ndarray, shape (n_values,)
+            In standard deviations of repeats [-].
+        """
+        found = []
+        for i in chosen:
+            reference = self.references[i]
+            if model == Model():
+                found.append(reference.deviation(self.signatures[i]))
+                continue
+            repeats = self._repeats(model, self.recordings[i])
+            own = repeats.std(axis=0, ddof=1) * math.sqrt(1.0 + 1.0 / N_REPEATS)
+            scale = np.clip(own, reference.scale, _WIDEST * reference.scale)
+            found.append((self.signatures[i] - repeats.mean(axis=0)) / scale)
+        return found
+
+    def squared(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
+        """Squared distance of each chosen recording from a model; 1 is the floor.
+
+        Parameters
+        ----------
+        model : Model
+        chosen : sequence of int
+
+        Returns
+        -------
+        ndarray, shape (n_chosen,)
+            In squared floors [-].
+        """
+        return np.array(
+            [
+                self.references[i].squared_of(deviation)
+                for i, deviation in zip(chosen, self.deviations(model, chosen), strict=True)
+            ]
+        )
+
+    def misfits(
+        self, model: Model, chosen: Sequence[int], *, single_run: bool = False
+    ) -> NDArray[np.float64]:
+        """Distance of each chosen recording from runs of a model without scatter.
+
+        Such runs lie a little off the middle of the scattered ones; by how much the rig file's do
+        is known, and taken off.
+
+        Parameters
+        ----------
+        model : Model
+        chosen : sequence of int
+        single_run : bool
+            Whether one run is enough, whatever chance there is in the effects.
+
+        Returns
+        -------
+        ndarray, shape (n_chosen,)
+            In standard deviations of repeats [-]; infinite where the model cannot be simulated.
+        """
+        found = np.full(len(chosen), np.inf)
+        for k, i in enumerate(chosen):
+            reference = self.references[i]
+            try:
+                plain = self._middle(Model(), i, single_run=True)
+                middle = self._middle(model, i, single_run=single_run)
+            except ParameterError:
+                return found
+            off = np.clip(reference.mean - plain, -reference.scale, reference.scale)
+            away = (self.signatures[i] - middle - off) / reference.scale
+            found[k] = math.sqrt(float(np.nanmean(group_costs(away))))
+        return found
+
+    def _middle(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
+        """Signature of a model without scatter."""
+        template = self.recordings[place]
+        by_chance = any(spec.name in _BY_CHANCE for spec in model.effects)
+        seeds = _SEEDS if by_chance and not single_run else _SEEDS[:1]
+        key = (repr(model), condition_key(template), len(seeds))
+        if key not in self._signed:
+            self._signed[key] = np.mean(
+                [self.runs.noise_free_signature(model, template, seed) for seed in seeds], axis=0
+            )
+        return self._signed[key]
+
+    def residuals(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
+        """Differences of the numbers of each chosen recording from a model's, saturating.
+
+        Returns
+        -------
+        ndarray, shape (n_chosen, n_names)
+            [-]; their mean square is 1 where all numbers are hopelessly off.
+        """
+        measured, _, scatter = aligned(self.table, self.names)
+        rows = []
+        for i in chosen:
+            template = self.recordings[i]
+            key = (repr(model), condition_key(template))
+            if key not in self._numbers:
+                run = same_channels(
+                    self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0)), template
+                )
+                found = summary(run, self.rig, self.runs.transfer_functions.of(template))
+                self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
+            scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
+            z = (measured[i] - self._numbers[key]) / scale
+            undefined = np.isfinite(measured[i]) != np.isfinite(self._numbers[key])
+            z = np.where(undefined, _SATURATION, np.nan_to_num(z))
+            rows.append(np.tanh(z / _SATURATION))
+        return np.array(rows)
+
+    def _repeats(self, model: Model, template: Recording) -> NDArray[np.float64]:
+        """Signatures of a model's scattered repeats, shape (n_repeats, n_values)."""
+        key = (repr(model), condition_key(template))
+        if key not in self._signed:
+            seeds = range(_LEAST_SEED, _LEAST_SEED + N_REPEATS)
+            runs = [signature(self.simulated(model, template, seed)) for seed in seeds]
+            self._signed[key] = np.array(runs)
+        return self._signed[key]

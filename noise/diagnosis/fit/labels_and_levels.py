@@ -1,0 +1,45 @@
+"""Label and level of a recording and of its simulations, as the user hears them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from features.kernels.bands import overall_level
+from features.kernels.spectra import autospectrum
+from models.recording import REFERENCE_PRESSURE
+from noise.classifier import load_classifier
+from noise.diagnosis.outcome import LabelsAndLevels
+from noise.labels.segments import file_label, label_recording
+
+if TYPE_CHECKING:
+    from models.recording import Recording
+
+__all__ = ["labels_and_levels"]
+
+
+def labels_and_levels(
+    name: str, measured: Recording, before: Recording, after: Recording | None
+) -> LabelsAndLevels:
+    """Label three recordings of one condition, and give their A-weighted levels."""
+    return LabelsAndLevels(
+        recording=name,
+        label_measured=_label(measured),
+        label_before=_label(before),
+        label_after=None if after is None else _label(after),
+        level_measured=_level(measured),
+        level_before=_level(before),
+        level_after=None if after is None else _level(after),
+    )
+
+
+def _label(recording: Recording) -> str:
+    return file_label(label_recording(recording, load_classifier())).label
+
+
+def _level(recording: Recording) -> float:
+    row = recording.first("pressure")
+    if row is None:
+        return math.nan
+    spectrum = autospectrum(recording.samples[row], recording.rate)
+    return overall_level(spectrum, reference=REFERENCE_PRESSURE, weighting="A")

@@ -1,0 +1,222 @@
+"""The transfer functions from torque to acceleration and to sound, as the rig file has them.
+
+What was measured is taken as measured, line by line; what was not measured is modelled. A torque is
+sent through either whole, so a recording of a second costs a transform and no search for a causal
+impulse response.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import rfft
+
+from models.condition import known_condition
+from models.radiation.impulse_responses import ImpulseResponses
+from models.radiation.rig_response import impulse_responses
+from models.transfer_functions.filtering import filter_period
+from models.transfer_functions.impulse_response import FINER, fill_between_lines, impulse_response
+from models.transfer_functions.measured import measured_with
+from models.transfer_functions.transfer_function import TransferFunction
+from noise.diagnosis.evidence.reconstruction import closed_loop
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from models.recording import Recording
+    from models.rig import Rig
+    from sim.bushing import LumpedBushing
+
+__all__ = [
+    "TransferFunctionCache",
+    "chain_of",
+    "predict",
+    "shift_clamp_mode",
+    "torque_transfer_functions",
+]
+
+_LONGEST = 0.25
+"""Impulse responses are followed so long [s]."""
+
+_MODEL_RATE = 96e3
+"""Sampling rate at which modelled responses are computed [Hz]."""
+
+
+def torque_transfer_functions(
+    rig: Rig, interference: float, support_stiffness: float
+) -> dict[str, TransferFunction]:
+    """Return the transfer functions from the torque to ``acceleration`` and to ``pressure``.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad] or `models.condition.FIXED`.
+
+    Returns
+    -------
+    dict of str to TransferFunction
+        From N m to m/s^2 and to Pa.
+
+    Raises
+    ------
+    ParameterError
+        The rig cannot be modelled with this support.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> found = torque_transfer_functions(rig, 0.279e-3, 2214.0)
+    >>> sorted(found), bool(abs(found["acceleration"].at(np.array([259.0]))[0]) > 1.0)
+    (['acceleration', 'pressure'], True)
+    """
+    found: dict[str, TransferFunction] = {}
+    entry = measured_with(rig.measured, support_stiffness)
+    if entry is not None:
+        if entry.torque_to_acceleration is not None:
+            found["acceleration"] = fill_between_lines(entry.torque_to_acceleration)
+        if entry.torque_to_pressure is not None:
+            found["pressure"] = fill_between_lines(entry.torque_to_pressure)
+    if len(found) < 2:
+        modelled = impulse_responses(rig, interference, support_stiffness, _MODEL_RATE)
+        for name, unit, impulse in (
+            ("acceleration", "m/s^2", modelled.torque_to_acceleration),
+            ("pressure", "Pa", modelled.torque_to_pressure),
+        ):
+            n = FINER * impulse.size
+            lines = np.asarray(np.fft.rfftfreq(n, 1.0 / _MODEL_RATE), np.float64)
+            found.setdefault(
+                name, TransferFunction(lines, rfft(impulse, n), None, "N m", unit, name)
+            )
+    return found
+
+
+class TransferFunctionCache:
+    """Transfer functions of a rig, each looked up once.
+
+    Parameters
+    ----------
+    rig : Rig
+    """
+
+    def __init__(self, rig: Rig) -> None:
+        self._rig = rig
+        self._known: dict[tuple[float, float], dict[str, TransferFunction]] = {}
+
+    def at(self, interference: float, support_stiffness: float) -> dict[str, TransferFunction]:
+        """Return those at a condition; arguments as of `torque_transfer_functions`."""
+        key = (interference, support_stiffness)
+        if key not in self._known:
+            self._known[key] = torque_transfer_functions(self._rig, *key)
+        return self._known[key]
+
+    def of(self, recording: Recording) -> dict[str, TransferFunction]:
+        """Return those at the condition of a recording."""
+        c = known_condition(recording.condition)
+        return self.at(c.interference, c.support_stiffness)
+
+
+def predict(
+    torque: NDArray[np.float64], rate: float, transfer: TransferFunction
+) -> NDArray[np.float64]:
+    """Send a torque through a transfer function.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n,)
+        [Nm]
+    rate : float
+        Sampling rate [Hz].
+    transfer : TransferFunction
+        From N m.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [output unit of `transfer`]; what rings on from before the recording is missing.
+
+    Examples
+    --------
+    >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
+    >>> tone = np.sin(2 * np.pi * 100.0 * np.arange(800) / 8e3)
+    >>> bool(np.allclose(predict(tone, 8e3, double)[100:700], 2 * tone[100:700], atol=0.1))
+    True
+    """
+    closed = closed_loop(torque, rate)
+    return filter_period(closed - closed.mean(), rate, transfer, falls_below=True)[: torque.size]
+
+
+def shift_clamp_mode(
+    transfer: TransferFunction, nominal: LumpedBushing, scattered: LumpedBushing
+) -> TransferFunction:
+    """Move the clamp's torsional mode of a transfer function to where a scattered rig has it.
+
+    A torque has little at the frequency at which the clamp gives way most, so a transfer function
+    and a torque that disagree on it would make a resonance that neither has. Other modes stay.
+
+    Parameters
+    ----------
+    transfer : TransferFunction
+        From N m.
+    nominal, scattered : LumpedBushing
+        The rig of the transfer function, and the one of the torque.
+
+    Returns
+    -------
+    TransferFunction
+    """
+    if nominal.clamp_is_fixed:
+        return transfer
+    s = 2j * np.pi * transfer.frequencies
+    of_nominal, of_scattered = (
+        b.support_stiffness + b.support_damping * s + b.clamp_inertia * s * s
+        for b in (nominal, scattered)
+    )
+    return replace(transfer, response=transfer.response * of_nominal / of_scattered)
+
+
+def chain_of(
+    rig: Rig,
+    interference: float,
+    support_stiffness: float,
+    transfer_functions: Mapping[str, TransferFunction],
+    rate: float,
+    *,
+    impacts: bool,
+) -> ImpulseResponses:
+    """Return the impulse responses of a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad] or `models.condition.FIXED`.
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
+    rate : float
+        Sampling rate [Hz].
+    impacts : bool
+        Whether those of pulses in the anchors are asked for; otherwise they are 0.
+
+    Returns
+    -------
+    ImpulseResponses
+    """
+    n = int(_LONGEST * rate)
+    torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
+    struck = sounding = np.zeros(1)
+    if impacts:
+        modelled = impulse_responses(rig, interference, support_stiffness, rate)
+        struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
+    return ImpulseResponses(
+        rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding
+    )

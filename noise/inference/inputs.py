@@ -1,0 +1,250 @@
+"""Inputs of the inference: conditions on the scales they are inferred on, and segment features.
+
+Speed and support stiffness count by their logarithm, interference as it is. The bolted clamp is
+infinitely stiff, so it stands at the upper end of its scale as a point of its own: an interval that
+reaches it reads "from 5000 Nm/rad up to the bolted clamp".
+
+Slips follow the shaft's turning, so with the speed logged their number in a radian tells of torque
+and stiffness alone; it is a feature of its own because trees are poor at division.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.condition import FIXED
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+
+__all__ = [
+    "INTERFERENCE_RANGE",
+    "KINDS",
+    "LONGEST",
+    "MATERIAL",
+    "QUANTITIES",
+    "RATES",
+    "SHORTEST",
+    "SPEED_RANGE",
+    "SUPPORT_RANGE",
+    "n_segment_features",
+    "of_channels",
+    "others_of",
+    "scaled",
+    "segment_features",
+    "subset_of",
+    "unscaled",
+]
+
+MATERIAL = "fluorocarbon"
+"""Of all bushings that the intervals hold for."""
+
+SPEED_RANGE = (0.1, 15.0)
+"""[rad/s]"""
+
+INTERFERENCE_RANGE = (0.15e-3, 0.42e-3)
+"""[m]"""
+
+SUPPORT_RANGE = (1e3, 1e4)
+"""Of the clamp on beams [Nm/rad]."""
+
+SHORTEST, LONGEST = 0.25, 1.0
+"""Lengths of what the features are taken of [s]."""
+
+RATES = (16_000, 22_050, 30_000, 44_100, 48_000)
+"""Sampling rates that recordings come in [Hz]."""
+
+QUANTITIES = ("speed", "interference", "support_stiffness")
+"""Fields of `models.condition.Condition`, in the order of all arrays."""
+
+KINDS = ("pressure", "acceleration", "torque")
+"""Kinds of channel that tell of a condition; their subsets are numbered as bits in this order."""
+
+_SLIPS_A_SECOND = (
+    "pressure_fundamental",
+    "pressure_pulse_rate",
+    "acceleration_fundamental",
+    "acceleration_pulse_rate",
+    "torque_fundamental",
+    "torque_slip_rate",
+)
+"""Features that are numbers of slips in a second [Hz]."""
+
+_FIXED = 10.0
+"""Of the bolted clamp on a scale of logarithms that end at 9.2 [-]."""
+
+
+@dataclass(frozen=True)
+class _Scale:
+    low: float
+    high: float
+    logarithmic: bool
+
+
+_SCALES = {
+    "speed": _Scale(*SPEED_RANGE, True),
+    "interference": _Scale(*INTERFERENCE_RANGE, False),
+    "support_stiffness": _Scale(*SUPPORT_RANGE, True),
+}
+
+
+def scaled(condition: Condition) -> NDArray[np.float64]:
+    """Return a condition on the scales of `QUANTITIES`.
+
+    Parameters
+    ----------
+    condition : Condition
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Logarithm of the speed in rad/s [-], interference [mm], logarithm of the support stiffness
+        in Nm/rad [-]; NaN where it is not known.
+
+    Examples
+    --------
+    >>> from models.condition import Condition
+    >>> scaled(Condition(speed=-1.0, interference=0.279e-3, support_stiffness=FIXED)).tolist()
+    [0.0, 0.279, 10.0]
+    """
+    speed, interference, support = (getattr(condition, name) for name in QUANTITIES)
+    return np.array(
+        [
+            math.log(abs(speed)) if speed else math.nan,
+            math.nan if interference is None else 1e3 * interference,
+            math.nan if not support else min(math.log(support), _FIXED),
+        ]
+    )
+
+
+def unscaled(name: str, point: float) -> float:
+    """Return the value of a quantity at a point of its scale, within its stated range.
+
+    Parameters
+    ----------
+    name : str
+        Of `QUANTITIES`.
+    point : float
+        As `scaled` gives it.
+
+    Returns
+    -------
+    float
+        [rad/s], [m] or [Nm/rad]
+
+    Examples
+    --------
+    >>> unscaled("interference", 0.279), unscaled("support_stiffness", 10.0)
+    (0.000279, inf)
+    """
+    scale = _SCALES[name]
+    if name == "support_stiffness" and point >= _FIXED:
+        return FIXED
+    value = math.exp(point) if scale.logarithmic else 1e-3 * point
+    return min(max(value, scale.low), scale.high)
+
+
+def segment_features(
+    table: NDArray[np.float64], names: Sequence[str], known: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Join features and logged conditions.
+
+    Parameters
+    ----------
+    table : ndarray, shape (n, n_names)
+        Features of segments [unit of each feature].
+    names : sequence of str
+        Of its columns, as `features.registry.recording_feature_names` has them.
+    known : ndarray, shape (n, 3)
+        Conditions as `scaled` gives them, NaN where not logged.
+
+    Returns
+    -------
+    ndarray, shape (n, n_segment_features)
+        [unit of each feature]
+
+    Examples
+    --------
+    >>> known = np.array([[0.7, 0.279, np.nan]])
+    >>> segment_features(np.array([[50.0]]), ["torque_slip_rate"], known).round(2)
+    array([[50.  ,  0.7 ,  0.28,   nan, 24.83]])
+    """
+    rates = [names.index(name) for name in _SLIPS_A_SECOND if name in names]
+    return np.concatenate([table, known, table[:, rates] * np.exp(-known[:, :1])], axis=1)
+
+
+def n_segment_features(names: Sequence[str]) -> int:
+    """Return the number of columns of `segment_features`.
+
+    Examples
+    --------
+    >>> n_segment_features(["torque_slip_rate"])
+    5
+    """
+    return len(names) + 3 + sum(name in names for name in _SLIPS_A_SECOND)
+
+
+def of_channels(
+    table: NDArray[np.float64], names: Sequence[str], subset: int | NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Return features without those of channels that are not in a subset, which become NaN.
+
+    Parameters
+    ----------
+    table : ndarray, shape (n, n_names)
+        [unit of each feature]
+    names : sequence of str
+    subset : int or ndarray of int, shape (n,)
+        As `subset_of` numbers them; one for all samples, or one for each.
+
+    Returns
+    -------
+    ndarray, shape (n, n_names)
+        [unit of each feature]
+
+    Examples
+    --------
+    >>> of_channels(np.ones((1, 2)), ["pressure_crest", "torque_mean"], subset_of(["torque"]))
+    array([[nan,  1.]])
+    """
+    bits = np.array([KINDS.index(name.partition("_")[0]) for name in names])
+    kept = np.atleast_1d(subset)[:, None] >> bits & 1
+    return np.where(kept.astype(bool), table, np.nan)
+
+
+def subset_of(kinds: Sequence[str]) -> int:
+    """Return the number of a subset of `KINDS`.
+
+    Examples
+    --------
+    >>> subset_of(["pressure", "angle"]), subset_of(KINDS)
+    (1, 7)
+    """
+    return sum(1 << bit for bit, kind in enumerate(KINDS) if kind in kinds)
+
+
+def others_of(known: NDArray[np.float64], index: int) -> int:
+    """Return which of the other two quantities are logged, as a number from 0 to 3.
+
+    Parameters
+    ----------
+    known : ndarray, shape (3,)
+        A condition as `scaled` gives it.
+    index : int
+        Of the quantity that is asked for.
+
+    Examples
+    --------
+    >>> others_of(np.array([np.nan, 0.279, np.nan]), 0)
+    1
+    """
+    others = np.delete(known, index)
+    return sum(1 << bit for bit, point in enumerate(others) if not np.isnan(point))

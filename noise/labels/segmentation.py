@@ -1,0 +1,176 @@
+"""Segmentation of a recording: the Viterbi path of labels, and when each change happens.
+
+Neighbouring windows share half of what they hold, so each speaks for itself by half only; and a
+noise seldom changes into another within a second. The best path under both is Viterbi's.
+
+Windows tell what is heard but not when it began. Between two of different labels lies one change at
+most, and it is where the short frames before and after it differ most: the split with the largest
+sum of squares between its two sides, the classical change of mean.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.windows.frames import FRAME, FRAME_COLUMNS
+from features.windows.table import HOP
+from features.windows.working import FRAME_RATE, RATE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["change_points", "labelled_stretches", "viterbi_path"]
+
+_OWN_SHARE = 0.5
+"""Of a window in what it holds [-]."""
+
+_CHANGE = 0.15
+"""How likely a change of label from one window to the next is, relative to none [-]."""
+
+_LEAST = 1e-4
+"""Probability that none falls below [-]."""
+
+_SPREADS = {"flatness": 6.0, "peak_share": 0.25, "second": 10.0, "flux": 0.3, "voiced": 0.3}
+"""By how much frames of one noise differ in what is compared beside the bands."""
+
+_BAND_SPREAD = 8.0
+_BAND_RANGE = 50.0
+"""Spread of a band's level, and how far below the loudest it counts [dB]."""
+
+_CONTEXT = 0.75
+"""How far to either side the frames are compared [s]."""
+
+_REACH = 0.3
+"""How far from the middle between two windows the change may lie [s]."""
+
+_LEAD = 0.5 * FRAME / RATE - 0.5 / FRAME_RATE
+"""From a frame's place in the row to the moment halfway between its middle and the one before."""
+
+
+def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the label of each window on the likeliest path.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (n_windows, n_labels)
+        [-]; each row sums to 1.
+
+    Returns
+    -------
+    ndarray of int, shape (n_windows,)
+        Columns of `probabilities`.
+
+    Examples
+    --------
+    >>> flickering = np.array([[0.9, 0.1]] * 4 + [[0.4, 0.6]] + [[0.9, 0.1]] * 4)
+    >>> viterbi_path(flickering).tolist()
+    [0, 0, 0, 0, 0, 0, 0, 0, 0]
+    """
+    n, labels = probabilities.shape
+    spoken = _OWN_SHARE * np.log(np.maximum(probabilities, _LEAST))
+    change = np.log(_CHANGE)
+    origin = np.empty((n, labels), dtype=np.intp)
+    score = spoken[0]
+    for i in range(1, n):
+        best = int(score.argmax())
+        changed = score[best] + change
+        origin[i] = np.where(score >= changed, np.arange(labels), best)
+        score = np.maximum(score, changed) + spoken[i]
+    path = np.empty(n, dtype=np.intp)
+    path[-1] = score.argmax()
+    for i in range(n - 1, 0, -1):
+        path[i - 1] = origin[i, path[i]]
+    return path
+
+
+def labelled_stretches(
+    probabilities: NDArray[np.float64],
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the stretches of the Viterbi path, each called what its windows are together.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (n_windows, n_labels)
+        [-]; each row sums to 1.
+
+    Returns
+    -------
+    edges : ndarray of int, shape (n_stretches + 1,)
+        First window of each stretch, and the number of windows.
+    names : ndarray of int, shape (n_stretches,)
+        Columns of their labels, of which neighbours differ.
+
+    Examples
+    --------
+    >>> edges, names = labelled_stretches(np.array([[0.9, 0.1]] * 4 + [[0.1, 0.9]] * 6))
+    >>> edges.tolist(), names.tolist()
+    ([0, 4, 10], [0, 1])
+    """
+    n = len(probabilities)
+    changes = np.flatnonzero(np.diff(viterbi_path(probabilities))) + 1
+    edges = np.concatenate([[0], changes, [n]])
+    sums = np.add.reduceat(probabilities, edges[:-1], axis=0)
+    names = sums.argmax(axis=1)
+    first = np.concatenate([[True], names[1:] != names[:-1]])
+    return np.concatenate([edges[:-1][first], [n]]), names[first]
+
+
+def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Find when each change between two windows happens.
+
+    Parameters
+    ----------
+    frames : ndarray of float32, shape (n_frames, n_columns)
+        As `features.windows.table.WindowTable` has them.
+    changes : ndarray of int, shape (n_changes,)
+        Window after which each change is; rising.
+
+    Returns
+    -------
+    ndarray, shape (n_changes,)
+        [s], rising.
+
+    Examples
+    --------
+    >>> frames = np.zeros((200, 20), dtype=np.float32)
+    >>> frames[90:] = 30.0
+    >>> change_points(frames, np.array([2])).round(2).tolist()
+    [0.91]
+    """
+    # From the middle of one window to that of the next.
+    middles = (changes + 1.5) * HOP + 0.5 * HOP
+    times = []
+    for i, middle in enumerate(middles.tolist()):
+        low = 0.5 * (middles[i - 1] + middle) if i else 0.0
+        high = 0.5 * (middles[i + 1] + middle) if i + 1 < middles.size else np.inf
+        times.append(_change(frames, middle, float(low), float(high)))
+    return np.array(times)
+
+
+def _change(frames: NDArray[np.float32], middle: float, low: float, high: float) -> float:
+    first = max(0, round((max(low, middle - _CONTEXT) - _LEAD) * FRAME_RATE))
+    last = min(len(frames), round((min(high, middle + _CONTEXT) - _LEAD) * FRAME_RATE))
+    allowed = np.arange(
+        max(first + 2, round((middle - _REACH - _LEAD) * FRAME_RATE)),
+        min(last - 2, round((middle + _REACH - _LEAD) * FRAME_RATE)) + 1,
+    )
+    if not allowed.size:
+        return middle
+    x = _comparable(frames[first:last])
+    sums = np.cumsum(x, axis=0)
+    before = allowed - first
+    after = len(x) - before
+    left = sums[before - 1] / before[:, None]
+    right = (sums[-1] - sums[before - 1]) / after[:, None]
+    between = before * after / len(x) * ((left - right) ** 2).sum(axis=1)
+    return float(allowed[between.argmax()]) / FRAME_RATE + _LEAD
+
+
+def _comparable(frames: NDArray[np.float32]) -> NDArray[np.float64]:
+    bands = frames[:, len(FRAME_COLUMNS) :].astype(np.float64)
+    bands = np.maximum(bands, bands.max(initial=-300.0) - _BAND_RANGE) / _BAND_SPREAD
+    columns = [FRAME_COLUMNS.index(name) for name in _SPREADS]
+    others = frames[:, columns] / np.array(list(_SPREADS.values()))
+    return np.concatenate([bands / np.sqrt(bands.shape[1] / 4.0), others], axis=1)

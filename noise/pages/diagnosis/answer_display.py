@@ -1,0 +1,272 @@
+"""Stages, causes, parameters and places as the page of a diagnosis shows them.
+
+All is in words and shares of a width, ready for the template. Here is decided what a reader sees
+first and what waits in the details; the template only lays it out.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from noise.diagnosis.text.sentences import closed_words, finding_of, parameter_name
+from noise.diagnosis.text.words import (
+    NOT_DETERMINED,
+    STAGES,
+    cause_of,
+    evidence,
+    number,
+    p_number,
+    percent,
+)
+from sim.effects import EFFECTS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from noise.diagnosis.outcome import Diagnosis, EffectFinding, Location
+
+__all__ = [
+    "CauseRow", "ParameterRow", "StageBox", "cause_rows", "parameter_rows", "place_rows",
+    "stage_boxes",
+]  # fmt: skip
+
+_PASSED_ON = {
+    "drive": "speed",
+    "friction": "torque",
+    "structure": "acceleration",
+    "radiation": "pressure",
+}
+_SMALL_P = 0.05
+_MOST_PLACES = 12
+_LIKELY_ENOUGH = 0.05
+_FEWEST, _MOST = 3, 6
+_BESIDE_EFFECTS = ("none", "parameters", "unknown")
+_LEAST_REACH = 0.05  # of the axis of relative parameters, to either side of 1
+
+
+@dataclass(frozen=True)
+class StageBox:
+    """A stage of the chain as it is drawn.
+
+    Parameters
+    ----------
+    name, what : str
+    gap, p_value, words : str
+        `words` says what the p-value means; empty where it was not determined.
+    share : str
+        Of the whole gap.
+    guilty : bool
+        Whether the gap begins here.
+    differs : bool
+        Whether the p-value is below 0.05.
+    causes : tuple of str
+        Effects of the verdict that act here.
+    passes_on : str
+        What the next stage receives; empty at the last.
+    """
+
+    name: str
+    what: str
+    gap: str
+    p_value: str
+    words: str
+    share: str
+    guilty: bool
+    differs: bool
+    causes: tuple[str, ...]
+    passes_on: str
+
+    @property
+    def height(self) -> int:
+        """Of its box in a column [px]: two lines, and one for each remark."""
+        remarks = self.guilty + len(self.causes)
+        return 56 + 20 * remarks + (4 if remarks else 0)
+
+
+@dataclass(frozen=True)
+class CauseRow:
+    """A candidate cause: in words, how likely, how far it closes the gap, how strong it is."""
+
+    name: str
+    clause: str
+    stage: str
+    probability: float
+    chance: str
+    named: bool
+    closed: str
+    by_effect: str
+    strength: str
+    fitted: bool
+    gaps: tuple[str, str, str, str]
+    parameters: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    """A refitted parameter: its interval in words, and where it lies on a common axis [%]."""
+
+    name: str
+    interval: str
+    words: str
+    start: float
+    width: float
+    one: float
+    off: bool
+
+
+def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
+    """Return the chain from drive to measurement.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis, StageFinding
+    >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
+    >>> boxes = stage_boxes(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
+    >>> [(box.name, box.gap) for box in boxes][:2]
+    [('drive', '1.04'), ('friction', 'not determined')]
+    """
+    boxes = []
+    acting = {name: _stage_of(diagnosis, name) for name in diagnosis.verdict}
+    for name, what in STAGES.items():
+        finding = diagnosis.stages.get(name)
+        p_value = math.nan if finding is None else finding.p_value
+        boxes.append(
+            StageBox(
+                name=name,
+                what=what,
+                gap=number(None if finding is None else finding.gap),
+                p_value=p_number(p_value) if math.isfinite(p_value) else "",
+                words=evidence(p_value) if math.isfinite(p_value) else "",
+                share=percent(None if finding is None else finding.share),
+                guilty=diagnosis.location is not None and diagnosis.location.stage == name,
+                differs=p_value < _SMALL_P,
+                causes=tuple(cause_of(c).name for c, stage in acting.items() if stage == name),
+                passes_on=_PASSED_ON.get(name, ""),
+            )
+        )
+    return tuple(boxes)
+
+
+def cause_rows(diagnosis: Diagnosis) -> tuple[tuple[CauseRow, ...], tuple[CauseRow, ...]]:
+    """Return the causes that are worth a look, and all others, the most probable first.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> chances = {"none": 0.9, "parameters": 0.06, "mains_hum": 0.02, "clipping": 0.01}
+    >>> likely, others = cause_rows(
+    ...     Diagnosis((), (), None, {}, (), chances, {}, "", (), 1.0, 1.0, 0.6, 1.0))
+    >>> [row.name for row in likely], [row.name for row in others]
+    (['no gap', 'parameters', 'mains hum'], ['clipping'])
+    """
+    chances: dict[str, float] = dict(diagnosis.probabilities)
+    for effect in diagnosis.effects:
+        chances.setdefault(effect.name, effect.probability)
+    verdict = diagnosis.verdict
+    order = sorted(chances, key=lambda name: (name not in verdict, -chances[name]))
+    rows = [_cause_row(diagnosis, name, chances[name]) for name in order]
+    n = sum(row.probability >= _LIKELY_ENOUGH or row.named for row in rows)
+    n = min(max(n, _FEWEST), max(_MOST, len(verdict)))
+    return tuple(rows[:n]), tuple(rows[n:])
+
+
+def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> tuple[ParameterRow, ...]:
+    """Return refitted parameters on a common axis about 1.
+
+    Examples
+    --------
+    >>> (row,) = parameter_rows({"kinetic_torque": (1.02, 1.1)})
+    >>> row.words, row.off, row.one, round(row.start), round(row.width)
+    ('differs', True, 50.0, 59, 36)
+    """
+    ends = [abs(end - 1.0) for interval in intervals.values() for end in interval]
+    reach = 1.1 * max([_LEAST_REACH, *ends])
+    rows = []
+    for name, (low, high) in intervals.items():
+        off = low > 1.0 or high < 1.0
+        rows.append(
+            ParameterRow(
+                name=parameter_name(name),
+                interval=f"{low:.3f} to {high:.3f}",
+                words="differs" if off else "agrees with the rig file",
+                start=50.0 * (1.0 + (low - 1.0) / reach),
+                width=50.0 * (high - low) / reach,
+                one=50.0,
+                off=off,
+            )
+        )
+    return tuple(rows)
+
+
+def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
+    """Return the places that differ most surely: stage, channel, where in it, conditions, p-value.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Location
+    >>> place_rows([Location("friction", ("torque",), (0.0, 1800.0), "stick", "all", 0.004)])
+    (('friction', 'torque', 'stick', 'all', 'p = 0.0040'),)
+    """
+    sure = [place for place in places if place.p_value <= _SMALL_P][:_MOST_PLACES]
+    return tuple(
+        (
+            place.stage,
+            ", ".join(place.channels),
+            place.phase if place.phase != "all" else f"{place.band[0]:g} to {place.band[1]:g} Hz",
+            place.conditions.replace("speed_rad_s", "speed [rad/s]"),
+            p_number(place.p_value),
+        )
+        for place in sure
+    )
+
+
+def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
+    finding, cause = finding_of(diagnosis, name), cause_of(name)
+    gaps = (None,) * 4 if finding is None else (
+        finding.gap_before, finding.gap_recalibrated, finding.gap_after, finding.gap_floor,
+    )  # fmt: skip
+    beside = name in _BESIDE_EFFECTS
+    return CauseRow(
+        name=cause.name,
+        clause=cause.clause,
+        stage="" if beside else _stage_of(diagnosis, name),
+        probability=probability,
+        chance=percent(probability),
+        named=name in diagnosis.verdict or (name == "none" and not diagnosis.verdict),
+        closed="" if beside else closed_words(finding),
+        by_effect=percent(None if finding is None else finding.closed_by_effect),
+        strength="" if beside or finding is None else _strength(finding),
+        fitted=any(gap is not None for gap in gaps),
+        gaps=(number(gaps[0]), number(gaps[1]), number(gaps[2]), number(gaps[3])),
+        parameters=() if finding is None else _fitted(finding),
+    )
+
+
+def _stage_of(diagnosis: Diagnosis, name: str) -> str:
+    finding = finding_of(diagnosis, name)
+    if finding is not None:
+        return str(finding.stage)
+    return str(EFFECTS[name].stage) if name in EFFECTS else ""
+
+
+def _strength(finding: EffectFinding) -> str:
+    if finding.strength is None:
+        return NOT_DETERMINED
+    low, high = (number(end, ".3g") for end in finding.strength)
+    if finding.name not in EFFECTS:
+        return f"{low} to {high}"
+    effect = EFFECTS[finding.name]
+    unit = effect.parameters[effect.strength].unit
+    return f"{parameter_name(effect.strength)} {low} to {high} {unit}".strip()
+
+
+def _fitted(finding: EffectFinding) -> tuple[str, ...]:
+    known = EFFECTS[finding.name].parameters if finding.name in EFFECTS else {}
+    words = []
+    for name, value in finding.parameters.items():
+        text = value if isinstance(value, str) else number(value, ".3g")
+        unit = known[name].unit if name in known else ""
+        words.append(f"{parameter_name(name)} {text} {unit}".strip())
+    return tuple(words)

@@ -1,0 +1,274 @@
+"""Sounds that fit into a page: one gain, FLAC, and no longer than the budget allows.
+
+Sixteen bits hold a set whose loudest sound is 60 dB above its quietest with 36 dB to spare, and
+FLAC gives them back bit by bit in about half the space, in every browser of today. All calibrated
+sounds have one full scale, so that what is louder there is louder here; those that nobody
+calibrated have another one, common to them. Where the budget is too small, every sound is
+shortened to the same length, and the page says so.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import soundfile
+
+from models.errors import ParameterError
+from models.recording import REFERENCE_PRESSURE
+from noise.audio.gain import full_scale_without_clipping, true_peak
+from noise.audio.sound import FADE
+from noise.audio.wav import integers
+from noise.pages.engine.entry import RATE, stretch_start
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from noise.pages.engine.entry import Entry
+
+__all__ = [
+    "BYTES_A_SECOND", "SHORTEST", "Clip", "Gain", "common_gain", "full_scale_words", "make_clips",
+]  # fmt: skip
+
+SHORTEST = 1.0
+"""No sound is made shorter than this for the sake of the budget [s]."""
+
+BYTES_A_SECOND = 120_000.0
+"""What a second of loud noise takes up on the page at most."""
+
+_BITS = 16
+_BASE64 = 4.0 / 3.0
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What full scale is worth.
+
+    Parameters
+    ----------
+    calibrated : float or None
+        Of calibrated sounds [Pa]; None where there are none.
+    uncalibrated : float or None
+        Of the others, in fractions of their own full scale.
+    stated : bool
+        Whether the caller has set the calibrated one.
+    """
+
+    calibrated: float | None
+    uncalibrated: float | None
+    stated: bool = False
+
+    def of(self, entry: Entry) -> float:
+        """Full scale of an entry's sound, in its unit, such as [Pa]."""
+        return (self.calibrated if entry.calibrated else self.uncalibrated) or 1.0
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What a listener has to know before comparing.
+
+        Examples
+        --------
+        >>> Gain(2.0, None).sentences[0]
+        'Calibrated sounds share one gain and may be compared: full scale = 2 Pa (100 dB peak re 20
+        µPa).'
+        """
+        told = []
+        if self.calibrated is not None:
+            how = "are level-true" if self.stated else "share one gain and may be compared"
+            told.append(f"Calibrated sounds {how}: {full_scale_words(self.calibrated)}.")
+        if self.uncalibrated is not None:
+            decibel = f"{-20.0 * math.log10(self.uncalibrated):+.1f}".replace("-", "\N{MINUS SIGN}")
+            told.append(
+                "Sounds marked dBFS are not calibrated: how loud they were is not known; they "
+                f"share a gain of {decibel} dB among themselves."
+            )
+        return tuple(told)
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A sound as it stands on the page.
+
+    Parameters
+    ----------
+    flac : bytes
+    samples : ndarray of float32, shape (n,)
+        What is in it, in the unit of the entry, such as [Pa].
+    start, end : float
+        Which stretch of the recording it is [s].
+    full_scale : float
+        What full scale of it is worth, in the unit of the entry, such as [Pa].
+    """
+
+    flac: bytes
+    samples: NDArray[np.float32]
+    start: float
+    end: float
+    full_scale: float
+
+
+def full_scale_words(full_scale: float) -> str:
+    """Say what full scale is worth [Pa].
+
+    Examples
+    --------
+    >>> full_scale_words(2.0)
+    'full scale = 2 Pa (100 dB peak re 20 µPa)'
+    """
+    level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
+    return f"full scale = {full_scale:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
+
+
+def common_gain(entries: Iterable[Entry], pascal: float | None = None) -> Gain:
+    """Choose the gain of a set.
+
+    Parameters
+    ----------
+    entries : iterable of Entry
+    pascal : float, optional
+        Full scale of calibrated sounds [Pa]; by default what the loudest of them needs.
+
+    Raises
+    ------
+    ParameterError
+        A sound would clip at the full scale given.
+    """
+    peaks: dict[bool, dict[str, float]] = {True: {}, False: {}}
+    for entry, largest in _that_may_be_loudest(list(entries)):
+        peak = true_peak(largest.astype(np.float64), RATE)
+        peaks[entry.calibrated][entry.title] = peak
+    least = {
+        calibrated: full_scale_without_clipping(max(of.values())) or 1.0 if of else None
+        for calibrated, of in peaks.items()
+    }
+    if pascal is None:
+        return Gain(least[True], least[False])
+    if (needed := least[True]) is not None and pascal < needed:
+        loudest = max(peaks[True], key=peaks[True].__getitem__)
+        raise ParameterError(
+            f"{loudest}: would clip at {pascal:g} Pa per full scale; {needed:g} Pa is the least "
+            "that holds all sounds"
+        )
+    return Gain(pascal if peaks[True] else None, least[False], stated=True)
+
+
+def make_clips(
+    entries: Mapping[str, Entry],
+    gain: Gain,
+    *,
+    budget: float = math.inf,
+    dither: np.random.Generator | None = None,
+) -> tuple[dict[str, Clip], float | None]:
+    """Encode sounds, shortened where they would exceed a budget.
+
+    Parameters
+    ----------
+    entries : mapping of str to Entry
+        By id.
+    gain : Gain
+    budget : float
+        What the sounds may take up on the page [byte].
+    dither : numpy.random.Generator, optional
+        By default there is no dither, and silence stays digital zero.
+
+    Returns
+    -------
+    clips : dict of str to Clip
+        Of the entries that have a sound.
+    shortened : float or None
+        To how many seconds the longer ones are cut [s]; None where none is cut.
+
+    Raises
+    ------
+    ParameterError
+        Not even `SHORTEST` seconds of each would fit.
+
+    Examples
+    --------
+    >>> from noise.pages.engine.entry import Entry
+    >>> silence = Entry("silence", duration=1.0, sound=np.zeros(RATE, np.float32))
+    >>> clips, shortened = make_clips({"s1": silence}, Gain(1.0, None))
+    >>> clips["s1"].end, shortened
+    (1.0, None)
+    """
+    seeds = [None if dither is None else int(dither.integers(1 << 62)) for _ in entries]
+
+    def cut_to(longest: float) -> dict[str, Clip]:
+        return {
+            key: _clip(entry, entry.sound, longest, gain, seed)
+            for (key, entry), seed in zip(entries.items(), seeds, strict=True)
+            if entry.sound is not None
+        }
+
+    clips = cut_to(math.inf)
+    if _weight(clips) <= budget:
+        return clips, None
+    length = _length_that_fits(list(clips.values()), budget)
+    if length < SHORTEST:
+        raise ParameterError(
+            f"{len(clips)} sounds of {SHORTEST:g} s each do not fit "
+            f"into {budget / 1e6:.3g} MB that are left for them; allow more, or name fewer"
+        )
+    while True:
+        clips = cut_to(length)
+        if _weight(clips) <= budget or length <= SHORTEST:
+            return clips, length
+        length = max(SHORTEST, 0.9 * length)  # the loud parts were kept
+
+
+def _that_may_be_loudest(
+    entries: Sequence[Entry],
+) -> Iterator[tuple[Entry, NDArray[np.float32]]]:
+    """Sounds with samples within 12 dB of the largest: no peak between samples is as far above."""
+    for calibrated in (True, False):
+        heard = [
+            (entry, entry.sound, float(np.abs(entry.sound).max(initial=0.0)))
+            for entry in entries
+            if entry.sound is not None and entry.calibrated == calibrated
+        ]
+        most = max((largest for _, _, largest in heard), default=0.0)
+        yield from ((entry, sound) for entry, sound, largest in heard if largest >= 0.25 * most)
+
+
+def _clip(
+    entry: Entry, samples: NDArray[np.float32], longest: float, gain: Gain, seed: int | None
+) -> Clip:
+    whole, offset = samples.size / RATE, entry.offset
+    if whole > longest:
+        first = stretch_start(entry.rows, entry.duration, longest) - offset
+        first = min(max(first, 0.0), whole - longest)
+        begin = round(first * RATE)
+        samples = samples[begin : begin + round(longest * RATE)].copy()
+        offset += begin / RATE
+        n = round(FADE * RATE)
+        flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / n) ** 2
+        samples[:n] *= flank
+        samples[samples.size - n :] *= flank[::-1]
+    full_scale = gain.of(entry)
+    fractions = (samples / full_scale).astype(np.float64)
+    dither = None if seed is None else np.random.default_rng(seed)
+    steps = np.frombuffer(integers(fractions, _BITS, dither), "<i2")
+    flac = io.BytesIO()
+    soundfile.write(flac, steps, RATE, format="FLAC", subtype="PCM_16")
+    return Clip(flac.getvalue(), samples, offset, offset + samples.size / RATE, full_scale)
+
+
+def _weight(clips: Mapping[str, Clip]) -> float:
+    return sum(_BASE64 * len(clip.flac) for clip in clips.values())
+
+
+def _length_that_fits(clips: Sequence[Clip], budget: float) -> float:
+    """Return the length to which cutting all longer ones brings them below the budget."""
+    rates = [_BASE64 * len(clip.flac) / (clip.end - clip.start) for clip in clips]
+    lengths = [clip.end - clip.start for clip in clips]
+    low, high = 0.0, max(lengths)
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        total = sum(r * min(d, middle) for r, d in zip(rates, lengths, strict=True))
+        low, high = (middle, high) if total <= budget else (low, middle)
+    return low

@@ -1,0 +1,164 @@
+"""Entry of a page: a stretch of sound, its labels, and what is known of its condition.
+
+A page is for the ear, so a long recording is represented by the stretch that shows why it has its
+name, not by its beginning.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from models.condition import Condition
+from noise.base.label_names import LABELS
+from noise.base.progress import counted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Row = Mapping[str, object]
+
+__all__ = [
+    "RATE", "Entry", "Part", "label_counts", "labels_sentence", "naming_row", "stretch_start",
+]  # fmt: skip
+
+RATE = 48000
+"""Of the sounds on a page [Hz]."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A labelled stretch; `start` and `end` in s of the recording, `track` where there are many."""
+
+    start: float
+    end: float
+    label: str
+    track: str
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """Something to be heard, or at least to be named.
+
+    Parameters
+    ----------
+    title : str
+    rows : tuple of mapping
+        Of the label table; none where it is not labelled.
+    condition : Condition
+        As the recording says.
+    duration : float
+        Of the whole recording [s].
+    sound : ndarray of float32, shape (n,), optional
+        Sound pressure at `RATE` [Pa], or in fractions of full scale where not `calibrated`; of
+        the whole recording or of a stretch of it.
+    offset : float
+        Where that stretch begins [s].
+    calibrated : bool
+    note : str
+        Where the labels come from, or why there is no sound.
+    data : mapping of str to str
+        Names under which a program finds the sound on the page again.
+    """
+
+    title: str
+    rows: tuple[Row, ...] = ()
+    condition: Condition = field(default_factory=Condition)
+    duration: float = 0.0
+    sound: NDArray[np.float32] | None = None
+    offset: float = 0.0
+    calibrated: bool = True
+    note: str = ""
+    data: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Labels in time."""
+        return tuple(
+            Part(
+                _number(row.get("start_s"), 0.0),
+                min(_number(row.get("end_s"), self.duration), self.duration),
+                str(row["label"]),
+                "" if row.get("channel") in ("all", None) else str(row["channel"]),
+            )
+            for row in self.rows
+            if row["label"] is not None
+        )
+
+    @property
+    def row(self) -> Row | None:
+        """The row that names the whole."""
+        return naming_row(self.rows)
+
+    @property
+    def label(self) -> str | None:
+        """The label of the whole; None where it is not labelled."""
+        row = self.row
+        return None if row is None else str(row["label"])
+
+
+def naming_row(rows: Sequence[Row]) -> Row | None:
+    """Return the longest row that is not ``none``, by which a file is named.
+
+    Examples
+    --------
+    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
+    >>> naming_row([short, {"label": "none", "start_s": 1.0, "end_s": 9.0}])["label"]
+    'creak'
+    """
+    labelled = [row for row in rows if row["label"] is not None]
+    loud = [row for row in labelled if row["label"] != "none"]
+    return max(loud or labelled, key=_length, default=None)
+
+
+def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
+    """Where a stretch of `length` begins that shows what a recording is named for [s].
+
+    Examples
+    --------
+    >>> rows = [{"label": "squeal", "start_s": 40.0, "end_s": 42.0}]
+    >>> stretch_start(rows, 60.0, 10.0), stretch_start([], 60.0, 10.0)
+    (36.0, 0.0)
+    """
+    row = naming_row(rows)
+    if row is None or length >= duration:
+        return 0.0
+    start, end = _number(row.get("start_s"), 0.0), _number(row.get("end_s"), duration)
+    wanted = start if end - start >= length else 0.5 * (start + end - length)
+    return float(min(max(wanted, 0.0), duration - length))
+
+
+def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
+    """Count entries by label, in the order of the labels; those without one last, as "".
+
+    Examples
+    --------
+    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"},))])
+    [('creak', 1), ('', 1)]
+    """
+    counts = Counter(entry.label or "" for entry in entries)
+    return [(label, counts[label]) for label in (*LABELS, "") if counts[label]]
+
+
+def labels_sentence(entries: Sequence[Entry]) -> str:
+    """Say how many entries have which label.
+
+    Examples
+    --------
+    >>> labels_sentence([Entry("a"), Entry("b", ({"label": "creak"},))])
+    '2 recordings: 1 creak, 1 without a label'
+    """
+    words = [f"{number} {label or 'without a label'}" for label, number in label_counts(entries)]
+    return f"{counted(len(entries), 'recording')}: {', '.join(words)}"
+
+
+def _length(row: Row) -> float:
+    return _number(row.get("end_s"), 0.0) - _number(row.get("start_s"), 0.0)
+
+
+def _number(value: object, missing: float) -> float:
+    return float(value) if isinstance(value, int | float) else missing

@@ -1,0 +1,216 @@
+"""The report: recordings to see, to hear and to compare, each with all that is known of it.
+
+Sounds are played as they were given, at their own rates and gains. Whether they may be compared by
+ear depends on the gain, so the page says what full scale is worth, and whether it is the same for
+all.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import soundfile
+
+from models.errors import ParameterError, RecordingError
+from noise.audio.sound import resampled
+from noise.base.label_names import LABELS
+from noise.diagnosis.text.words import percent
+from noise.pages.engine.clips import Clip, full_scale_words
+from noise.pages.engine.entry import RATE, Entry, labels_sentence
+from noise.pages.engine.figures import entry_figures
+from noise.pages.engine.page import page_html, write_page
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from models.recording import Recording
+    from noise.labels.segments import Segment
+
+__all__ = ["ReportEntry", "write_report"]
+
+_LAST_BIT = 2.0**-15  # of 16; a sound that exceeds full scale by no more is not clipped audibly
+
+
+@dataclass(frozen=True)
+class ReportEntry:
+    """One recording on the review page.
+
+    Parameters
+    ----------
+    title : str
+    recording : Recording
+    segment : Segment
+        What the recording was labelled, and for which part of it.
+    audio : Path or bytes, optional
+        The sound to play, a file in any format that the sound library reads, or its content.
+    note : str
+        A remark shown with the entry; line breaks are kept.
+    full_scale : float, optional
+        What full scale of `audio` is worth [Pa]; without it the page says that it is not known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from noise.labels.segments import Segment
+    >>> hum = Recording(np.zeros((1, 48000)), 48e3, (Channel("pressure"),))
+    >>> ReportEntry("run07", hum, Segment("all", 0.0, 1.0, "none", {}, None, 30.0, -90.0)).title
+    'run07'
+    """
+
+    title: str
+    recording: Recording
+    segment: Segment
+    audio: Path | bytes | None = None
+    note: str = ""
+    full_scale: float | None = None
+
+
+def write_report(
+    path: str | Path, entries: Sequence[ReportEntry], *, title: str, summary: str | None = None
+) -> None:
+    """Write a review page: one HTML file that needs nothing else, whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        The file to write; parent folders are made.
+    entries : sequence of ReportEntry
+        At least one, shown in this order.
+    title : str
+        Of the page.
+    summary : str, optional
+        The headline sentence; by default how many recordings have which label.
+
+    Raises
+    ------
+    ParameterError
+        There are no entries, the file cannot be written, or a sound exceeds full scale.
+    RecordingError
+        A sound cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.recording import Channel, Recording
+    >>> from noise.labels.segments import Segment
+    >>> silence = Recording(np.zeros((1, 4800)), 48e3, (Channel("pressure"),))
+    >>> segment = Segment(channel="all", start=0.0, end=0.1, label="none",
+    ...     probabilities={"none": 1.0}, frequency=None, level=None, level_dbfs=None)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "report.html"
+    ...     write_report(path, [ReportEntry("Silence", silence, segment)], title="Review")
+    ...     "<h1>Review</h1>" in path.read_text(encoding="utf-8")
+    True
+    """
+    if not entries:
+        raise ParameterError(f"{path}: there is no entry to report; give at least one")
+    keys = [f"s{number}" for number in range(1, len(entries) + 1)]
+    clips = {
+        key: _clip(entry, entry.audio)
+        for key, entry in zip(keys, entries, strict=True)
+        if entry.audio is not None
+    }
+    on_page = {key: _entry(entry, clips.get(key)) for key, entry in zip(keys, entries, strict=True)}
+    html = page_html(
+        "report.html.j2",
+        on_page,
+        clips,
+        title=title,
+        summary=f"{labels_sentence(list(on_page.values()))}." if summary is None else summary,
+        gain=_common_gain(entries),
+        channels={key: entry.segment.channel for key, entry in zip(keys, entries, strict=True)},
+        probabilities={
+            key: _probabilities(entry.segment) for key, entry in zip(keys, entries, strict=True)
+        },
+        gains={
+            key: f"{clips[key].end:.3g} s; {_gain(entry.full_scale)}"
+            for key, entry in zip(keys, entries, strict=True)
+            if key in clips
+        },
+        figures=dict(
+            zip(keys, entry_figures([(one.recording, one.segment) for one in entries]), strict=True)
+        ),
+    )
+    write_page(Path(path), html)
+
+
+def _clip(entry: ReportEntry, audio: Path | bytes) -> Clip:
+    """Encode a sound as it is; what is drawn of it is its first channel at the page's rate."""
+    if isinstance(audio, bytes):
+        name, content = f"sound of {entry.title!r}", audio
+    else:
+        name = str(audio)
+        try:
+            content = Path(audio).read_bytes()
+        except OSError as error:
+            raise RecordingError(f"{name}: cannot be read ({error.strerror or error})") from error
+    try:
+        samples, rate = soundfile.read(io.BytesIO(content), always_2d=True)
+    except soundfile.LibsndfileError as error:
+        reason = error.error_string.rstrip(".")
+        raise RecordingError(f"{name}: is damaged or no sound file ({reason})") from error
+    peak = float(abs(samples).max(initial=0.0))
+    if not peak <= 1.0 + _LAST_BIT:
+        raise ParameterError(
+            f"{name}: peaks at {peak:.3g} times full scale and would be clipped; scale it to at "
+            f"most 1"
+        )
+    flac = io.BytesIO()
+    soundfile.write(flac, samples, rate, format="FLAC", subtype="PCM_16")
+    full_scale = entry.full_scale or 1.0
+    first = full_scale * (resampled(samples[:, 0], rate, RATE) if len(samples) else samples[:, 0])
+    return Clip(flac.getvalue(), first.astype(np.float32), 0.0, len(samples) / rate, full_scale)
+
+
+def _entry(entry: ReportEntry, clip: Clip | None) -> Entry:
+    segment, recording = entry.segment, entry.recording
+    row: dict[str, object] = {
+        "label": segment.label, "channel": segment.channel, "start_s": segment.start,
+        "end_s": segment.end, "frequency_hz": segment.frequency, "level_db": segment.level,
+        "level_dbfs": segment.level_dbfs,
+    }  # fmt: skip
+    if recording.condition.speed is None and recording.calibrated and "speed" in recording:
+        speed = recording["speed"]
+        row |= {
+            "speed_rad_s_source": "varied",
+            "speed_rad_s_low": float(speed.min()),
+            "speed_rad_s_high": float(speed.max()),
+        }
+    return Entry(
+        entry.title,
+        (row,),
+        recording.condition,
+        duration=recording.samples.shape[1] / recording.rate if clip is None else clip.end,
+        calibrated=entry.full_scale is not None,
+        note=entry.note,
+    )
+
+
+def _gain(full_scale: float | None) -> str:
+    return "gain not stated" if full_scale is None else full_scale_words(full_scale)
+
+
+def _common_gain(entries: Sequence[ReportEntry]) -> str:
+    gains = {entry.full_scale for entry in entries if entry.audio is not None}
+    if not gains:
+        return ""
+    if gains == {None}:
+        return "The gain of the sounds is not stated: do not compare their loudness."
+    (first, *others) = sorted(gain for gain in gains if gain is not None)
+    if others or None in gains:
+        return "The sounds have different gains, stated with each: do not compare their loudness."
+    return f"Sounds: {full_scale_words(first)}, the same for all sounds on this page."
+
+
+def _probabilities(segment: Segment) -> list[tuple[str, float, str]]:
+    """Label, probability from 0 to 1, and the same in words."""
+    return [
+        (label, share, percent(share))
+        for label in LABELS
+        if (share := segment.probabilities.get(label)) is not None
+    ]

@@ -1,0 +1,184 @@
+"""Recordings of a review, each cut to a stretch and labelled, and those that only a table names.
+
+What is read is cut at once: a campaign may be larger than memory.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import BushingNoiseError, RecordingError
+from noise.audio.sound import audible
+from noise.base.progress import track
+from noise.classifier import load_classifier
+from noise.labels.labelling import label_rows
+from noise.labels.segments import label_recording
+from noise.pages.engine.clips import BYTES_A_SECOND, SHORTEST
+from noise.pages.engine.entry import RATE, Entry, stretch_start
+from noise.pages.review.inputs import Refusal
+from noise.recordings import read_recording
+from noise.recordings.blocks import RecordingBlocks, open_blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from noise.classifier import Classifier
+    from noise.pages.review.inputs import Inputs, LabelTable
+
+__all__ = ["recorded_entries"]
+
+_GENEROUS = 4.0
+"""Quiet sounds take a quarter of the space of loud noise."""
+
+
+def recorded_entries(
+    inputs: Inputs,
+    refused: list[Refusal],
+    *,
+    seconds: float,
+    full_scale: float | None,
+    budget: float,
+    classify: bool,
+) -> list[Entry]:
+    """Read recordings, and what tables say of those that are not at hand.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    refused : list of Refusal
+        Takes what cannot be read.
+    seconds : float
+        Longest stretch of a recording that is kept [s].
+    full_scale : float or None
+        As for `noise.recordings.read_recording` [Pa].
+    budget : float
+        Of the page [byte].
+    classify : bool
+        Whether recordings that no table labels are labelled by the classifier that is shipped.
+    """
+    if not inputs.recordings and not inputs.tables:
+        return []
+    files = list(inputs.recordings)
+    known = {path.resolve() for path, _ in files}
+    files += [found for found in _named_by_tables(inputs.tables) if found[0].resolve() not in known]
+    needs = classify and any(not _labelled(path, inputs.tables) for path, _ in files)
+    classifier = load_classifier() if needs else None
+    # What could never fit is not read at all.
+    longest = min(
+        seconds, max(SHORTEST, _GENEROUS * budget / (BYTES_A_SECOND * max(1, len(files))))
+    )
+    entries: list[Entry] = []
+    for path, name in track(files, "reading"):
+        found = _read_entry(
+            path, name, inputs.tables, classifier, longest=longest, full_scale=full_scale
+        )
+        if isinstance(found, Refusal):
+            refused.append(found)
+        else:
+            entries.append(found)
+    return entries + _missing(inputs.tables, [path for path, _ in files])
+
+
+def _labelled(path: Path, tables: Sequence[LabelTable]) -> bool:
+    return any(row["label"] is not None for table in tables for row in table.of(path))
+
+
+def _named_by_tables(tables: Sequence[LabelTable]) -> list[tuple[Path, str]]:
+    """Find recordings that a table names beside or below its own folder."""
+    found: dict[Path, tuple[Path, str]] = {}
+    for table in tables:
+        for name in dict.fromkeys(str(row["file"]) for row in table.rows):
+            for path in (table.path.parent / name, *_below(table.path.parent, name)):
+                if path.is_file():
+                    found.setdefault(path.resolve(), (path, name))
+                    break
+    return list(found.values())
+
+
+def _below(folder: Path, name: str) -> list[Path]:
+    try:
+        return sorted(folder.glob(f"*/{name}"), key=lambda path: path.parent.name != "recordings")
+    except (ValueError, NotImplementedError):  # an absolute name, or one that is no pattern
+        return []
+
+
+def _missing(tables: Sequence[LabelTable], files: Sequence[Path]) -> list[Entry]:
+    entries = []
+    for table in tables:
+        used = {str(row["file"]) for path in files for row in table.of(path)}
+        for name in dict.fromkeys(str(row["file"]) for row in table.rows):
+            rows = [row for row in table.rows if row["file"] == name and row["label"] is not None]
+            if name not in used and rows:
+                ends = (row.get("end_s") for row in rows)
+                duration = max((end for end in ends if isinstance(end, int | float)), default=0.0)
+                note = "labelled by the table; the recording is not at hand"
+                entries.append(
+                    Entry(name, tuple(rows), duration=duration, calibrated=False, note=note)
+                )
+    return entries
+
+
+def _read_entry(
+    path: Path,
+    name: str,
+    tables: Sequence[LabelTable],
+    classifier: Classifier | None,
+    *,
+    longest: float,
+    full_scale: float | None = None,
+) -> Entry | Refusal:
+    """Read what a review shows of a recording.
+
+    Parameters
+    ----------
+    path : Path
+    name : str
+        What it is called.
+    tables : sequence of LabelTable
+        The first that has rows for it labels it.
+    classifier : Classifier or None
+        Labels what no table does; None leaves it without a label.
+    longest : float
+        Of the stretch that is kept [s].
+    full_scale : float, optional
+        As for `noise.recordings.read_recording`.
+    """
+    try:
+        rows = next(filter(None, (table.of(path) for table in tables)), ())
+        with open_blocks(path, full_scale=full_scale) as opened:
+            blocks = opened or RecordingBlocks.of(read_recording(path, full_scale=full_scale))
+            note = ""
+            if any(row["label"] is not None for row in rows):
+                note = "labelled by the table"
+            elif classifier is not None:
+                note = "labelled for this page"
+                rows = tuple(label_rows(name, blocks, label_recording(blocks, classifier)))
+            duration = blocks.n_samples / blocks.rate
+            offset = stretch_start(rows, duration, longest)
+            sound, why = _sound(blocks, offset, longest)
+    except BushingNoiseError as error:
+        return Refusal.of(path, error)
+    return Entry(
+        name, tuple(rows), blocks.condition, duration, sound, offset,
+        blocks.calibrated, "; ".join(filter(None, (note, why))),
+    )  # fmt: skip
+
+
+def _sound(
+    blocks: RecordingBlocks, offset: float, longest: float
+) -> tuple[NDArray[np.float32] | None, str]:
+    row = blocks.first("pressure")
+    if row is None:
+        return None, "no sound pressure to be heard"
+    first = round(offset * blocks.rate)
+    last = min(blocks.n_samples, first + round(longest * blocks.rate))
+    sound = audible(blocks.cut(first, last), RATE)
+    if not np.isfinite(sound).all():
+        raise RecordingError(f"{blocks.name}: holds sound pressures beyond any number")
+    others = sum(channel.kind == "pressure" for channel in blocks.channels) - 1
+    return sound.astype(np.float32), f"1 of {others + 1} channels is heard" if others else ""

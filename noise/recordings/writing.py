@@ -1,0 +1,214 @@
+"""Writing recordings as 32-bit float WAV with a sidecar, whole ones and those that grow by blocks.
+
+A run too long for memory comes block by block. The header says at once how long the file will be,
+so what arrives must be just as much; until it has, nothing stands under the file's own name.
+
+The same samples give the same bytes. The sound library pads the header or adds the time of day to
+it, scipy writes these bytes but wants all samples at once: so the header is packed here.
+"""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from models.recording import Recording
+from noise.base.atomic import atomic
+from noise.recordings.files import MIN_SAMPLES, READERS
+from noise.recordings.sidecar import sidecar_text
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+    from models.recording import Channel
+
+__all__ = ["float_wav_header", "write_blocks", "write_recording"]
+
+_IEEE_FLOAT = 3  # code of the format
+_BYTES = 4  # of a sample
+_HEADER = 58  # bytes
+_BLOCK = 1 << 16  # samples a channel
+
+
+def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
+    """Write a recording as 32-bit float WAV with its sidecar, both whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        ``run07`` and ``run07.wav`` are the same; parent folders are made.
+    recording : Recording
+        Its samples are written as they are, so full scale of the file written is one unit.
+
+    Returns
+    -------
+    Path
+        The WAV file.
+
+    Raises
+    ------
+    ParameterError
+        The recording cannot be written there, or could not be read back.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.recording import Channel, Recording
+    >>> silence = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = write_recording(Path(folder) / "runs" / "none", silence)
+    ...     sorted(file.name for file in Path(folder).glob("runs/*"))
+    ['none.json', 'none.wav']
+    """
+    samples = recording.samples
+    n_samples = samples.shape[1]
+    blocks = (samples[:, at : at + _BLOCK] for at in range(0, n_samples, _BLOCK))
+    return _write(_wav_path(Path(path)), recording, blocks, n_samples)
+
+
+def write_blocks(
+    path: str | os.PathLike[str],
+    blocks: Iterable[NDArray[np.float64]],
+    *,
+    n_samples: int,
+    rate: float,
+    channels: tuple[Channel, ...],
+    condition: Condition,
+) -> Path:
+    """Write blocks as one 32-bit float WAV with its sidecar, both whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        ``run07`` and ``run07.wav`` are the same; parent folders are made.
+    blocks : iterable of ndarray, shape (n_channels, n)
+        [units of the channels]
+    n_samples : int
+        Of all blocks together.
+    rate : float
+        Sampling rate, a whole number [Hz].
+    channels : tuple of Channel
+    condition : Condition
+
+    Returns
+    -------
+    Path
+        The WAV file.
+
+    Raises
+    ------
+    ParameterError
+        The recording cannot be written there or could not be read back, or the blocks hold
+        another number of samples.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.condition import Condition
+    >>> from models.recording import Channel
+    >>> from noise.recordings import read_recording
+    >>> halves = (np.full((1, 400), value) for value in (20.0, 30.0))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_blocks(
+    ...         Path(folder) / "run07", halves, n_samples=800, rate=30e3,
+    ...         channels=(Channel("torque"),), condition=Condition(speed=5.0),
+    ...     )
+    ...     float(read_recording(path)["torque"].mean())
+    25.0
+    """
+    target = _wav_path(Path(path))
+    empty = np.zeros((len(channels), 0))
+    about = Recording(empty, rate, channels, condition, name=target.name)
+    return _write(target, about, blocks, n_samples)
+
+
+def _write(
+    target: Path, about: Recording, blocks: Iterable[NDArray[np.float64]], n_samples: int
+) -> Path:
+    """Write blocks of samples; of `about` all else counts."""
+    rate = about.rate
+    if n_samples < MIN_SAMPLES:
+        raise ParameterError(f"{target}: {n_samples} samples, expected at least {MIN_SAMPLES}")
+    if not (1 <= rate < 1 << 31 and float(rate).is_integer()):
+        raise ParameterError(
+            f"{target}: the sampling rate is {rate!r} Hz, but WAV holds whole hertz only"
+        )
+    text = sidecar_text(about)
+    try:
+        header = float_wav_header(len(about.channels), n_samples, int(rate))
+    except ParameterError as error:
+        raise ParameterError(f"{target}: {error}") from error
+    # The sidecar is moved into place first: samples are never seen without what they mean.
+    with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
+        with wav.open("wb") as file:
+            file.write(header)
+            written = 0
+            for block in blocks:
+                file.write(_frames(target, block, about.channels).tobytes())
+                written += block.shape[1]
+        if written != n_samples:
+            raise ParameterError(f"{target}: {written} samples arrived, expected {n_samples}")
+        sidecar.write_text(text, encoding="utf-8")
+    return target
+
+
+def _frames(
+    target: Path, block: NDArray[np.float64], channels: tuple[Channel, ...]
+) -> NDArray[np.float32]:
+    if block.ndim != 2 or block.shape[0] != len(channels):
+        raise ParameterError(
+            f"{target}: a block has shape {block.shape}, expected ({len(channels)}, n_samples)"
+        )
+    with np.errstate(over="ignore"):
+        frames = block.T.astype("<f4")
+    finite = np.isfinite(frames).all(axis=0)
+    if not finite.all():
+        name = channels[int(np.argmin(finite))].name
+        raise ParameterError(
+            f"{target}: channel {name!r} holds samples that are not finite in 32 bits"
+        )
+    return frames
+
+
+def float_wav_header(n_channels: int, n_samples: int, rate: int) -> bytes:
+    """Header of a WAV file; the samples follow it, interleaved, as little-endian 32-bit floats.
+
+    Raises
+    ------
+    ParameterError
+        The samples are more than a WAV file can hold, or the header's numbers do not fit.
+
+    Examples
+    --------
+    >>> len(float_wav_header(4, 3600 * 30000, 30000))
+    58
+    """
+    frame = n_channels * _BYTES
+    size = n_samples * frame
+    if max(size + _HEADER, rate * frame) >= 1 << 32 or frame >= 1 << 16:
+        raise ParameterError(
+            f"{n_channels} channels of {n_samples} samples at {rate} Hz do not fit into a WAV "
+            f"file (4 GiB); write shorter recordings"
+        )
+    kind = (_IEEE_FLOAT, n_channels, rate, rate * frame, frame, 8 * _BYTES, 0)
+    head = struct.pack("<4sI4s4sIHHIIHHH", b"RIFF", _HEADER - 8 + size, b"WAVE", b"fmt ", 18, *kind)
+    return head + struct.pack("<4sII4sI", b"fact", 4, n_samples, b"data", size)
+
+
+def _wav_path(path: Path) -> Path:
+    ending = path.suffix.lower()
+    if not path.name:
+        raise ParameterError(f"{str(path)!r} names no file to write a recording to")
+    if ending == ".wav":
+        return path
+    if ending in READERS or ending == ".json":
+        raise ParameterError(f"{path}: recordings are written as WAV; end the name in .wav")
+    return path.with_name(path.name + ".wav")

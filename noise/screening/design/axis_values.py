@@ -1,0 +1,185 @@
+"""Parser of the values along an axis of a map, from design files and options.
+
+A number, a list, or a range ``LOW..HIGH`` with as many points as asked for, ``LOW..HIGH/N``. A
+range without them has those of a map that shows a boundary where it is: a speed every eighth of a
+radian a second, seventeen fits.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from models.condition import FIXED
+from models.errors import ParameterError
+from noise.screening.design.tolerances import ABSOLUTE_ZERO
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = [
+    "FREQUENCY", "MOST_POINTS", "POSITIVE", "SPEED", "SPEED_STEP", "SUPPORT", "TEMPERATURE",
+    "AxisRule", "axis_values", "spread", "text_values",
+]  # fmt: skip
+
+MOST_POINTS = 2000
+"""Along one axis."""
+
+SPEED_STEP = 0.125
+"""Of a range of speeds without points of its own [rad/s]."""
+
+
+@dataclass(frozen=True)
+class AxisRule:
+    """Which values an axis takes.
+
+    Parameters
+    ----------
+    step : float, optional
+        Of a range without a number of points, in the unit of the axis, such as [rad/s].
+    points : int
+        Of a range without one, where there is no step.
+    low : float
+        Least value, in the unit of the axis, such as [rad/s].
+    open_low : bool
+        Whether `low` itself is refused.
+    fixed : bool
+        Whether ``fixed`` is a value.
+    """
+
+    step: float | None = None
+    points: int = 17
+    low: float = 0.0
+    open_low: bool = True
+    fixed: bool = False
+
+
+POSITIVE = AxisRule()
+SPEED = AxisRule(step=SPEED_STEP)
+FREQUENCY = AxisRule(step=0.25)
+SUPPORT = AxisRule(fixed=True)
+TEMPERATURE = AxisRule(points=3, low=ABSOLUTE_ZERO, open_low=False)
+
+
+def spread(low: float, high: float, points: int) -> tuple[float, ...]:
+    """Return evenly spaced values, written as short as they are distinct.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends, in the unit of the axis, such as [rad/s].
+    points : int
+        2 or more.
+
+    Examples
+    --------
+    >>> spread(0.25, 1.0, 4)
+    (0.25, 0.5, 0.75, 1.0)
+    """
+    if points == 1:
+        return (low,)
+    step = (high - low) / (points - 1)
+    return tuple(float(f"{low + i * step:.10g}") for i in range(points))
+
+
+def text_values(text: str, what: str, rule: AxisRule = POSITIVE) -> tuple[float, ...]:
+    """Read ``5``, ``0.178,0.279``, ``0.25..13`` or ``0.25..13/52``.
+
+    Parameters
+    ----------
+    text : str
+    what : str
+        What messages call it, such as ``--speed``.
+    rule : AxisRule
+
+    Returns
+    -------
+    tuple of float
+        Rising, each once, in the unit of the axis, such as [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        It is none of these, or a value is out of range.
+
+    Examples
+    --------
+    >>> text_values("1..2/3", "--speed"), text_values("fixed,2214", "-k", SUPPORT)
+    ((1.0, 1.5, 2.0), (2214.0, inf))
+    """
+    found: list[float] = []
+    for part in text.split(","):
+        first, dots, rest = part.partition("..")
+        if not dots:
+            found.append(_value(part, what, text, fixed=rule.fixed))
+            continue
+        last, slash, count = rest.partition("/")
+        start, end = _value(first, what, text), _value(last, what, text)
+        if not start < end:
+            raise ParameterError(f"{what} is {text!r}: a range rises, as 0.25..13 does")
+        if slash:
+            if not count.strip().isdecimal() or not 2 <= int(count) <= MOST_POINTS:
+                raise ParameterError(
+                    f"{what} is {text!r}: the points of a range are a whole number from 2 to "
+                    f"{MOST_POINTS}, as in 0.25..13/52"
+                )
+            n = int(count)
+        else:
+            n = rule.points
+            if rule.step is not None:
+                n = min(MOST_POINTS, round((end - start) / rule.step) + 1)
+        found += spread(start, end, max(2, n))
+    return _checked(found, what, text, rule)
+
+
+def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[float, ...]:
+    """Read an axis of a design file: a number, a text as `text_values` takes, or a list of both.
+
+    Parameters, returns and errors are those of `text_values`; None has no values.
+
+    Examples
+    --------
+    >>> axis_values([0.178, 0.279], "interference_mm"), axis_values("1..2/2", "speed_rad_s")
+    ((0.178, 0.279), (1.0, 2.0))
+    """
+    if given is None:
+        return ()
+    listed: Sequence[object] = given if isinstance(given, list) else [given]
+    found: list[float] = []
+    for item in listed:
+        if isinstance(item, str):
+            found += text_values(item, what, rule)
+        elif isinstance(item, int | float) and not isinstance(item, bool):
+            found.append(float(item))
+        else:
+            raise ParameterError(f"{what} = {given!r}: give numbers, or a range such as '0.25..13'")
+    return _checked(found, what, str(given), rule)
+
+
+def _value(text: str, what: str, whole: str, *, fixed: bool = False) -> float:
+    if fixed and text.strip().lower() == "fixed":
+        return FIXED
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        word = ", or fixed" if fixed else ""
+        raise ParameterError(
+            f"{what} is {whole!r}, expected numbers such as 5, 1,2.5,5 or 0.25..13/52{word}"
+        )
+    return value
+
+
+def _checked(found: list[float], what: str, text: str, rule: AxisRule) -> tuple[float, ...]:
+    values = sorted(set(found))
+    if not values:
+        raise ParameterError(f"{what} is empty; give at least one value")
+    low = rule.low
+    if not (values[0] > low if rule.open_low else values[0] >= low) or math.isnan(values[-1]):
+        bound = "above" if rule.open_low else "at least"
+        raise ParameterError(f"{what} is {text!r}; values must be {bound} {low:g}")
+    if len(values) > MOST_POINTS:
+        raise ParameterError(f"{what} has {len(values)} values; at most {MOST_POINTS} are mapped")
+    return tuple(values)

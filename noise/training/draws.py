@@ -1,0 +1,126 @@
+"""Random numbers, noise and slow changes that made-up sounds and rigs are drawn from."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+from scipy.signal import lfilter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["coloured_noise", "log_uniform", "low_pass", "wandering"]
+
+
+def log_uniform(low: float, high: float, rng: np.random.Generator) -> float:
+    """Draw evenly in the logarithm.
+
+    Parameters
+    ----------
+    low, high : float
+        Limits, above 0 [any one unit].
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    float
+        [unit of the limits]
+
+    Examples
+    --------
+    >>> 1.0 <= log_uniform(1.0, 100.0, np.random.default_rng(0)) <= 100.0
+    True
+    """
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def coloured_noise(n: int, slope: float, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Noise of unit standard deviation whose spectral density falls as ``f ** -slope``.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    slope : float
+        [-]; 0 is white, 1 pink.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> noise = coloured_noise(1000, 1.0, np.random.default_rng(0))
+    >>> round(float(noise.std()), 6)
+    1.0
+    """
+    m = next_fast_len(n, real=True)
+    spectrum = rfft(rng.standard_normal(m))
+    frequency = np.arange(spectrum.size, dtype=float)
+    frequency[0] = 1.0
+    noise = irfft(spectrum * frequency ** (-0.5 * slope), m)[:n]
+    return np.asarray(noise / noise.std())
+
+
+def wandering(
+    n: int, rate: float, frequency: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return a smooth random course, mostly within -1 to 1, that turns `frequency` times a second.
+
+    Parameters
+    ----------
+    n : int
+        Number of samples.
+    rate, frequency : float
+        Of the samples, and of the turns [Hz].
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> course = wandering(4800, 48e3, 2.0, np.random.default_rng(0))
+    >>> course.shape, bool(np.abs(np.diff(course)).max() < 0.01)
+    ((4800,), True)
+    """
+    step = rate / (2.0 * frequency)
+    knots = rng.uniform(-1.0, 1.0, int(n / step) + 4)
+    place = np.arange(n) / step + 1.0 + rng.random()
+    left = place.astype(int)
+    x = place - left
+    # Catmull-Rom through the knots.
+    a, b, c, d = (knots[np.minimum(left + shift, knots.size - 1)] for shift in (-1, 0, 1, 2))
+    course = b + 0.5 * x * (c - a + x * (2 * a - 5 * b + 4 * c - d + x * (3 * (b - c) + d - a)))
+    return np.asarray(course)
+
+
+def low_pass(x: NDArray[np.float64], corner: float, rate: float) -> NDArray[np.float64]:
+    """Filter by a low-pass of first order.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Signal [any unit].
+    corner, rate : float
+        Where it begins to fall, and sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of `x`]
+
+    Examples
+    --------
+    >>> bool(abs(low_pass(np.ones(4800), 1e3, 48e3)[-1] - 1.0) < 1e-6)
+    True
+    """
+    pole = math.exp(-2.0 * math.pi * corner / rate)
+    return np.asarray(lfilter([1.0 - pole], [1.0, -pole], x))

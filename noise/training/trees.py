@@ -1,0 +1,220 @@
+"""Growing of trees by scikit-learn, and what it keeps of them as plain arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from noise.base.trees import LEAF, BoostedTrees, QuantileForest
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+__all__ = ["PER_LEAF", "boosted_trees", "boosting", "grow_boosted_trees", "grow_quantile_forest"]
+
+PER_LEAF = 8
+"""Values that a leaf of a quantile forest keeps: the middles of as many equal shares."""
+
+_FEATURES_A_SPLIT = 0.8
+"""Share of the features that a split is sought among; many of them are missing at any one."""
+
+
+def grow_boosted_trees(
+    x: NDArray[np.floating[Any]],
+    y: NDArray[np.int64],
+    *,
+    weight: NDArray[np.float64],
+    n_rounds: int,
+    seed: int,
+) -> BoostedTrees:
+    """Grow boosted trees.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n, n_features)
+        [unit of each feature]; NaN where it is missing.
+    y : ndarray of int, shape (n,)
+        Classes 0, 1, 2 ..., three or more.
+    weight : ndarray, shape (n,)
+        How much each sample counts [-].
+    n_rounds, seed : int
+        Trees a class, seed of the draws.
+
+    Returns
+    -------
+    BoostedTrees
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> y = np.repeat([0, 1, 2], 100)
+    >>> trees = grow_boosted_trees(rng.normal(size=(300, 2)) + 4.0 * y[:, None], y,
+    ...                            weight=np.ones(300), n_rounds=10, seed=0)
+    >>> trees.probabilities(np.array([[0.0, 0.0], [8.0, np.nan]])).argmax(axis=1).tolist()
+    [0, 2]
+    """
+    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
+    # hold for other sound.
+    model = boosting(
+        x, y, weight=weight, n_rounds=n_rounds, seed=seed,
+        learning_rate=0.1, max_leaf_nodes=16, min_samples_leaf=10, max_features=0.3,
+    )  # fmt: skip
+    return boosted_trees([model])
+
+
+def boosting(
+    x: NDArray[np.floating[Any]],
+    y: NDArray[np.int64],
+    *,
+    weight: NDArray[np.float64] | None = None,
+    n_rounds: int,
+    seed: int,
+    **shape: float,
+) -> Any:
+    """Fit scikit-learn's boosted trees, the same on every machine.
+
+    Parameters
+    ----------
+    x, y, weight, n_rounds, seed
+        As of `grow_boosted_trees`; without weights each sample counts alike.
+    **shape : float
+        What the trees are to look like [-], by scikit-learn's names.
+
+    Returns
+    -------
+    HistGradientBoostingClassifier
+    """
+    from sklearn.ensemble import HistGradientBoostingClassifier
+    from threadpoolctl import threadpool_limits
+
+    model = HistGradientBoostingClassifier(
+        max_iter=n_rounds, l2_regularization=1.0, early_stopping=False, random_state=seed, **shape
+    )
+    with threadpool_limits(1):  # sums are the same on every machine
+        return model.fit(x, y, sample_weight=weight)
+
+
+def boosted_trees(models: Sequence[Any]) -> BoostedTrees:
+    """Return scikit-learn's boosted trees as arrays.
+
+    Parameters
+    ----------
+    models : sequence of HistGradientBoostingClassifier
+        Their classes follow on one another.
+
+    Returns
+    -------
+    BoostedTrees
+    """
+    grown, first = [], 0
+    for model in models:
+        for trees in model._predictors:
+            grown += [(first + k, tree.nodes) for k, tree in enumerate(trees)]
+        first += len(model._predictors[0])
+    bases = [np.asarray(model._baseline_prediction).reshape(-1) for model in models]
+    nodes = np.concatenate([tree for _, tree in grown])
+    counts = np.array([len(tree) for _, tree in grown])
+    roots = np.cumsum(counts) - counts
+    leaf = nodes["is_leaf"].astype(bool)
+    children = np.stack([nodes["left"], nodes["right"]], axis=1) + np.repeat(roots, counts)[:, None]
+    return BoostedTrees(
+        roots=roots.astype(np.int32),
+        classes=np.array([k for k, _ in grown], dtype=np.int16),
+        feature=np.where(leaf, LEAF, nodes["feature_idx"]).astype(np.int16),
+        threshold=np.where(leaf, 0.0, nodes["num_threshold"]).astype(np.float64),
+        children=np.where(leaf[:, None], 0, children).astype(np.int32),
+        missing_left=nodes["missing_go_to_left"].astype(bool),
+        value=np.where(leaf, nodes["value"], 0.0).astype(np.float64),
+        base=np.concatenate(bases).astype(np.float64),
+    )
+
+
+def grow_quantile_forest(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    *,
+    n_trees: int,
+    least_leaf: int,
+    share: float,
+    seed: int,
+) -> QuantileForest:
+    """Grow a quantile forest.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n, n_features)
+        [unit of each feature]; NaN where it is missing.
+    y : ndarray, shape (n,)
+        What is asked for [in its own unit].
+    n_trees, least_leaf : int
+        Number of trees, samples in the smallest leaf.
+    share : float
+        Share of the samples that a tree is grown on; its leaves then take in all of them.
+    seed : int
+
+    Returns
+    -------
+    QuantileForest
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> x = rng.uniform(0.0, 1.0, (2000, 1))
+    >>> forest = grow_quantile_forest(x, x[:, 0] + 0.1 * rng.normal(size=2000), n_trees=20,
+    ...                               least_leaf=20, share=0.5, seed=0)
+    >>> low, high = np.quantile(forest.pooled(np.array([[0.5]])), [0.05, 0.95])
+    >>> bool(0.25 < low < 0.4 and 0.6 < high < 0.75)
+    True
+    """
+    from sklearn.ensemble import RandomForestRegressor
+
+    model = RandomForestRegressor(
+        n_estimators=n_trees,
+        min_samples_leaf=least_leaf,
+        max_samples=share,
+        max_features=_FEATURES_A_SPLIT,
+        random_state=seed,
+        n_jobs=-1,
+    ).fit(x, y)
+    arrivals = model.apply(x)
+    trees = [_single(e.tree_, arrivals[:, k], y) for k, e in enumerate(model.estimators_)]
+    counts = np.array([len(tree.feature) for tree in trees])
+    roots = np.cumsum(counts) - counts
+    children = np.concatenate([tree.children for tree in trees])
+    return QuantileForest(
+        roots=roots.astype(np.int32),
+        feature=np.concatenate([tree.feature for tree in trees]),
+        threshold=np.concatenate([tree.threshold for tree in trees]),
+        children=(children + np.repeat(roots, counts)[:, None]).astype(np.int32),
+        missing_left=np.concatenate([tree.missing_left for tree in trees]),
+        values=np.concatenate([tree.values for tree in trees]),
+    )
+
+
+def _single(tree: Any, arrivals: NDArray[np.int64], y: NDArray[np.float64]) -> QuantileForest:
+    """Return one tree, whose nodes scikit-learn keeps in depth-first order, the left one first."""
+    leaf = tree.children_left < 0
+    rows = np.cumsum(leaf) - 1
+    quantiles = (np.arange(PER_LEAF) + 0.5) / PER_LEAF
+    order = np.argsort(arrivals, kind="stable")
+    reached, starts = np.unique(arrivals[order], return_index=True)
+    values = np.zeros((int(leaf.sum()), PER_LEAF), dtype=np.float16)
+    for node, of_node in zip(reached, np.split(y[order], starts[1:]), strict=True):
+        values[rows[node]] = np.quantile(of_node, quantiles, method="nearest")
+    return QuantileForest(
+        roots=np.zeros(1, dtype=np.int32),
+        feature=np.where(leaf, LEAF, tree.feature).astype(np.int16),
+        threshold=_at_most(np.where(leaf, 0.0, tree.threshold)),
+        children=np.stack([tree.children_left, tree.children_right], axis=1).astype(np.int32),
+        missing_left=np.asarray(tree.missing_go_to_left, dtype=bool) & ~leaf,
+        values=values,
+    )
+
+
+def _at_most(threshold: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Round down to single precision, so that no single-precision feature changes sides."""
+    rounded = threshold.astype(np.float32)
+    return np.where(rounded > threshold, np.nextafter(rounded, np.float32(-np.inf)), rounded)

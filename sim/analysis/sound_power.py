@@ -1,0 +1,183 @@
+"""Sound power that the rig's plate radiates during a simulated run, in one-third octaves.
+
+The torque in the bushing, and the pulses of the anchors where there are some, become forces and
+moments of the anchors on the plate, as they do for the sound at the microphone
+(`models.radiation.rig_response`). Their cross-spectra, means over the run, drive the plate's modes,
+and `models.radiation` gives the power of its upper side, twice over: in a rigid baffle, as the
+microphone's sound is computed too, which below the critical frequency is too loud by 2 to 17 dB in
+a band; and standing free. A plate on a bench or in a frame lies between the two. A single
+line of the torque beside a resonance of the plate may come out 1 dB off. Not in it are the sound
+of beams and clamp, the room, responses that were measured, and effects on the path of sound.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.integrate import cumulative_trapezoid
+from scipy.signal import csd
+
+from models.errors import ParameterError
+from models.radiation.rayleigh import SOUND_SPEED
+from models.radiation.rig_response import anchor_drives, first_mode_damping
+from models.radiation.sound_power_bands import third_octave_power
+from models.rig import HIGHEST_PLATE_FREQUENCY
+from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
+from models.structure.beams_stiffness import beam_length
+from models.structure.plate import plate_modes
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
+from sim.pipeline import pulse_force
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from models.radiation.sound_power_bands import BandPower
+    from models.rig import Rig
+    from sim.effects.effect import Effect
+    from sim.motion import Motion
+
+__all__ = ["PlateSoundPower", "motion_sound_power"]
+
+LOWEST, HIGHEST = 50.0, 10e3
+"""Middles of the lowest and the highest band [Hz]."""
+
+SHORTEST = 0.25
+"""Run whose lines are told apart well enough for the band at 50 Hz [s]."""
+
+SEGMENT = 1.0
+"""Length of the parts whose spectra are averaged over the run [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlateSoundPower:
+    """Sound power of the plate's upper side, mean over a run.
+
+    Parameters
+    ----------
+    baffled : BandPower
+        Of the plate in a rigid baffle, bands from 50 Hz to 10 kHz.
+    free : BandPower
+        Of the plate standing free, through the band of its critical frequency; above, a baffle
+        makes no difference.
+    """
+
+    baffled: BandPower
+    free: BandPower
+
+
+def motion_sound_power(
+    rig: Rig,
+    motion: Motion,
+    *,
+    interference: float,
+    support_stiffness: float,
+    library: Mapping[str, Effect] | None = None,
+) -> PlateSoundPower:
+    """Return the sound power that the rig's plate radiates during a motion.
+
+    Parameters
+    ----------
+    rig : Rig
+        That was simulated.
+    motion : Motion
+        Of 0.25 s or more; its transient, if it has one, is a part of the mean.
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among; by default `sim.effects.EFFECTS`.
+
+    Returns
+    -------
+    PlateSoundPower
+
+    Raises
+    ------
+    ParameterError
+        If the motion is too short.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> rig, fit = load_material_rig("fluorocarbon"), 0.279e-3
+    >>> run = simulate(rig, 10.0, interference=fit, support_stiffness=3745.0, seconds=0.3)
+    >>> power = motion_sound_power(rig, run.motion, interference=fit, support_stiffness=3745.0)
+    >>> float(power.baffled.centre[power.baffled.level.argmax()].round())
+    1000.0
+    """
+    if motion.torque.size < SHORTEST * motion.rate:
+        raise ParameterError(
+            f"sound power: the run lasts {motion.torque.size / motion.rate:g} s; it must last "
+            f"{SHORTEST:g} s or more for the band at {LOWEST:g} Hz"
+        )
+    pulses = pulse_force(motion, activated(rig.effects, library or EFFECTS))
+    frequency, inputs = _cross_spectra(np.stack([motion.torque, pulses]), motion.rate)
+    modes = plate_modes(rig.plate, HIGHEST_PLATE_FREQUENCY)
+    transfer = np.zeros((2, 2, frequency.size), dtype=np.complex128)
+    if math.isinf(support_stiffness):
+        x, y = rig.plate.clamp_position
+        drives = modes.slope([x], [y]).T
+        transfer = transfer[:1]
+        transfer[0, 0] = 1.0
+    else:
+        arm = rig.beams.lever + beam_length(rig.beams, support_stiffness)
+        drives = anchor_drives(modes, arm)
+        beams = beam_structure(
+            rig.beams,
+            support_stiffness,
+            rig.clamp_inertia,
+            first_mode_damping(rig, interference, support_stiffness),
+            HIGHEST_PLATE_FREQUENCY,
+        )
+        transfer[:, 0] = beams.frequency_response(frequency)[[ANCHOR_FORCE, ANCHOR_MOMENT], TORQUE]
+        transfer[0, 1] = 1.0  # a pulse is passed on by the anchor that it strikes
+    spectra = np.einsum("iaf,abf,jbf->ijf", transfer, inputs, transfer.conj(), optimize=True)
+
+    def density(middle: NDArray[np.float64]) -> NDArray[np.complex128]:
+        return _sets(frequency, spectra, middle)
+
+    critical = SOUND_SPEED**2 / (2.0 * np.pi * math.sqrt(rig.plate.stiffness_per_mass))
+    return PlateSoundPower(
+        third_octave_power(modes, drives, density, low=LOWEST, high=HIGHEST),
+        third_octave_power(
+            modes,
+            drives,
+            density,
+            low=LOWEST,
+            high=min(max(critical, LOWEST), HIGHEST),
+            baffled=False,
+        ),
+    )
+
+
+def _cross_spectra(
+    signals: NDArray[np.float64], rate: float
+) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    """Frequencies [Hz] and cross-spectral densities of signals, shape (n, n, n_frequencies)."""
+    length = min(signals.shape[1], round(SEGMENT * rate))
+    frequency, density = csd(signals[None], signals[:, None], rate, nperseg=length)
+    return frequency, density
+
+
+def _sets(
+    frequency: NDArray[np.float64], spectra: NDArray[np.complex128], middle: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Uncorrelated sets of drives with the mean cross-spectra of cells about some frequencies.
+
+    The power of a line of the torque lies in the cell that holds it, however narrow the line is.
+    """
+    half = math.sqrt(middle[1] / middle[0])
+    edges = np.append(middle / half, middle[-1] * half)
+    below = cumulative_trapezoid(spectra, frequency, initial=0)
+    mean = np.array([[np.diff(np.interp(edges, frequency, one)) for one in row] for row in below])
+    power, vectors = np.linalg.eigh(np.moveaxis(mean / np.diff(edges), -1, 0))
+    sets = np.sqrt(np.maximum(power, 0.0))[:, None] * vectors  # (n, n_drives, n_sets)
+    return np.moveaxis(sets, (0, 1, 2), (2, 1, 0))

@@ -1,0 +1,181 @@
+"""Cases are made and scored by command; the sealed set is opened in one way, which is logged."""
+
+import ast
+import json
+import sys
+import types
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from tests.blind import generate as generating
+from tests.blind.__main__ import main
+from tests.blind.design import BLOCKS, draw_design
+from tests.blind.effects import CAUSES, DEVELOPMENT, SEALED
+from tests.blind.gap import gaps_of
+from tests.blind.generate import Wanted, generate_sealed
+from tests.blind.score.floors import floors_of
+from tests.blind.score.log import LOG, commit
+from tests.blind.score.run import Asked, score_sealed
+from tests.blind.score.truth import truth_of
+
+BLIND = Path(__file__).parents[1] / "blind"
+
+
+def _lines(log):
+    return [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+
+
+def test_development_cases_are_written_answers_apart_and_scored(tmp_path, capsys, monkeypatch):
+    module = types.ModuleType("a_diagnosis")
+    seen = []
+
+    def diagnose(folder, rig_path):
+        seen.append((folder.name, sorted(p.suffix for p in folder.iterdir()), rig_path.is_file()))
+        assert not [p for p in folder.parent.iterdir() if p.name != "case"]
+        if len(seen) == 2:
+            raise ValueError("no sense in it")
+        return {"verdict": [], "effects": [], "location": {"stage": None}}
+
+    module.diagnose = diagnose
+    monkeypatch.setitem(sys.modules, "a_diagnosis", module)
+    where = tmp_path / "cases"
+    main(["generate", "--out", str(where), "--seed", "167", "--cases", "2", "--workers", "1"])
+    assert {p.name for p in where.iterdir()} == {"data", "answers"}
+    answer = json.loads((where / "answers" / "case-0001.json").read_text())
+    assert answer["set"] == DEVELOPMENT
+    main(["score", str(where), "--diagnose", "a_diagnosis:diagnose", "--workers", "1",
+          "--out", str(tmp_path / "scores")])  # fmt: skip
+    assert seen[0][0] == "case"
+    assert seen[0][2]
+    assert ".toml" in seen[0][1]
+    out = capsys.readouterr()
+    assert "ValueError: no sense in it" in out.err
+    figures = json.loads((tmp_path / "scores" / "score.json").read_text())
+    assert figures["failed"]["value"] == 0.5
+    assert {p.name for p in (tmp_path / "scores").iterdir()} == {
+        "score.json", "score.txt", "confusion.png",
+    }  # fmt: skip
+    answer = json.loads((where / "answers" / "case-0001.json").read_text())
+    assert answer["gap"] >= 1.0
+    with pytest.raises(SystemExit, match="there already"):
+        main(["generate", "--out", str(where), "--cases", "1", "--workers", "1"])
+
+
+def test_a_diagnosis_that_is_not_there_is_said_in_one_line(tmp_path):
+    with pytest.raises(SystemExit, match=r"^--diagnose nowhere\.at_all:x: there is no such"):
+        main(["score", str(tmp_path), "--diagnose", "nowhere.at_all:x", "--out", str(tmp_path)])
+    with pytest.raises(SystemExit, match="either a folder"):
+        main(["score", "--baseline", "none", "--out", str(tmp_path)])
+    with pytest.raises(SystemExit, match="either a folder"):
+        main(["score", str(tmp_path), "--sealed", "--baseline", "none", "--out", str(tmp_path)])
+
+
+def test_each_opening_of_the_sealed_set_is_logged_with_commit_and_figures(tmp_path, monkeypatch):
+    monkeypatch.setattr("tests.blind.score.run.add_gaps", lambda *_: None)
+    log = tmp_path / "log.jsonl"
+    asked = Asked("", baseline="none")
+    for seed in (1, 2):
+        score_sealed(Wanted(seed, 1), asked, tmp_path / "scores", log)
+    lines = _lines(log)
+    assert len(lines) == 4
+    for opening, figures, seed in zip(lines[::2], lines[1::2], (1, 2), strict=True):
+        assert figures["figures_of"] == opening["opened"]
+        assert opening["commit"] == commit()[0]
+        assert {"dirty", "cases", "about"} <= set(opening)
+        assert opening["seed"] == seed
+        assert "failed" in figures["figures"]
+
+
+def test_an_opening_that_breaks_off_is_logged_all_the_same(tmp_path, monkeypatch):
+    def broken(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(generating, "_make", broken)
+    with pytest.raises(KeyboardInterrupt):
+        generate_sealed(tmp_path / "d", tmp_path / "a", Wanted(1, 5), 1,
+                        log=tmp_path / "log", about="x")  # fmt: skip
+    assert [line["cases"] for line in _lines(tmp_path / "log")] == [5]
+
+
+def test_sealed_cases_cannot_be_generated_by_command(tmp_path):
+    with pytest.raises(SystemExit):
+        main(["generate", "--out", str(tmp_path), "--cases", "1", "--sealed"])
+    assert not list(tmp_path.iterdir())
+
+
+def test_cases_of_generate_are_never_of_sealed_forms():
+    sealed = {name for i in range(80) for name in _forms(i, SEALED)}
+    open_ = {name for i in range(80) for name in _forms(i, DEVELOPMENT)}
+    assert not sealed & open_
+
+
+def _forms(index, kept_for):
+    return [form.name for form, _ in draw_design(3, index, kept_for).forms]
+
+
+def test_no_code_but_the_logged_one_asks_for_the_sealed_set():
+    asking = set()
+    for path in BLIND.rglob("*.py"):
+        if path.parent.name == "effects":
+            continue
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for top in tree.body:
+            if any(isinstance(n, ast.Name) and n.id == "SEALED" for n in ast.walk(top)):
+                asking.add((path.name, getattr(top, "name", None)))
+    assert asking == {("generate.py", "generate_sealed")}
+    calls = {
+        path.name
+        for path in BLIND.rglob("*.py")
+        for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(n, ast.Call) and getattr(n.func, "id", "") == "generate_sealed"
+    }
+    assert calls == {"run.py"}
+
+
+def test_the_log_lies_in_the_repository():
+    assert LOG.parent == BLIND
+
+
+def test_quotas_hold_what_the_first_answer_is_scored_on():
+    designs = [draw_design(1, i, SEALED, "quotas") for i in range(1500)]
+    kinds = Counter(d.kind for d in designs)
+    assert kinds["none"] >= 300
+    assert kinds["stranger"] >= 100
+    causes = Counter(d.forms[0][0].effect for d in designs if d.kind == "one")
+    assert set(causes) == set(CAUSES)
+    assert min(causes.values()) >= 40
+    assert len(BLOCKS["quotas"]) == 75
+
+
+def test_shares_take_2100_cases_for_forty_of_each_cause():
+    kinds = Counter(draw_design(1, i, SEALED).kind for i in range(2100))
+    assert kinds["one"] == 40 * len(CAUSES)
+    assert kinds["none"] == 315
+
+
+@pytest.mark.parametrize("kind", ["none", "parameters", "pair"])
+def test_the_gap_is_one_where_nothing_is_the_matter_and_above_elsewhere(kind):
+    design = next(d for d in (draw_design(2, i, DEVELOPMENT) for i in range(60)) if d.kind == kind)
+    found = gaps_of({"seed": 2, "index": design.index, "set": DEVELOPMENT, "block": "shares"})
+    assert (found["gap"] == 1.0) == (kind == "none")
+    assert found["gap"] >= 1.0
+    assert set(found["gap_alone"]) == {form.effect for form, _ in design.forms}
+
+
+@pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
+def test_turning_a_strong_effect_off_closes_the_gap_to_about_a_floor():
+    designs = (draw_design(2, i, DEVELOPMENT) for i in range(200))
+    design = next(d for d in designs if d.kind == "one" and d.forms[0][1] > 0.8)
+    found = floors_of({"seed": 2, "index": design.index, "set": DEVELOPMENT, "block": "shares"})
+    assert found["floors"] > 2.0
+    assert found["floors_off"] < 2.0
+    assert 0.5 < found["closed"] < 1.2
+
+
+def test_floors_stand_for_the_gap_where_an_answer_has_them():
+    answer = {"class": "one", "verdict": ["clipping"], "effects": [], "gap": 1.2}
+    assert not truth_of("a", answer).counts
+    assert truth_of("a", answer | {"floors": 3.0, "closed": 0.9}).counts
+    assert truth_of("a", answer | {"floors": 3.0, "closed": 0.9}).closed == 0.9

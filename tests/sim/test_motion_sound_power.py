@@ -1,0 +1,122 @@
+"""Sound power of runs: of torques whose power is known, and of slips."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.condition import FIXED
+from models.errors import ParameterError
+from models.radiation.rig_response import anchor_drives, first_mode_damping
+from models.radiation.sound_power import power_flow
+from models.rig import HIGHEST_PLATE_FREQUENCY
+from models.rig_files.rig_file import load_material_rig
+from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
+from models.structure.beams_stiffness import beam_length
+from models.structure.plate import plate_modes
+from noise.audio.sound_power_table import COLUMNS, TOTAL, sound_power_rows
+from sim.analysis.sound_power import motion_sound_power
+from sim.run import simulate
+
+BENCH = load_material_rig("PDMS")
+RIG = replace(BENCH, plate=replace(BENCH.plate, thickness=0.02, loss_factor=0.1))
+FREQUENCY, AMPLITUDE = 700.0, 0.3
+MODES = plate_modes(RIG.plate, HIGHEST_PLATE_FREQUENCY)
+
+
+def tone(time, amplitude=AMPLITUDE):
+    return 8.0 + amplitude * np.sin(2 * np.pi * FREQUENCY * time)
+
+
+def power_of(support, torque=tone, *, seconds=0.5):
+    """Of a run whose torque is replaced by a tone about a mean, or another one."""
+    motion = simulate(RIG, 5.0, support_stiffness=support, seconds=seconds).motion
+    time = np.arange(motion.torque.size) / motion.rate
+    return motion_sound_power(
+        RIG,
+        replace(motion, torque=torque(time)),
+        interference=0.279e-3,
+        support_stiffness=support,
+    )
+
+
+def rms_drives(support):
+    """Drives of the plate and their root mean square spectra, for the tone."""
+    rms = AMPLITUDE / np.sqrt(2)
+    if support == FIXED:
+        x, y = RIG.plate.clamp_position
+        return MODES.slope([x], [y]).T, [rms]
+    ratio = first_mode_damping(RIG, 0.279e-3, support)
+    beams = beam_structure(RIG.beams, support, RIG.clamp_inertia, ratio, HIGHEST_PLATE_FREQUENCY)
+    passed = beams.frequency_response([FREQUENCY])[[ANCHOR_FORCE, ANCHOR_MOMENT], TORQUE, 0]
+    arm = RIG.beams.lever + beam_length(RIG.beams, support)
+    return anchor_drives(MODES, arm), rms * passed
+
+
+@pytest.mark.parametrize("support", [2214.0, 3745.0, FIXED])
+def test_a_tone_of_torque_radiates_what_its_drives_radiate(support):
+    power = power_of(support).baffled
+    exact = power_flow(MODES, *rms_drives(support), [FREQUENCY])
+    band = np.argmin(np.abs(np.log(power.centre / FREQUENCY)))
+    for found, expected in ((power.radiated, exact.radiated), (power.supplied, exact.supplied)):
+        # A line is taken to lie in the middle of its cell, half a resonance wide.
+        assert 10 * np.log10(found[band] / expected[0]) == pytest.approx(0, abs=1.0)
+        assert found[band] == pytest.approx(found.sum(), rel=1e-3)
+    assert power.dissipated == pytest.approx(power.supplied, rel=1e-6)  # radiation damps nothing
+
+
+def test_white_torque_radiates_the_sum_of_its_bands():
+    rng = np.random.default_rng(4)
+    found = power_of(FIXED, lambda time: rng.normal(size=time.size), seconds=2.0).baffled
+    density = 2.0 / 90e3
+    drives, _ = rms_drives(FIXED)
+    frequency = np.arange(891.25, 1122.0, 4.0)  # the band at 1 kHz
+    flow = power_flow(MODES, drives, [np.sqrt(density)], frequency)
+    expected = np.mean(flow.radiated) * (1122.02 - 891.25)
+    assert 10 * np.log10(found.radiated[13] / expected) == pytest.approx(0, abs=0.5)
+
+
+def test_twice_the_torque_is_four_times_the_power():
+    one = power_of(2214.0).baffled.level
+    two = power_of(2214.0, lambda time: tone(time, 2.0 * AMPLITUDE)).baffled.level
+    assert two.max() - one.max() == pytest.approx(20 * np.log10(2), abs=1e-3)
+
+
+def test_a_constant_torque_is_silent_and_its_table_is_empty():
+    power = power_of(2214.0, lambda time: np.full(time.size, 8.0))
+    rows = sound_power_rows(power)
+    assert {row[name] for row in rows for name in COLUMNS[1:]} == {None}
+
+
+def test_standing_free_costs_what_a_baffle_adds_below_the_critical_frequency():
+    rng = np.random.default_rng(1)
+    power = power_of(FIXED, lambda time: rng.normal(size=time.size))
+    louder = power.baffled.level[: power.free.level.size] - power.free.level
+    assert power.free.centre[-1] == pytest.approx(631, abs=1)  # the critical one is 614 Hz
+    assert louder[:7].min() > 3.0
+    assert np.abs(louder[-2:]).max() < 2.0
+
+
+def test_pulses_of_the_anchors_are_heard_in_the_power():
+    rig = load_material_rig("fluorocarbon")  # whose slips strike the anchors
+    motion = simulate(rig, 1.0, interference=0.381e-3, seconds=0.5).motion
+    with_pulses, without = (
+        motion_sound_power(of, motion, interference=0.381e-3, support_stiffness=2214.0)
+        for of in (rig, replace(rig, effects=()))
+    )
+    assert with_pulses.baffled.level[-1] > without.baffled.level[-1] + 6.0
+
+
+def test_the_table_sums_its_bands():
+    rows = sound_power_rows(power_of(2214.0))
+    assert [row["band_hz"] for row in rows][::10] == ["50", "500", "5000"]
+    *bands, total = rows
+    assert (len(bands), total["band_hz"]) == (24, TOTAL)
+    loudest = next(row for row in bands if row["band_hz"] == "630")
+    assert total["level_db"] == pytest.approx(loudest["level_db"], abs=0.1)
+    assert loudest["level_dba"] == pytest.approx(loudest["level_db"] - 1.9, abs=0.1)
+
+
+def test_a_run_too_short_for_the_lowest_band_is_refused():
+    with pytest.raises(ParameterError, match=r"lasts 0\.1 s; it must last 0\.25 s or more"):
+        power_of(2214.0, seconds=0.1)

@@ -1,0 +1,92 @@
+"""The stages of a run, called one by one, and the presets of their timing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.condition import KnownCondition
+from models.radiation.rig_response import impulse_responses
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from noise.diagnosis.simulated.repeats import plan_repeat
+from sim.pipeline import (
+    apply_sensor_effects,
+    pulse_force,
+    radiate_motion,
+    run_motion,
+    sensor_signals,
+)
+from sim.run import plan_run, simulate
+from sim.timing import DIAGNOSIS, SCREENING, SIMULATION
+
+RIG = replace(load_material_rig("fluorocarbon"), effects=(LawSpec("slip_pulse"),))
+AT = {"interference": 0.381e-3, "support_stiffness": 2214.0}
+
+
+def planned(**given):
+    how = AT | {"temperature": 23.0, "seconds": 0.2, "rate": 30e3, "settling": None}
+    return plan_run(RIG, 1.0, library=None, **how | given)
+
+
+def test_the_stages_one_by_one_are_the_run():
+    run, plan = simulate(RIG, 1.0, seconds=0.2, **AT), planned()
+    motion = run_motion(plan)
+    sound = radiate_motion(
+        motion, impulse_responses(plan.rig, *AT.values(), plan.rate), plan.effects
+    )
+    kept = slice(plan.n_settling, None)
+    assert np.array_equal(motion.torque[kept], run.motion.torque)
+    assert np.array_equal(sound.pressure[kept], run.pressure)
+    assert np.array_equal(sound.pulse_pressure[kept], run.pulse_pressure)
+    assert pulse_force(motion, plan.effects).max() > 0.0
+    assert plan.condition == run.recording.condition
+    assert (run.motion.rate, run.settling) == (SIMULATION.rate(30e3), SIMULATION.settling)
+
+
+def test_without_pulses_all_the_sound_is_that_of_the_torque():
+    plan = planned()
+    motion, paths = run_motion(plan), impulse_responses(plan.rig, *AT.values(), plan.rate)
+    sound, torque_alone = (radiate_motion(motion, paths, e) for e in (plan.effects, ()))
+    assert not torque_alone.pulse_pressure.any()
+    assert sound.pressure == pytest.approx(torque_alone.pressure + sound.pulse_pressure, abs=1e-12)
+
+
+def test_sensors_see_the_run_from_where_it_is_kept():
+    plan = planned(settling=0.1)
+    motion = run_motion(plan)
+    sound = radiate_motion(motion, impulse_responses(plan.rig, *AT.values(), plan.rate))
+    signals = sensor_signals(motion, sound, plan.n_settling)
+    assert {x.size for x in signals.values()} == {plan.n_kept}
+    assert signals["angle"][0] == 0.0
+    assert apply_sensor_effects(signals, (), plan.rate, np.random.default_rng(0)) is signals
+
+
+def test_a_motion_in_parts_is_the_motion():
+    motion = run_motion(planned())
+    joined = (
+        motion.part(0, 1000).followed_by(motion.part(1000, 2500)).followed_by(motion.since(2500))
+    )
+    for name in ("torque", "shaft_angle", "clamp_speed"):
+        assert np.array_equal(getattr(joined, name), getattr(motion, name))
+
+
+@pytest.mark.parametrize(
+    ("timing", "rate", "fine", "settling"),
+    [
+        (SIMULATION, 30e3, 90e3, 0.5),
+        (SIMULATION, 25.6e3, 102.4e3, 0.5),
+        (DIAGNOSIS, 30e3, 90e3, 0.35),
+        (DIAGNOSIS, 25.6e3, 76.8e3, 0.35),
+        (SCREENING, 30e3, 30e3, 0.6),
+    ],
+)
+def test_presets_are_what_shipped_models_have_seen(timing, rate, fine, settling):
+    assert (timing.rate(rate), timing.settling) == (fine, settling)
+    assert timing.rate(rate) == timing.decimation(rate) * rate
+
+
+def test_a_repeat_is_planned_as_the_diagnosis_has_it():
+    at = KnownCondition(1.0, *AT.values())
+    plan = plan_repeat(RIG, at, (), rate=DIAGNOSIS.rate(25.6e3), seconds=0.4)
+    assert (plan.n_settling, plan.n_kept) == (26880, 30720)
