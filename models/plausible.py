@@ -1,6 +1,6 @@
 """Bounds of the plausible and of the possible for what describes a bushing and its use.
 
-What lies outside the usual is used, and told in one line; what lies outside the possible is refused.
+What lies outside the usual is used, and told in one line; what is not possible is refused.
 The usual range is that of the thesis's rig and of bushings from a wiper's to a lorry's spring eye;
 the possible is as wide as numbers still mean something.
 """

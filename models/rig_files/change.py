@@ -1,9 +1,9 @@
 """Changes to a rig: factors, percentages and values for quantities that are named.
 
 A quantity of the bushing has a short name, ``damping``, and a long one with its unit,
-``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` go with both, a bare number with the long one alone, and
-is then the value at every fit and support. Parameters of the friction law and of effects go by their
-own names, ``ageing_time`` or ``slip_pulse.amplitude``.
+``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` go with both, a bare number with the long one alone,
+and is then the value at every fit and support. Parameters of the friction law and of effects go by
+their own names, ``ageing_time`` or ``slip_pulse.amplitude``.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _RIG = {
 _LONG = _FIT | _RIG
 _FRICTION = "friction"
 
-_FACTOR = re.compile(r"[x×]\s*(?P<number>[^\s%]+)")
+_FACTOR = re.compile(r"x\s*(?P<number>[^\s%]+)")
 _PERCENT = re.compile(r"(?P<number>[+-]\s*[^\s%]+)\s*%")
 
 

@@ -33,6 +33,7 @@ def configure(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--rig", type=Path, required=True, metavar="RIG.toml", help="what is known of the rig"
     )
+    opt.add_change(parser)
     parser.add_argument(
         "--out",
         type=Path,
@@ -64,7 +65,7 @@ def run(options: Namespace) -> int:
     from noise.diagnosis.text.sentences import answer, closed_sentence, finding_of
 
     library = effect_library(options.effects)
-    case = read_case(options.data, load_rig(options.rig))
+    case = read_case(options.data, opt.changed(load_rig(options.rig), options.change))
     for name, reason in case.refused:
         say(f"{name}: {reason}")
     diagnosis = diagnose_case(

@@ -34,6 +34,7 @@ CONDITION_OPTIONS = (
     "effect",
     "effects",
     "rig",
+    "change",
     "converter",
 )
 """What `noise.commands.options.add_condition` adds, as attributes of the options."""
@@ -107,6 +108,7 @@ def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:
 
     from sim.acquisition import Acquisition
 
+    acquisition = Acquisition(rate=rate, converter=bool(options.converter))
     return {
         "rig": rig,
         "shaft": shaft,
@@ -114,7 +116,7 @@ def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:
         "support_stiffness": stiffness,
         "temperature": _or(options.temperature, opt.DEFAULT_TEMPERATURE),
         "seconds": seconds,
-        "acquisition": Acquisition(rate=rate, converter=bool(options.converter)),
+        "acquisition": replace(acquisition, noise={**acquisition.noise, **rig.sensor_noise}),
         "library": library,
         "rng": np.random.default_rng(options.seed),
     }
@@ -147,7 +149,8 @@ def _rig(options: Namespace, library: Mapping[str, Effect]) -> Rig:
                 f"--material {named} contradicts --rig {options.rig}, whose material is "
                 f"{rig.material}; leave --material out, or change the file"
             )
-    return replace(rig, effects=_effects(rig.effects, options.effect or (), library))
+    rig = replace(rig, effects=_effects(rig.effects, options.effect or (), library))
+    return opt.changed(rig, options.change)
 
 
 def _effects(

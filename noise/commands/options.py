@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 from models.condition import FIXED
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser
-    from collections.abc import Callable
+    from argparse import ArgumentParser, _ArgumentGroup
+    from collections.abc import Callable, Sequence
 
-    from models.rig import LawSpec
+    from models.rig import LawSpec, Rig
 
 __all__ = [
     "DEFAULT_INTERFERENCE_MM",
@@ -29,9 +29,11 @@ __all__ = [
     "DEFAULT_TEMPERATURE",
     "Ramp",
     "Swing",
+    "add_change",
     "add_condition",
     "add_full_scale",
     "add_seed",
+    "changed",
     "number",
 ]
 
@@ -177,6 +179,7 @@ def add_condition(parser: ArgumentParser) -> None:
         metavar="RIG.toml",
         help="rig file to use instead of the rig that is shipped",
     )
+    add_change(group)
     group.add_argument(
         "--converter",
         action="store_true",
@@ -184,6 +187,46 @@ def add_condition(parser: ArgumentParser) -> None:
         help="pass the samples through the rig's 12-bit converter, which hides quiet sounds and "
         "clips loud ones (default: no)",
     )
+
+
+def add_change(parser: ArgumentParser | _ArgumentGroup) -> None:
+    """Add ``--change``, for every command that takes a rig."""
+    parser.add_argument(
+        "--change",
+        type=_change,
+        action="append",
+        metavar="NAME=AMOUNT",
+        help="change the rig as [change] in its file does: damping=x2, critical_torque=-20%%, "
+        "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; may be given several "
+        "times (default: none)",
+    )
+
+
+def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
+    """Return the rig with what ``--change`` says.
+
+    Raises
+    ------
+    ParameterError
+        A change cannot be used, or is given twice.
+    """
+    if not changes:
+        return rig
+    from models.errors import ParameterError
+    from models.rig_files.change import changed_rig
+
+    table = dict(changes)
+    if len(table) < len(changes):
+        raise ParameterError("--change: one name is given twice; give one change")
+    return changed_rig(rig, table, "--change")
+
+
+def _change(text: str) -> tuple[str, str | float]:
+    name, equals, amount = (part.strip() for part in text.partition("="))
+    if not (name and equals and amount):
+        raise ArgumentTypeError(f"is {text!r}, expected NAME=AMOUNT, such as damping=x2")
+    number = _number_or_none(amount)
+    return name, amount if number is None else number
 
 
 def _finite(text: str) -> float:

@@ -28,6 +28,7 @@ from noise.screening.ranking.ranking import standings
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from models.rig import Rig
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.mapping import DesignMap
 
@@ -45,6 +46,7 @@ def screen(
     loudness: bool = False,
     tolerances: bool | None = None,
     rng: np.random.Generator | None = None,
+    change: Callable[[Rig], Rig] | None = None,
     simulations: int | None = DEFAULT_SIMULATIONS,
     workers: int = -1,
     scheduler: str | None = None,
@@ -68,6 +70,8 @@ def screen(
         by default only of those that state some. Takes several seconds a design.
     rng : numpy.random.Generator, optional
         Of the parts within tolerances; by default of seed 0.
+    change : callable, optional
+        Makes another rig of that of each design, such as ``lambda rig: rig.changed(damping="x2")``.
     simulations : int, optional
         Of a map, more or less; None follows every boundary to the end.
     workers : int
@@ -111,6 +115,8 @@ def screen(
             called = one.name if isinstance(one, Design) else str(one)
             try:
                 design = one if isinstance(one, Design) else load_design(one)
+                if change is not None:
+                    design = replace(design, rig=change(design.rig))
                 design = _with_name_of_its_own(design, set(screened))
                 found: list[DesignMap] = []
                 outside = _outside(design, given)
@@ -129,7 +135,7 @@ def screen(
                 continue
             screened[design.name] = design
             maps += found
-            if not isinstance(one, Design) and Path(one).is_file():
+            if change is None and not isinstance(one, Design) and Path(one).is_file():
                 files.append((design.name, Path(one)))
     if not maps:
         raise ParameterError(refused[0][1])
