@@ -23,6 +23,7 @@ from noise.screening.map.mapping import map_design
 from noise.screening.outcome import Screening
 from noise.screening.parts.statistics import statistics_of
 from noise.screening.ranking.margins import critical_points
+from noise.screening.ranking.never_slips import why_never_slipping
 from noise.screening.ranking.ranking import standings
 
 if TYPE_CHECKING:
@@ -156,11 +157,17 @@ def screen(
         )
         for each, stream in zip(first.values(), streams, strict=True)
     )
+    never_slipping = [
+        why_never_slipping(
+            in_environment(screened[each.design].rig, environment(each.environment)), each.grid
+        )
+        for each in maps
+    ]
     return Screening(
         maps=tuple(maps),
         critical=critical,
         statistics=statistics,
-        standings=standings(maps, critical, statistics),
+        standings=standings(maps, critical, statistics, never_slipping),
         refused=tuple(refused),
         files=tuple(files),
         seconds=mapped - started,
