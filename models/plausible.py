@@ -111,7 +111,6 @@ BOUNDS = {
         (0.0, 25.0),
         (0.0, 1e6),
         "up to 19.75 at the rig (5.1.3); a bar that swings by 30 degrees at 6 Hz reaches 20",
-        ((math.pi / 180.0, "degree/s"), (math.pi / 30.0, "1/min")),
     ),
     "temperature_C": Bounds(
         "degree Celsius",

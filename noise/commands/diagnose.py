@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.atomic import check_target
-from noise.base.progress import say
+from noise.base.progress import note, say
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
@@ -57,7 +57,9 @@ def run(options: Namespace) -> int:
             raise ParameterError(f"--out {options.out}: is a file; name a folder")
         check_target(options.out / "report.html")
     say("preparing")
+    from models.plausible import rig_remarks
     from models.rig_files.rig_file import load_rig
+    from noise.base.remarks import effect_remarks
     from noise.base.user_effects import effect_library
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import diagnose_case
@@ -65,7 +67,10 @@ def run(options: Namespace) -> int:
     from noise.diagnosis.text.sentences import answer, closed_sentence, finding_of
 
     library = effect_library(options.effects)
-    case = read_case(options.data, opt.changed(load_rig(options.rig), options.change))
+    rig = opt.changed(load_rig(options.rig), options.change)
+    for text in (*rig_remarks(rig), *effect_remarks(rig, library)):
+        note(text)
+    case = read_case(options.data, rig)
     for name, reason in case.refused:
         say(f"{name}: {reason}")
     diagnosis = diagnose_case(

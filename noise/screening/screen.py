@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
+from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.design.environments import DRY, environment, in_environment
 from noise.screening.map.batches import batch_evaluator
@@ -25,6 +26,7 @@ from noise.screening.parts.statistics import statistics_of
 from noise.screening.ranking.margins import critical_points
 from noise.screening.ranking.never_slips import why_never_slipping
 from noise.screening.ranking.ranking import standings
+from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -120,9 +122,8 @@ def screen(
                     design = replace(design, rig=change(design.rig))
                 design = _with_name_of_its_own(design, set(screened))
                 found: list[DesignMap] = []
-                outside = _outside(design, given)
-                if outside:
-                    progress(f"{design.name}: {outside}")
+                for text in _remarks(design, given):
+                    progress(f"{design.name}: {text}")
                 for where in in_environments:
                     progress(f"mapping {design.name}, {where.name}")
                     found += [
@@ -183,14 +184,24 @@ def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
     return replace(design, name=name)
 
 
-def _outside(design: Design, given: Use | None) -> str:
-    """Say so where a map reaches beyond the fits that the design's properties are given for."""
-    asked = grid_of(design, given).interference
+def _remarks(design: Design, given: Use | None) -> list[str]:
+    """Say where a map reaches beyond what the design's properties are given for, and the like."""
+    grid = grid_of(design, given)
+    asked, found = grid.interference, []
     low, high = (1e3 * limit for limit in design.rig.interference_range)
-    if 1e3 * asked[0] >= low * (1.0 - 1e-9) and 1e3 * asked[-1] <= high * (1.0 + 1e-9):
-        return ""
-    fits = f"{low:g} mm" if low == high else f"{low:g} to {high:g} mm"
-    return f"fits are given for {fits} alone; beyond, those of the nearest are used"
+    if 1e3 * asked[0] < low * (1.0 - 1e-9) or 1e3 * asked[-1] > high * (1.0 + 1e-9):
+        fits = f"{low:g} mm" if low == high else f"{low:g} to {high:g} mm"
+        found.append(f"fits are given for {fits} alone; beyond, those of the nearest are used")
+    found += use_remarks(
+        design.rig,
+        speed=grid.use,
+        interference=asked,
+        support_stiffness=grid.support_stiffness,
+        temperature=grid.temperature,
+    )
+    if (given is not None and given.temperature) or len(grid.temperature) > 1:
+        found.append(temperature_remark(design.rig, grid.temperature[-1]))
+    return [text for text in (*found, *effect_remarks(design.rig, EFFECTS)) if text]
 
 
 def _motions(design: Design, given: Use | None) -> list[Swinging | None]:

@@ -1,10 +1,10 @@
 """Designs whose contact never lets go in use, which are quiet for no good reason.
 
 A shaft that turns on winds the bushing up until the contact slips. Where it would have to wind it
-up further than rubber bears, or longer than a run of the map lasts at the fastest speed of use, with
-every fit and support, nothing is known of the design's noise, and it gets no rank; most often a
-torque or a stiffness is in another unit. A shaft that swings may well never make the contact slip,
-which is a result.
+up further than rubber bears, or longer than a run of the map lasts at the fastest speed of use,
+with every fit and support, nothing is known of the design's noise, and it gets no rank; most often
+a torque or a stiffness is in another unit. A shaft that swings may well never make the contact
+slip, which is a result.
 """
 
 from __future__ import annotations
@@ -64,6 +64,6 @@ def why_never_slipping(rig: Rig, grid: Grid) -> str:
         if not never_slips(motion, rig.fit(interference).kinetic_torque):
             return ""
     return (
-        f"never slips: the contact holds {torque:.4g} Nm, for which the shaft winds the bushing up "
+        f"never slips: the contact holds {torque:g} Nm, for which the shaft winds the bushing up "
         f"by {twist:.3g} rad"
     )
