@@ -31,12 +31,11 @@ _FIT = {
     "kinetic_torque": "kinetic_torque_Nm",
     "damping": "damping_Nms_rad",
 }
-_RIG = {
+_LONG = _FIT | {
     "elastomer_inertia": "elastomer_inertia_kgm2",
     "clamp_inertia": "clamp_inertia_kgm2",
     "elastomer_damping_share": "elastomer_damping_share",
 }
-_LONG = _FIT | _RIG
 _FRICTION = "friction"
 
 _FACTOR = re.compile(r"x\s*(?P<number>[^\s%]+)")
@@ -107,7 +106,9 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
             fits=tuple(_changed_fit(fit, bushing) for fit in rig.fits),
             friction=_changed_law(rig.friction, _FRICTION, amounts, where),
             effects=tuple(_changed_law(e, e.name, amounts, where) for e in rig.effects),
-            **{name: bushing[name].of(getattr(rig, name)) for name in _RIG if name in bushing},
+            elastomer_inertia=_changed(bushing, "elastomer_inertia", rig),
+            clamp_inertia=_changed(bushing, "clamp_inertia", rig),
+            elastomer_damping_share=_changed(bushing, "elastomer_damping_share", rig),
         )
     except ParameterError as error:
         raise ParameterError(f"{where}: {str(error).removeprefix(f'{where}: ')}") from None
@@ -188,6 +189,11 @@ def _float(text: str) -> float:
         return float(text)
     except ValueError:
         return math.nan
+
+
+def _changed(amounts: Mapping[str, _Amount], name: str, rig: Rig) -> float:
+    old: float = getattr(rig, name)
+    return amounts[name].of(old) if name in amounts else old
 
 
 def _changed_fit(fit: Fit, amounts: Mapping[str, _Amount]) -> Fit:

@@ -1,7 +1,7 @@
 """Remarks on a rig and its use that the user should know of: one line each, said once.
 
-They go to standard error and into the sidecar or table of what is made: what lies outside the usual,
-what was not measured but held or interpolated, what cannot change anything.
+They go to standard error and into the sidecar of what is made: what lies outside the usual, what
+was not measured but held or interpolated, what cannot change anything.
 """
 
 from __future__ import annotations

@@ -153,7 +153,7 @@ def _remarks(
         )
     found += use_remarks(
         rig,
-        speed=_fastest(shaft),
+        speed=[_fastest(shaft, _or(options.seconds, opt.DEFAULT_SECONDS))],
         interference=[interference_mm / 1e3],
         support_stiffness=[stiffness],
         temperature=[_or(options.temperature, opt.DEFAULT_TEMPERATURE)],
@@ -163,17 +163,11 @@ def _remarks(
     return tuple(text for text in found if text)
 
 
-def _fastest(shaft: ShaftMotion) -> list[float]:
+def _fastest(shaft: ShaftMotion, seconds: float) -> float:
     """Fastest speed of a motion [rad/s]."""
-    from sim.shaft import ConstantSpeed, LoggedSpeed, Oscillation, SpeedRamp
+    import numpy as np
 
-    if isinstance(shaft, ConstantSpeed):
-        return [shaft.value]
-    if isinstance(shaft, SpeedRamp):
-        return [max(shaft.start, shaft.end, key=abs)]
-    if isinstance(shaft, Oscillation):
-        return [2.0 * math.pi * shaft.frequency * shaft.amplitude]
-    return [float(max(shaft.speed, key=abs))] if isinstance(shaft, LoggedSpeed) else []
+    return float(np.abs(shaft.speed(np.linspace(0.0, seconds, 4001))).max())
 
 
 _LEAST_SAMPLES = 16
