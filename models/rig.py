@@ -223,8 +223,8 @@ class Rig:
         --------
         >>> from models.rig_files.rig_file import load_material_rig
         >>> rig = load_material_rig("fluorocarbon-thesis")
-        >>> rig.changed(damping="x2", critical_torque="-20 %").fit(0.279e-3).critical_torque
-        8.56
+        >>> rig.changed(damping="x2", critical_torque="+50 %").fit(0.279e-3).critical_torque
+        16.049...
         >>> rig.changed(damping_Nms_rad=0.09).fit(0.279e-3).damping[2214.0]
         0.09
         >>> calibrated = load_material_rig("fluorocarbon")
