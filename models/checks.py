@@ -3,13 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from difflib import get_close_matches
 from typing import Any
 
 from models.errors import ParameterError
 
-__all__ = ["a_number", "a_support", "a_table", "a_text", "a_vector", "refuse_unknown"]
+__all__ = [
+    "a_number", "a_support", "a_table", "a_text", "a_vector", "meant", "refuse_unknown",
+]  # fmt: skip
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """Return the question whether the nearest known name was meant, empty where none is near.
+
+    Examples
+    --------
+    >>> meant("desing", ["design", "fit"]), meant("x", ["design"])
+    ("; did you mean 'design'?", '')
+    """
+    near = get_close_matches(name, list(known), n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> None:
@@ -27,7 +42,8 @@ def refuse_unknown(table: Mapping[str, Any], known: set[str], where: str) -> Non
     for key in table:
         if key not in known:
             raise ParameterError(
-                f"{where}: unknown key {key!r}; known are {', '.join(sorted(known))}"
+                f"{where}: unknown key {key!r}{meant(key, known)}; known are "
+                f"{', '.join(sorted(known))}"
             )
 
 

@@ -100,6 +100,8 @@ class Recording:
         Whether the samples are in physical units.
     name : str
         What the recording is called in tables and messages, usually its file.
+    notes : tuple of str
+        What a reader should know of it, a line each.
 
     Raises
     ------
@@ -120,6 +122,7 @@ class Recording:
     condition: Condition = field(default_factory=Condition)
     calibrated: bool = True
     name: str = ""
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.samples.ndim != 2 or len(self.samples) != len(self.channels):

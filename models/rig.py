@@ -175,6 +175,9 @@ class Rig:
         The entries of the files that no source gives.
     measured : tuple of MeasuredResponse
         Responses measured on the rig, each in place of the modelled one of its support.
+    sensor_noise : mapping of str to float
+        Standard deviation of the noise on each kind of channel, in its unit, where it differs
+        from that of `sim.acquisition`.
     """
 
     name: str
@@ -190,6 +193,7 @@ class Rig:
     microphone: Microphone
     assumed: tuple[str, ...] = ()
     measured: tuple[MeasuredResponse, ...] = ()
+    sensor_noise: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in ("elastomer_inertia", "clamp_inertia"):
@@ -199,6 +203,42 @@ class Rig:
     def interference_range(self) -> tuple[float, float]:
         """Smallest and largest interference for which the bushing's properties are given [m]."""
         return self.fits[0].interference, self.fits[-1].interference
+
+    def changed(self, **changes: str | float | Mapping[str, str | float]) -> Rig:
+        """Return the rig with quantities changed, as ``[change]`` in a rig file does.
+
+        Parameters
+        ----------
+        **changes : str, float or mapping
+            ``"x2"`` or ``"-20 %"`` by short or long name, a number by the long one, which names
+            its unit; parameters of the friction law and of effects by their own names, where
+            several have the name in a mapping by that of the effect, or ``friction``.
+
+        Returns
+        -------
+        Rig
+            Another one; this one stays as it is.
+
+        Raises
+        ------
+        ParameterError
+            A name is unknown or means several quantities, or an amount cannot be used.
+
+        Examples
+        --------
+        >>> from models.rig_files.rig_file import load_material_rig
+        >>> rig = load_material_rig("fluorocarbon-thesis")
+        >>> rig.changed(damping="x2", critical_torque="+50 %").fit(0.279e-3).critical_torque
+        16.049...
+        >>> rig.changed(damping_Nms_rad=0.09).fit(0.279e-3).damping[2214.0]
+        0.09
+        >>> calibrated = load_material_rig("fluorocarbon")
+        >>> calibrated.changed(slip_pulse={"amplitude": "x0.5"}).effects[0].parameters["amplitude"]
+        30.0
+        """
+        from models.rig_files.change import changed_rig
+
+        return changed_rig(self, changes, f"rig {self.name!r}")
 
     def fit(self, interference: float) -> Fit:
         """Properties at `interference` [m]: linear between the given fits, held outside them."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["write_run"]
 
 
-def write_run(path: str | os.PathLike[str], run: BlockRun) -> Path:
+def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...] = ()) -> Path:
     """Compute a run and write it, block by block, into a WAV file with its sidecar.
 
     Parameters
@@ -24,6 +24,9 @@ def write_run(path: str | os.PathLike[str], run: BlockRun) -> Path:
         ``run07`` and ``run07.wav`` are the same; parent folders are made.
     run : BlockRun
         Of `sim.long_run.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
+
+    notes : tuple of str
+        For the sidecar.
 
     Returns
     -------
@@ -54,4 +57,5 @@ def write_run(path: str | os.PathLike[str], run: BlockRun) -> Path:
         rate=run.rate,
         channels=run.channels,
         condition=run.condition,
+        notes=notes,
     )

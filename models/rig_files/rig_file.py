@@ -1,9 +1,14 @@
 """Rig and material files (TOML): read, check, and lay over the bench that is shipped.
 
 A rig is the shipped bench, with what the material's file says of the bushing laid over it, with
-what the user's file says laid over both. A file that brings its own ``[[fit]]`` entries describes
-a bushing of its own: constant critical and kinetic torque, damping split evenly, no effects,
-unless it says otherwise.
+what the user's file says laid over both. ``base`` names a material or another rig file instead, of
+which all stays that the file does not say; ``[change]`` then multiplies or sets quantities. A file
+without ``base`` that brings its own ``[[fit]]`` entries describes a bushing of its own: constant
+critical and kinetic torque, damping split evenly, no effects, unless it says otherwise. Under the
+name of a shipped material it must say which friction law it means.
+
+The same file serves every command: what ``[design]`` and ``[tolerances]`` say is read where it is
+used.
 """
 
 from __future__ import annotations
@@ -16,10 +21,13 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models.checks import a_number, a_support, a_table, a_text, refuse_unknown
+from models.checks import a_number, a_support, a_table, a_text, meant, refuse_unknown
 from models.errors import ParameterError
+from models.plausible import refuse_impossible
+from models.recording import CHANNEL_UNITS
 from models.rig import Fit, LawSpec, Rig
 from models.rig_files.beams_file import read_beams
+from models.rig_files.change import changed_rig
 from models.rig_files.plate_file import a_microphone, a_plate
 
 if TYPE_CHECKING:
@@ -50,6 +58,12 @@ _KEYS = {
     "microphone",
     "assumed",
 }
+
+_APART = {"base", "change", "measured_response", "design", "tolerances", "sensors"}
+"""Keys that are not laid over those of a base."""
+
+_STRUCTURE = ("beams", "plate", "microphone")
+"""Tables of which a file may give a part."""
 
 _PLAIN_BUSHING = {
     "elastomer_damping_share": 0.5,
@@ -96,7 +110,8 @@ def load_material_rig(material: str) -> Rig:
     >>> load_material_rig("fluorocarbon-thesis").fit(0.279e-3).critical_torque
     10.7
     """
-    return _build(_bench() | _material(material), f"material {material!r}")
+    content, where = _bench() | _material(material), f"material {material!r}"
+    return Rig(**_parts(content, where, _law(content["friction"], where, None)))
 
 
 def load_rig(path: str | Path) -> Rig:
@@ -158,25 +173,113 @@ def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:
     >>> rig_from({"material": "PDMS"}, Path(), "rig").friction.name
     'lugre'
     """
-    given = dict(content)
-    measured = _measured(given.pop("measured_response", None), folder, where)
-    refuse_unknown(given, _KEYS, where)
-    base = _bench()
-    if "fit" in given:
-        bushing: dict[str, Any] = _PLAIN_BUSHING
+    return _laid(content, folder, where, ())[0]
+
+
+def _laid(
+    content: Mapping[str, Any], folder: Path, where: str, chain: tuple[Path, ...]
+) -> tuple[Rig, dict[str, Any]]:
+    """Rig of a file's content, and its tables of the structure; `chain` led to the file."""
+    refuse_unknown(content, _KEYS | _APART, where)
+    given = {key: value for key, value in content.items() if key not in _APART}
+    tables = {name: a_table(given.pop(name, {}), name, where) for name in _STRUCTURE}
+    if "base" in content:
+        base, below = _base(a_text(content["base"], "base", where), folder, where, chain)
+        tables = {name: below[name] | tables[name] for name in _STRUCTURE}
+        _check_name(given, base, where)
+        rig = replace(base, **_parts(given | tables, where, base.friction))
     else:
-        named = given.get("material", base["material"])
-        bushing = _material(a_text(named, "material", where))
+        bench = _bench()
+        bushing = _bushing(given, bench["material"], where)
+        tables = {name: bench[name] | tables[name] for name in _STRUCTURE}
+        law = _law(bushing["friction"], "the bushing", None)
+        rig = Rig(**_parts(bench | bushing | given | tables, where, law))
+    if "measured_response" in content:
+        rig = replace(rig, measured=_measured(content["measured_response"], folder, where))
+    if "sensors" in content:
+        rig = replace(rig, sensor_noise=_sensor_noise(content["sensors"], f"{where}, sensors"))
+    refuse_impossible(rig, where)
+    if "change" in content:
+        rig = changed_rig(rig, a_table(content["change"], "change", where), f"{where}, change")
+    return rig, tables
+
+
+def _base(
+    named: str, folder: Path, where: str, chain: tuple[Path, ...]
+) -> tuple[Rig, dict[str, Any]]:
+    material = _shipped(named)
+    if material is not None:
+        return load_material_rig(material), {name: _bench()[name] for name in _STRUCTURE}
+    path = (folder / named).resolve()
+    if path in chain:
+        circle = " -> ".join(link.name for link in (*chain[chain.index(path) :], path))
+        raise ParameterError(f"{where}: base = {named!r} leads back to itself: {circle}")
+    if not path.is_file():
+        raise ParameterError(
+            f"{where}: base = {named!r} is neither a material nor a file"
+            f"{meant(named, material_names())}; there are {', '.join(material_names())}"
+        )
+    below = f"{where}: base {named}"
+    return _laid(read_toml(path, below), path.parent, below, (*chain, path))
+
+
+def _shipped(name: str) -> str | None:
+    known = {each.lower(): each for each in material_names()}
+    return known.get(name.strip().lower())
+
+
+def _check_name(given: dict[str, Any], base: Rig, where: str) -> None:
+    """Refuse a base of one material under the name of another."""
+    if "material" not in given:
+        return
+    shipped = _shipped(a_text(given["material"], "material", where))
+    if shipped is not None and shipped != base.material:
+        raise ParameterError(
+            f"{where}: material = {given['material']!r} contradicts base, which is of "
+            f"{base.material}; leave material out"
+        )
+    given["material"] = shipped or given["material"]
+
+
+def _bushing(given: dict[str, Any], default: str, where: str) -> dict[str, Any]:
+    """Tables of the bushing that a file without base is laid over."""
+    named = a_text(given.get("material", default), "material", where)
+    if "fit" not in given:
+        bushing = _material(named)
         given["material"] = bushing["material"]
-    merged = base | bushing | given
-    for table in ("beams", "plate", "microphone"):
-        merged[table] = base[table] | a_table(given.get(table, {}), table, where)
-    return replace(_build(merged, where), measured=measured)
+        return bushing
+    shipped = _shipped(named)
+    friction = a_table(given.get("friction", {}), "friction", where)
+    if "material" in given and shipped is not None and "law" not in friction:
+        law = _material(shipped)["friction"]["law"]
+        raise ParameterError(
+            f"{where}: brings its own [[fit]] under the name of {shipped}, whose friction law is "
+            f'{law}, and does not say which law it means; write base = "{shipped}" in place of '
+            f'material to keep law and effects of {shipped}, or [friction] law = "coulomb" for '
+            "constant torques"
+        )
+    return _PLAIN_BUSHING
+
+
+def _sensor_noise(table: Any, where: str) -> dict[str, float]:
+    table = a_table(table, "sensors", where)
+    refuse_unknown(table, {"noise"}, where)
+    noise = table.get("noise", _FROM_RECORDINGS)
+    if noise == _FROM_RECORDINGS:
+        return {}
+    if not isinstance(noise, Mapping):
+        raise ParameterError(
+            f'{where}: noise = {noise!r} must be "{_FROM_RECORDINGS}", or a table such as '
+            "{ torque = 0.01, pressure = 2e-3 }"
+        )
+    refuse_unknown(noise, set(CHANNEL_UNITS), f"{where}, noise")
+    return {name: a_number(noise, name, f"{where}, noise", closed=True) for name in noise}
+
+
+_FROM_RECORDINGS = "from recordings"
 
 
 def _measured(tables: Any, folder: Path, where: str) -> tuple[MeasuredResponse, ...]:
-    if tables is None:
-        return ()
     from models.rig_files.measured_file import measured_responses  # brings numpy, help does without
 
     return measured_responses(tables, folder, where)
@@ -215,19 +318,73 @@ def _bench() -> dict[str, Any]:
 
 
 def _material(name: str) -> dict[str, Any]:
-    for known in material_names():
-        if known.lower() == name.strip().lower():
-            text = (_DATA / "materials" / f"{known}.toml").read_text(encoding="utf-8")
-            return tomllib.loads(text) | {"material": known}
-    raise ParameterError(f"material {name!r} is unknown; there are {', '.join(material_names())}")
+    known = _shipped(name)
+    if known is None:
+        raise ParameterError(
+            f"material {name!r} is unknown{meant(name, material_names())}; there are "
+            f"{', '.join(material_names())}"
+        )
+    text = (_DATA / "materials" / f"{known}.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text) | {"material": known}
 
 
-def _build(merged: Mapping[str, Any], where: str) -> Rig:
-    if not isinstance(merged["fit"], list):
+def _parts(given: Mapping[str, Any], where: str, law: LawSpec) -> dict[str, Any]:
+    """Read the fields of a `Rig` that are given; `law` is the one that stays."""
+    parts: dict[str, Any] = {}
+    for key in ("name", "material"):
+        if key in given:
+            parts[key] = a_text(given[key], key, where)
+    for key, field in _INERTIAS.items():
+        if key in given:
+            parts[field] = a_number(given, key, where)
+    if "elastomer_damping_share" in given:
+        parts["elastomer_damping_share"] = a_number(
+            given, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True
+        )
+    if "fit" in given:
+        parts["fits"] = _fits(given["fit"], where)
+    if "friction" in given:
+        parts["friction"] = _law(given["friction"], where, law)
+    if "effects" in given:
+        effects = given["effects"]
+        if not isinstance(effects, list):
+            raise ParameterError(
+                f'{where}: effects must be a list such as ["slip_pulse:amplitude=20"]'
+            )
+        parts["effects"] = tuple(
+            parse_spec(a_text(e, "effects", where), f"{where}, effect") for e in effects
+        )
+    if "assumed" in given:
+        parts["assumed"] = _texts(given["assumed"], "assumed", where)
+    parts["beams"] = read_beams(given["beams"], f"{where}, beams")
+    parts["plate"] = a_plate(given["plate"], f"{where}, plate")
+    parts["microphone"] = a_microphone(given["microphone"], parts["plate"], f"{where}, microphone")
+    return parts
+
+
+_INERTIAS = {
+    "elastomer_inertia_kgm2": "elastomer_inertia",
+    "clamp_inertia_kgm2": "clamp_inertia",
+}
+
+
+def _law(table: Any, where: str, stays: LawSpec | None) -> LawSpec:
+    """Friction law of a table; one that names none changes parameters of the law that stays."""
+    friction = dict(a_table(table, "friction", where))
+    named = a_text(friction.pop("law", stays.name if stays else "coulomb"), "friction.law", where)
+    for key in friction:
+        a_number(friction, key, f"{where}, friction", low=-math.inf)
+    if stays is not None and "law" not in table:
+        friction = {**stays.parameters, **friction}
+    return LawSpec(named, friction)
+
+
+def _fits(tables: Any, where: str) -> tuple[Fit, ...]:
+    if not isinstance(tables, list):
         raise ParameterError(f"{where}: fit must be given as [[fit]] tables")
     fits = tuple(
         sorted(
-            (_fit(table, f"{where}, fit {i + 1}") for i, table in enumerate(merged["fit"])),
+            (_fit(table, f"{where}, fit {i + 1}") for i, table in enumerate(tables)),
             key=lambda fit: fit.interference,
         )
     )
@@ -235,30 +392,7 @@ def _build(merged: Mapping[str, Any], where: str) -> Rig:
         raise ParameterError(f"{where}: needs at least one [[fit]]")
     if len({fit.interference for fit in fits}) < len(fits):
         raise ParameterError(f"{where}: two [[fit]] entries have the same interference_mm")
-    friction = dict(a_table(merged["friction"], "friction", where))
-    law = a_text(friction.pop("law", "coulomb"), "friction.law", where)
-    for key in friction:
-        a_number(friction, key, f"{where}, friction", low=-math.inf)
-    effects = merged["effects"]
-    if not isinstance(effects, list):
-        raise ParameterError(f'{where}: effects must be a list such as ["slip_pulse:amplitude=20"]')
-    plate = a_plate(merged["plate"], f"{where}, plate")
-    return Rig(
-        name=a_text(merged["name"], "name", where),
-        material=a_text(merged["material"], "material", where),
-        elastomer_inertia=a_number(merged, "elastomer_inertia_kgm2", where),
-        clamp_inertia=a_number(merged, "clamp_inertia_kgm2", where),
-        fits=fits,
-        friction=LawSpec(law, friction),
-        elastomer_damping_share=a_number(
-            merged, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True
-        ),
-        effects=tuple(parse_spec(a_text(e, "effects", where), f"{where}, effect") for e in effects),
-        beams=read_beams(merged["beams"], f"{where}, beams"),
-        plate=plate,
-        microphone=a_microphone(merged["microphone"], plate, f"{where}, microphone"),
-        assumed=_texts(merged.get("assumed", []), "assumed", where),
-    )
+    return fits
 
 
 def _texts(value: Any, key: str, where: str) -> tuple[str, ...]:

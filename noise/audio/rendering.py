@@ -211,6 +211,7 @@ def render(
             "start_s": part.start,
             "end_s": part.end,
             "conditions": json.loads(sidecar_text(recording))["conditions"],
+            **({"notes": list(recording.notes)} if recording.notes else {}),
             **assessment.entry(value),
         }
         for part, recording, assessment in zip(of.parts, recordings, of.assessments, strict=True)

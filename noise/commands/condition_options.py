@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import FIXED
 from models.errors import ParameterError
-from noise.commands.options import number, number_or_none
+from noise.commands.options import add_change, number, number_or_none
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -63,6 +63,7 @@ CONDITION_OPTIONS = (
     "effect",
     "effects",
     "rig",
+    "change",
     "converter",
 )
 """What `add_condition` adds, as attributes of the options."""
@@ -140,6 +141,7 @@ def add_condition(parser: ArgumentParser) -> None:
         metavar="RIG.toml",
         help="rig file to use instead of the rig that is shipped",
     )
+    add_change(group)
     group.add_argument(
         "--converter",
         action="store_true",

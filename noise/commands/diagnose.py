@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from noise.base.progress import say
+from noise.base.progress import note, say
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ def configure(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--rig", type=Path, required=True, metavar="RIG.toml", help="what is known of the rig"
     )
+    opt.add_change(parser)
     parser.add_argument(
         "--out",
         type=Path,
@@ -52,7 +53,9 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         opt.check_folder(options.out, file="report.html")
     say("preparing")
+    from models.plausible import rig_remarks
     from models.rig_files.rig_file import load_rig
+    from noise.base.remarks import effect_remarks
     from noise.base.user_effects import effect_library
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import diagnose_case
@@ -60,7 +63,10 @@ def run(options: Namespace) -> int:
     from noise.diagnosis.text.sentences import answer, closed_sentence, finding_of
 
     library = effect_library(options.effects)
-    case = read_case(options.data, load_rig(options.rig))
+    rig = opt.changed(load_rig(options.rig), options.change)
+    for text in (*rig_remarks(rig), *effect_remarks(rig, library)):
+        note(text)
+    case = read_case(options.data, rig)
     for name, reason in case.refused:
         say(f"{name}: {reason}")
     diagnosis = diagnose_case(

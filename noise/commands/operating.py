@@ -10,19 +10,22 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.base.progress import note, say
+from noise.base.remarks import NEVER_SLIPS, effect_remarks, temperature_remark, use_remarks
 from noise.base.user_effects import effect_library
 from noise.commands import condition_options as opt
-from noise.commands.options import number_or_none
+from noise.commands.options import changed, number_or_none
 
 if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Mapping
 
+    from models.recording import Recording
     from models.rig import LawSpec, Rig
     from sim.effects.effect import Effect
+    from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-__all__ = ["is_long", "run_arguments"]
+__all__ = ["is_long", "run_arguments", "with_notes"]
 
 
 def is_long(arguments: Mapping[str, Any]) -> bool:
@@ -40,8 +43,10 @@ _LONG = 60.0
 """Longer runs are written in blocks, unless an effect needs them whole [s]."""
 
 
-def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:
+def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Arguments of `sim.run.simulate` for the run that the options of a condition describe.
+
+    What the user should know of it is noted, and returned beside them.
 
     Parameters
     ----------
@@ -70,13 +75,9 @@ def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:
     rig = _rig(options, library)
     _note_idle(options.effects, rig, library)
     shaft, turning = _shaft(options, seconds)
-    low, high = (1e3 * limit for limit in rig.interference_range)
-    if not low * (1.0 - 1e-9) <= interference_mm <= high * (1.0 + 1e-9):
-        nearest = low if interference_mm < low else high
-        note(
-            f"--interference {interference_mm:g} mm lies outside the fits given for "
-            f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used"
-        )
+    notes = _remarks(options, rig, shaft, library, interference_mm, stiffness)
+    for text in notes:
+        note(text)
     support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
     say(f"simulating {seconds:g} s: {turning}, {interference_mm:g} mm, {support}, {rig.material}")
 
@@ -84,17 +85,65 @@ def run_arguments(options: Namespace, rate: float) -> dict[str, Any]:
 
     from sim.acquisition import Acquisition
 
-    return {
+    acquisition = Acquisition(rate=rate, converter=bool(options.converter))
+    arguments = {
         "rig": rig,
         "shaft": shaft,
         "interference": interference_mm / 1e3,
         "support_stiffness": stiffness,
         "temperature": _or(options.temperature, opt.DEFAULT_TEMPERATURE),
         "seconds": seconds,
-        "acquisition": Acquisition(rate=rate, converter=bool(options.converter)),
+        "acquisition": replace(acquisition, noise={**acquisition.noise, **rig.sensor_noise}),
         "library": library,
         "rng": np.random.default_rng(options.seed),
     }
+    return arguments, notes
+
+
+def with_notes(run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any]) -> Recording:
+    """Return the recording of a run with its notes, that nothing slips in it among them."""
+    from sim.analysis.regime import never_slips
+
+    kinetic = arguments["rig"].fit(arguments["interference"]).kinetic_torque
+    if never_slips(run.motion, kinetic):
+        note(NEVER_SLIPS)
+        notes = (*notes, NEVER_SLIPS)
+    return replace(run.recording, notes=notes)
+
+
+def _remarks(
+    options: Namespace,
+    rig: Rig,
+    shaft: ShaftMotion,
+    library: Mapping[str, Effect],
+    interference_mm: float,
+    stiffness: float,
+) -> tuple[str, ...]:
+    low, high = (1e3 * limit for limit in rig.interference_range)
+    found = []
+    if not low * (1.0 - 1e-9) <= interference_mm <= high * (1.0 + 1e-9):
+        nearest = low if interference_mm < low else high
+        found.append(
+            f"--interference {interference_mm:g} mm lies outside the fits given for "
+            f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used"
+        )
+    found += use_remarks(
+        rig,
+        speed=[_fastest(shaft, _or(options.seconds, opt.DEFAULT_SECONDS))],
+        interference=[interference_mm / 1e3],
+        support_stiffness=[stiffness],
+        temperature=[_or(options.temperature, opt.DEFAULT_TEMPERATURE)],
+    )
+    found += effect_remarks(rig, library)
+    found.append(temperature_remark(rig, options.temperature))
+    return tuple(text for text in found if text)
+
+
+def _fastest(shaft: ShaftMotion, seconds: float) -> float:
+    """Fastest speed of a motion [rad/s]."""
+    import numpy as np
+
+    return float(np.abs(shaft.speed(np.linspace(0.0, seconds, 4001))).max())
 
 
 _LEAST_SAMPLES = 16
@@ -124,7 +173,8 @@ def _rig(options: Namespace, library: Mapping[str, Effect]) -> Rig:
                 f"--material {named} contradicts --rig {options.rig}, whose material is "
                 f"{rig.material}; leave --material out, or change the file"
             )
-    return replace(rig, effects=_effects(rig.effects, options.effect or (), library))
+    rig = replace(rig, effects=_effects(rig.effects, options.effect or (), library))
+    return changed(rig, options.change)
 
 
 def _effects(

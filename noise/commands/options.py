@@ -15,12 +15,14 @@ from noise.base.atomic import check_target
 from noise.base.progress import say
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser
-    from collections.abc import Callable
+    from argparse import ArgumentParser, _ArgumentGroup
+    from collections.abc import Callable, Sequence
+
+    from models.rig import Rig
 
 __all__ = [
-    "add_full_scale", "add_seed", "check_folder", "number", "number_or_none", "refuse",
-    "whole_number",
+    "add_change", "add_full_scale", "add_seed", "changed", "check_folder", "number",
+    "number_or_none", "refuse", "whole_number",
 ]  # fmt: skip
 
 
@@ -115,6 +117,45 @@ def add_full_scale(parser: ArgumentParser) -> None:
         help="sound pressure in Pa that a full-scale sample of the input stands for; wins over "
         "what sidecar and file say (default: what they say, else levels in dBFS only)",
     )
+
+
+def add_change(parser: ArgumentParser | _ArgumentGroup) -> None:
+    """Add ``--change``, for every command that takes a rig."""
+    parser.add_argument(
+        "--change",
+        type=_change,
+        action="append",
+        metavar="NAME=AMOUNT",
+        help="change the rig as [change] in its file does: damping=x2, critical_torque=-20%%, "
+        "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; may be given several "
+        "times (default: none)",
+    )
+
+
+def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
+    """Return the rig with what ``--change`` says.
+
+    Raises
+    ------
+    ParameterError
+        A change cannot be used, or is given twice.
+    """
+    if not changes:
+        return rig
+    from models.rig_files.change import changed_rig
+
+    table = dict(changes)
+    if len(table) < len(changes):
+        raise ParameterError("--change: one name is given twice; give one change")
+    return changed_rig(rig, table, "--change")
+
+
+def _change(text: str) -> tuple[str, str | float]:
+    name, equals, amount = (part.strip() for part in text.partition("="))
+    if not (name and equals and amount):
+        raise ArgumentTypeError(f"is {text!r}, expected NAME=AMOUNT, such as damping=x2")
+    number = number_or_none(amount)
+    return name, amount if number is None else number
 
 
 def _finite(text: str) -> float:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from models.errors import ParameterError
 from noise.commands.condition_options import CONDITION_OPTIONS, add_condition, given_options
-from noise.commands.operating import run_arguments
+from noise.commands.operating import run_arguments, with_notes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -52,6 +52,7 @@ class SimulatedSource:
     name: str
     arguments: Mapping[str, Any]
     seed: int
+    notes: tuple[str, ...] = ()
     done: dict[int, Recording] = field(default_factory=dict)
 
     def recording(self, number: int) -> Recording:
@@ -65,7 +66,8 @@ class SimulatedSource:
             if number:
                 arguments["rng"] = np.random.default_rng([self.seed, number])
             # Its sound is all that is heard of it, and may have to be kept for long.
-            run = simulate(**arguments).recording
+            made = simulate(**arguments)
+            run = made.recording if number else with_notes(made, self.notes, arguments)
             row = run.first("pressure")
             if row is not None:
                 samples, channels = run.samples[row : row + 1].copy(), (run.channels[row],)
@@ -162,7 +164,8 @@ def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
 
 def _source(name: str, options: Namespace) -> Source:
     # At the rate of the sound: the rig's own rate would cut the creak off at 15 kHz.
-    return SimulatedSource(name, run_arguments(options, options.rate), options.seed)
+    arguments, notes = run_arguments(options, options.rate)
+    return SimulatedSource(name, arguments, options.seed, notes)
 
 
 def _with_names_of_their_own(sources: list[Source]) -> list[Source]:

@@ -47,6 +47,7 @@ def configure(parser: ArgumentParser) -> None:
         "advice.csv where tolerances are looked at, a picture of each map, and copies of the "
         "design files for a review",
     )
+    opt.add_change(parser)
     group = parser.add_argument_group(
         "conditions",
         "In place of the designs' own. Each is a number, a list 1,2.5,5 or a range LOW..HIGH, "
@@ -135,6 +136,7 @@ def run(options: Namespace) -> int:
         loudness=options.loudness,
         tolerances=options.tolerances,
         rng=np.random.default_rng(options.seed or 0),
+        change=(lambda rig: opt.changed(rig, options.change)) if options.change else None,
         simulations=None if math.isinf(simulations) else int(simulations),
         workers=options.workers,
         scheduler=options.scheduler,

@@ -14,7 +14,7 @@ from noise.base.progress import note, say
 from noise.base.tables import check_table_path, write_table
 from noise.commands import options as opt
 from noise.commands.condition_options import add_condition
-from noise.commands.operating import is_long, run_arguments
+from noise.commands.operating import is_long, run_arguments, with_notes
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -93,22 +93,23 @@ def run(options: Namespace) -> int:
     for option in ("plot", "sound_power"):
         if getattr(options, option) is not None:
             _check_seconds(option, options.seconds)
-    arguments = run_arguments(options, options.rate)
+    arguments, notes = run_arguments(options, options.rate)
     if options.out is not None and is_long(arguments):
         from noise.long_run import write_run
         from sim.long_run import simulate_blocks
 
-        _print_names(write_run(options.out, simulate_blocks(**arguments)))
+        _print_names(write_run(options.out, simulate_blocks(**arguments), notes))
         return 0
     from sim.run import simulate
 
     simulated = simulate(**arguments)
+    recording = with_notes(simulated, notes, arguments)
     if options.out is options.plot is options.sound_power is None:
-        print(json.dumps(_summary(simulated.recording)))
+        print(json.dumps(_summary(recording)))
     if options.out is not None:
         from noise.recordings import write_recording
 
-        _print_names(write_recording(options.out, simulated.recording))
+        _print_names(write_recording(options.out, recording))
     if options.plot is not None:
         from noise.pictures.files import write_picture
         from noise.pictures.run import plot_run
@@ -186,7 +187,7 @@ def _summary(recording: Recording) -> dict[str, object]:
     torque, pressure = recording["torque"], recording["pressure"]
     rms = float(pressure.std())
     level = 20.0 * math.log10(rms / REFERENCE_PRESSURE) if rms > 0.0 else None
-    return {
+    found: dict[str, object] = {
         "conditions": json.loads(sidecar_text(recording))["conditions"],
         "seconds": recording.duration,
         "rate_hz": recording.rate,
@@ -195,6 +196,7 @@ def _summary(recording: Recording) -> dict[str, object]:
         "peak_pressure_Pa": _short(float(abs(pressure).max())),
         "level_db": None if level is None else round(level, 2),
     }
+    return found | ({"notes": list(recording.notes)} if recording.notes else {})
 
 
 def _short(value: float) -> float:

@@ -158,11 +158,13 @@ def sidecar_text(recording: Recording) -> str:
     >>> json.loads(sidecar_text(tone))["conditions"]
     {'speed_rad_s': 5.0}
     """
-    content = {
+    content: dict[str, object] = {
         "channels": [_channel_entry(channel) for channel in recording.channels],
         "conditions": _conditions_entry(recording.condition),
         "calibrated": recording.calibrated,
     }
+    if recording.notes:
+        content["notes"] = list(recording.notes)
     text = json.dumps(content, indent=1, default=float) + "\n"
     try:
         parse_sidecar(text, f"recording {recording.name!r}")

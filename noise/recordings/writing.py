@@ -82,6 +82,7 @@ def write_blocks(
     rate: float,
     channels: tuple[Channel, ...],
     condition: Condition,
+    notes: tuple[str, ...] = (),
 ) -> Path:
     """Write blocks as one 32-bit float WAV with its sidecar, both whole or not at all.
 
@@ -97,6 +98,8 @@ def write_blocks(
         Sampling rate, a whole number [Hz].
     channels : tuple of Channel
     condition : Condition
+    notes : tuple of str
+        For the sidecar.
 
     Returns
     -------
@@ -126,7 +129,7 @@ def write_blocks(
     """
     target = _wav_path(Path(path))
     empty = np.zeros((len(channels), 0))
-    about = Recording(empty, rate, channels, condition, name=target.name)
+    about = Recording(empty, rate, channels, condition, name=target.name, notes=notes)
     return _write(target, about, blocks, n_samples)
 
 

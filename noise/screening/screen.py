@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
+from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.design.environments import DRY, environment, in_environment
 from noise.screening.map.batches import batch_evaluator
@@ -23,11 +24,14 @@ from noise.screening.map.mapping import map_design
 from noise.screening.outcome import Screening
 from noise.screening.parts.statistics import statistics_of
 from noise.screening.ranking.margins import critical_points
+from noise.screening.ranking.never_slips import why_never_slipping
 from noise.screening.ranking.ranking import standings
+from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from models.rig import Rig
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.mapping import DesignMap
 
@@ -45,6 +49,7 @@ def screen(
     loudness: bool = False,
     tolerances: bool | None = None,
     rng: np.random.Generator | None = None,
+    change: Callable[[Rig], Rig] | None = None,
     simulations: int | None = DEFAULT_SIMULATIONS,
     workers: int = -1,
     scheduler: str | None = None,
@@ -68,6 +73,8 @@ def screen(
         by default only of those that state some. Takes several seconds a design.
     rng : numpy.random.Generator, optional
         Of the parts within tolerances; by default of seed 0.
+    change : callable, optional
+        Makes another rig of that of each design, such as ``lambda rig: rig.changed(damping="x2")``.
     simulations : int, optional
         Of a map, more or less; None follows every boundary to the end.
     workers : int
@@ -111,11 +118,12 @@ def screen(
             called = one.name if isinstance(one, Design) else str(one)
             try:
                 design = one if isinstance(one, Design) else load_design(one)
+                if change is not None:
+                    design = replace(design, rig=change(design.rig))
                 design = _with_name_of_its_own(design, set(screened))
                 found: list[DesignMap] = []
-                outside = _outside(design, given)
-                if outside:
-                    progress(f"{design.name}: {outside}")
+                for text in _remarks(design, given):
+                    progress(f"{design.name}: {text}")
                 for where in in_environments:
                     progress(f"mapping {design.name}, {where.name}")
                     found += [
@@ -129,7 +137,7 @@ def screen(
                 continue
             screened[design.name] = design
             maps += found
-            if not isinstance(one, Design) and Path(one).is_file():
+            if change is None and not isinstance(one, Design) and Path(one).is_file():
                 files.append((design.name, Path(one)))
     if not maps:
         raise ParameterError(refused[0][1])
@@ -150,11 +158,17 @@ def screen(
         )
         for each, stream in zip(first.values(), streams, strict=True)
     )
+    never_slipping = [
+        why_never_slipping(
+            in_environment(screened[each.design].rig, environment(each.environment)), each.grid
+        )
+        for each in maps
+    ]
     return Screening(
         maps=tuple(maps),
         critical=critical,
         statistics=statistics,
-        standings=standings(maps, critical, statistics),
+        standings=standings(maps, critical, statistics, never_slipping),
         refused=tuple(refused),
         files=tuple(files),
         seconds=mapped - started,
@@ -170,14 +184,24 @@ def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
     return replace(design, name=name)
 
 
-def _outside(design: Design, given: Use | None) -> str:
-    """Say so where a map reaches beyond the fits that the design's properties are given for."""
-    asked = grid_of(design, given).interference
+def _remarks(design: Design, given: Use | None) -> list[str]:
+    """Say where a map reaches beyond what the design's properties are given for, and the like."""
+    grid = grid_of(design, given)
+    asked, found = grid.interference, []
     low, high = (1e3 * limit for limit in design.rig.interference_range)
-    if 1e3 * asked[0] >= low * (1.0 - 1e-9) and 1e3 * asked[-1] <= high * (1.0 + 1e-9):
-        return ""
-    fits = f"{low:g} mm" if low == high else f"{low:g} to {high:g} mm"
-    return f"fits are given for {fits} alone; beyond, those of the nearest are used"
+    if 1e3 * asked[0] < low * (1.0 - 1e-9) or 1e3 * asked[-1] > high * (1.0 + 1e-9):
+        fits = f"{low:g} mm" if low == high else f"{low:g} to {high:g} mm"
+        found.append(f"fits are given for {fits} alone; beyond, those of the nearest are used")
+    found += use_remarks(
+        design.rig,
+        speed=grid.use,
+        interference=asked,
+        support_stiffness=grid.support_stiffness,
+        temperature=grid.temperature,
+    )
+    if (given is not None and given.temperature) or len(grid.temperature) > 1:
+        found.append(temperature_remark(design.rig, grid.temperature[-1]))
+    return [text for text in (*found, *effect_remarks(design.rig, EFFECTS)) if text]
 
 
 def _motions(design: Design, given: Use | None) -> list[Swinging | None]:

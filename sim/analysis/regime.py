@@ -11,7 +11,10 @@ import numpy as np
 if TYPE_CHECKING:
     from sim.motion import Motion
 
-__all__ = ["LEAST_OSCILLATION", "LEAST_STICK", "Regime", "friction_regime", "stick_and_oscillation"]
+__all__ = [
+    "LEAST_OSCILLATION", "LEAST_STICK", "Regime", "friction_regime", "never_slips",
+    "stick_and_oscillation",
+]  # fmt: skip
 
 LEAST_STICK = 0.02
 """Stick-slip: the contact sticks for more than this share of the time."""
@@ -50,6 +53,39 @@ def friction_regime(motion: Motion) -> Regime:
     if oscillation <= LEAST_OSCILLATION:
         return Regime.STEADY_SLIDING
     return Regime.STICK_SLIP if stick > LEAST_STICK else Regime.QUASI_HARMONIC
+
+
+_ELASTIC_SHARE = 0.2
+"""Most of the shaft's way that a contact yields which has not let go; creep and its stiffness."""
+
+
+def never_slips(motion: Motion, kinetic_torque: float) -> bool:
+    """Whether the contact carries the bushing's surface along from first to last.
+
+    Parameters
+    ----------
+    motion : Motion
+    kinetic_torque : float
+        At which it slides [Nm].
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> rig = load_material_rig("fluorocarbon-thesis")
+    >>> never_slips(simulate(rig, 5.0, seconds=0.1).motion, 8.0)
+    False
+    >>> held = rig.changed(critical_torque="x1000")
+    >>> never_slips(simulate(held, 5.0, seconds=0.1).motion, 8.0)
+    True
+    """
+    slid = float(np.sum(np.abs(motion.sliding_speed)))
+    way = float(np.sum(np.abs(motion.shaft_speed)))
+    if way == 0.0 or slid <= 1e-6 * way:
+        return way > 0.0
+    # A contact with an inner state, or one that creeps, yields a little before it lets go.
+    below = float(np.max(np.abs(motion.friction_torque))) < kinetic_torque
+    return below and slid < _ELASTIC_SHARE * way
 
 
 def stick_and_oscillation(motion: Motion) -> tuple[float, float]:

@@ -44,6 +44,7 @@ def rig_text(design: Design) -> str:
         f"elastomer_inertia_kgm2 = {design.inertias[0]:.6g}",
         f"clamp_inertia_kgm2 = {design.inertias[1]:.6g}",
         "effects = []",
+        'friction = { law = "coulomb" }',
     ]
     by_support = {support_name(kb): c for kb, c in design.damping.items()}
     damping = ", ".join(f'"{name}" = {c:.5g}' for name, c in by_support.items())

@@ -34,6 +34,7 @@ material = "fluorocarbon"
 elastomer_inertia_kgm2 = 1.538e-5
 clamp_inertia_kgm2 = 8.333e-4
 effects = []
+friction = { law = "coulomb" }
 [[fit]]
 interference_mm = 0.279
 elastomer_stiffness_Nm_rad = 665.0

@@ -20,6 +20,8 @@ elastomer_stiffness_Nm_rad = 665.0
 critical_torque_Nm = 10.7
 kinetic_torque_Nm = 8.0
 damping_Nms_rad = { "2214" = 0.105, "3745" = 0.085, fixed = 0.085 }
+[friction]
+law = "coulomb"
 """
 
 

@@ -70,10 +70,14 @@ def _copied(source: Path, target: Path) -> None:
 
 
 def _named_files(source: Path) -> list[Path]:
-    tables = read_toml(source, f"design {source}").get("measured_response", [])
-    return [
+    content = read_toml(source, f"design {source}")
+    found = [
         Path(value)
-        for table in tables
+        for table in content.get("measured_response", [])
         for key, value in table.items()
         if key.startswith("torque_to_") and isinstance(value, str)
     ]
+    base = Path(content.get("base", ""))
+    if base.suffix and (source.parent / base).is_file():
+        found += [base, *(base.parent / named for named in _named_files(source.parent / base))]
+    return found

@@ -44,7 +44,10 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.timing import Timing
 
-__all__ = ["REGIMES", "PointResult", "Sound", "evaluate_point", "point_sound", "shaft_motion"]
+__all__ = [
+    "LONGEST_POINT", "REGIMES", "PointResult", "Sound", "evaluate_point", "point_sound",
+    "shaft_motion",
+]  # fmt: skip
 
 REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 """In the order of their codes."""
@@ -53,6 +56,9 @@ _TOLERANCE = 1e-5
 
 _EVALUATED = 0.6
 """Length of what is judged, after settling [s]."""
+
+LONGEST_POINT = SCREENING_SLOW.settling + _EVALUATED
+"""How long a point's run from rest lasts at most, at constant speed [s]."""
 
 _SETTLED = 0.8
 """Least ratio of the vibration's strength, from one third of what is judged to the last."""

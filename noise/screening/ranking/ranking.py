@@ -39,8 +39,9 @@ class Standing:
 
     Parameters
     ----------
-    rank : int
+    rank : int, optional
         Of the design among all, 1 being quietest; those whose risk is not known share the last.
+        None where the shaft turns and the contact never slips.
     design, environment, motion : str
     risk : int, optional
         From 1 to 10 at constant speed; None if it is not known.
@@ -56,9 +57,11 @@ class Standing:
         Largest of all fits, supports and temperatures [rad/s]; NaN where the shaft swings.
     margin_v_crit1, margin_v_crit2, margin_stability : float
         Smallest likewise [rad/s].
+    never_slips : str
+        Why the contact never slips; empty where it does.
     """
 
-    rank: int
+    rank: int | None
     design: str
     environment: str
     motion: str
@@ -72,6 +75,7 @@ class Standing:
     margin_v_crit1: float
     margin_v_crit2: float
     margin_stability: float
+    never_slips: str = ""
 
 
 def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -99,6 +103,7 @@ def standings(
     maps: Sequence[DesignMap],
     critical: Sequence[CriticalPoint],
     statistics: Sequence[Statistics],
+    never_slipping: Sequence[str] | None = None,
 ) -> tuple[Standing, ...]:
     """Tell how mapped designs do, the quietest first.
 
@@ -108,19 +113,30 @@ def standings(
     critical : sequence of CriticalPoint
     statistics : sequence of Statistics
         One for each design and environment.
+    never_slipping : sequence of str, optional
+        Of each map why the contact never slips, empty where it does; by default all slip.
 
     Returns
     -------
     tuple of Standing
-        One a map.
+        One a map; those without a rank are the last.
     """
     risks = {(one.design, one.environment): one.risk for one in statistics}
     found = [
-        _standing(mapped, critical, risks[mapped.design, mapped.environment]) for mapped in maps
+        replace(
+            _standing(mapped, critical, risks[mapped.design, mapped.environment]), never_slips=why
+        )
+        for mapped, why in zip(maps, never_slipping or [""] * len(maps), strict=True)
     ]
-    rank = ranked(_candidates(found, statistics))
-    all_ranked = [replace(one, rank=rank.get(one.design, 1 + len(rank))) for one in found]
-    return tuple(sorted(all_ranked, key=lambda one: (one.rank, one.design)))
+    held = {one.design for one in found if one.never_slips and one.motion == "steady"}
+    judged = [one for one in statistics if one.design not in held]
+    order = ranked(_candidates([one for one in found if one.design not in held], judged))
+    rank: dict[str, int | None] = {**order, **dict.fromkeys(held)}
+    last = 1 + len(order)
+    all_ranked = [replace(one, rank=rank.get(one.design, last)) for one in found]
+    return tuple(
+        sorted(all_ranked, key=lambda one: (last + 1 if one.rank is None else one.rank, one.design))
+    )
 
 
 def _candidates(found: Sequence[Standing], statistics: Sequence[Statistics]) -> list[Candidate]:

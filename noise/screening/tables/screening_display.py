@@ -27,7 +27,7 @@ def screening_html(found: Screening) -> str:
         stands = found.statistics_of(one.design, one.environment).robustness
         rows.append(
             [
-                str(one.rank),
+                "-" if one.rank is None else str(one.rank),
                 one.design,
                 f"{one.environment}, {one.motion}",
                 risk_words(one.risk),

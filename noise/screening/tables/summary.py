@@ -70,6 +70,9 @@ def _standing_line(one: Standing, screening: Screening) -> str:
         if (found.design, found.environment, found.motion)
         == (one.design, one.environment, one.motion)
     )
+    if one.rank is None:
+        why = one.never_slips or "with the shaft turning it never slips"
+        return f"-. {one.design}, {where}: no rank; {why}"
     low, high = mapped.grid.use
     speed = np.array(mapped.grid.speed)
     used = mapped.label[..., (speed >= low * 0.999999) & (speed <= high * 1.000001)].size
@@ -77,6 +80,7 @@ def _standing_line(one: Standing, screening: Screening) -> str:
     noisy = {name: share for name, share in one.shares.items() if name != "none" and share > 0.0}
     if not noisy:
         text = f"quiet at all {used} points of use"
+        text += f" ({one.never_slips})" if one.never_slips else ""
     else:
         said = ", ".join(f"{name} {share:.0%}" for name, share in noisy.items())
         text = f"{said} of {used} points of use, up to {one.loudest_level:.0f} dB(A)"

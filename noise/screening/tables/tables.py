@@ -164,7 +164,7 @@ _DESIGNS: Columns = {
     "loudest_level_db": lambda one, _: round(one.loudest_level, 2),
     "loudest_label": lambda one, _: one.loudest_label,
     **{name: cell for name, cell in _SPEEDS.items() if name != "v_crit2_stability_rad_s"},
-    "error": lambda _, told: "; ".join(told.failed) or None,
+    "error": lambda one, told: "; ".join(filter(None, (one.never_slips, *told.failed))) or None,
 }
 
 _SENSITIVITIES: Columns = {

@@ -1,0 +1,226 @@
+"""Changes to a rig: factors, percentages and values for quantities that are named.
+
+A quantity of the bushing has a short name, ``damping``, and a long one with its unit,
+``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` go with both, a bare number with the long one alone,
+and is then the value at every fit and support. Parameters of the friction law and of effects go by
+their own names, ``ageing_time`` or ``slip_pulse.amplitude``.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from models.checks import a_number, meant
+from models.errors import ParameterError
+from models.plausible import refuse_impossible
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from models.rig import Fit, LawSpec, Rig
+
+__all__ = ["changed_rig"]
+
+_FIT = {
+    "elastomer_stiffness": "elastomer_stiffness_Nm_rad",
+    "critical_torque": "critical_torque_Nm",
+    "kinetic_torque": "kinetic_torque_Nm",
+    "damping": "damping_Nms_rad",
+}
+_LONG = _FIT | {
+    "elastomer_inertia": "elastomer_inertia_kgm2",
+    "clamp_inertia": "clamp_inertia_kgm2",
+    "elastomer_damping_share": "elastomer_damping_share",
+}
+_FRICTION = "friction"
+
+_FACTOR = re.compile(r"x\s*(?P<number>[^\s%]+)")
+_PERCENT = re.compile(r"(?P<number>[+-]\s*[^\s%]+)\s*%")
+
+
+@dataclass(frozen=True)
+class _Amount:
+    """What becomes of a value: it is multiplied, or replaced."""
+
+    factor: float = 1.0
+    value: float | None = None
+
+    def of(self, old: float) -> float:
+        return old * self.factor if self.value is None else self.value
+
+
+@dataclass(frozen=True)
+class _Target:
+    """Which number of the rig: `owner` is empty for those of the bushing, else a law's name."""
+
+    owner: str
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.owner}.{self.name}" if self.owner else self.name
+
+
+def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
+    """Return a rig with quantities changed; the one that is given stays as it is.
+
+    Parameters
+    ----------
+    rig : Rig
+    changes : mapping of str to str, float or mapping
+        Factor, percentage or value by the quantity's name; a table goes by the name of an effect,
+        or ``friction``.
+    where : str
+        What messages begin with.
+
+    Returns
+    -------
+    Rig
+
+    Raises
+    ------
+    ParameterError
+        A name is unknown or means several quantities, or an amount cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon")
+    >>> other = changed_rig(rig, {"critical_torque": "-20 %", "ageing_time": "x2"}, "rig")
+    >>> round(other.fit(0.279e-3).critical_torque, 3), other.friction.parameters["ageing_time"]
+    (10.608, 0.001368)
+    """
+    amounts: dict[_Target, _Amount] = {}
+    for name, given in _flat(changes):
+        target = _target(rig, name, where)
+        if target in amounts:
+            raise ParameterError(f"{where}: {target} is changed twice; give one change")
+        amounts[target] = _amount(given, name, target, where)
+    bushing = {t.name: amount for t, amount in amounts.items() if not t.owner}
+    try:
+        made = replace(
+            rig,
+            fits=tuple(_changed_fit(fit, bushing) for fit in rig.fits),
+            friction=_changed_law(rig.friction, _FRICTION, amounts, where),
+            effects=tuple(_changed_law(e, e.name, amounts, where) for e in rig.effects),
+            elastomer_inertia=_changed(bushing, "elastomer_inertia", rig),
+            clamp_inertia=_changed(bushing, "clamp_inertia", rig),
+            elastomer_damping_share=_changed(bushing, "elastomer_damping_share", rig),
+        )
+    except ParameterError as error:
+        raise ParameterError(f"{where}: {str(error).removeprefix(f'{where}: ')}") from None
+    share = {"elastomer_damping_share": made.elastomer_damping_share}
+    a_number(share, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True)
+    refuse_impossible(made, where)
+    return made
+
+
+def _flat(changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    for name, given in changes.items():
+        if isinstance(given, Mapping):
+            yield from ((f"{name}.{key}", value) for key, value in given.items())
+        else:
+            yield name, given
+
+
+def _target(rig: Rig, name: str, where: str) -> _Target:
+    owners = {_FRICTION: rig.friction, **{effect.name: effect for effect in rig.effects}}
+    owner, dot, key = name.partition(".")
+    if dot and owner == rig.friction.name:
+        owner = _FRICTION
+    if dot and owner in owners:
+        return _Target(owner, key)
+    if name.partition("_mm")[0] == "interference":
+        raise ParameterError(
+            f"{where}: {name} is an operating condition, not a property of the bushing; leave it "
+            "out and ask for it with --interference"
+        )
+    found = [_Target("", short) for short, long in _LONG.items() if name in (short, long)]
+    found += [_Target(own, name) for own, law in owners.items() if name in law.parameters]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        possible = " or ".join(map(str, found))
+        raise ParameterError(f"{where}: {name} can mean {possible}; write which")
+    known = [*_LONG, *(k for k in _LONG.values() if k not in _LONG)]
+    parameters = [f"{own}.{key}" for own, law in owners.items() for key in law.parameters]
+    hint = meant(name, [*known, *parameters, *(p.partition(".")[2] for p in parameters)])
+    raise ParameterError(
+        f"{where}: cannot change {name!r}{hint}; known are {', '.join([*known, *parameters])}"
+    )
+
+
+def _amount(given: Any, name: str, target: _Target, where: str) -> _Amount:
+    said = f"{where}: {name} = {given!r}"
+    if isinstance(given, str):
+        text = given.strip()
+        factor, percent = _FACTOR.fullmatch(text), _PERCENT.fullmatch(text)
+        number = math.nan
+        if factor:
+            number = _float(factor["number"])
+        elif percent:
+            number = 1.0 + _float(percent["number"].replace(" ", "")) / 100.0
+        if not 0.0 < number < math.inf:
+            raise ParameterError(
+                f"{said} is no change; write a factor above 0 such as 'x2', a percentage above "
+                "-100 % with its sign such as '-20 %', or a number"
+            )
+        return _Amount(factor=number)
+    number = a_number({name: given}, name, where, low=-math.inf)
+    long = _LONG.get(target.name)
+    if not target.owner and name != long:
+        raise ParameterError(
+            f"{said} has no unit; write {long} = {number:g}, or a factor such as 'x2'"
+        )
+    if not target.owner and (number < 0.0 or (number == 0.0 and not _may_vanish(target.name))):
+        raise ParameterError(f"{said} must be above 0")
+    return _Amount(value=number)
+
+
+def _may_vanish(name: str) -> bool:
+    return name == "elastomer_damping_share"
+
+
+def _float(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def _changed(amounts: Mapping[str, _Amount], name: str, rig: Rig) -> float:
+    old: float = getattr(rig, name)
+    return amounts[name].of(old) if name in amounts else old
+
+
+def _changed_fit(fit: Fit, amounts: Mapping[str, _Amount]) -> Fit:
+    new: dict[str, Any] = {}
+    for name in _FIT:
+        if name not in amounts:
+            continue
+        amount, old = amounts[name], getattr(fit, name)
+        if isinstance(old, Mapping):
+            new[name] = {support: amount.of(value) for support, value in old.items()}
+        else:
+            new[name] = amount.of(old)
+    return replace(fit, **new)
+
+
+def _changed_law(
+    law: LawSpec, owner: str, amounts: Mapping[_Target, _Amount], where: str
+) -> LawSpec:
+    own = {target.name: amount for target, amount in amounts.items() if target.owner == owner}
+    parameters = dict(law.parameters)
+    for name, amount in own.items():
+        old = parameters.get(name)
+        if amount.value is None and not isinstance(old, int | float):
+            stated = "does not state it as a number" if old is None else f"says {old!r}"
+            raise ParameterError(
+                f"{where}: {owner}.{name} cannot be multiplied, since the rig {stated}; write "
+                "its value as a number"
+            )
+        parameters[name] = amount.of(float(old)) if isinstance(old, int | float) else amount.of(0.0)
+    return replace(law, parameters=parameters) if own else law

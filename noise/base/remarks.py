@@ -1,0 +1,124 @@
+"""Remarks on a rig and its use that the user should know of: one line each, said once.
+
+They go to standard error and into the sidecar of what is made: what lies outside the usual, what
+was not measured but held or interpolated, what cannot change anything.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from models.plausible import remark, rig_remarks
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from models.rig import Rig
+    from sim.effects.effect import Effect
+
+__all__ = ["NEVER_SLIPS", "effect_remarks", "temperature_remark", "use_remarks"]
+
+NEVER_SLIPS = (
+    "nothing ever slips in this run: the contact holds from first to last, so that no friction is "
+    "heard; check critical_torque_Nm, or let it turn for longer"
+)
+
+
+def use_remarks(
+    rig: Rig,
+    *,
+    speed: Sequence[float],
+    interference: Sequence[float],
+    support_stiffness: Sequence[float],
+    temperature: Sequence[float] = (),
+) -> list[str]:
+    """Remarks on a rig and the conditions that it is used at.
+
+    Parameters
+    ----------
+    rig : Rig
+    speed, interference, support_stiffness, temperature : sequence of float
+        [rad/s], [m], [Nm/rad], [degree Celsius]
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon")
+    >>> use_remarks(rig, speed=[30.0], interference=[0.279e-3], support_stiffness=[2214.0])
+    ['speed_rad_s = 30 is outside the usual 0 to 25 rad/s']
+    """
+    finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
+    fits = [float(f"{1e3 * fit:.12g}") for fit in interference]
+    found = [
+        *rig_remarks(rig),
+        remark("speed_rad_s", *speed),
+        remark("interference_mm", *fits),
+        remark("support_stiffness_Nm_rad", *finite),
+        remark("temperature_C", *temperature),
+        _support_remark(rig, support_stiffness),
+    ]
+    return [text for text in found if text]
+
+
+def _support_remark(rig: Rig, asked: Sequence[float]) -> str:
+    given = sorted({support for fit in rig.fits for support in fit.damping})
+    if len(given) == 1:  # one damping for every support
+        return ""
+    other = [k for k in asked if not any(math.isclose(k, each, rel_tol=0.01) for each in given)]
+    if not other:
+        return ""
+    named = ", ".join(_stiffness(each) for each in given)
+    outside = [k for k in other if not given[0] <= k <= given[-1]]
+    how = (
+        "that of the nearest is used" if outside == other else "it is interpolated, or held beyond"
+    )
+    how = "it is interpolated between these" if not outside else how
+    return (
+        f"damping is given for supports of {named}; for "
+        f"{', '.join(_stiffness(k) for k in other)} Nm/rad {how}"
+    )
+
+
+def _stiffness(value: float) -> str:
+    return "fixed" if math.isinf(value) else f"{value:g}"
+
+
+def temperature_remark(rig: Rig, asked: float | None) -> str:
+    """Say that a temperature that was asked for changes nothing; empty where it does.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> temperature_remark(load_material_rig("PDMS"), 80.0)
+    'temperature 80 degree Celsius is recorded and changes nothing: friction law lugre knows none'
+    """
+    from sim.acting import knows_temperature
+
+    if asked is None or knows_temperature(rig.friction):
+        return ""
+    return (
+        f"temperature {asked:g} degree Celsius is recorded and changes nothing: friction law "
+        f"{rig.friction.name} knows none"
+    )
+
+
+def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
+    """Name effects of a rig that cannot act on its friction law.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.effects import EFFECTS
+    >>> effect_remarks(load_material_rig("fluorocarbon"), EFFECTS)
+    []
+    """
+    from sim.acting import can_act
+    from sim.effects.effect import activated
+
+    return [
+        f"effect {active.effect.name} cannot act on friction law {rig.friction.name} and changes "
+        "nothing"
+        for active in activated(rig.effects, library)
+        if not can_act(active, rig.friction)
+    ]

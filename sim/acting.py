@@ -1,0 +1,99 @@
+"""Whether an effect can change anything, with a friction law; temperatures likewise.
+
+A law with an inner state solves the contact itself: what an effect does to the creep of true stick
+alone it never reads, nor torques that it does not ask for. Which entries of the contact an effect
+changes, and which a law reads, is found by calling them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim.contact import CREEP, CRITICAL, KINETIC, N_CONTACT, N_CONTEXT, STICK_TIME, STICKS, TIME
+from sim.friction import at_temperature, friction_law
+from sim.parameters import resolve
+
+if TYPE_CHECKING:
+    from models.rig import LawSpec
+    from sim.effects.effect import ActiveEffect
+    from sim.friction.law import FrictionLaw
+
+__all__ = ["can_act", "knows_temperature"]
+
+_PROBES = 64
+"""States of the contact that are tried."""
+
+
+def can_act(active: ActiveEffect, friction: LawSpec) -> bool:
+    """Whether an effect can change a run with a friction law.
+
+    Parameters
+    ----------
+    active : ActiveEffect
+    friction : LawSpec
+
+    Raises
+    ------
+    ParameterError
+        The law is unknown, or has no such parameter.
+
+    Examples
+    --------
+    >>> from models.rig import LawSpec
+    >>> from sim.effects import EFFECTS
+    >>> creep = EFFECTS["partial_slip"].active({})
+    >>> can_act(creep, LawSpec("coulomb")), can_act(creep, LawSpec("contact_with_memory"))
+    (True, False)
+    """
+    law, effect = friction_law(friction.name), active.effect
+    if effect.contact is None or law.torque is None:
+        return True
+    rng = np.random.default_rng(0)
+    values = np.zeros(1)
+    if effect.pack is not None:
+        values = effect.pack(active.form, active.values, rng)
+    changed = np.zeros(N_CONTACT, dtype=bool)
+    for _ in range(_PROBES):
+        context = 10.0 ** rng.uniform(-4.0, 1.0, N_CONTEXT)
+        context[STICKS], context[STICK_TIME] = 0.0, context[TIME]  # throughout, with such a law
+        contact = rng.uniform(5.0, 50.0, N_CONTACT)
+        contact[CREEP] = 0.0
+        before = contact.copy()
+        state = 10.0 ** rng.uniform(-6.0, 1.0, max(effect.n_states, 1))
+        effect.contact(context, values, state, np.zeros_like(state), contact)
+        changed |= contact != before
+    read = set(range(N_CONTACT)) - {CREEP, CRITICAL, KINETIC}
+    read |= {entry for entry in (CRITICAL, KINETIC) if _reads(law, friction, entry, rng)}
+    return any(changed[entry] for entry in read)
+
+
+def _reads(law: FrictionLaw, friction: LawSpec, entry: int, rng: np.random.Generator) -> bool:
+    """Whether a law's torque, or how its state goes on, depends on an entry of the contact."""
+    values = resolve(f"friction law {law.name!r}", law.parameters, friction.parameters)
+    coefficients = law.coefficients(values)
+    at_rest = law.state()
+    for _ in range(_PROBES):
+        speed, contact = float(rng.uniform(0.1, 10.0)), rng.uniform(5.0, 50.0, N_CONTACT)
+        state = at_rest + rng.uniform(0.0, 1e-3, at_rest.size)
+        found = []
+        for factor in (1.0, 1.3):
+            asked, rates = contact.copy(), np.zeros(max(state.size, 1))
+            asked[entry] *= factor
+            found.append((law.torque(speed, coefficients, asked, state, rates), *rates))
+        if found[0] != found[1]:
+            return True
+    return False
+
+
+def knows_temperature(friction: LawSpec) -> bool:
+    """Whether the ambient temperature changes a friction law.
+
+    Examples
+    --------
+    >>> from models.rig import LawSpec
+    >>> knows_temperature(LawSpec("coulomb")), knows_temperature(LawSpec("master_curve"))
+    (False, True)
+    """
+    return at_temperature(friction, 23.0) != at_temperature(friction, 24.0)
