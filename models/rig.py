@@ -178,6 +178,8 @@ class Rig:
     sensor_noise : mapping of str to float
         Standard deviation of the noise on each kind of channel, in its unit, where it differs
         from that of `sim.acquisition`.
+    fastest_fitted : float
+        Fastest speed that the bushing was fitted at [rad/s]; infinite if none is stated.
     """
 
     name: str
@@ -194,6 +196,7 @@ class Rig:
     assumed: tuple[str, ...] = ()
     measured: tuple[MeasuredResponse, ...] = ()
     sensor_noise: Mapping[str, float] = field(default_factory=dict)
+    fastest_fitted: float = math.inf
 
     def __post_init__(self) -> None:
         for name in ("elastomer_inertia", "clamp_inertia"):

@@ -50,6 +50,7 @@ _KEYS = {
     "elastomer_inertia_kgm2",
     "clamp_inertia_kgm2",
     "elastomer_damping_share",
+    "fastest_fitted_rad_s",
     "effects",
     "friction",
     "fit",
@@ -334,7 +335,7 @@ def _parts(given: Mapping[str, Any], where: str, law: LawSpec) -> dict[str, Any]
     for key in ("name", "material"):
         if key in given:
             parts[key] = a_text(given[key], key, where)
-    for key, field in _INERTIAS.items():
+    for key, field in _NUMBERS.items():
         if key in given:
             parts[field] = a_number(given, key, where)
     if "elastomer_damping_share" in given:
@@ -362,9 +363,10 @@ def _parts(given: Mapping[str, Any], where: str, law: LawSpec) -> dict[str, Any]
     return parts
 
 
-_INERTIAS = {
+_NUMBERS = {
     "elastomer_inertia_kgm2": "elastomer_inertia",
     "clamp_inertia_kgm2": "clamp_inertia",
+    "fastest_fitted_rad_s": "fastest_fitted",
 }
 
 

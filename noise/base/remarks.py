@@ -45,8 +45,8 @@ def use_remarks(
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
-    >>> use_remarks(rig, speed=[30.0], interference=[0.279e-3], support_stiffness=[2214.0])
-    ['speed_rad_s = 30 is outside the usual 0 to 25 rad/s']
+    >>> use_remarks(rig, speed=[15.0], interference=[0.279e-3], support_stiffness=[2214.0])
+    ['speed 15 rad/s is beyond 13, the fastest that the numbers of fluorocarbon were fitted at']
     """
     finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
     fits = [float(f"{1e3 * fit:.12g}") for fit in interference]
@@ -56,9 +56,20 @@ def use_remarks(
         remark("interference_mm", *fits),
         remark("support_stiffness_Nm_rad", *finite),
         remark("temperature_C", *temperature),
+        _speed_remark(rig, speed),
         _support_remark(rig, support_stiffness),
     ]
     return [text for text in found if text]
+
+
+def _speed_remark(rig: Rig, asked: Sequence[float]) -> str:
+    fastest = max(abs(value) for value in asked)
+    if fastest <= rig.fastest_fitted * (1.0 + 1e-9):
+        return ""
+    return (
+        f"speed {fastest:g} rad/s is beyond {rig.fastest_fitted:g}, the fastest that the numbers "
+        f"of {rig.material} were fitted at"
+    )
 
 
 def _support_remark(rig: Rig, asked: Sequence[float]) -> str:
