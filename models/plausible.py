@@ -130,7 +130,7 @@ def remark(name: str, *values: float) -> str:
     name : str
         A key of `BOUNDS`.
     *values : float
-        In its unit.
+        [unit of the key]
 
     Examples
     --------

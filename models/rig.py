@@ -176,8 +176,8 @@ class Rig:
     measured : tuple of MeasuredResponse
         Responses measured on the rig, each in place of the modelled one of its support.
     sensor_noise : mapping of str to float
-        Standard deviation of the noise on each kind of channel, in its unit, where it differs
-        from that of `sim.acquisition`.
+        Standard deviation of the noise on each kind of channel [unit of the channel], where it
+        differs from that of `sim.acquisition`.
     fastest_fitted : float
         Fastest speed that the bushing was fitted at [rad/s]; infinite if none is stated.
     """
