@@ -1,0 +1,88 @@
+"""Numbers of the bushing from all recordings together, each with its 90 % interval."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from noise.identification.outcome import Number
+from noise.identification.pooled import pool
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from noise.identification.outcome import Seen
+
+__all__ = ["bushing_numbers"]
+
+Place = tuple[float | None, float | None]
+"""Interference [m] and support stiffness [Nm/rad] that a number belongs to, None for all."""
+
+_TORQUE_ERROR = 2e-3
+"""Relative standard error of a level within a recording, read off hundreds of cycles [-]."""
+
+_USUAL = {"elastomer_stiffness": 0.02, "damping": 0.04, "torque": 0.02, "inertia": 0.02}
+"""Relative scatter from recording to recording that is expected [-]."""
+
+_WIDENED = {"elastomer_stiffness": 1.0, "damping": 1.0, "torque": 1.0, "inertia": 1.0}
+"""Factors on the half-widths, from development rigs of `tests.blind.identify`."""
+
+
+def bushing_numbers(seen: Sequence[Seen]) -> list[Number]:
+    """Pool what single recordings said.
+
+    Parameters
+    ----------
+    seen : sequence of Seen
+
+    Returns
+    -------
+    list of Number
+        Stiffness and torques by interference, damping by interference and support, inertias.
+    """
+    slipping = [one for one in seen if one.levels.slips]
+    return [
+        *_numbers(
+            "elastomer_stiffness", "Nm/rad", slipping, "elastomer_stiffness",
+            lambda one: one.fit.bushing.elastomer_stiffness, _fit_of,
+        ),
+        *_numbers(
+            "critical_torque", "Nm", slipping, "torque", lambda one: one.levels.critical, _fit_of
+        ),
+        *_numbers(
+            "kinetic_torque", "Nm", slipping, "torque", lambda one: one.levels.kinetic, _fit_of
+        ),
+        *_numbers(
+            "damping", "Nm s/rad", slipping, "damping", lambda one: one.fit.damping, _cell_of
+        ),
+        *_numbers(
+            "elastomer_inertia", "kg m2", slipping, "inertia",
+            lambda one: one.fit.bushing.elastomer_inertia, lambda _: (None, None),
+        ),
+        *_numbers(
+            "clamp_inertia", "kg m2", slipping, "inertia",
+            lambda one: one.fit.bushing.clamp_inertia, lambda _: (None, None),
+        ),
+    ]  # fmt: skip
+
+
+def _fit_of(one: Seen) -> Place:
+    return one.measured.condition.interference, None
+
+
+def _cell_of(one: Seen) -> Place:
+    return one.measured.condition.interference, one.measured.condition.support_stiffness
+
+
+def _numbers(
+    name: str, unit: str, seen: Sequence[Seen], kind: str,
+    value: Callable[[Seen], float], place: Callable[[Seen], Place],
+) -> list[Number]:  # fmt: skip
+    groups: dict[Place, list[tuple[float, float]]] = defaultdict(list)
+    for one in seen:
+        groups[place(one)].append((value(one), one.fit.errors.get(name, _TORQUE_ERROR)))
+    pooled = pool(groups, usual=_USUAL[kind], widened=_WIDENED[kind])
+    return [
+        Number(name, unit, p.value, p.low, p.high, p.n, *at)
+        for at, p in sorted(pooled.items(), key=lambda item: (item[0][0] or 0.0, item[0][1] or 0.0))
+    ]
