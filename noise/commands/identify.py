@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.atomic import atomic, check_target
+from noise.base.atomic import check_target
 from noise.base.progress import say
-from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -20,10 +19,10 @@ def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
         "Identify a rig from recordings: stiffness and damping of the bushing, critical and "
-        "kinetic torque by interference, and the law of friction, each with its 90 %% interval. Recordings "
-        "need torque and shaft angle, and a sidecar with interference and support stiffness; slow "
-        "rotation with clear stick and slip says most, several speeds tell the law, a condition "
-        "recorded twice tells how much repeats differ."
+        "kinetic torque by interference, and the law of friction, each with its 90 %% interval. "
+        "Recordings need torque and shaft angle, and a sidecar with interference and support "
+        "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
+        "law, a condition recorded twice tells how much repeats differ."
     )
     parser.epilog = "example: bushing-noise identify recordings --rig known.toml --out mine"
     parser.add_argument(
@@ -38,7 +37,6 @@ def configure(parser: ArgumentParser) -> None:
         help="folder for rig.toml, identification.json and report.html (default: the rig file on "
         "standard output)",
     )  # fmt: skip
-    opt.add_seed(parser, "of simulated runs")
 
 
 def run(options: Namespace) -> int:
@@ -48,12 +46,9 @@ def run(options: Namespace) -> int:
             raise ParameterError(f"--out {options.out}: is a file; name a folder")
         check_target(options.out / "report.html")
     say("preparing")
-    import json
-
     from noise.identification.identify import identify_rig
     from noise.identification.known import known_beforehand
     from noise.identification.measured import read_measurements
-    from noise.identification.outcome import as_json
 
     beforehand = known_beforehand(options.rig)
     measurements = read_measurements(options.data)
@@ -62,17 +57,13 @@ def run(options: Namespace) -> int:
     if not measurements.used:
         say("no recording that a rig can be identified from; nothing is written")
         return 1
-    found = identify_rig(measurements, beforehand, seed=options.seed or 0, progress=say)
+    found = identify_rig(measurements, beforehand, progress=say)
     if options.out is None:
         print(found.rig_toml, end="")
     else:
-        data = json.dumps(as_json(found), indent=2, ensure_ascii=False, allow_nan=False)
-        with (
-            atomic(options.out / "rig.toml") as rig,
-            atomic(options.out / "identification.json") as path,
-        ):
-            rig.write_text(found.rig_toml, encoding="utf-8")
-            path.write_bytes(f"{data}\n".encode("utf-8", "backslashreplace"))
-        print(options.out / "rig.toml")
-        print(options.out / "identification.json")
+        from noise.pages.identification.page import write_identification
+
+        write_identification(options.out, found)
+        for name in ("report.html", "rig.toml", "identification.json"):
+            print(options.out / name)
     return 1 if measurements.refused else 0

@@ -41,29 +41,19 @@ def bushing_numbers(seen: Sequence[Seen]) -> list[Number]:
         Stiffness and torques by interference, damping by interference and support, inertias.
     """
     slipping = [one for one in seen if one.levels.slips]
-    return [
-        *_numbers(
-            "elastomer_stiffness", "Nm/rad", slipping, "elastomer_stiffness",
-            lambda one: one.fit.bushing.elastomer_stiffness, _fit_of,
-        ),
-        *_numbers(
-            "critical_torque", "Nm", slipping, "torque", lambda one: one.levels.critical, _fit_of
-        ),
-        *_numbers(
-            "kinetic_torque", "Nm", slipping, "torque", lambda one: one.levels.kinetic, _fit_of
-        ),
-        *_numbers(
-            "damping", "Nm s/rad", slipping, "damping", lambda one: one.fit.damping, _cell_of
-        ),
-        *_numbers(
-            "elastomer_inertia", "kg m2", slipping, "inertia",
-            lambda one: one.fit.bushing.elastomer_inertia, lambda _: (None, None),
-        ),
-        *_numbers(
-            "clamp_inertia", "kg m2", slipping, "inertia",
-            lambda one: one.fit.bushing.clamp_inertia, lambda _: (None, None),
-        ),
-    ]  # fmt: skip
+    kinds = (
+        ("elastomer_stiffness", "Nm/rad", "elastomer_stiffness", _fit_of),
+        ("critical_torque", "Nm", "torque", _fit_of),
+        ("kinetic_torque", "Nm", "torque", _fit_of),
+        ("damping", "Nm s/rad", "damping", _cell_of),
+        ("elastomer_inertia", "kg m2", "inertia", _anywhere),
+        ("clamp_inertia", "kg m2", "inertia", _anywhere),
+    )
+    return [number for kind in kinds for number in _numbers(slipping, *kind)]
+
+
+def _anywhere(_: Seen) -> Place:
+    return None, None
 
 
 def _fit_of(one: Seen) -> Place:
@@ -75,12 +65,11 @@ def _cell_of(one: Seen) -> Place:
 
 
 def _numbers(
-    name: str, unit: str, seen: Sequence[Seen], kind: str,
-    value: Callable[[Seen], float], place: Callable[[Seen], Place],
+    seen: Sequence[Seen], name: str, unit: str, kind: str, place: Callable[[Seen], Place]
 ) -> list[Number]:  # fmt: skip
     groups: dict[Place, list[tuple[float, float]]] = defaultdict(list)
     for one in seen:
-        groups[place(one)].append((value(one), one.fit.errors.get(name, _TORQUE_ERROR)))
+        groups[place(one)].append((one.values[name], one.fit.errors.get(name, _TORQUE_ERROR)))
     pooled = pool(groups, usual=_USUAL[kind], widened=_WIDENED[kind])
     return [
         Number(name, unit, p.value, p.low, p.high, p.n, *at)

@@ -51,9 +51,9 @@ class LawScore:
     Parameters
     ----------
     law : str
-        Of `sim.friction`.
+        Of `noise.identification.law_candidates`.
     held_out : float
-        Distance of recordings that its fit has not seen, in standard deviations of repeats [-].
+        Distance of recordings that its fit has not seen, in floors [-].
     trained : float
         The same of those that it has seen [-].
     parameters : mapping of str to float
@@ -68,11 +68,21 @@ class LawScore:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """One recording and what it said by itself."""
+    """One recording and what it said by itself.
+
+    Parameters
+    ----------
+    measured : Measured
+    fit : BushingFit
+    levels : Levels
+    values : mapping of str to float
+        What counts of it in the end, in SI units, by the names of the rig's numbers.
+    """
 
     measured: Measured
     fit: BushingFit
     levels: Levels
+    values: Mapping[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,11 +188,11 @@ def _recording(one: Seen) -> dict[str, Any]:
         "speed_rad_s": _rounded(c.speed),
         "interference_mm": _rounded(1e3 * c.interference),
         "support_stiffness_Nm_rad": _support(c.support_stiffness),
-        "elastomer_stiffness_Nm_rad": _rounded(one.fit.bushing.elastomer_stiffness),
-        "damping_Nms_rad": _rounded(one.fit.damping),
+        "elastomer_stiffness_Nm_rad": _rounded(one.values["elastomer_stiffness"]),
+        "damping_Nms_rad": _rounded(one.values["damping"]),
         "mean_torque_Nm": _rounded(one.levels.mean),
-        "critical_torque_Nm": _rounded(one.levels.critical),
-        "kinetic_torque_Nm": _rounded(one.levels.kinetic),
+        "critical_torque_Nm": _rounded(one.values["critical_torque"]),
+        "kinetic_torque_Nm": _rounded(one.values["kinetic_torque"]),
         "slips": one.levels.slips,
         "stuck_share": round(one.fit.stuck_share, 3),
     }

@@ -17,22 +17,16 @@ from typing import Any
 
 import numpy as np
 
+from .laws import LAWS
 from .rigs import make_rig, write_rig
 
 __all__ = ["SAME_LAW", "score", "table"]
 
-SAME_LAW = {
-    "constant": ("coulomb",),
-    "stribeck": ("stribeck_exponential", "stribeck_gaussian", "stribeck_lorentzian"),
-    "rate_and_state": ("rate_and_state",),
-    "memory": ("contact_with_memory",),
-    "bristle": ("lugre",),
-    "ageing": ("ageing",),
-}
-"""Which of the simulator's laws is meant by each of the second rig's."""
+SAME_LAW = {name: (name,) for name in LAWS}
+"""Which laws that the identification knows are meant by each of the second rig's."""
 
 COSTLY = 3.0
-"""Floors beyond which the others' best held-out distance says that leaving a law out costs."""
+"""Floors beyond which the best distance of the other laws says that leaving one out costs."""
 
 
 def score(seed: int, rigs: int, workers: int) -> dict[str, Any]:
@@ -61,14 +55,18 @@ def _one(job: tuple[int, int]) -> dict[str, Any]:
             return {"index": job[1], "law": made.law.name, "failed": str(error)[:200]}
         seconds = time.perf_counter() - started
     rows = [row for n in answer["numbers"] if (row := _row(n, made)) is not None]
-    laws = {one["law"]: one["held_out"] for one in answer["laws"]}
+    laws = {
+        one["law"]: math.sqrt(0.5 * (one["held_out"] ** 2 + one["trained"] ** 2))
+        for one in answer["laws"]
+    }
+    held = {one["law"]: one["held_out"] for one in answer["laws"]}
     own = SAME_LAW[made.law.name]
-    others = [held for law, held in laws.items() if law not in own]
+    others = [away for law, away in laws.items() if law not in own]
     return {
         "index": job[1], "law": made.law.name, "picked": answer["law"],
         "right": answer["law"] in own, "cost_of_leaving_out": min(others, default=math.nan),
-        "held_out": laws.get(answer["law"], math.nan),
-        "own_held_out": min((laws[x] for x in own if x in laws), default=math.nan),
+        "held_out": held.get(answer["law"], math.nan), "laws": laws,
+        "own_distance": min((laws[x] for x in own if x in laws), default=math.nan),
         "numbers": rows, "seconds": seconds,
     }  # fmt: skip
 
@@ -98,7 +96,7 @@ def _row(number: dict[str, Any], made: Any) -> dict[str, Any] | None:
     return {
         "name": name, "fit": fit, "error": math.log(number["value"] / true),
         "half_width": 0.5 * math.log(number["high"] / number["low"]),
-        "inside": number["low"] <= true <= number["high"], "recordings": number["recordings"],
+        "inside": bool(number["low"] <= true <= number["high"]), "recordings": number["recordings"],
     }  # fmt: skip
 
 
