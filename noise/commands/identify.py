@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import say
+from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -37,6 +38,7 @@ def configure(parser: ArgumentParser) -> None:
         help="folder for rig.toml, identification.json and report.html (default: the rig file on "
         "standard output)",
     )  # fmt: skip
+    opt.add_seed(parser, "of simulated repeats")
 
 
 def run(options: Namespace) -> int:
@@ -57,7 +59,7 @@ def run(options: Namespace) -> int:
     if not measurements.used:
         say("no recording that a rig can be identified from; nothing is written")
         return 1
-    found = identify_rig(measurements, beforehand, progress=say)
+    found = identify_rig(measurements, beforehand, seed=options.seed or 0, progress=say)
     if options.out is None:
         print(found.rig_toml, end="")
     else:

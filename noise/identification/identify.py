@@ -33,6 +33,7 @@ def identify_rig(
     measurements: Measurements,
     beforehand: Beforehand,
     *,
+    seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> Identification:
     """Identify a rig.
@@ -42,6 +43,8 @@ def identify_rig(
     measurements : Measurements
     beforehand : Beforehand
         What is known of it.
+    seed : int
+        Of simulated repeats.
     progress : callable, optional
         Told what is being done, and the first numbers.
 
@@ -75,7 +78,7 @@ def identify_rig(
     base = _at_all_supports(found_rig(beforehand, bushing_numbers(seen), material=material))
     known_fits = {fit.interference for fit in base.fits}
     usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]
-    choice = choose_law(base, usable, tell)
+    choice = choose_law(base, usable, tell, seed=seed)
     model, vector = choice.fit.model, choice.fit.vector
     tell("correcting what single recordings said by simulations of them")
     chosen = model.rig(vector)

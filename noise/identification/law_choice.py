@@ -97,7 +97,7 @@ def left_out(recordings: Sequence[Measured]) -> list[int]:
 
 
 def choose_law(
-    base: Rig, recordings: Sequence[Measured], progress: Callable[[str], None]
+    base: Rig, recordings: Sequence[Measured], progress: Callable[[str], None], *, seed: int = 0
 ) -> Choice:
     """Fit all laws and choose.
 
@@ -108,6 +108,8 @@ def choose_law(
     recordings : sequence of Measured
     progress : callable
         Told what is being done.
+    seed : int
+        Of simulated repeats.
 
     Returns
     -------
@@ -129,7 +131,7 @@ def choose_law(
             bushing = fits[candidate.name].vector[: model.n_bushing]
         progress(f"law {candidate.name}: misfit {fits[candidate.name].cost:.2f}")
     best = min(fits.values(), key=lambda fit: fit.cost)
-    scales = [_repeats_scale(best, one) for one in recordings]
+    scales = [_repeats_scale(best, one, seed) for one in recordings]
     scores = []
     for name, fit in fits.items():
         squares = np.array(
@@ -161,11 +163,11 @@ def _signature(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     return joined_signature({"torque": channel_signature(torque, rate, "torque")})
 
 
-def _repeats_scale(fit: LawFit, like: Measured) -> NDArray[np.float64]:
+def _repeats_scale(fit: LawFit, like: Measured, first: int) -> NDArray[np.float64]:
     """Return the standard deviation of each value of the signature over simulated repeats."""
     rig = fit.model.rig(fit.vector)
     repeats = []
-    for seed in range(1, _REPEATS + 1):
+    for seed in range(first, first + _REPEATS):
         try:
             repeats.append(_signature(simulated_torque(rig, like, seed=seed)[0], like.rate))
         except ParameterError:

@@ -34,7 +34,7 @@ _HOPELESS = 30.0
 _GROUPS = 30.0
 """Statistics hang together: so many count as one observation."""
 
-_WIDTH = {"stiffness": 0.12, "kinetic": 0.08, "drop": 0.4, "damping": 0.3, "law": 1.0}
+_WIDTH = {"stiffness": 0.15, "kinetic": 0.08, "drop": 0.5, "damping": 0.8, "law": 1.0}
 """Relative standard deviation of the start [-]."""
 
 

@@ -109,6 +109,12 @@ class Identification:
         By how much a simpler law may be worse and is still chosen.
     seconds : float
         It took [s].
+
+    Examples
+    --------
+    >>> stiffness = Number("elastomer_stiffness", "Nm/rad", 665.0, 655.0, 675.0, 6, 0.279e-3)
+    >>> Identification("", (stiffness,), (), "constant", ()).number("elastomer_stiffness").high
+    675.0
     """
 
     rig_toml: str

@@ -18,7 +18,7 @@ __all__ = ["identify"]
 
 
 def identify(
-    data: str | Path | Sequence[str | Path], rig: str | Path | None = None
+    data: str | Path | Sequence[str | Path], rig: str | Path | None = None, *, seed: int = 0
 ) -> Identification:
     """Identify a rig from recordings.
 
@@ -28,6 +28,8 @@ def identify(
         Recordings of torque and angle, or folders of them.
     rig : path, optional
         Rig file that states what is known, the two inertias above all.
+    seed : int
+        Of simulated repeats.
 
     Returns
     -------
@@ -48,5 +50,5 @@ def identify(
     """
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     return identify_rig(
-        read_measurements(paths), known_beforehand(None if rig is None else Path(rig))
+        read_measurements(paths), known_beforehand(None if rig is None else Path(rig)), seed=seed
     )
