@@ -88,7 +88,7 @@ def identify_rig(
         else one
         for one in seen
     ]
-    numbers = bushing_numbers(seen)
+    numbers = bushing_numbers(seen, sticks=model.candidate.sticks)
     by_law = {fit.interference: (fit.critical_torque, fit.kinetic_torque) for fit in chosen.fits}
     rig = replace(
         found_rig(beforehand, numbers, material=material, friction=chosen.friction, torques=by_law),

@@ -34,7 +34,13 @@ _HOPELESS = 30.0
 _GROUPS = 30.0
 """Statistics hang together: so many count as one observation."""
 
-_WIDTH = {"stiffness": 0.15, "kinetic": 0.08, "drop": 0.5, "damping": 0.8, "law": 1.0}
+_ITERATIONS = {True: 8, False: 4}
+"""By whether a law truly sticks, which is solved exactly and fast."""
+
+_ELASTIC_DAMPING = 0.8
+"""Width for a damping that was read off an elastic contact as if it stuck."""
+
+_WIDTH = {"stiffness": 0.15, "kinetic": 0.08, "drop": 0.5, "damping": 0.3, "law": 1.0}
 """Relative standard deviation of the start [-]."""
 
 
@@ -64,7 +70,7 @@ def fit_law(
     recordings: Sequence[Measured],
     targets: Sequence[NDArray[np.float64]],
     *,
-    iterations: int = 4,
+    iterations: int | None = None,
     bushing: NDArray[np.float64] | None = None,
     begin: NDArray[np.float64] | None = None,
 ) -> LawFit:
@@ -76,7 +82,7 @@ def fit_law(
     recordings : sequence of Measured
     targets : sequence of ndarray
         Their statistics.
-    iterations : int
+    iterations : int, optional
     bushing : ndarray, optional
         Numbers of the bushing that a simpler law had.
     begin : ndarray, optional
@@ -89,9 +95,12 @@ def fit_law(
     low, high = model.limits()
     prior = model.starts()[0]
     n, s = len(model.base.fits), len(model.supports)
+    if iterations is None:
+        iterations = _ITERATIONS[model.candidate.sticks]
+    of_damping = _WIDTH["damping"] if model.candidate.sticks else _ELASTIC_DAMPING
     width = np.array([
         *[_WIDTH["stiffness"]] * n, *[_WIDTH["kinetic"]] * n, *[_WIDTH["drop"]] * n,
-        *[_WIDTH["damping"]] * s, *[_WIDTH["law"]] * model.candidate.n_parameters,
+        *[of_damping] * s, *[_WIDTH["law"]] * model.candidate.n_parameters,
     ])  # fmt: skip
     prior[model.n_bushing :] = np.mean(
         [start[model.n_bushing :] for start in model.starts()], axis=0

@@ -52,7 +52,7 @@ def pool(
     groups: Mapping[Key, Sequence[tuple[float, float]]],
     *,
     usual: float = USUAL_SCATTER,
-    widened: float = 1.0,
+    shared: float = 0.0,
 ) -> dict[Key, Pooled]:
     """Put together positive numbers of single recordings.
 
@@ -62,8 +62,8 @@ def pool(
         Of one kind of number: for each group its values and their relative standard errors.
     usual : float
         Relative scatter from run to run that is expected [-].
-    widened : float
-        Factor on the half-width, from development rigs.
+    shared : float
+        Relative standard error that all values have in common [-].
 
     Returns
     -------
@@ -88,9 +88,9 @@ def pool(
         degrees += x.size - 1
         centres[key] = (centre, float(np.sum(weight) ** 2 / np.sum(weight**2)), x.size)
     spread = math.sqrt(squares / degrees)
-    times = float(student.ppf(0.5 + 0.5 * LEVEL, degrees)) * widened
+    times = float(student.ppf(0.5 + 0.5 * LEVEL, degrees))
     found = {}
     for key, (centre, effective, n) in centres.items():
-        half = times * spread / math.sqrt(effective)
+        half = times * math.hypot(spread / math.sqrt(effective), shared)
         found[key] = Pooled(math.exp(centre), math.exp(centre - half), math.exp(centre + half), n)
     return found
