@@ -57,6 +57,8 @@ def _static(one: Seen) -> Panel:
         1e3 * angle[inside], rise[inside], color=VERMILION, ls="--",
         label=f"rise by k_EFF = {1.0 / compliance:.4g} Nm/rad",
     )  # fmt: skip
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.55 * (high - low))  # room for the legend
     axes.legend(loc="upper left", fontsize=8)
     return Panel(
         as_svg(figure),
@@ -107,13 +109,15 @@ def level_panels(found: Identification) -> tuple[Panel, ...]:
     """
     with styled():
         return (
-            _levels(found, "Torque levels", "Nm", ("critical_torque", "kinetic_torque")),
-            _levels(found, "Elastomer's stiffness", "Nm/rad", ("elastomer_stiffness",)),
+            _levels(found, "Torque levels", "Torque", "Nm", ("critical_torque", "kinetic_torque")),
+            _levels(
+                found, "Elastomer's stiffness", "Stiffness", "Nm/rad", ("elastomer_stiffness",)
+            ),
         )
 
 
-def _levels(found: Identification, title: str, unit: str, names: tuple[str, ...]) -> Panel:
-    figure, axes = new_panel(title, "Speed of the shaft [rad/s]", f"{title.split()[0]} [{unit}]")
+def _levels(found: Identification, title: str, up: str, unit: str, names: tuple[str, ...]) -> Panel:
+    figure, axes = new_panel(title, "Speed of the shaft [rad/s]", f"{up} [{unit}]")
     words = []
     colours = (VERMILION, BLUE)
     for name, colour in zip(names, colours, strict=False):
@@ -127,7 +131,7 @@ def _levels(found: Identification, title: str, unit: str, names: tuple[str, ...]
             )  # fmt: skip
             axes.axhspan(number.low, number.high, color=colour, alpha=0.18, lw=0)
             words.append(f"{label}: {number.value:.4g} {unit}")
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.12 * axes.get_ylim()[1])
     axes.legend(loc="lower right", fontsize=8)
     return Panel(as_svg(figure), f"{title}: {'; '.join(words)}.")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from noise.base.atomic import atomic
@@ -88,7 +89,7 @@ def _answer(found: Identification) -> list[str]:
         if one.name == "elastomer_stiffness"
     ]
     return [
-        f"Law of friction: {found.law.replace('_', ' ')}, {_WORDS[found.law]}; it leaves "
+        f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); it leaves "
         f"{left:.2f} floors on recordings that its fit has not seen.",
         *stiffness,
     ]
@@ -108,4 +109,5 @@ def _row(one: Number) -> list[str]:
 
 
 def _condition(one: Seen) -> str:
-    return ", ".join(one.measured.condition.words)
+    condition = one.measured.condition
+    return ", ".join(replace(condition, speed=float(f"{condition.speed:.3g}")).words)
