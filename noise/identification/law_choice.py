@@ -37,6 +37,9 @@ _ENOUGH = 1.1
 """Distance from which nothing is gained by a law with more parameters."""
 
 _REPEATS = 8
+_PLACES = 3
+"""From which a law with true stick is searched."""
+
 _LEAST_SCALE = 0.03
 _HOPELESS = 30.0
 
@@ -124,9 +127,15 @@ def choose_law(
     bushing = None
     for candidate in CANDIDATES:
         model = LawModel(base, candidate, supports)
-        fits[candidate.name] = fit_law(
-            model, [recordings[i] for i in trained], [targets[i] for i in trained], bushing=bushing
-        )
+        starts = model.starts(bushing)
+        some = [recordings[i] for i in trained], [targets[i] for i in trained]
+        tried = [fit_law(model, *some, bushing=bushing)]
+        if candidate.sticks and len(starts) > 1:  # solved fast, and rough: from several places
+            tried += [
+                fit_law(model, *some, begin=start)
+                for start in starts[:: -(-len(starts) // _PLACES)]
+            ]
+        fits[candidate.name] = min(tried, key=lambda fit: fit.cost)
         if bushing is None:
             bushing = fits[candidate.name].vector[: model.n_bushing]
         progress(f"law {candidate.name}: misfit {fits[candidate.name].cost:.2f}")
