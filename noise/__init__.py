@@ -22,6 +22,8 @@ Screen: `screen`, `Screening`, `load_design`, `Design`, `Use`, `Swinging`, `Swee
 
 Diagnose: `diagnose`, `Diagnosis`.
 
+Identify: `identify`, `Identification`.
+
 Review: `review`, `Review`, `write_report`, `ReportEntry`.
 
 What goes wrong: `BushingNoiseError`, `ParameterError`, `RecordingError`.
@@ -47,6 +49,8 @@ _EXPORTS = {
     "noise.training.classifier.fit": ("train",),
     "noise.diagnosis.outcome": ("Diagnosis",),
     "noise.diagnosis.run": ("diagnose",),
+    "noise.identification.outcome": ("Identification",),
+    "noise.identification.run": ("identify",),
     "noise.inference": ("Inference", "Inferred", "Interval", "load_inference"),
     "noise.training.inference.fit": ("train_inference",),
     "noise.labels.segments": ("Segment", "Segments", "file_label", "label_recording"),

@@ -59,6 +59,9 @@ COMMANDS = {
         "noise.commands.diagnose",
         "recordings against the simulator -> which effect is missing, and how far it closes",
     ),
+    "identify": Entry(
+        "noise.commands.identify", "recordings of a rig -> its rig file, with intervals"
+    ),
     "review": Entry(
         "noise.commands.review",
         "recordings, labels, screens, diagnoses -> one page to look at and to listen to",

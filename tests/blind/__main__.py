@@ -1,4 +1,7 @@
-"""``python -m tests.blind generate|score``: make development cases; score a diagnosis on cases.
+"""``python -m tests.blind generate|score|identify``: cases, and how well they are answered.
+
+``generate`` makes development cases, ``score`` scores a diagnosis on cases, ``identify`` makes rigs
+with six laws of friction and scores what ``bushing-noise identify`` finds of them.
 
 ``score`` takes a folder that ``generate`` has written, or ``--sealed``, which makes the sealed set,
 scores it, and writes both to the log in the repository.
@@ -19,6 +22,9 @@ from .score.run import Asked, score_folder, score_sealed
 def main(arguments: list[str] | None = None) -> None:
     """Run the command."""
     given = _parser().parse_args(arguments)
+    if given.command == "identify":
+        _identify(given)
+        return
     wanted = Wanted(given.seed, given.cases, "quotas" if given.balanced else "shares")
     if given.command == "generate":
         seconds = generate(given.out, wanted, given.workers)
@@ -36,11 +42,27 @@ def main(arguments: list[str] | None = None) -> None:
         score_folder(given.folder, asked, given.out)
 
 
+def _identify(given: argparse.Namespace) -> None:
+    import json
+
+    from .identify.score import score, table
+
+    result = score(given.seed, given.rigs, given.workers)
+    if given.out is not None:
+        given.out.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    sys.stdout.write(table(result) + "\n")
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.blind")
     commands = parser.add_subparsers(dest="command", required=True)
     making = commands.add_parser("generate", help="write development cases, answers apart")
     scoring = commands.add_parser("score", help="score a diagnosis on cases")
+    identifying = commands.add_parser("identify", help="score an identification on rigs")
+    identifying.add_argument("--rigs", type=int, default=60)
+    identifying.add_argument("--seed", type=int, default=1, help="from 100 on for reporting")
+    identifying.add_argument("--workers", type=int, default=2)
+    identifying.add_argument("--out", type=Path, metavar="FILE.json")
     for one in (making, scoring):
         one.add_argument("--out", type=Path, required=True)
         one.add_argument("--seed", type=int, default=1)

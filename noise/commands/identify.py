@@ -1,0 +1,71 @@
+"""``bushing-noise identify``: recordings of a rig -> its rig file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.base.atomic import check_target
+from noise.base.progress import say
+from noise.commands import options as opt
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: ArgumentParser) -> None:
+    """Declare description and options."""
+    parser.description = (
+        "Identify a rig from recordings: stiffness and damping of the bushing, critical and "
+        "kinetic torque by interference, and the law of friction, each with its 90 %% interval. "
+        "Recordings need torque and shaft angle, and a sidecar with interference and support "
+        "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
+        "law, a condition recorded twice tells how much repeats differ."
+    )
+    parser.epilog = "example: bushing-noise identify recordings --rig known.toml --out mine"
+    parser.add_argument(
+        "data", type=Path, nargs="+", metavar="DATA", help="recordings, or folders of them"
+    )
+    parser.add_argument(
+        "--rig", type=Path, metavar="RIG.toml",
+        help="what is known of the rig: the two inertias, if possible",
+    )  # fmt: skip
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER",
+        help="folder for rig.toml, identification.json and report.html (default: the rig file on "
+        "standard output)",
+    )  # fmt: skip
+    opt.add_seed(parser, "of simulated repeats")
+
+
+def run(options: Namespace) -> int:
+    """Identify and write."""
+    if options.out is not None:
+        if options.out.is_file():
+            raise ParameterError(f"--out {options.out}: is a file; name a folder")
+        check_target(options.out / "report.html")
+    say("preparing")
+    from noise.identification.identify import identify_rig
+    from noise.identification.known import known_beforehand
+    from noise.identification.measured import read_measurements
+
+    beforehand = known_beforehand(options.rig)
+    measurements = read_measurements(options.data)
+    for name, reason in measurements.refused:
+        say(f"{name}: {reason}")
+    if not measurements.used:
+        say("no recording that a rig can be identified from; nothing is written")
+        return 1
+    found = identify_rig(measurements, beforehand, seed=options.seed or 0, progress=say)
+    if options.out is None:
+        print(found.rig_toml, end="")
+    else:
+        from noise.pages.identification.page import write_identification
+
+        write_identification(options.out, found)
+        for name in ("report.html", "rig.toml", "identification.json"):
+            print(options.out / name)
+    return 1 if measurements.refused else 0

@@ -1,0 +1,1 @@
+"""Identification of a rig from recordings: stiffness, damping, torques, the law of friction."""

@@ -1,0 +1,253 @@
+"""Stiffness, inertias and damping from one recording, whatever the law of friction.
+
+Two things hold for any law in which a contact sticks. While it sticks, the surface turns with the
+shaft: the torque rises by k_EFF times the speed (Figures 5.25 and 5.26), and what the clamp rings
+with decays by its damping. While it slides, the contact's torque changes little: the elastomer
+rings freely about it (5.3 to 5.7), by its stiffness, inertia and damping. So stick and slip are
+told apart by a first guess, and the numbers are those with which the surface follows the shaft best
+in stick and the contact's torque depends best on speed alone in sliding; twice over.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.ndimage import binary_erosion
+from scipy.optimize import least_squares
+
+from noise.identification.motion import torque_spectrum
+from sim.bushing import LumpedBushing
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from noise.identification.measured import Measured
+    from noise.identification.motion import Contact, TorqueSpectrum
+
+__all__ = ["NUMBERS", "BushingFit", "Known", "Phases", "fit_bushing", "phases_of"]
+
+NUMBERS = ("elastomer_stiffness", "damping", "elastomer_inertia", "clamp_inertia")
+
+_GUARD = 0.8e-4
+"""Left out on either side of where stick or slip ends [s]: the band limit smears it."""
+
+_STUCK, _SLIDING = 0.25, 1.0
+"""Sliding speeds over the shaft's below which a contact sticks, and above which it slides."""
+
+_LEAST = 60
+"""Samples of a phase without which it says nothing."""
+
+_THINNED = 6000
+"""Samples of a phase that a fit looks at."""
+
+_STIFFNESSES = tuple(np.geomspace(0.3, 3.0, 15).tolist())
+_INERTIAS = tuple(np.geomspace(0.4, 2.5, 15).tolist())
+"""Factors that are tried on the stiffness read off the slope, and on inertias not known."""
+
+_EXCERPT = 0.3
+"""Looked at meanwhile [s]."""
+
+_ROUNDS = 3
+_BEND = 2.5
+"""Residuals beyond so many standard deviations count linearly."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known before anything is recorded.
+
+    Parameters
+    ----------
+    elastomer_inertia, clamp_inertia : float
+        [kg m2]
+    inertia_error : float
+        Relative standard deviation of both [-]; large where nothing is known.
+    damping_share : float
+        Share of the damping that acts in the elastomer [-].
+    """
+
+    elastomer_inertia: float
+    clamp_inertia: float
+    inertia_error: float
+    damping_share: float = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Phases:
+    """Where a contact sticks and slides; boolean arrays of shape (n,), transitions in neither."""
+
+    stuck: NDArray[np.bool_]
+    sliding: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class BushingFit:
+    """What one recording says of the bushing.
+
+    Parameters
+    ----------
+    bushing : LumpedBushing
+    errors : dict of str to float
+        Relative standard error of each of `NUMBERS` by the curvature of the fit [-].
+    contact : Contact
+    phases : Phases
+    stuck_share : float
+        Of the time [-].
+    spectrum : TorqueSpectrum
+    """
+
+    bushing: LumpedBushing
+    errors: dict[str, float]
+    contact: Contact
+    phases: Phases
+    stuck_share: float
+    spectrum: TorqueSpectrum
+
+    @property
+    def damping(self) -> float:
+        """Of elastomer and beams together [Nm s/rad]."""
+        return self.bushing.elastomer_damping + self.bushing.support_damping
+
+
+def phases_of(contact: Contact, shaft_speed: NDArray[np.float64], rate: float) -> Phases:
+    """Tell stick from slip by the sliding speed."""
+    guard = np.ones(2 * max(1, round(_GUARD * rate)) + 1)
+    v = contact.sliding_speed
+    # what the cell's noise makes of a standing contact
+    noise = 1.4826 * float(np.median(np.abs(np.diff(v)))) / math.sqrt(2.0)
+    stuck = np.abs(v) < _STUCK * shaft_speed + 3.0 * noise
+    sliding = v > _SLIDING * shaft_speed + 3.0 * noise
+    return Phases(binary_erosion(stuck, guard), binary_erosion(sliding, guard))
+
+
+def fit_bushing(measured: Measured, known: Known) -> BushingFit:
+    """Fit one recording.
+
+    Parameters
+    ----------
+    measured : Measured
+    known : Known
+
+    Returns
+    -------
+    BushingFit
+    """
+    spectrum = torque_spectrum(measured)
+    support = measured.condition.support_stiffness
+    values, errors = _start(measured, known), np.full(4, np.inf)
+    for _ in range(_ROUNDS):
+        values, errors = _refined(spectrum, support, known, values)
+    bushing = _bushing(values, support, known)
+    contact = spectrum.contact(bushing)
+    phases = phases_of(contact, spectrum.shaft_speed, spectrum.rate)
+    return BushingFit(
+        bushing, dict(zip(NUMBERS, errors.tolist(), strict=True)), contact, phases,
+        float(np.mean(phases.stuck)), spectrum,
+    )  # fmt: skip
+
+
+def _bushing(values: NDArray[np.float64], support: float, known: Known) -> LumpedBushing:
+    stiffness, damping, elastomer, clamp = np.exp(values).tolist()
+    share = known.damping_share
+    return LumpedBushing(
+        elastomer, clamp, stiffness, support, share * damping, (1.0 - share) * damping
+    )
+
+
+def _static_stiffness(spectrum: TorqueSpectrum, support: float) -> float:
+    """k_E from how steeply the torque rises: the most frequent slope, over the shaft's speed."""
+    step = max(1, round(4e-4 * spectrum.rate))
+    slope = (spectrum.torque[step:] - spectrum.torque[:-step]) * spectrum.rate / step
+    slope = slope / spectrum.shaft_speed[step:]
+    rising = slope[slope > 0.25 * np.quantile(slope, 0.9)]
+    k_eff = float(np.median(rising)) if rising.size else 500.0
+    flexible = 1.0 / k_eff - (0.0 if math.isinf(support) else 1.0 / support)
+    return 1.0 / max(flexible, 0.2 / k_eff)
+
+
+def _start(measured: Measured, known: Known) -> NDArray[np.float64]:
+    """Try stiffness, and inertias where they are not known, on a coarse grid."""
+    support = measured.condition.support_stiffness
+    spectrum = torque_spectrum(measured, _EXCERPT)
+    k = _static_stiffness(spectrum, support)
+    wide = known.inertia_error > 0.1
+    clamps = _INERTIAS if wide and not math.isinf(support) else (1.0,)
+    tried = [
+        np.log([f_k * k, 0.09, f_e * known.elastomer_inertia, f_c * known.clamp_inertia])
+        for f_k, f_e, f_c in itertools.product(
+            _STIFFNESSES, (0.7, 1.0, 1.4) if wide else (1.0,), clamps
+        )
+    ]
+    costs = [_implausibility(spectrum, _bushing(values, support, known)) for values in tried]
+    return tried[int(np.argmin(costs))]
+
+
+def _implausibility(spectrum: TorqueSpectrum, bushing: LumpedBushing) -> float:
+    """How little of the time a guess lets the contact stick, and how much it slides backwards."""
+    ratio = spectrum.contact(bushing).sliding_speed / spectrum.shaft_speed
+    away = (ratio / _STUCK) ** 2
+    return float(np.mean(away / (1.0 + away)) + np.mean(np.clip(-ratio, 0.0, 2.0)))
+
+
+def _thin(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
+    found = np.flatnonzero(mask)
+    return found[:: max(1, math.ceil(found.size / _THINNED))]
+
+
+def _refined(
+    spectrum: TorqueSpectrum, support: float, known: Known, start: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """One round of least squares with phases as the start has them."""
+    contact = spectrum.contact(_bushing(start, support, known))
+    phases = phases_of(contact, spectrum.shaft_speed, spectrum.rate)
+    stuck, sliding = _thin(phases.stuck), _thin(phases.sliding)
+    prior = np.log([1.0, 1.0, known.elastomer_inertia, known.clamp_inertia])
+    prior[:2] = start[0], math.log(0.09)
+    width = np.array([0.5, 1.0, known.inertia_error, known.inertia_error])
+
+    def parts(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        found = spectrum.contact(_bushing(values, support, known))
+        in_stick = found.sliding_speed[stuck] if stuck.size > _LEAST else np.zeros(0)
+        in_slip = np.zeros(0)
+        if sliding.size > _LEAST:
+            v, torque = found.sliding_speed[sliding], found.torque[sliding]
+            x = np.log1p(np.maximum(v, 0.0))
+            x = x - x.mean()
+            spread = float(x @ x) + 1e-12
+            in_slip = torque - torque.mean() - x * float(x @ torque) / spread
+        return in_stick, in_slip
+
+    def sigma(rest: NDArray[np.float64], least: float) -> float:
+        return max(1.4826 * float(np.median(np.abs(rest))), least) if rest.size else 1.0
+
+    first, second = parts(start)
+    scale_v = sigma(first, 0.01 * float(np.mean(spectrum.shaft_speed)))
+    scale_t = sigma(second, 2e-3 * float(np.mean(np.abs(spectrum.torque))))
+    # neighbouring samples say the same: so many a millisecond count
+    count = 1e-3 * spectrum.rate
+
+    def weight(rest: NDArray[np.float64], mask: NDArray[np.bool_]) -> float:
+        return math.sqrt(mask.sum() / count / rest.size) if rest.size else 0.0
+
+    def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        in_stick, in_slip = parts(values)
+        return np.concatenate([
+            _bent(in_stick / scale_v) * weight(in_stick, phases.stuck),
+            _bent(in_slip / scale_t) * weight(in_slip, phases.sliding),
+            (values - prior) / width,
+        ])  # fmt: skip
+
+    fit = least_squares(residuals, start, method="lm", diff_step=1e-4, max_nfev=60)
+    covariance = np.linalg.pinv(fit.jac.T @ fit.jac)
+    return np.clip(fit.x, start - 0.7, start + 0.7), np.sqrt(np.diag(covariance))
+
+
+def _bent(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Residuals whose squares are Huber's."""
+    size = np.abs(x)
+    large = np.sign(x) * np.sqrt(_BEND * np.maximum(2.0 * size - _BEND, 0.0))
+    return np.asarray(np.where(size <= _BEND, x, large))

@@ -1,0 +1,194 @@
+"""From recordings to a rig: single recordings first, all of them together, the law of friction."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.identification.bushing_fit import fit_bushing
+from noise.identification.bushing_numbers import bushing_numbers
+from noise.identification.corrected import corrected, values_of
+from noise.identification.found_rig import found_rig
+from noise.identification.law_choice import MARGIN, choose_law, overall
+from noise.identification.law_numbers import law_numbers
+from noise.identification.levels import torque_levels
+from noise.identification.outcome import Identification, Seen
+from noise.identification.rig_text import rig_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from models.rig import Rig
+    from noise.identification.known import Beforehand
+    from noise.identification.law_choice import Choice
+    from noise.identification.measured import Measurements
+
+__all__ = ["identify_rig"]
+
+
+def identify_rig(
+    measurements: Measurements,
+    beforehand: Beforehand,
+    *,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> Identification:
+    """Identify a rig.
+
+    Parameters
+    ----------
+    measurements : Measurements
+    beforehand : Beforehand
+        What is known of it.
+    seed : int
+        Of simulated repeats.
+    progress : callable, optional
+        Told what is being done, and the first numbers.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    ParameterError
+        No recording can be used, or nothing slips in any recording, so that no torque can be told.
+    """
+    started = time.perf_counter()
+    if not measurements.used:
+        reasons = "; ".join(f"{name}: {reason}" for name, reason in measurements.refused)
+        raise ParameterError(f"no recording that a rig can be identified from: {reasons}")
+    tell = progress or (lambda _text: None)
+    seen = []
+    for one in measurements.used:
+        fit = fit_bushing(one, beforehand.known)
+        levels = torque_levels(fit)
+        seen.append(Seen(one, fit, levels, values_of(fit, levels)))
+        tell(_sentence(seen[-1]))
+    if not any(one.levels.slips for one in seen):
+        raise ParameterError(
+            "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
+            "record slower rotation, or a larger interference"
+        )
+    stated = {one.measured.condition.material for one in seen} - {None}
+    material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
+    base = _at_all_supports(found_rig(beforehand, bushing_numbers(seen), material=material))
+    known_fits = {fit.interference for fit in base.fits}
+    usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]
+    choice = choose_law(base, usable, tell, seed=seed)
+    model, vector = choice.fit.model, choice.fit.vector
+    tell("correcting what single recordings said by simulations of them")
+    chosen = model.rig(vector)
+    seen = [
+        corrected(one, chosen, beforehand.known)
+        if one.levels.slips and one.measured.condition.interference in known_fits
+        else one
+        for one in seen
+    ]
+    numbers = bushing_numbers(seen, sticks=model.candidate.sticks)
+    by_law = {fit.interference: (fit.critical_torque, fit.kinetic_torque) for fit in chosen.fits}
+    rig = replace(
+        found_rig(beforehand, numbers, material=material, friction=chosen.friction, torques=by_law),
+        effects=chosen.effects,
+    )
+    assumed, not_found = _assumed(beforehand, seen)
+    return Identification(
+        rig_toml=rig_text(rig, _HEAD),
+        numbers=(*numbers, *law_numbers(choice.fit)),
+        laws=choice.scores,
+        law=model.candidate.name,
+        seen=tuple(seen),
+        assumed=assumed,
+        not_found=not_found,
+        notes=_notes(choice),
+        refused=measurements.refused,
+        held_out=choice.held_out,
+        margin=MARGIN,
+        seconds=time.perf_counter() - started,
+    )
+
+
+def _at_all_supports(rig: Rig) -> Rig:
+    """Give each fit the damping of every support, the mean where it was not recorded there."""
+    supports = sorted({support for fit in rig.fits for support in fit.damping})
+    damping = {
+        support: math.exp(
+            sum(math.log(fit.damping[support]) for fit in rig.fits if support in fit.damping)
+            / sum(support in fit.damping for fit in rig.fits)
+        )
+        for support in supports
+    }
+    return replace(rig, fits=tuple(replace(fit, damping=damping) for fit in rig.fits))
+
+
+def _notes(choice: Choice) -> tuple[str, ...]:
+    notes = [
+        "torques named critical_torque and kinetic_torque are those seen in the recordings; the "
+        "rig file has those that the law means, law_critical_torque and law_kinetic_torque"
+    ]
+    if not choice.held_out:
+        notes.append(
+            "fewer than three conditions: the laws are judged by the recordings they were fitted "
+            "to; record more speeds"
+        )
+    best = choice.scores[0]
+    rivals = [s.law for s in choice.scores[1:] if overall(s) <= MARGIN * overall(best)]
+    if rivals:
+        notes.append(f"these recordings hardly tell {', '.join([best.law, *rivals])} apart")
+    if overall(best) > _FAR:
+        notes.append(
+            f"the best law leaves {overall(best):.1f} floors: none of them describes these "
+            "recordings; diagnose says which effect is missing"
+        )
+    return tuple(notes)
+
+
+_FAR = 2.0
+"""Held-out distance from which no law is said to describe the recordings [floors]."""
+
+_HEAD = (
+    "Identified from recordings; intervals and what is assumed are in identification.json.",
+    "Structure, plate and microphone are the shipped bench's.",
+)
+
+
+def _sentence(one: Seen) -> str:
+    fit, levels = one.fit, one.levels
+    text = (
+        f"{one.measured.name}: k_E {fit.bushing.elastomer_stiffness:.4g} Nm/rad, "
+        f"damping {fit.damping:.3g} Nm s/rad, "
+    )
+    if levels.slips:
+        return text + (
+            f"breaks at {levels.critical:.3g} and slides at {levels.kinetic:.3g} Nm, "
+            f"{levels.slips} slips"
+        )
+    return text + f"mean torque {levels.mean:.3g} Nm, no slips"
+
+
+def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    assumed, not_found = [], []
+    if "elastomer_damping_share" not in beforehand.stated:
+        assumed.append("damping is split evenly between elastomer and beams, as the thesis does")
+    assumed.append("supports are as stiff as the sidecars say")
+    assumed.append("structure, plate and microphone are those of the shipped bench")
+    if not beforehand.inertias_stated:
+        assumed.append(
+            "no inertia is stated: a contact that gives way elastically counts as elastomer; state "
+            "elastomer_inertia_kgm2 and clamp_inertia_kgm2 in --rig"
+        )
+    flexible = any(not one.fit.bushing.clamp_is_fixed for one in seen)
+    if not flexible:
+        not_found.append("clamp inertia: all recordings were made with the clamp fixed")
+    slipping = {one.measured.condition.interference for one in seen if one.levels.slips}
+    not_found += [
+        f"anything at {1e3 * interference:g} mm: nothing slips there; record slower rotation"
+        for interference in sorted({one.measured.condition.interference for one in seen} - slipping)
+    ]
+    steady = [one.measured.name for one in seen if not one.levels.slips]
+    if steady:
+        not_found.append(f"critical torque from {', '.join(steady)}: nothing slips there")
+    return tuple(assumed), tuple(not_found)

@@ -1,0 +1,72 @@
+"""What is known of a rig before it is identified: the keys that a rig file really has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.rig_files.rig_file import read_toml, rig_from
+from noise.identification.bushing_fit import Known
+
+if TYPE_CHECKING:
+    from models.rig import Rig
+
+__all__ = ["Beforehand", "known_beforehand"]
+
+_STATED_ERROR = 0.02
+"""Relative standard error of an inertia that is stated: what bushings scatter by."""
+
+_GUESSED_ERROR = 0.5
+"""And of one that is not."""
+
+
+@dataclass(frozen=True)
+class Beforehand:
+    """What is known beforehand.
+
+    Parameters
+    ----------
+    rig : Rig
+        Of the file, the shipped bench where it says nothing.
+    known : Known
+    stated : frozenset of str
+        Keys that the file has.
+    """
+
+    rig: Rig
+    known: Known
+    stated: frozenset[str]
+
+    @property
+    def inertias_stated(self) -> bool:
+        """Whether both inertias are."""
+        return {"elastomer_inertia_kgm2", "clamp_inertia_kgm2"} <= self.stated
+
+
+def known_beforehand(path: Path | None) -> Beforehand:
+    """Read a rig file for what it states.
+
+    Parameters
+    ----------
+    path : Path, optional
+        Without one, nothing is known but what the recordings' sidecars say.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be used.
+
+    Examples
+    --------
+    >>> known_beforehand(None).inertias_stated
+    False
+    """
+    where = f"rig file {path}"
+    content = {} if path is None else read_toml(path, where)
+    rig = rig_from(content, Path() if path is None else path.parent, where)
+    stated = frozenset(content)
+    share = rig.elastomer_damping_share if "elastomer_damping_share" in stated else 0.5
+    both = {"elastomer_inertia_kgm2", "clamp_inertia_kgm2"} <= stated
+    error = _STATED_ERROR if both else _GUESSED_ERROR
+    return Beforehand(rig, Known(rig.elastomer_inertia, rig.clamp_inertia, error, share), stated)

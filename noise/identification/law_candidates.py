@@ -1,0 +1,89 @@
+"""Laws of friction that an identification tries, simplest first, and what of each it searches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["CANDIDATES", "Candidate"]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A law to be tried.
+
+    Parameters
+    ----------
+    name, words : str
+        In tables, and on pages.
+    law : str
+        Of `sim.friction`.
+    effect : str, optional
+        Of `sim.effects`; then it is what the searched parameters belong to.
+    free : mapping of str to tuple of float
+        Parameters that are searched: lowest, highest and some starts, in the law's units.
+    fixed : mapping of str to float
+        Others that differ from the law's own.
+    """
+
+    name: str
+    words: str
+    law: str
+    effect: str | None = None
+    free: Mapping[str, tuple[float, float, tuple[float, ...]]] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def sticks(self) -> bool:
+        """Whether its contact truly sticks."""
+        return self.law == "coulomb"
+
+    @property
+    def n_parameters(self) -> int:
+        """Numbers that it has beyond the two torques of each fit."""
+        return len(self.free)
+
+
+_STIFFNESS = "contact_stiffness_per_torque"
+
+CANDIDATES = (
+    Candidate("constant", "constant torques", "coulomb"),
+    Candidate(
+        "ageing", "static torque grows while it sticks", "coulomb", "static_ageing",
+        {"ageing_time": (5e-5, 0.1, (1e-4, 7e-4, 2.5e-3, 8e-3))},
+    ),
+    Candidate(
+        "stribeck", "torque falls with sliding speed", "coulomb", "velocity_weakening",
+        {"share": (0.005, 0.6, (0.02, 0.1, 0.2)), "speed": (0.3, 40.0, (1.5, 5.0, 15.0))},
+    ),
+    Candidate(
+        "bristle", "elastic contact, torque falls with speed (LuGre)", "lugre", None,
+        {_STIFFNESS: (500.0, 9e3, (1200.0, 2500.0)), "stribeck_speed": (0.3, 30.0, (1.5, 5.0))},
+        {"contact_damping_per_torque": 5e-5},
+    ),
+    Candidate(
+        "rate_and_state", "elastic contact, strength by age and slip", "rate_and_state", None,
+        {
+            _STIFFNESS: (800.0, 9e3, (3000.0,)),
+            "ageing_time": (2e-5, 0.02, (1e-4, 6e-4)),
+            "renewal_angle": (3e-5, 5e-3, (1.5e-4, 5e-4)),
+        },
+        {"contact_damping_per_torque": 5e-5},
+    ),
+    Candidate(
+        "memory", "elastic contact with memory, torque falls with speed", "contact_with_memory",
+        None,
+        {
+            _STIFFNESS: (500.0, 4.9e3, (1600.0,)),
+            "ageing_time": (2e-5, 0.02, (3e-4, 1.5e-3)),
+            "renewal_angle": (3e-5, 5e-3, (2e-4,)),
+            "weakening_share": (0.005, 1.0, (0.05, 0.15)),
+            "weakening_speed": (1.0, 60.0, (6.0,)),
+        },
+        {"contact_damping_per_torque": 6e-5},
+    ),
+)  # fmt: skip
+"""By rising number of parameters."""

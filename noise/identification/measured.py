@@ -1,0 +1,205 @@
+"""Recordings that a rig can be identified from: torque, the shaft's angle, and what is stated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.fft import irfft, rfft, rfftfreq
+
+from models.condition import KnownCondition
+from models.errors import BushingNoiseError, ParameterError
+from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
+from noise.recordings import find_recordings, read_recording
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from models.recording import Recording
+
+__all__ = ["Measured", "Measurements", "measured", "read_measurements"]
+
+SHORTEST = LEAD + TAIL + 0.1
+"""Shorter recordings show too few cycles [s]."""
+
+LEAST_RATE = 8e3
+"""[Hz]"""
+
+LEAST_TURN = 0.02
+"""Angle by which the shaft has to turn [rad]; less is no rotation, or degrees taken for radians."""
+
+_SPEED_BAND = 25.0
+"""Up to which the shaft's speed is followed [Hz]; an encoder's noise lies above."""
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A recording as the identification reads it.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    recording : Recording
+        Whose condition is known.
+    torque : ndarray, shape (n,)
+        Of the cell, positive along the rotation [Nm].
+    shaft_speed : ndarray, shape (n,)
+        Positive [rad/s].
+    """
+
+    name: str
+    recording: Recording
+    torque: NDArray[np.float64]
+    shaft_speed: NDArray[np.float64]
+
+    @property
+    def condition(self) -> KnownCondition:
+        """What was set."""
+        condition = self.recording.condition
+        assert isinstance(condition, KnownCondition)  # `measured` made it so
+        return condition
+
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz]."""
+        return self.recording.rate
+
+
+@dataclass(frozen=True, eq=False)
+class Measurements:
+    """What a folder holds.
+
+    Parameters
+    ----------
+    used : tuple of Measured
+    refused : tuple of (str, str)
+        Name and reason of what was left out.
+    """
+
+    used: tuple[Measured, ...]
+    refused: tuple[tuple[str, str], ...]
+
+
+def read_measurements(paths: Sequence[Path]) -> Measurements:
+    """Read the recordings in files and folders.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+
+    Returns
+    -------
+    Measurements
+        What cannot be used is among ``refused``.
+
+    Raises
+    ------
+    ParameterError
+        There is no recording at all.
+    """
+    used, refused = [], []
+    for path, name in find_recordings(paths):
+        try:
+            used.append(measured(read_recording(path), name))
+        except BushingNoiseError as error:
+            refused.append((name, str(error)))
+    if not used and not refused:
+        raise ParameterError(f"{', '.join(str(path) for path in paths)}: no recording")
+    return Measurements(tuple(used), tuple(refused))
+
+
+def measured(recording: Recording, name: str) -> Measured:
+    """Return a recording as the identification reads it.
+
+    Parameters
+    ----------
+    recording : Recording
+    name : str
+        Of its file.
+
+    Returns
+    -------
+    Measured
+
+    Raises
+    ------
+    ParameterError
+        What it lacks.
+    """
+    if not recording.calibrated:
+        raise ParameterError(
+            'is not in physical units; state units in a sidecar, with "calibrated": true'
+        )
+    rows = {kind: recording.first(kind) for kind in ("torque", "angle", "speed")}
+    turning = rows["angle"] if rows["angle"] is not None else rows["speed"]
+    if rows["torque"] is None or turning is None:
+        lacking = "torque [N m]" if rows["torque"] is None else "angle [rad] or speed [rad/s]"
+        raise ParameterError(
+            f"has no channel of {lacking}; a rig is identified from the torque of the cell and the "
+            "shaft's angle"
+        )
+    if recording.rate < LEAST_RATE:
+        raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
+    if recording.duration < SHORTEST:
+        raise ParameterError(f"lasts {recording.duration:.3g} s; {SHORTEST:.3g} s at least")
+    torque = np.asarray(recording.samples[rows["torque"]], dtype=np.float64)
+    course = np.asarray(recording.samples[turning], dtype=np.float64)
+    if not (np.isfinite(torque).all() and np.isfinite(course).all()):
+        raise ParameterError("holds samples of torque or angle that are no numbers")
+    speed = course if rows["angle"] is None else shaft_speed(course, recording.rate)
+    mean = float(np.mean(speed))
+    if abs(mean) * recording.duration < LEAST_TURN:
+        raise ParameterError(
+            f"turns by {abs(mean) * recording.duration:.2g} rad; {LEAST_TURN:g} rad at least, at a "
+            "speed of one sign"
+        )
+    if np.min(speed / mean) <= 0.0:
+        raise ParameterError("turns back and forth; record rotation of one sign")
+    speed = np.abs(speed)
+    if float(np.mean(torque)) < 0.0:  # the shaft turned backwards, or the cell counts so
+        torque = -torque
+    if float(np.ptp(torque)) == 0.0:
+        raise ParameterError("has a torque that never changes; is the cell connected?")
+    c = recording.condition
+    if c.interference is None or c.support_stiffness is None:
+        what = "interference_mm" if c.interference is None else "support_stiffness_Nm_rad"
+        raise ParameterError(f"states no {what}; give it under conditions of the sidecar")
+    known = KnownCondition(
+        float(np.mean(speed)), c.interference, c.support_stiffness, c.material, c.temperature
+    )
+    return Measured(name, replace(recording, condition=known), torque, speed)
+
+
+def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Speed of the shaft from its angle, as far as it changes slowly.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (n,)
+        [rad]
+    rate : float
+        [Hz]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [rad/s]
+
+    Examples
+    --------
+    >>> shaft_speed(2.0 * np.arange(9000) / 30e3, 30e3)[[0, -1]].round(6)
+    array([2., 2.])
+    """
+    t = np.arange(angle.size) / rate
+    t -= t.mean()
+    course = np.polynomial.Polynomial.fit(t, angle, 3)
+    rest = closed_loop(angle - course(t), rate)
+    frequency = rfftfreq(rest.size, 1.0 / rate)
+    kept = 1.0 / (1.0 + (frequency / _SPEED_BAND) ** 4)
+    slow = irfft(rfft(rest) * kept * 2j * np.pi * frequency, rest.size)[: angle.size]
+    return np.asarray(course.deriv()(t) + slow)

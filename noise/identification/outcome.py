@@ -1,0 +1,212 @@
+"""What an identification comes to, and the shape of ``identification.json``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from models.condition import FIXED
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from noise.identification.bushing_fit import BushingFit
+    from noise.identification.levels import Levels
+    from noise.identification.measured import Measured
+
+__all__ = ["Identification", "LawScore", "Number", "Seen", "as_json"]
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of the rig with its 90 % interval.
+
+    Parameters
+    ----------
+    name, unit : str
+    value, low, high : float
+        In `unit`.
+    n_recordings : int
+        It comes from.
+    interference : float, optional
+        [m]
+    support_stiffness : float, optional
+        [Nm/rad]; ``math.inf`` for the clamp bolted down.
+    """
+
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    n_recordings: int
+    interference: float | None = None
+    support_stiffness: float | None = None
+
+
+@dataclass(frozen=True)
+class LawScore:
+    """A law of friction that was tried.
+
+    Parameters
+    ----------
+    law : str
+        Of `noise.identification.law_candidates`.
+    held_out : float
+        Distance of recordings that its fit has not seen, in floors [-].
+    trained : float
+        The same of those that it has seen [-].
+    parameters : mapping of str to float
+        In the units of the law's file.
+    """
+
+    law: str
+    held_out: float
+    trained: float
+    parameters: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """One recording and what it said by itself.
+
+    Parameters
+    ----------
+    measured : Measured
+    fit : BushingFit
+    levels : Levels
+    values : mapping of str to float
+        What counts of it in the end, in SI units, by the names of the rig's numbers.
+    """
+
+    measured: Measured
+    fit: BushingFit
+    levels: Levels
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """An identified rig.
+
+    Parameters
+    ----------
+    rig_toml : str
+        The rig file.
+    numbers : tuple of Number
+    laws : tuple of LawScore
+        Best first.
+    law : str
+        The one that was chosen.
+    seen : tuple of Seen
+    assumed, not_found, notes : tuple of str
+        What the rig file assumes, what these recordings could not tell, what else to know.
+    refused : tuple of (str, str)
+        Recordings left out, with the reason.
+    held_out : tuple of str
+        Recordings that the laws were compared on.
+    margin : float
+        By how much a simpler law may be worse and is still chosen.
+    seconds : float
+        It took [s].
+
+    Examples
+    --------
+    >>> stiffness = Number("elastomer_stiffness", "Nm/rad", 665.0, 655.0, 675.0, 6, 0.279e-3)
+    >>> Identification("", (stiffness,), (), "constant", ()).number("elastomer_stiffness").high
+    675.0
+    """
+
+    rig_toml: str
+    numbers: tuple[Number, ...]
+    laws: tuple[LawScore, ...]
+    law: str
+    seen: tuple[Seen, ...]
+    assumed: tuple[str, ...] = ()
+    not_found: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    refused: tuple[tuple[str, str], ...] = ()
+    held_out: tuple[str, ...] = ()
+    margin: float = 0.0
+    seconds: float = field(default=0.0, compare=False)
+
+    def number(
+        self, name: str, interference: float | None = None, support: float | None = None
+    ) -> Number:
+        """Find a number by name, and by interference [m] and support [Nm/rad] where it has them.
+
+        Raises
+        ------
+        KeyError
+            There is none.
+        """
+        for one in self.numbers:
+            if one.name == name and (interference, support) in (
+                (None, None), (one.interference, None), (one.interference, one.support_stiffness)
+            ):  # fmt: skip
+                return one
+        raise KeyError(name)
+
+
+def as_json(found: Identification) -> dict[str, Any]:
+    """Return what ``identification.json`` holds."""
+    return {
+        "law": found.law,
+        "numbers": [_number(one) for one in found.numbers],
+        "laws": [
+            {
+                "law": one.law,
+                "held_out": _rounded(one.held_out),
+                "trained": _rounded(one.trained),
+                "parameters": {name: _rounded(value) for name, value in one.parameters.items()},
+            }
+            for one in found.laws
+        ],
+        "margin": found.margin,
+        "held_out": list(found.held_out),
+        "recordings": [_recording(one) for one in found.seen],
+        "assumed": list(found.assumed),
+        "not_found": list(found.not_found),
+        "notes": list(found.notes),
+        "refused": [{"file": name, "reason": reason} for name, reason in found.refused],
+        "seconds": round(found.seconds, 2),
+    }
+
+
+def _number(one: Number) -> dict[str, Any]:
+    row: dict[str, Any] = {"name": one.name, "unit": one.unit}
+    if one.interference is not None:
+        row["interference_mm"] = _rounded(1e3 * one.interference)
+    if one.support_stiffness is not None:
+        row["support_stiffness_Nm_rad"] = _support(one.support_stiffness)
+    return row | {
+        "value": _rounded(one.value),
+        "low": _rounded(one.low),
+        "high": _rounded(one.high),
+        "recordings": one.n_recordings,
+    }
+
+
+def _recording(one: Seen) -> dict[str, Any]:
+    c = one.measured.condition
+    return {
+        "file": one.measured.name,
+        "speed_rad_s": _rounded(c.speed),
+        "interference_mm": _rounded(1e3 * c.interference),
+        "support_stiffness_Nm_rad": _support(c.support_stiffness),
+        "elastomer_stiffness_Nm_rad": _rounded(one.values["elastomer_stiffness"]),
+        "damping_Nms_rad": _rounded(one.values["damping"]),
+        "mean_torque_Nm": _rounded(one.levels.mean),
+        "critical_torque_Nm": _rounded(one.values["critical_torque"]),
+        "kinetic_torque_Nm": _rounded(one.values["kinetic_torque"]),
+        "slips": one.levels.slips,
+        "stuck_share": round(one.fit.stuck_share, 3),
+    }
+
+
+def _support(stiffness: float) -> float | str:
+    return "fixed" if stiffness == FIXED else _rounded(stiffness)
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.5g}")

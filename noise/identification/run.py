@@ -1,0 +1,54 @@
+"""The identification of a folder, as a notebook calls it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from noise.identification.identify import identify_rig
+from noise.identification.known import known_beforehand
+from noise.identification.measured import read_measurements
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from noise.identification.outcome import Identification
+
+__all__ = ["identify"]
+
+
+def identify(
+    data: str | Path | Sequence[str | Path], rig: str | Path | None = None, *, seed: int = 0
+) -> Identification:
+    """Identify a rig from recordings.
+
+    Parameters
+    ----------
+    data : path or sequence of paths
+        Recordings of torque and angle, or folders of them.
+    rig : path, optional
+        Rig file that states what is known, the two inertias above all.
+    seed : int
+        Of simulated repeats.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    ParameterError
+        Rig file or recordings cannot be used.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     identify(folder)
+    Traceback (most recent call last):
+    models.errors.ParameterError: ...
+    """
+    paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
+    return identify_rig(
+        read_measurements(paths), known_beforehand(None if rig is None else Path(rig)), seed=seed
+    )

@@ -1,0 +1,1 @@
+"""Rigs of the second simulator with six friction laws, for checking `bushing-noise identify`."""

@@ -1,0 +1,99 @@
+"""What ``bushing-noise identify`` writes and refuses, end to end on the second simulator's rigs."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+import noise
+from models.rig_files.rig_file import load_rig
+from noise.cli import main
+from noise.identification import law_choice
+from noise.identification.law_candidates import CANDIDATES
+from tests.blind.identify.rigs import make_rig, write_rig
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_laws():
+    """Try two laws: what is asked here does not depend on how many there are."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(law_choice, "CANDIDATES", CANDIDATES[:2])
+        yield
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    where = tmp_path_factory.mktemp("rig") / "data"
+    write_rig(make_rig(1, 0, recordings=3), where)
+    return where
+
+
+@pytest.fixture(scope="module")
+def answered(folder, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "mine"
+    code = main(["identify", str(folder), "--rig", str(folder / "known.toml"), "--out", str(out)])
+    return code, out
+
+
+def test_it_writes_a_rig_file_that_loads(answered):
+    code, out = answered
+    assert code == 0
+    rig = load_rig(out / "rig.toml")
+    assert len(rig.fits) == 1
+    assert rig.fits[0].critical_torque >= rig.fits[0].kinetic_torque > 0.0
+
+
+def test_numbers_have_intervals_that_hold_them(answered):
+    found = json.loads((answered[1] / "identification.json").read_text())
+    assert found["numbers"]
+    assert all(n["low"] <= n["value"] <= n["high"] for n in found["numbers"])
+
+
+def test_numbers_are_near_the_truth(answered):
+    truth = make_rig(1, 0, recordings=3).truth
+    assert (answered[1] / "report.html").stat().st_size > 50_000
+    (fit,) = load_rig(answered[1] / "rig.toml").fits
+    stiffness, critical, kinetic = next(iter(truth["fits"].values()))
+    assert fit.elastomer_stiffness == pytest.approx(stiffness, rel=0.06)
+    assert fit.critical_torque == pytest.approx(critical, rel=0.06)
+    assert fit.kinetic_torque == pytest.approx(kinetic, rel=0.06)
+
+
+def test_the_identified_rig_can_be_simulated(answered, tmp_path):
+    assert main([
+        "simulate", "--rig", str(answered[1] / "rig.toml"), "--speed", "1", "--seconds", "0.1",
+        "--interference", "0.178", "--out", str(tmp_path / "run"),
+    ]) == 0  # fmt: skip
+
+
+def test_a_bad_recording_is_refused_by_name(folder, tmp_path, capsys):
+    mixed = tmp_path / "mixed"
+    shutil.copytree(folder, mixed)
+    shutil.copy(mixed / "run01.wav", mixed / "bad.wav")
+    sidecar = json.loads((mixed / "run01.json").read_text())
+    del sidecar["conditions"]["interference_mm"]
+    (mixed / "bad.json").write_text(json.dumps(sidecar))
+    assert main(["identify", str(mixed), "--out", str(tmp_path / "out")]) == 1
+    assert "bad.wav: states no interference_mm" in capsys.readouterr().err
+
+
+def test_sound_alone_is_told_what_is_needed(tmp_path, capsys):
+    import soundfile
+
+    soundfile.write(tmp_path / "sound.wav", np.zeros(48000), 48000, subtype="FLOAT")
+    (tmp_path / "sound.json").write_text(
+        json.dumps({"channels": [{"name": "pressure", "unit": "Pa"}], "calibrated": True})
+    )
+    assert main(["identify", str(tmp_path)]) == 1
+    assert "has no channel of torque" in capsys.readouterr().err
+
+
+def test_an_empty_folder_is_an_unusable_call(tmp_path):
+    assert main(["identify", str(tmp_path)]) == 2
+
+
+def test_a_notebook_gets_the_same(folder):
+    found = noise.identify(folder, folder / "known.toml")
+    assert found.law
+    assert found.number("elastomer_stiffness").n_recordings == 3
