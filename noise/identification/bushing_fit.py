@@ -114,7 +114,20 @@ class BushingFit:
 
 
 def phases_of(contact: Contact, shaft_speed: NDArray[np.float64], rate: float) -> Phases:
-    """Tell stick from slip by the sliding speed."""
+    """Tell stick from slip by the sliding speed.
+
+    Parameters
+    ----------
+    contact : Contact
+    shaft_speed : ndarray, shape (n,)
+        [rad/s]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    Phases
+    """
     guard = np.ones(2 * max(1, round(_GUARD * rate)) + 1)
     v = contact.sliding_speed
     # what the cell's noise makes of a standing contact

@@ -24,9 +24,9 @@ class Candidate:
     effect : str, optional
         Of `sim.effects`; then it is what the searched parameters belong to.
     free : mapping of str to tuple of float
-        Parameters that are searched: lowest, highest and some starts, in the law's units.
+        Parameters that are searched: lowest, highest and some starts [the law's units].
     fixed : mapping of str to float
-        Others that differ from the law's own.
+        Others that differ from the law's own [the law's units].
     """
 
     name: str

@@ -80,13 +80,13 @@ def fit_law(
     ----------
     model : LawModel
     recordings : sequence of Measured
-    targets : sequence of ndarray
-        Their statistics.
+    targets : sequence of ndarray, shape (n_statistics,)
+        Their statistics, as `torque_statistics` gives them [-].
     iterations : int, optional
-    bushing : ndarray, optional
-        Numbers of the bushing that a simpler law had.
-    begin : ndarray, optional
-        Where to begin; by default at the best of the law's starts.
+    bushing : ndarray, shape (n_bushing,), optional
+        Numbers of the bushing that a simpler law had, logarithms [-].
+    begin : ndarray, shape (n,), optional
+        Where to begin, logarithms [-]; by default at the best of the law's starts.
 
     Returns
     -------

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.rig import LawSpec
-from noise.diagnosis.gap.scatter import Scatter, perturb_run
 from noise.diagnosis.gap.signature import channel_signature
+from noise.diagnosis.simulated.repeats import Scatter, perturb_run
 from sim.friction import friction_law
 from sim.motion import simulate_motion
 from sim.parameters import resolve
@@ -71,7 +71,7 @@ class LawModel:
         Parameters
         ----------
         bushing : ndarray, shape (n_bushing,), optional
-            The part that any law has; by default the base.
+            The part that any law has, logarithms [-]; by default the base.
         """
         fits = self.base.fits
         if bushing is None:
@@ -110,7 +110,7 @@ class LawModel:
         return begun
 
     def limits(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the lowest and highest vectors."""
+        """Return the lowest and highest vectors, shape (n_bushing + n_law,)."""
         middle = self.starts()[0][: self.n_bushing]
         low = [low for low, _, _ in self.candidate.free.values()]
         high = [high for _, high, _ in self.candidate.free.values()]
@@ -126,19 +126,19 @@ class LawModel:
         return {**self.candidate.fixed, **dict(zip(self.candidate.free, own, strict=True))}
 
     def friction(self, vector: NDArray[np.float64]) -> LawSpec:
-        """Return the law at a vector, with all its parameters stated."""
+        """Return the law at a vector, shape (n,), with all its parameters stated."""
         law = friction_law(self.candidate.law)
         given = {} if self.candidate.effect else self._own(vector)
         return LawSpec(law.name, dict(resolve(law.name, law.parameters, given)))
 
     def effects(self, vector: NDArray[np.float64]) -> tuple[LawSpec, ...]:
-        """Return the effect that makes the law, where one does."""
+        """Return the effect that makes the law at a vector, shape (n,), where one does."""
         if self.candidate.effect is None:
             return ()
         return (LawSpec(self.candidate.effect, self._own(vector)),)
 
     def rig(self, vector: NDArray[np.float64]) -> Rig:
-        """Return the rig at a vector."""
+        """Return the rig at a vector, shape (n,)."""
         n = len(self.base.fits)
         values = np.exp(vector).tolist()
         damping = dict(zip(self.supports, values[3 * n : self.n_bushing], strict=True))

@@ -32,9 +32,9 @@ class Contact:
 
     Parameters
     ----------
-    torque : ndarray
+    torque : ndarray, shape (n,)
         In the contact [Nm].
-    sliding_speed : ndarray
+    sliding_speed : ndarray, shape (n,)
         [rad/s]
     """
 

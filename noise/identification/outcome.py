@@ -25,7 +25,7 @@ class Number:
     ----------
     name, unit : str
     value, low, high : float
-        In `unit`.
+        [as `unit` says]
     n_recordings : int
         It comes from.
     interference : float, optional
@@ -57,7 +57,7 @@ class LawScore:
     trained : float
         The same of those that it has seen [-].
     parameters : mapping of str to float
-        In the units of the law's file.
+        [units of the law's file]
     """
 
     law: str
@@ -76,7 +76,7 @@ class Seen:
     fit : BushingFit
     levels : Levels
     values : mapping of str to float
-        What counts of it in the end, in SI units, by the names of the rig's numbers.
+        What counts of it in the end [SI units], by the names of the rig's numbers.
     """
 
     measured: Measured
@@ -106,7 +106,7 @@ class Identification:
     held_out : tuple of str
         Recordings that the laws were compared on.
     margin : float
-        By how much a simpler law may be worse and is still chosen.
+        Factor by which a simpler law may be worse and is still chosen.
     seconds : float
         It took [s].
 

@@ -37,7 +37,7 @@ class Pooled:
     Parameters
     ----------
     value, low, high : float
-        In the unit of what was pooled.
+        [unit of what was pooled]
     n : int
         Recordings it comes from.
     """
