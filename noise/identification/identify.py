@@ -167,16 +167,13 @@ _HEAD = (
 
 def _sentence(one: Seen) -> str:
     fit, levels = one.fit, one.levels
-    text = (
+    if not levels.slips:  # nothing winds the elastomer up, so nothing tells how stiff it is
+        return f"{one.measured.name}: mean torque {levels.mean:.3g} Nm, no slips"
+    return (
         f"{one.measured.name}: k_E {fit.bushing.elastomer_stiffness:.4g} Nm/rad, "
-        f"damping {fit.damping:.3g} Nm s/rad, "
+        f"damping {fit.damping:.3g} Nm s/rad, breaks at {levels.critical:.3g} and slides at "
+        f"{levels.kinetic:.3g} Nm, {levels.slips} slips"
     )
-    if levels.slips:
-        return text + (
-            f"breaks at {levels.critical:.3g} and slides at {levels.kinetic:.3g} Nm, "
-            f"{levels.slips} slips"
-        )
-    return text + f"mean torque {levels.mean:.3g} Nm, no slips"
 
 
 def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...], tuple[str, ...]]:
