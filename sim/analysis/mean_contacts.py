@@ -1,6 +1,6 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 # ruff: noqa: ANN001
-"""What an effect makes of the contact in steady sliding: the mean over its second half.
+"""The contact in steady sliding under an effect, as the mean over the second half of it.
 
 Effects are called through pointers, as the solver of contacts calls them, so that one compiled
 function serves all.
@@ -60,17 +60,14 @@ def average_contacts(
 
     Examples
     --------
-    >>> from models.rig import LawSpec
-    >>> from sim.contact import CRITICAL, N_CONTACT
+    >>> from sim.contact import KINETIC
     >>> from sim.effects import EFFECTS
-    >>> from sim.effects.effect import activated
-    >>> from sim.motion import contact_hooks
-    >>> stronger = activated([LawSpec("critical_torque_scatter", {"scatter": 0.0})], EFFECTS)
-    >>> (hook,) = contact_hooks(stronger, np.random.default_rng(0))
-    >>> contacts = np.full((1, N_CONTACT), 8.0)
-    >>> average_contacts(hook, 1, np.array([2.0]), contacts)
-    >>> float(contacts[0, CRITICAL])
-    8.0
+    >>> from sim.solvers.contact_solver import Hook
+    >>> weaker = Hook(EFFECTS["velocity_weakening"].contact, np.array([0.5, 1.0, 0.0]), 0)
+    >>> contacts = np.array([[10.7, 8.0, 665.0, 0.0, 0.0, np.inf, 0.0]])
+    >>> average_contacts(weaker, 1, np.array([2.0]), contacts)
+    >>> bool(contacts[0, KINETIC] < 8.0)
+    True
     """
     compiled: Any = _average
     compiled(
