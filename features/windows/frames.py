@@ -1,4 +1,5 @@
-"""Short frames of a sound: how strong, how tonal, at which pitch, how like the frame before."""
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
+"""Short frames of a sound: strength, tonality, pitch, and likeness to the frame before."""
 
 from __future__ import annotations
 
@@ -9,7 +10,8 @@ import numpy as np
 from numba import njit
 from scipy import fft
 
-from features.windows.working import FRAME_RATE, RATE
+from features.windows.arithmetic import OCTAVES
+from features.windows.blocks import FRAME_RATE, RATE
 from models.compilation import COMPILED
 
 if TYPE_CHECKING:
@@ -46,7 +48,7 @@ FRAME_COLUMNS = (
 )  # fmt: skip
 """What is known of a frame beside its bands.
 
-Energy [dB re the page's scale]; geometric over arithmetic mean of the power [dB]; centroid and
+Energy [dB re the block's scale]; geometric over arithmetic mean of the power [dB]; centroid and
 frequency of the strongest maximum [octave re 1 kHz]; the share of the power in that maximum; the
 next maximum re the first [dB]; one less the cosine between magnitudes of this frame and the one
 before; pitch [octave re 100 Hz] and how periodic the frame is at it (0 to 1).
@@ -55,14 +57,14 @@ before; pitch [octave re 100 Hz] and how periodic the frame is at it (0 to 1).
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Frames of a page.
+    """Frames of some seconds of sound.
 
     Parameters
     ----------
     values : ndarray of float32, shape (n_frames, n_columns)
         By `FRAME_COLUMNS`, in their units [dB, octave or -].
     bands : ndarray of float32, shape (n_frames, BANDS)
-        Power in half octaves [dB re the page's scale].
+        Power in half octaves [dB re the block's scale].
     """
 
     values: NDArray[np.float32]
@@ -81,7 +83,7 @@ def frame_count(n: int) -> int:
 
 
 def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
-    """Describe the frames of a page.
+    """Describe the frames of a sound.
 
     Parameters
     ----------
@@ -125,12 +127,9 @@ _SELF = np.correlate(_WINDOW, _WINDOW, "full")[FRAME - 1 :]
 _TAPER = (_SELF[0] / _SELF[: _LAGS[1] + 2]).astype(np.float32)
 
 
-_OCTAVES = 1.0 / np.log(2.0)
-"""What makes a natural logarithm one of base two."""
-
-
 @njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
-def _describe(power, magnitude, correlation, last, values):
+def _describe(power, magnitude, correlation, last, values) -> None:
+    """Fill in the columns; that of the flatness holds the mean logarithm of the power before."""
     for i in range(power.shape[0]):
         p = power[i]
         total = np.float32(0.0)
@@ -168,11 +167,11 @@ def _describe(power, magnitude, correlation, last, values):
         values[i, 0] = 10.0 * np.log10(total)
         values[i, 1] = 10.0 * (values[i, 1] * 0.30103 - np.log10(total / (last - _FIRST_BIN)))
         values[i, 2] = moment / total
-        values[i, 3] = _OCTAVES * np.log((top + shift) * (_SPACING / 1000.0))
+        values[i, 3] = OCTAVES * np.log((top + shift) * (_SPACING / 1000.0))
         values[i, 4] = around / total
         values[i, 5] = 10.0 * np.log10(second / p[top])
         values[i, 6] = 1.0 - dot / np.sqrt(total * before) if before > 0.0 else 0.0
-        values[i, 7] = _OCTAVES * np.log(RATE / (100.0 * period)) if period > 0 else np.nan
+        values[i, 7] = OCTAVES * np.log(RATE / (100.0 * period)) if period > 0 else np.nan
         values[i, 8] = best / r[0]
     if power.shape[0] > 1:
         values[0, 6] = values[1, 6]

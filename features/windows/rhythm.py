@@ -1,5 +1,5 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""Blows and their rhythm: what tells a creak from rain, and both from a tone.
+"""The rhythm of blows in a window, which tells a creak from rain, and both from a tone.
 
 The power of the sound above 2 kHz, and of all of it, every quarter of a millisecond.
 A creak is a row of blows whose intervals are alike from one to the next while their rate may glide;
@@ -15,15 +15,15 @@ from numba import njit
 from scipy import fft, special
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_medians, padded_rows
+from features.windows.blocks import RATE
 from features.windows.declared import RHYTHM_FEATURES
 from features.windows.maxima import prominent_maxima
-from features.windows.working import RATE
 from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["ENVELOPE_RATE", "RHYTHM_NAMES", "envelope", "rhythms_of"]
+__all__ = ["ENVELOPE_RATE", "RHYTHM_NAMES", "envelope", "rhythm_features"]
 
 _STEP = 4
 ENVELOPE_RATE = RATE // _STEP
@@ -61,7 +61,7 @@ _MODULATION = (4, 12, 31, 82, 205, 410, 820, 1640)
 """Edges of the bands of modulation, in bins of about 1 Hz."""
 
 RHYTHM_NAMES = tuple(feature.name for feature in RHYTHM_FEATURES)
-"""Of a window, in the order of `rhythms_of`."""
+"""Of a window, in the order of `rhythm_features`."""
 
 
 def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -76,7 +76,7 @@ def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.asarray(np.einsum("ij,ij->i", whole, whole) / np.float32(_STEP))
 
 
-def rhythms_of(
+def rhythm_features(
     power: NDArray[np.float32], first: NDArray[np.int64], last: NDArray[np.int64]
 ) -> NDArray[np.float32]:
     """Describe the rhythm of windows.
@@ -97,7 +97,7 @@ def rhythms_of(
     --------
     >>> blows = np.zeros(2000, dtype=np.float32)
     >>> blows[::80] = 1.0
-    >>> found = rhythms_of(blows, np.array([0]), np.array([2000]))[0]
+    >>> found = rhythm_features(blows, np.array([0]), np.array([2000]))[0]
     >>> named = dict(zip(RHYTHM_NAMES, found.tolist()))
     >>> round(10.0 * 2.0 ** named["period_rate"])
     50

@@ -96,7 +96,7 @@ def long_spectra(sound: NDArray[np.float32], count: int) -> NDArray[np.float32]:
     Parameters
     ----------
     sound : ndarray of float32, shape (n,)
-        At `features.windows.working.RATE` [any unit]; zeros follow its end.
+        At `features.windows.blocks.RATE` [any unit]; zeros follow its end.
     count : int
 
     Returns

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.declared import TOP_FEATURES, WINDOW_FEATURES
 from features.windows.frames import FRAME_COLUMNS, describe_frames, frame_count
-from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythms_of
+from features.windows.rhythm import ENVELOPE_RATE, envelope, rhythm_features
 from features.windows.spectra import SEGMENT_HOP, long_spectra
 from features.windows.tones import tone_features
 from features.windows.trajectories import trajectory_features
-from features.windows.working import FRAME_RATE, RATE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -83,10 +83,10 @@ def describe_windows(
     Parameters
     ----------
     sound, high : ndarray of float32, shape (n,)
-        As `features.windows.working.Block` has them, with what follows as far as the last window
+        As `features.windows.blocks.Block` has them, with what follows as far as the last window
         reaches and the recording goes.
     top : ndarray of float32, shape (n_frames, 2)
-        As of `features.windows.working.Block` too.
+        As of `features.windows.blocks.Block` too.
     scale : float
         Unit of the three [unit of the signal].
     windows : int
@@ -121,8 +121,8 @@ def describe_windows(
         [
             trajectory_features(frames, first, last),
             tone_features(long_spectra(sound, spectra), of_spectra, until, limit),
-            rhythms_of(power, begin, end),
-            rhythms_of(blows, begin, end),
+            rhythm_features(power, begin, end),
+            rhythm_features(blows, begin, end),
             _tops(top, power, blows, windows),
         ],
         axis=1,

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.windows.blocks import FRAME_RATE, RATE
 from features.windows.frames import FRAME, FRAME_COLUMNS
 from features.windows.table import HOP
-from features.windows.working import FRAME_RATE, RATE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

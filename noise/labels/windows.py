@@ -16,9 +16,9 @@ import numpy as np
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.named.prepared import ACOUSTIC_KINDS, prepare
 from features.named.torque_features import TORQUE_FEATURES
+from features.windows.blocks import FRAME_RATE, MARGIN, RATE, block_length, resampled_block
 from features.windows.declared import WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_windows, window_count
-from features.windows.working import FRAME_RATE, MARGIN, RATE, block_length, working_block
 from models.errors import ParameterError
 from noise.labels.levels import CellLevels
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from features.windows.blocks import Block
     from features.windows.table import WindowTable
-    from features.windows.working import Block
     from noise.recordings.blocks import RecordingBlocks
 
 __all__ = [
@@ -214,7 +214,7 @@ class _Reader:
             end = round((number + 1) * self._useful * rate)
             self.cells.add(begin, end, held[self._heard], max(start, 0))
             self._held[number] = {
-                row: working_block(self._framed(held[row], start, length), rate, self._useful)
+                row: resampled_block(self._framed(held[row], start, length), rate, self._useful)
                 for row in self._rows
             }
         return self._held[number]

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.analysis.stability_kernel import STEP, averaged_contacts, linearised
+from sim.analysis.stability_kernel import STEP, linearised
 from sim.analysis.sweep_systems import packed_systems
 from sim.contact import CRITICAL, KINETIC, N_CONTACT, SHAFT_INERTIA, STIFFNESS
 from sim.effects import EFFECTS
@@ -149,15 +149,15 @@ def _contacts(
     contacts[:, :, CRITICAL], contacts[:, :, KINETIC] = systems[:, 6], systems[:, 7]
     contacts[:, :, STIFFNESS] = systems[:, 2]
     contacts[:, :, SHAFT_INERTIA] = math.inf
-    averaged: Any = averaged_contacts
+    if hooks:  # else it needs not be compiled
+        from sim.analysis.mean_contacts import average_contacts
     for hook in hooks:
-        given = hook.function, np.ascontiguousarray(hook.values, dtype=np.float64)
         if hook.n_states:
             before = contacts[0, :, :SHAFT_INERTIA].copy()
-            averaged(*given, np.zeros((4, hook.n_states)), _MOMENTS, speed, contacts[0])
+            average_contacts(hook, _MOMENTS, speed, contacts[0])
             contacts[1:, :, :SHAFT_INERTIA] += contacts[0, :, :SHAFT_INERTIA] - before
             continue
         for i, factor in enumerate((1.0, 1.0 + STEP, 1.0 - STEP)):
-            averaged(*given, np.zeros((4, 0)), 1, factor * speed, contacts[i])
+            average_contacts(hook, 1, factor * speed, contacts[i])
     contacts[:, :, CRITICAL] = np.maximum(contacts[:, :, CRITICAL], contacts[:, :, KINETIC])
     return contacts

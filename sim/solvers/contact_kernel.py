@@ -11,6 +11,8 @@ begins with the new right-hand side. Outputs are read within the step that cover
 from __future__ import annotations
 
 import math
+from functools import lru_cache
+from typing import Any
 
 from numba import boolean, float64, int64, njit, types
 
@@ -21,7 +23,7 @@ from sim.solvers.contact_rates import contact_rates
 from sim.solvers.contact_state import MOST_HOOKS, N_STAGES, Bushing, Drive, Hooks, Limits, Rows
 from sim.solvers.dormand_prince import NODES, fill_dense, fill_stage, step_error, vertex
 
-__all__ = ["run_contact"]
+__all__ = ["contact_loop"]
 
 _GRACE = 2e-3
 """Time that is granted to what has just begun [s]."""
@@ -99,14 +101,34 @@ def _bracketed(h, far, low, high, far_low, far_high, side):
     return h, low, high, far_low, far_high, side
 
 
-@njit(
-    types.void(
-        _BUSHING, _LAW, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOK, _HOOKS, _DRIVE,
-        _LIMITS, _VECTOR, _ROWS, _MATRIX, int64[::1],
-    ),
-    cache=True, nogil=True, **COMPILED,
-)  # fmt: skip
-def run_contact(
+@lru_cache
+def contact_loop(*, with_effects: bool) -> Any:
+    """Return the compiled loop, with effects or for runs without any, which compiles faster.
+
+    Parameters
+    ----------
+    with_effects : bool
+        Else None takes the place of each hook and of `Hooks`.
+
+    Returns
+    -------
+    compiled function
+        `_run_contact`.
+
+    Examples
+    --------
+    >>> contact_loop(with_effects=False).py_func.__name__
+    '_run_contact'
+    """
+    hook, hooks = (_HOOK, _HOOKS) if with_effects else (types.none, types.none)
+    signature = types.void(
+        _BUSHING, _LAW, *[hook] * MOST_HOOKS, hooks, _DRIVE, _LIMITS, _VECTOR, _ROWS, _MATRIX,
+        int64[::1],
+    )  # fmt: skip
+    return njit(signature, cache=True, nogil=True, **COMPILED)(_run_contact)
+
+
+def _run_contact(
     bushing, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, drive, limits, carried, rows, out,
     direction_out,
 ) -> None:  # fmt: skip

@@ -64,7 +64,7 @@ def contact_rates(
     e = k_e * twist + c_e * (surface - u[3])
     critical, kinetic, creep = t_crit, t_kin, 0.0
     mobility, shaft_torque = 0.0, 0.0
-    if hooks.n > 0:
+    if hooks is not None:  # known when it is compiled
         context[TIME], context[STICK_TIME] = time, stick_time
         turned = since * (drive.speed[i] + 0.5 * acceleration * since)
         context[SHAFT_ANGLE] = drive.angle[i] + turned

@@ -111,6 +111,7 @@ class ContactRun:
         refined: float = 1.0,
     ) -> None:
         # What is not imported before it is needed is not compiled either.
+        from sim.solvers.contact_kernel import contact_loop
         from sim.solvers.stand_ins import no_hook, no_law
 
         if len(hooks) > MOST_HOOKS:
@@ -136,14 +137,17 @@ class ContactRun:
             ),
             law or no_law,
             *[hook.function for hook in hooks],
-            *[no_hook] * (MOST_HOOKS - len(hooks)),
+            *[no_hook if hooks else None] * (MOST_HOOKS - len(hooks)),
             Hooks(
                 len(hooks),
                 tuple(values),
                 tuple(self._rows.state[part] for part in parts),
                 tuple(self._rows.rates[part] for part in parts),
-            ),
+            )
+            if hooks
+            else None,
         )
+        self._loop = contact_loop(with_effects=bool(hooks))
         # The error of a step goes with the fifth power of its length.
         self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
         self._step, self._name = step, name
@@ -178,10 +182,7 @@ class ContactRun:
             If the friction changes faster than any reasonable number of steps could follow.
         """
         states, direction = np.empty((7, n)), np.empty(n, dtype=np.int64)
-        from sim.solvers.contact_kernel import run_contact
-
-        compiled: Any = run_contact
-        compiled(
+        self._loop(
             *self._constants, self._drive(shaft_speed, n), self._limits, self._carried, self._rows,
             states, direction,
         )  # fmt: skip

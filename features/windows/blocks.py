@@ -22,7 +22,7 @@ from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["FRAME_RATE", "MARGIN", "RATE", "USEFUL", "Block", "block_length", "working_block"]
+__all__ = ["FRAME_RATE", "MARGIN", "RATE", "USEFUL", "Block", "block_length", "resampled_block"]
 
 RATE = 16_000
 """Rate at which windows are described [Hz]."""
@@ -80,7 +80,7 @@ def block_length(duration: float) -> int:
     return next((length for length in (1, 3) if duration <= length), USEFUL)
 
 
-def working_block(samples: NDArray[np.float64], rate: float, useful: int) -> Block:
+def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> Block:
     """Bring a block to the common rate.
 
     Parameters
@@ -99,7 +99,7 @@ def working_block(samples: NDArray[np.float64], rate: float, useful: int) -> Blo
     Examples
     --------
     >>> time = np.arange(96_000) / 48e3
-    >>> block = working_block(np.sin(2 * np.pi * 1000.0 * time), 48e3, 1)
+    >>> block = resampled_block(np.sin(2 * np.pi * 1000.0 * time), 48e3, 1)
     >>> block.sound.size, round(float(block.sound.std()), 2), round(float(block.high.std()), 2)
     (16000, 0.71, 0.0)
     """

@@ -1,0 +1,59 @@
+"""Features of windows: the same alone and among others, at any rate, silent or not."""
+
+import numpy as np
+import pytest
+
+from features.windows.arithmetic import ordered_sum
+from features.windows.rhythm import envelope, rhythm_features
+from features.windows.spectra import long_spectra
+from features.windows.table import describe_windows
+from features.windows.tones import tone_features
+
+RATE = 16_000
+
+
+def sound(seconds, seed=0):
+    """Clicks at 40 a second and a tone with harmonics, in noise."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(round(seconds * RATE)) / RATE
+    clicks = np.where(np.mod(time, 0.025) < 2.0 / RATE, 1.0, 0.0)
+    tone = sum(np.sin(2.0 * np.pi * 310.0 * n * time) / n for n in range(1, 6))
+    return (clicks + tone + 0.01 * rng.normal(size=time.size)).astype(np.float32)
+
+
+@pytest.mark.parametrize(("shape", "axis"), [((47, 9), 0), ((5, 47, 9), 1), ((9, 47), 1)])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_sums_run_in_order_whatever_is_summed_beside(shape, axis, dtype):
+    terms = np.random.default_rng(1).lognormal(sigma=9.0, size=shape).astype(dtype)
+    expected = np.zeros_like(terms.take(0, axis=axis))
+    for i in range(shape[axis]):
+        expected = expected + terms.take(i, axis=axis)
+    np.testing.assert_array_equal(ordered_sum(terms, axis=axis), expected)
+    if axis < terms.ndim - 1:
+        alone = ordered_sum(terms[..., :1], axis=axis)
+        np.testing.assert_array_equal(alone, expected[..., :1])
+
+
+def test_a_window_alone_is_as_among_others():
+    x = sound(3.0)
+    power, first = envelope(x), np.arange(10) * 1000
+    together = rhythm_features(power, first, first + 2000)
+    spectra = long_spectra(x, 23)
+    begin = np.arange(10) * 2
+    tones = tone_features(spectra, begin, begin + 3, 7000.0)
+    for i in range(10):
+        one = slice(i, i + 1)
+        alone = rhythm_features(power, first[one], first[one] + 2000)
+        np.testing.assert_array_equal(alone[0], together[i])
+        alone = tone_features(spectra, begin[one], begin[one] + 3, 7000.0)
+        np.testing.assert_array_equal(alone[0], tones[i])
+
+
+@pytest.mark.parametrize("limit", [25.0, 90.0, 180.0, 300.0, 1000.0, 7000.0])
+@pytest.mark.parametrize("level", [0.0, 1e-9, 1.0])
+def test_any_limit_and_level_gives_numbers(limit, level):
+    x = np.float32(level) * sound(1.0)
+    none = np.full((100, 2), np.nan, dtype=np.float32)
+    with np.errstate(all="raise", under="ignore"):
+        found = describe_windows(x, x, none, scale=1.0, windows=3, limit=limit)
+    assert not np.isinf(found.features).any()
