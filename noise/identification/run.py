@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from noise.identification.identify import identify_rig
 from noise.identification.known import known_beforehand
 from noise.identification.measured import read_measurements
+from noise.identification.outcome import as_json
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from noise.identification.outcome import Identification
 
-__all__ = ["identify"]
+__all__ = ["identification_json", "identify"]
 
 
 def identify(
@@ -52,3 +53,8 @@ def identify(
     return identify_rig(
         read_measurements(paths), known_beforehand(None if rig is None else Path(rig)), seed=seed
     )
+
+
+def identification_json(data: Path, rig: Path) -> dict[str, Any]:
+    """Identify a folder's rig; return what ``identification.json`` holds."""
+    return as_json(identify(data, rig))

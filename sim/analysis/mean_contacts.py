@@ -56,7 +56,7 @@ def average_contacts(
     speed : ndarray, shape (n,)
         Of the shaft [rad/s].
     contacts : ndarray, shape (n, N_CONTACT)
-        By `sim.contact`; changed in place.
+        By `sim.contact` [units of `sim.contact`]; changed in place.
 
     Examples
     --------

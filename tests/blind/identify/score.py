@@ -17,10 +17,14 @@ from typing import Any
 
 import numpy as np
 
+from ..score.diagnosing import resolve
 from .laws import LAWS
 from .rigs import make_rig, write_rig
 
 __all__ = ["SAME_LAW", "score", "table"]
+
+IDENTIFY = "noise.identification.run:identification_json"
+"""What ``bushing-noise identify`` calls."""
 
 SAME_LAW = {name: (name,) for name in LAWS}
 """Which laws that the identification knows are meant by each of the second rig's."""
@@ -41,16 +45,14 @@ def score(seed: int, rigs: int, workers: int) -> dict[str, Any]:
 
 
 def _one(job: tuple[int, int]) -> dict[str, Any]:
-    from noise.identification.outcome import as_json
-    from noise.identification.run import identify
-
+    identify = resolve(IDENTIFY)
     made = make_rig(*job)
     with tempfile.TemporaryDirectory() as folder:
         data = Path(folder) / "data"
         write_rig(made, data)
         started = time.perf_counter()
         try:
-            answer = as_json(identify(data, data / "known.toml"))
+            answer = dict(identify(data, data / "known.toml"))
         except Exception as error:  # a rig that is refused counts as one that failed
             return {"index": job[1], "law": made.law.name, "failed": str(error)[:200]}
         seconds = time.perf_counter() - started
