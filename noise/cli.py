@@ -61,7 +61,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     0
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
-    gc.set_threshold(_NEW_OBJECTS, 20, 50)
+    if argv is None:  # who calls from a program of their own keeps their settings
+        gc.set_threshold(_NEW_OBJECTS, 20, 50)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # names of files that the terminal cannot show
             stream.reconfigure(errors="backslashreplace")

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     Cell = bool | int | float | str | None
 
-__all__ = ["TABLE_ENDINGS", "check_table_path", "read_table", "write_table"]
+__all__ = ["TABLE_ENDINGS", "check_table_path", "plain_cell", "read_table", "write_table"]
 
 TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
@@ -163,18 +163,28 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
         raise RecordingError(f"{path}: is damaged or no table ({error})") from None
 
 
-def _cell(value: object) -> Cell:
+def plain_cell(value: object) -> Cell:
+    """Return a value as one that every format of a table can hold; NaN stays.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> plain_cell(np.float64(2.5)), plain_cell(3), plain_cell(None)
+    (2.5, 3, None)
+    """
     if value is None or isinstance(value, str | bool):
         return value
     item = getattr(value, "item", None)  # scalars of numpy
     if callable(item):
-        return _cell(item())
+        return plain_cell(item())
     if isinstance(value, numbers.Integral):
         return int(value)
-    if isinstance(value, numbers.Real):
-        number = float(value)
-        return None if math.isnan(number) else number
-    return str(value)
+    return float(value) if isinstance(value, numbers.Real) else str(value)
+
+
+def _cell(value: object) -> Cell:
+    plain = plain_cell(value)
+    return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
 def _write_csv(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

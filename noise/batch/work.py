@@ -9,12 +9,12 @@ Linear algebra runs on one thread: on several, sums are split elsewhere and roun
 
 from __future__ import annotations
 
-import numbers
 from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from models.errors import BushingNoiseError, ParameterError
+from noise.base.tables import plain_cell
 from noise.batch.identity import file_identity
 from noise.recordings import find_recordings
 
@@ -200,7 +200,9 @@ def perform(work: Work, path: Path, name: str) -> Done:
         rows, calibrated = work.rows(path, name)
     except Exception as error:  # whatever it is, the next file may be fine
         return refusal(work, name, _message(error))
-    return Done([[_cell(row.get(column)) for column in work.columns] for row in rows], calibrated)
+    return Done(
+        [[plain_cell(row.get(column)) for column in work.columns] for row in rows], calibrated
+    )
 
 
 def refusal(work: Work, name: str, message: str) -> Done:
@@ -215,14 +217,3 @@ def _message(error: Exception) -> str:
     if isinstance(error, MemoryError):
         return "needs more memory than there is"
     return f"unexpected, please report: {type(error).__name__}: {error}"
-
-
-def _cell(value: object) -> Cell:
-    if value is None or isinstance(value, str | bool):
-        return value
-    item = getattr(value, "item", None)  # scalars of numpy
-    if callable(item):
-        return _cell(item())
-    if isinstance(value, numbers.Integral):
-        return int(value)
-    return float(value) if isinstance(value, numbers.Real) else str(value)
