@@ -197,7 +197,7 @@ def _support_stiffness(text: str) -> float:
 
 
 def _effect(text: str) -> LawSpec:
-    from models.rig_files.rig_file import parse_spec
+    from models.rig_files.rig_parts import parse_spec
 
     try:
         return parse_spec(text)
@@ -206,6 +206,6 @@ def _effect(text: str) -> LawSpec:
 
 
 def _materials() -> tuple[str, ...]:
-    from models.rig_files.rig_file import material_names
+    from models.rig_files.shipped import material_names
 
     return material_names()
