@@ -100,12 +100,11 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
     return arguments, notes
 
 
-def with_notes(run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any]) -> Recording:
+def with_notes(run: Run, notes: tuple[str, ...]) -> Recording:
     """Return the recording of a run with its notes, that nothing slips in it among them."""
     from sim.analysis.regime import never_slips
 
-    kinetic = arguments["rig"].fit(arguments["interference"]).kinetic_torque
-    if never_slips(run.motion, kinetic):
+    if never_slips(run.motion):
         note(NEVER_SLIPS)
         notes = (*notes, NEVER_SLIPS)
     return replace(run.recording, notes=notes)
