@@ -67,7 +67,7 @@ class SimulatedSource:
                 arguments["rng"] = np.random.default_rng([self.seed, number])
             # Its sound is all that is heard of it, and may have to be kept for long.
             made = simulate(**arguments)
-            run = made.recording if number else with_notes(made, self.notes)
+            run = made.recording if number else with_notes(made, self.notes, arguments)
             row = run.first("pressure")
             if row is not None:
                 samples, channels = run.samples[row : row + 1].copy(), (run.channels[row],)

@@ -99,7 +99,7 @@ def run(options: Namespace) -> int:
     from sim.run import simulate
 
     simulated = simulate(**arguments)
-    recording = with_notes(simulated, notes)
+    recording = with_notes(simulated, notes, arguments)
     if options.out is options.plot is options.sound_power is None:
         print(json.dumps(_summary(recording)))
     if options.out is not None:
