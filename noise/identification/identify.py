@@ -11,20 +11,23 @@ from models.errors import ParameterError
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers
 from noise.identification.corrected import corrected, values_of
+from noise.identification.evidence import table_evidence, with_evidence
 from noise.identification.found_rig import found_rig
 from noise.identification.law_choice import MARGIN, choose_law, overall
 from noise.identification.law_numbers import law_numbers
 from noise.identification.levels import torque_levels
 from noise.identification.outcome import Identification, Seen
 from noise.identification.rig_text import rig_text
+from noise.identification.table_fit import score_table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from models.rig import Rig
     from noise.identification.known import Beforehand
     from noise.identification.law_choice import Choice
     from noise.identification.measured import Measurements
+    from noise.identification.table_number import TableNumber
 
 __all__ = ["identify_rig"]
 
@@ -33,6 +36,7 @@ def identify_rig(
     measurements: Measurements,
     beforehand: Beforehand,
     *,
+    table: Sequence[TableNumber] = (),
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> Identification:
@@ -43,6 +47,9 @@ def identify_rig(
     measurements : Measurements
     beforehand : Beforehand
         What is known of it.
+    table : sequence of TableNumber
+        Measured numbers: what they state of the rig itself joins what the recordings say, the
+        others are held against the rig that comes out.
     seed : int
         Of simulated repeats.
     progress : callable, optional
@@ -75,7 +82,9 @@ def identify_rig(
         )
     stated = {one.measured.condition.material for one in seen} - {None}
     material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
-    base = _at_all_supports(found_rig(beforehand, bushing_numbers(seen), material=material))
+    evidence = table_evidence(table)
+    first = with_evidence(bushing_numbers(seen), evidence)
+    base = _at_all_supports(found_rig(beforehand, first, material=material))
     known_fits = {fit.interference for fit in base.fits}
     usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]
     choice = choose_law(base, usable, tell, seed=seed)
@@ -88,7 +97,7 @@ def identify_rig(
         else one
         for one in seen
     ]
-    numbers = bushing_numbers(seen, sticks=model.candidate.sticks)
+    numbers = with_evidence(bushing_numbers(seen, sticks=model.candidate.sticks), evidence)
     by_law = {fit.interference: (fit.critical_torque, fit.kinetic_torque) for fit in chosen.fits}
     rig = replace(
         found_rig(beforehand, numbers, material=material, friction=chosen.friction, torques=by_law),
@@ -107,6 +116,7 @@ def identify_rig(
         refused=measurements.refused,
         held_out=choice.held_out,
         margin=MARGIN,
+        measured=tuple(score_table(rig, table).found.items()),
         seconds=time.perf_counter() - started,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from noise.identification.bushing_fit import BushingFit
     from noise.identification.levels import Levels
     from noise.identification.measured import Measured
+    from noise.identification.table_number import TableNumber
 
 __all__ = ["Identification", "LawScore", "Number", "Seen", "as_json"]
 
@@ -107,6 +109,8 @@ class Identification:
         Recordings that the laws were compared on.
     margin : float
         Factor by which a simpler law may be worse and is still chosen.
+    measured : tuple of (TableNumber, float)
+        Numbers of a table, and what the rig gives for them [each in its item's unit].
     seconds : float
         It took [s].
 
@@ -128,6 +132,7 @@ class Identification:
     refused: tuple[tuple[str, str], ...] = ()
     held_out: tuple[str, ...] = ()
     margin: float = 0.0
+    measured: tuple[tuple[TableNumber, float], ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
     def number(
@@ -165,6 +170,7 @@ def as_json(found: Identification) -> dict[str, Any]:
         "margin": found.margin,
         "held_out": list(found.held_out),
         "recordings": [_recording(one) for one in found.seen],
+        "measured": [_measured(*one) for one in found.measured],
         "assumed": list(found.assumed),
         "not_found": list(found.not_found),
         "notes": list(found.notes),
@@ -184,6 +190,16 @@ def _number(one: Number) -> dict[str, Any]:
         "low": _rounded(one.low),
         "high": _rounded(one.high),
         "recordings": one.n_recordings,
+    }
+
+
+def _measured(number: TableNumber, found: float) -> dict[str, Any]:
+    return {
+        "item": number.item,
+        "interference_mm": _rounded(1e3 * number.interference),
+        "support_stiffness_Nm_rad": _support(number.support_stiffness),
+        "value": _rounded(number.value),
+        "found": None if math.isnan(found) else _rounded(found),
     }
 
 
