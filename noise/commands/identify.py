@@ -25,7 +25,8 @@ def configure(parser: ArgumentParser) -> None:
         "kinetic torque by interference, and the law of friction, each with its 90 %% interval. "
         "Recordings need torque and shaft angle, and a sidecar with interference and support "
         "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
-        "law, a condition recorded twice tells how much repeats differ."
+        "law, a condition recorded twice tells how much repeats differ. A static test, slow motion "
+        "to and fro below any slip, tells the stiffness best, a shaft held after that the damping."
     )
     parser.epilog = "example: bushing-noise identify recordings --rig known.toml --out mine"
     parser.add_argument(
@@ -60,19 +61,15 @@ def run(options: Namespace) -> int:
     say("preparing")
     from noise.identification.identify import identify_rig
     from noise.identification.known import known_beforehand
-    from noise.identification.measured import read_measurements
+    from noise.identification.measured import Measurements, read_measurements
     from noise.identification.table_number import read_numbers
 
     beforehand = known_beforehand(options.rig)
     table = () if options.numbers is None else read_numbers(options.numbers)
-    if not options.data:
-        from noise.identification.table_rig import identify_from_table
-
-        return _written(identify_from_table(table, beforehand.rig, say), options.out)
-    measurements = read_measurements(options.data)
+    measurements = read_measurements(options.data) if options.data else Measurements((), ())
     for name, reason in measurements.refused:
         say(f"{name}: {reason}")
-    if not measurements.used:
+    if not (measurements.used or measurements.static or table):
         say("no recording that a rig can be identified from; nothing is written")
         return 1
     found = identify_rig(

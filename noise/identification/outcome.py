@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from noise.identification.bushing_fit import BushingFit
     from noise.identification.levels import Levels
     from noise.identification.measured import Measured
+    from noise.identification.static_test import StaticTest
     from noise.identification.table_number import TableNumber
 
 __all__ = ["Identification", "LawScore", "Number", "Seen", "as_json"]
@@ -111,6 +112,8 @@ class Identification:
         Factor by which a simpler law may be worse and is still chosen.
     measured : tuple of (TableNumber, float)
         Numbers of a table, and what the rig gives for them [each in its item's unit].
+    static : tuple of StaticTest
+        Slow motion below any slip, and what rings when the shaft is held.
     seconds : float
         It took [s].
 
@@ -133,6 +136,7 @@ class Identification:
     held_out: tuple[str, ...] = ()
     margin: float = 0.0
     measured: tuple[tuple[TableNumber, float], ...] = ()
+    static: tuple[StaticTest, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
     def number(
@@ -170,6 +174,7 @@ def as_json(found: Identification) -> dict[str, Any]:
         "margin": found.margin,
         "held_out": list(found.held_out),
         "recordings": [_recording(one) for one in found.seen],
+        "static": [_static(one) for one in found.static],
         "measured": [_measured(*one) for one in found.measured],
         "assumed": list(found.assumed),
         "not_found": list(found.not_found),
@@ -191,6 +196,22 @@ def _number(one: Number) -> dict[str, Any]:
         "high": _rounded(one.high),
         "recordings": one.n_recordings,
     }
+
+
+def _static(one: StaticTest) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "file": one.name,
+        "interference_mm": _rounded(1e3 * one.interference),
+        "support_stiffness_Nm_rad": _support(one.support_stiffness),
+        "effective_stiffness_Nm_rad": _rounded(one.effective_stiffness),
+        "without_contact_Nm_rad": _rounded(one.held_stiffness),
+        "elastic": one.elastic,
+        "parting": round(one.parting, 4),
+    }
+    if one.ring_down is not None:
+        row["ring_down_hz"] = _rounded(one.ring_down.frequency)
+        row["ring_down_decay_1_s"] = _rounded(one.ring_down.decay)
+    return row
 
 
 def _measured(number: TableNumber, found: float) -> dict[str, Any]:

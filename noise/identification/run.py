@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from noise.identification.identify import identify_rig
 from noise.identification.known import known_beforehand
-from noise.identification.measured import read_measurements
+from noise.identification.measured import Measurements, read_measurements
 from noise.identification.outcome import as_json
 from noise.identification.table_number import read_numbers
-from noise.identification.table_rig import identify_from_table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,9 +59,8 @@ def identify(
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     beforehand = known_beforehand(None if rig is None else Path(rig))
     table = () if numbers is None else read_numbers(Path(numbers))
-    if table and not paths:
-        return identify_from_table(table, beforehand.rig)
-    return identify_rig(read_measurements(paths), beforehand, table=table, seed=seed)
+    measurements = read_measurements(paths) if paths else Measurements((), ())
+    return identify_rig(measurements, beforehand, table=table, seed=seed)
 
 
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:

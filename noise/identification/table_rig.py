@@ -13,11 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.condition import FIXED
 from models.rig import LawSpec
 from noise.identification.evidence import UNITS, table_evidence, with_evidence
 from noise.identification.outcome import Identification, Number
 from noise.identification.rig_text import rig_text
+from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.table_fit import fit_table, score_table
+from noise.identification.table_number import TableNumber
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 
 if TYPE_CHECKING:
@@ -26,8 +29,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Rig
+    from noise.identification.known import Beforehand
+    from noise.identification.measured import Measurements
     from noise.identification.table_fit import TableFit
-    from noise.identification.table_number import TableNumber
 
 __all__ = ["identify_from_table"]
 
@@ -42,15 +46,18 @@ _ROUNDS = 5
 
 
 def identify_from_table(
-    table: Sequence[TableNumber], known: Rig, progress: Callable[[str], None] | None = None
-) -> Identification:
-    """Identify a rig from measured numbers.
+    table: Sequence[TableNumber], beforehand: Beforehand, measurements: Measurements,
+    progress: Callable[[str], None] | None = None,
+) -> Identification:  # fmt: skip
+    """Identify a rig from measured numbers and static tests.
 
     Parameters
     ----------
     table : sequence of TableNumber
-    known : Rig
-        From which the search departs, whose law of friction stays.
+    beforehand : Beforehand
+        Of its rig the search departs, and its law of friction stays.
+    measurements : Measurements
+        Of which the static tests count.
     progress : callable, optional
         Told how well the numbers are met.
 
@@ -61,6 +68,9 @@ def identify_from_table(
     """
     started = time.perf_counter()
     tell = progress or (lambda _text: None)
+    known = beforehand.rig
+    tested = static_evidence(measurements.static, beforehand.known)
+    table = [*table, *(_row(one) for one in with_evidence((), tested) if one.interference)]
     places = sorted({number.interference for number in table})
     # what a row states of the rig itself need not be searched
     stated = with_evidence((), table_evidence(table))
@@ -106,14 +116,22 @@ def identify_from_table(
         numbers.append(Number(f"friction.{name}", "", value, value / away, value * away, 0))
     return Identification(
         rig_toml=rig_text(fit.rig, _HEAD), numbers=tuple(numbers), laws=(),
-        law=base.friction.name, seen=(), notes=(_LAW_NOTE,),
+        law=base.friction.name, seen=(), refused=measurements.refused, static=measurements.static,
+        notes=(_LAW_NOTE, *static_notes(measurements.static)),
         measured=tuple((number, fit.score.found[number]) for number in table),
         seconds=time.perf_counter() - started,
     )  # fmt: skip
 
 
+def _row(said: Number) -> TableNumber:
+    assert said.interference is not None  # of the bushing, not of the clamp
+    support = FIXED if said.support_stiffness is None else said.support_stiffness
+    error = 0.5 * math.log(said.high / said.low) / _NORMAL
+    return TableNumber(said.name, said.value, said.interference, support, (), 1.0 / error, "table")
+
+
 _HEAD = (
-    "Identified from a table of measured numbers; intervals are in identification.json.",
+    "Identified from measured numbers; intervals are in identification.json.",
     "What the numbers do not tell is that of the rig that was known.",
 )
 _LAW_NOTE = (

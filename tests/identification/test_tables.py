@@ -11,7 +11,10 @@ from models.condition import FIXED
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig, load_rig
 from noise.cli import main
+from noise.identification.bushing_fit import Known
 from noise.identification.evidence import Evidence, table_evidence, with_evidence
+from noise.identification.known import Beforehand
+from noise.identification.measured import Measurements
 from noise.identification.outcome import Number
 from noise.identification.table_fit import score_table
 from noise.identification.table_number import COLUMNS, TableNumber, read_numbers
@@ -19,6 +22,11 @@ from noise.identification.table_rig import identify_from_table
 
 KNOWN = load_material_rig("fluorocarbon-thesis")
 HEADER = ",".join(COLUMNS) + "\n"
+
+
+def identified(table, known=KNOWN):
+    beforehand = Beforehand(known, Known(1.5e-5, 8e-4, 0.5), frozenset())
+    return identify_from_table(table, beforehand, Measurements((), ()))
 
 
 def numbers_of(rig):
@@ -34,14 +42,14 @@ def numbers_of(rig):
 
 
 def test_a_known_rig_that_gives_the_numbers_is_left_as_it_is():
-    found = identify_from_table(numbers_of(KNOWN), KNOWN)
+    found = identified(numbers_of(KNOWN))
     assert found.number("critical_torque").value == pytest.approx(10.7)
     assert found.number("elastomer_stiffness").value == pytest.approx(665.0)
 
 
 def test_numbers_of_another_rig_change_the_known_one_towards_it():
     other = KNOWN.changed(elastomer_stiffness="x1.2", critical_torque="x1.1", kinetic_torque="x1.1")
-    found = identify_from_table(numbers_of(other), KNOWN)
+    found = identified(numbers_of(other))
     fit = other.fit(0.279e-3)
     assert found.number("elastomer_stiffness").value == pytest.approx(798.0, rel=0.02)
     for name in ("critical_torque", "kinetic_torque"):
@@ -51,7 +59,7 @@ def test_numbers_of_another_rig_change_the_known_one_towards_it():
 
 
 def test_what_no_number_tells_has_a_wide_interval():
-    found = identify_from_table(numbers_of(KNOWN)[:1], KNOWN)
+    found = identified(numbers_of(KNOWN)[:1])
     stiffness, kinetic = found.number("elastomer_stiffness"), found.number("kinetic_torque")
     assert stiffness.high / stiffness.low < 1.05
     assert kinetic.high / kinetic.low > 2.0

@@ -7,6 +7,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from models.condition import Condition
 from noise.base.atomic import atomic
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.law_choice import overall
@@ -14,6 +15,7 @@ from noise.identification.outcome import as_json
 from noise.identification.quantities import QUANTITIES
 from noise.pages.engine.page import page_html, write_page
 from noise.pages.identification.figures import law_panel, level_panels, recording_panels
+from noise.pages.identification.static_figures import static_panels
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,6 +61,11 @@ def _html(found: Identification) -> str:
         answer=_answer(found),
         numbers=[_row(number) for number in found.numbers],
         levels=level_panels(found) if slipping else (),
+        static=[
+            (one.name, ", ".join(Condition(None, one.interference, one.support_stiffness).words),
+             static_panels(one))
+            for one in found.static
+        ],
         measured=[_measured(*one) for one in found.measured],
         law_picture=(law_panel(found),) if found.laws else (),
         laws=[
@@ -88,7 +95,8 @@ def _title(found: Identification) -> str:
     sources = [
         f"{n} {what}"
         for n, what in (
-            (len(found.seen), "recordings"), (len(found.measured), "measured numbers")
+            (len(found.seen), "recordings"), (len(found.static), "static tests"),
+            (len(found.measured), "measured numbers"),
         )
         if n
     ]  # fmt: skip
