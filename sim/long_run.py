@@ -18,6 +18,7 @@ import numpy as np
 from models.errors import ParameterError
 from models.radiation.rig_response import impulse_responses
 from sim.acquisition import Acquisition, digitise
+from sim.analysis.regime import SlidingWatch
 from sim.chain import changed_chain
 from sim.motion import motion_blocks
 from sim.pipeline import pulse_force
@@ -59,6 +60,8 @@ class BlockRun:
         Of all blocks together.
     blocks : iterator of ndarray, shape (n_channels, n)
         In the units of the channels [unit]; can be run through once.
+    watch : SlidingWatch
+        Of the contact; knows as much of the run as has been read of the blocks.
     """
 
     rate: float
@@ -66,6 +69,7 @@ class BlockRun:
     condition: Condition
     n_samples: int
     blocks: Iterator[NDArray[np.float64]]
+    watch: SlidingWatch
 
 
 def simulate_blocks(
@@ -147,9 +151,10 @@ def simulate_blocks(
         effects=plan.effects,
         rng=effect_rng,
     )
+    watch = SlidingWatch()
     paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
     signals = _signals(
-        _with_force(motions, plan),
+        _with_force(_watched(motions, watch, plan.n_settling), plan),
         changed_chain(paths, plan.effects, effect_rng.spawn(1)[0]),
         plan.n_settling,
     )
@@ -159,6 +164,7 @@ def simulate_blocks(
         condition=plan.condition,
         n_samples=n_samples,
         blocks=_sampled(signals, filters, decimations, acquisition, noise_rng.spawn(4), n_samples),
+        watch=watch,
     )
 
 
@@ -178,6 +184,15 @@ def _refuse_whole_run_effects(effects: Sequence[ActiveEffect]) -> None:
             f"effect {', '.join(names)}: acts on a run as a whole, so it cannot act on one that "
             "is computed in blocks; make the run shorter, or leave the effect out"
         )
+
+
+def _watched(motions: Iterator[Motion], watch: SlidingWatch, n_settling: int) -> Iterator[Motion]:
+    """Pass a motion on, and let what is kept of it be seen."""
+    position = 0
+    for motion in motions:
+        watch.see(motion.since(max(0, n_settling - position)))
+        position += motion.torque.size
+        yield motion
 
 
 def _with_force(

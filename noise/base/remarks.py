@@ -55,16 +55,16 @@ def use_remarks(
     """
     finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
     fits = [float(f"{1e3 * fit:.12g}") for fit in interference]
+    beyond = _speed_remark(rig, speed)
     found = [
         *rig_remarks(rig),
-        remark("speed_rad_s", *speed),
+        beyond or remark("speed_rad_s", *speed),
         remark("interference_mm", *fits),
         remark("support_stiffness_Nm_rad", *finite),
         remark("temperature_C", *temperature),
-        _speed_remark(rig, speed),
         _support_remark(rig, support_stiffness),
     ]
-    return [text for text in found if text]
+    return [text for text in dict.fromkeys(found) if text]
 
 
 def _speed_remark(rig: Rig, asked: Sequence[float]) -> str:

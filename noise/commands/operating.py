@@ -117,7 +117,7 @@ def with_notes(run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any]) -
     rig: Rig = arguments["rig"]
     through = arguments["acquisition"].over(rig.sensors).sensors
     found = clipping_remarks(run.recording, through)
-    if never_slips(run.motion, rig.fit(arguments["interference"]).kinetic_torque):
+    if never_slips(run.motion):
         found.append(NEVER_SLIPS)
     for text in found:
         note(text)

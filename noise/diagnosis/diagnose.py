@@ -10,6 +10,8 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from models.condition import known_condition
+from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.causes.posterior import Posterior
     from sim.effects.effect import Effect
 
-__all__ = ["diagnose_case"]
+__all__ = ["case_remarks", "diagnose_case"]
 
 _LISTED = 5
 """Effects that are listed at least."""
@@ -87,7 +89,7 @@ def diagnose_case(
         floor=1.0,
         p_value=gap.p_value,
         seconds=time.perf_counter() - started,
-        notes=_notes(case),
+        notes=(*_notes(case), *case_remarks(case, library)),
         differences=differences(table, posterior),
     )
     if not quick:
@@ -116,6 +118,36 @@ def _kinds(case: Case) -> frozenset[str]:
     return frozenset(
         channel.kind for recording in case.recordings for channel in recording.channels
     )
+
+
+def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
+    """Say what of a rig, and of the conditions that it was recorded at, the user should know of.
+
+    Parameters
+    ----------
+    case : Case
+    library : mapping of str to Effect
+        Effects that the rig's can be found among.
+
+    Returns
+    -------
+    list of str
+        One line each, each once.
+    """
+    at = [known_condition(recording.condition) for recording in case.recordings]
+    heat = sorted({c.temperature for c in at if c.temperature is not None})
+    found = [
+        *use_remarks(
+            case.rig,
+            speed=[c.speed for c in at],
+            interference=[c.interference for c in at],
+            support_stiffness=[c.support_stiffness for c in at],
+            temperature=heat,
+        ),
+        *effect_remarks(case.rig, library),
+        temperature_remark(case.rig, heat[-1]) if len(heat) > 1 else "",
+    ]
+    return [text for text in dict.fromkeys(found) if text]
 
 
 def _notes(case: Case) -> tuple[str, ...]:

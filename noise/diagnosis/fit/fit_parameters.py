@@ -152,7 +152,7 @@ def spreads(
     ----------
     cost : callable
     x : ndarray, shape (n,)
-        Where it is least [any unit].
+        Where it is least [any unit]. Where the cost is infinite to one side, the other tells.
     look : ndarray, shape (n,)
         So far off it is looked at; it is taken to rise as the square from there inwards In the
         unit of `x` [any unit].
@@ -172,6 +172,7 @@ def spreads(
             away = x.copy()
             away[i] += sign * step
             tried.append(cost(away))
-        rise = max(0.5 * sum(tried) - best, 1e-9)
+        known = [one for one in tried if math.isfinite(one)]
+        rise = max(sum(known) / len(known) - best, 1e-9) if known else 1e-9
         found.append(min(step * math.sqrt(_UNSURE / rise), most))
     return tuple(found)

@@ -19,6 +19,7 @@ from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit_effect import fit_effect, strength_of
 from noise.diagnosis.fit.fit_parameters import Fitted, fit_parameters, split
+from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
 from noise.diagnosis.fit.user_effects import prefer_user_effects
 from noise.diagnosis.outcome import EffectFinding, Illustration
@@ -106,7 +107,11 @@ def add_fits(
         )
         for effect in (*diagnosis.effects, *(findings[name] for name in user_effects))
     ]
-    best = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else alone
+    fitted = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else None
+    best = fitted or alone
+    tell("looking for an improved rig")
+    together = [spec.name for spec in fitted.model.effects] if fitted is not None else []
+    improvement = improved_rig(case, comparison, fitted_to, held, together, fitted, alone, seed)
     listened = tuple(
         labels_and_levels(
             case.names[i],
@@ -122,6 +127,7 @@ def add_fits(
         parameters=_intervals(best),
         labels_and_levels=listened,
         illustrations=_illustrations(case, comparison, held, best.model),
+        improvement=improvement,
     )
 
 
