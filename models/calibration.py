@@ -123,7 +123,7 @@ class Calibration:
             low, high = self.readings[0], self.readings[-1]
             worst = readings[np.argmax(np.maximum(low - readings, readings - high))]
             raise ParameterError(
-                f"reads {worst:g}, outside of {self.source} ({low:g} to {high:g} in its unit) by "
+                f"reads {worst:g}, outside of {self.source} ({low:g} to {high:g}) by "
                 f"more than {_MARGIN:.0%} of its span; calibrate over the range that is recorded"
             )
         x, y = np.array(self.readings), np.array(self.values)

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any
 from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
 from models.recording import CHANNEL_UNITS
-from models.rig_files.calibration_file import read_calibration
+from models.rig_files.calibration_file import calibration_text, read_calibration
 from models.sensors import Sensor, Sensors
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["FROM_RECORDINGS", "read_sensors"]
+__all__ = ["FROM_RECORDINGS", "read_sensors", "sensors_text"]
 
 FROM_RECORDINGS = "from recordings"
 
@@ -118,3 +118,28 @@ def _bits(given: Any, known: list[str], where: str) -> dict[str, int]:
         if bits != int(bits):
             raise ParameterError(f"{where}: bits = {bits!r} must be a whole number")
     return {kind: int(bits) for kind, bits in found.items()}
+
+
+def sensors_text(sensors: Sensors) -> list[str]:
+    """Write sensors as the lines of a rig file's table; none where all are ideal.
+
+    Examples
+    --------
+    >>> sensors_text(Sensors({"torque": Sensor(full_scale=102.5, bits=12)}))
+    ['[sensors]', 'range = { torque = 102.5 }', 'bits = { torque = 12 }']
+    """
+    lines = []
+    if sensors.noise_from_recordings:
+        lines.append(f'noise = "{FROM_RECORDINGS}"')
+    for key, name in (
+        ("noise", "noise"),
+        ("range", "full_scale"),
+        ("bits", "bits"),
+        ("antialias_hz", "antialias"),
+    ):
+        values = {kind: getattr(sensor, name) for kind, sensor in sensors.by_kind.items()}
+        said = ", ".join(f"{kind} = {x:.9g}" for kind, x in values.items() if x is not None)
+        lines += [f"{key} = {{ {said} }}"] if said else []
+    for kind, calibration in sensors.calibrations.items():
+        lines.append(f"calibration.{kind} = {calibration_text(calibration, kind)}")
+    return ["[sensors]", *lines] if lines else []

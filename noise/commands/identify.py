@@ -53,7 +53,7 @@ def run(options: Namespace) -> int:
     from noise.identification.measured import read_measurements
 
     beforehand = known_beforehand(options.rig)
-    measurements = read_measurements(options.data)
+    measurements = read_measurements(options.data, beforehand.rig.sensors.calibrations)
     for name, reason in measurements.refused:
         say(f"{name}: {reason}")
     if not measurements.used:

@@ -14,11 +14,12 @@ from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from models.calibration import Calibration
     from models.recording import Recording
 
 __all__ = ["Measured", "Measurements", "measured", "read_measurements"]
@@ -85,12 +86,16 @@ class Measurements:
     refused: tuple[tuple[str, str], ...]
 
 
-def read_measurements(paths: Sequence[Path]) -> Measurements:
+def read_measurements(
+    paths: Sequence[Path], calibrations: Mapping[str, Calibration] | None = None
+) -> Measurements:
     """Read the recordings in files and folders.
 
     Parameters
     ----------
     paths : sequence of Path
+    calibrations : mapping of str to Calibration, optional
+        As of `noise.recordings.read_recording`.
 
     Returns
     -------
@@ -105,7 +110,7 @@ def read_measurements(paths: Sequence[Path]) -> Measurements:
     used, refused = [], []
     for path, name in find_recordings(paths):
         try:
-            used.append(measured(read_recording(path), name))
+            used.append(measured(read_recording(path, calibrations=calibrations), name))
         except BushingNoiseError as error:
             refused.append((name, str(error)))
     if not used and not refused:
@@ -133,7 +138,8 @@ def measured(recording: Recording, name: str) -> Measured:
     """
     if not recording.calibrated:
         raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true'
+            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
+            "calibration under [sensors] of the rig file"
         )
     rows = {kind: recording.first(kind) for kind in ("torque", "angle", "speed")}
     turning = rows["angle"] if rows["angle"] is not None else rows["speed"]

@@ -50,9 +50,9 @@ def identify(
     models.errors.ParameterError: ...
     """
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
-    return identify_rig(
-        read_measurements(paths), known_beforehand(None if rig is None else Path(rig)), seed=seed
-    )
+    beforehand = known_beforehand(None if rig is None else Path(rig))
+    measurements = read_measurements(paths, beforehand.rig.sensors.calibrations)
+    return identify_rig(measurements, beforehand, seed=seed)
 
 
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:

@@ -1,5 +1,7 @@
 """Calibration of a chain: tables of readings, lines, and what cannot be one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
@@ -7,6 +9,7 @@ from hypothesis import given, strategies as st
 from models.calibration import Calibration
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_rig
+from models.rig_files.rig_text import rig_text
 
 CELL = """reading_mV,torque_Nm
 -483,-40
@@ -68,6 +71,27 @@ def loaded(tmp_path, text, **files):
     return load_rig(tmp_path / "rig.toml").sensors.calibrations
 
 
+def test_sensors_written_out_are_read_back(tmp_path):
+    text = """noise = { torque = 0.02 }
+range = { torque = 102.5, pressure = 28.86 }
+bits = 12
+antialias_hz = { pressure = 12000 }
+calibration.torque = "cell.csv"
+calibration.angle = { sensitivity = -0.101, offset = -7e-4, reading = "V" }
+"""
+    loaded(tmp_path, text, cell=CELL)
+    rig = load_rig(tmp_path / "rig.toml")
+    (tmp_path / "again.toml").write_text(rig_text(rig), encoding="utf-8")
+    again = load_rig(tmp_path / "again.toml").sensors
+    for kind in ("torque", "pressure"):
+        one, other = (replace(x.of(kind), calibration=None) for x in (rig.sensors, again))
+        assert one == other
+    for kind, readings in (("torque", [-400.0, 30.0, 470.0]), ("angle", [-1.0, 0.3])):
+        one, other = (x.calibrations[kind] for x in (rig.sensors, again))
+        assert one.unit == other.unit
+        assert other.of(np.array(readings)) == pytest.approx(one.of(np.array(readings)))
+
+
 def test_the_cell_of_the_thesis_gives_82_newton_metres_a_volt(tmp_path):
     text = 'calibration = { torque = "cell.csv", angle = { sensitivity = 0.101, offset = -7e-4 } }'
     found = loaded(tmp_path, text, cell=CELL)
@@ -95,6 +119,11 @@ def test_the_cell_of_the_thesis_gives_82_newton_metres_a_volt(tmp_path):
         (None, CELL.replace("243,20", "-243,20"), ("from torque_Nm = 0 to 20", "0 to -243")),
         (None, CELL.replace("243,20", "0,20"), ("from torque_Nm = 0 to 20", "tell one value")),
         (None, CELL.replace("243,20", "243,0"), ("torque_Nm = 0 is in it twice",)),
+        (
+            "calibration.torque = { reading_mV = [0, 1, 2], torque_Nm = [0, 82] }",
+            CELL,
+            ("line 3", "two numbers"),
+        ),
         (None, "reading_V,torque_Nm\n0,0\n1,82", ("has 2 rows", "are a line")),
     ],
 )  # fmt: skip
