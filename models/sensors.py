@@ -86,6 +86,11 @@ class Sensors:
         """Return the sensor of a kind of channel."""
         return self.by_kind.get(kind, _IDEAL)
 
+    def unfiltered(self) -> Sensors:
+        """Return these sensors for signals that have passed their filters."""
+        kept = {kind: replace(sensor, antialias=None) for kind, sensor in self.by_kind.items()}
+        return replace(self, by_kind=kept)
+
     @property
     def calibrations(self) -> dict[str, Calibration]:
         """Calibrations by kind of channel."""
