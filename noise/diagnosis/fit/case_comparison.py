@@ -141,14 +141,16 @@ class CaseComparison:
         Returns
         -------
         ndarray, shape (n_chosen,)
-            In squared floors [-].
+            In squared floors [-]; infinite where the model cannot be simulated.
         """
-        return np.array(
-            [
-                self.references[i].squared_of(deviation)
-                for i, deviation in zip(chosen, self.deviations(model, chosen), strict=True)
-            ]
-        )
+        return np.array([self._squared(model, i) for i in chosen])
+
+    def _squared(self, model: Model, place: int) -> float:
+        try:
+            (deviation,) = self.deviations(model, [place])
+        except ParameterError:
+            return math.inf
+        return self.references[place].squared_of(deviation)
 
     def misfits(
         self, model: Model, chosen: Sequence[int], *, single_run: bool = False
@@ -212,7 +214,7 @@ class CaseComparison:
                 run = same_channels(
                     self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0)), template
                 )
-                found = summary(run, self.rig, self.runs.transfer_functions.of(template))
+                found = summary(run, self.rig, self.runs.transfer_functions.whole(template))
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
             z = (measured[i] - self._numbers[key]) / scale
