@@ -7,7 +7,7 @@ import math
 import os
 from typing import TYPE_CHECKING
 
-from models.rig_files.rig_file import material_names
+from models.rig_files.shipped import material_names
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

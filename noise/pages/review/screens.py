@@ -151,7 +151,7 @@ def read_screen(path: Path) -> list[ScreenMap]:
             ScreenPoint(
                 speed, fit, label,
                 str(row.get("regime") or ""),
-                number("level_db"),
+                number("level_dba"),
                 number("loudness"),
                 str(row.get("how") or ""),
                 number("frequency_hz") or None,

@@ -27,7 +27,8 @@ from typing import TYPE_CHECKING
 
 from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig, material_names, read_toml, rig_from
+from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
+from models.rig_files.shipped import material_names
 from noise.screening.design.axis_values import (
     FREQUENCY,
     SPEED,
