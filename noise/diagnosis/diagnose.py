@@ -14,9 +14,8 @@ from models.condition import known_condition
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
-from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.gap.floor import case_gap
+from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
+from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
 from sim.effects import EFFECTS
 
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["case_remarks", "diagnose_case"]
 
-_LISTED = 5
+_SHOWN = 5
 """Effects that are listed at least."""
 
 
@@ -65,13 +64,9 @@ def diagnose_case(
     tell = progress or (lambda _text: None)
     library = library or EFFECTS
     posterior = posterior or load_posterior()
-    tell("comparing the recordings with the rig file")
-    table = case_table(case.recordings, case.rig, library=library, seed=seed)
-    tell("measuring the gap against simulated repeats")
-    gap = case_gap(case.recordings, case.rig, library=library, seed=seed)
+    first = first_answer(case, library, posterior, seed, tell)
+    table, gap, probabilities, verdict = first.table, first.gap, first.probabilities, first.verdict
     known = {spec.name for spec in case.rig.effects}
-    probabilities = _without(posterior.probabilities(table), known)
-    verdict = verdict_of(probabilities, posterior.alarm, gap)
     findings = stage_findings(table, posterior)
     ranked = [name for name in _ranked(probabilities) if name in EFFECTS]
     stage = EFFECTS[verdict[0]].stage.value if verdict and verdict[0] in EFFECTS else None
@@ -80,7 +75,7 @@ def diagnose_case(
         equivalent=equivalent_pairs(ranked, probabilities, _kinds(case)),
         location=locate(table, posterior, stage) if verdict else None,
         stages=findings,
-        effects=tuple(_unfitted(name, probabilities) for name in ranked[:_LISTED]),
+        effects=tuple(_unfitted(name, probabilities) for name in ranked[:_SHOWN]),
         probabilities=probabilities,
         parameters={},
         next_measurement=next_measurement(verdict, probabilities, _kinds(case)),
@@ -89,7 +84,7 @@ def diagnose_case(
         floor=1.0,
         p_value=gap.p_value,
         seconds=time.perf_counter() - started,
-        notes=(*_notes(case), *case_remarks(case, library)),
+        notes=(*map(_listed, first.suspected), *_notes(case), *case_remarks(case, library)),
         differences=differences(table, posterior),
     )
     if not quick:
@@ -105,9 +100,11 @@ def _ranked(probabilities: Mapping[str, float]) -> list[str]:
     return sorted(probabilities, key=lambda name: -probabilities[name])
 
 
-def _without(probabilities: Mapping[str, float], known: set[str]) -> dict[str, float]:
-    """Leave out what the rig file lists."""
-    return {name: 0.0 if name in known else p for name, p in probabilities.items()}
+def _listed(name: str) -> str:
+    return (
+        f"what is left looks like {name}, which the rig file lists already: its form or numbers "
+        "are off"
+    )
 
 
 def _unfitted(name: str, probabilities: Mapping[str, float]) -> EffectFinding:

@@ -37,7 +37,8 @@ def improved_text(
     base : str
         The rig that was diagnosed, as ``base`` names it.
     changes : mapping of str to str or float, optional
-        What was changed about that file when it was diagnosed.
+        What was changed about that file when it was diagnosed, as ``[change]`` takes it [unit of
+        the key].
 
     Returns
     -------

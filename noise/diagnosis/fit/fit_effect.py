@@ -36,7 +36,10 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Effect
 
-__all__ = ["fit_effect", "is_stated", "number_spreads", "strength_of"]
+__all__ = [
+    "fit_effect", "fitted_numbers", "is_stated", "number_spreads", "stated_candidates",
+    "strength_of",
+]  # fmt: skip
 
 _DRAWN = 18
 """Of the simulator's own forms tried, and of variants."""
@@ -102,7 +105,7 @@ def fit_effect(
     few = different(comparison, chosen)
     best = Model()
     for name in names:
-        candidates = _stated_candidates(comparison.library[name], seed)
+        candidates = stated_candidates(comparison.library[name], seed)
         if not stated:
             candidates += _further_candidates(comparison, chosen, name, seed)
         best = _added(comparison, few, best, start.offsets, candidates)
@@ -140,7 +143,8 @@ def _added(
     return min(refined, key=lambda one: offset_cost(comparison, few, one))
 
 
-def _stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
+def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
+    """Return an effect in the simulator's own forms, as a fit of a seed begins with it."""
     rng = np.random.default_rng([seed, 7])
     return list(drawn_candidates(effect, _DRAWN, rng)) or plain_candidates(effect)
 
@@ -163,7 +167,7 @@ def is_stated(comparison: CaseComparison, spec: LawSpec) -> bool:
 def _refined(comparison: CaseComparison, few: Sequence[int], model: Model, place: int) -> Model:
     """Search about an effect's numbers."""
     spec = model.effects[place]
-    free = _free(comparison, spec)
+    free = fitted_numbers(comparison, spec)
 
     def model_at(x: NDArray[np.float64]) -> Model:
         values = dict(spec.parameters)
@@ -184,7 +188,7 @@ def _settled(comparison: CaseComparison, few: Sequence[int], model: Model) -> Mo
     """Settle the last effect's strength with scattered repeats, as scores are made."""
     spec = model.effects[-1]
     name = strength_of(comparison, spec)
-    limits = {n: (low, high) for n, _, low, high in _free(comparison, spec)}
+    limits = {n: (low, high) for n, _, low, high in fitted_numbers(comparison, spec)}
     if name not in limits:
         return model
     tried = []
@@ -224,7 +228,7 @@ def number_spreads(
     return {
         f"{spec.name}.{name}": spread
         for spec in model.effects
-        for name, *_ in _free(comparison, spec)
+        for name, *_ in fitted_numbers(comparison, spec)
         for spread in _spread_of(comparison, few, model, spec, name)
     }
 
@@ -235,7 +239,7 @@ def _spread_of(
     value = spec.parameters.get(name)
     if not isinstance(value, float) or value == 0.0:
         return ()
-    limits = {free: (low, high) for free, _, low, high in _free(comparison, spec)}
+    limits = {free: (low, high) for free, _, low, high in fitted_numbers(comparison, spec)}
     low, high = limits.get(name, (-math.inf, math.inf))
 
     def cost(x: NDArray[np.float64]) -> float:
@@ -258,7 +262,9 @@ def strength_of(comparison: CaseComparison, spec: LawSpec) -> str:
     return comparison.library[spec.name].strength
 
 
-def _free(comparison: CaseComparison, spec: LawSpec) -> list[tuple[str, float, float, float]]:
+def fitted_numbers(
+    comparison: CaseComparison, spec: LawSpec
+) -> list[tuple[str, float, float, float]]:
     """Numbers that are fitted: name, value, and how far each may go."""
     form = comparison.forms.get((spec.name, str(spec.parameters.get("form"))))
     effect = comparison.library[spec.name]

@@ -108,10 +108,13 @@ def add_fits(
         for effect in (*diagnosis.effects, *(findings[name] for name in user_effects))
     ]
     fitted = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else None
-    best = fitted or alone
+    best = alone
+    if fitted is not None and np.isfinite(comparison.squared(fitted.model, held)).all():
+        best = fitted
     tell("looking for an improved rig")
-    together = [spec.name for spec in fitted.model.effects] if fitted is not None else []
-    improvement = improved_rig(case, comparison, fitted_to, held, together, fitted, alone, seed)
+    others = [one for one, _ in fits.values() if one is not fitted]
+    tried = [alone, *([fitted] if fitted is not None else []), *others]
+    improvement = improved_rig(case, comparison, fitted_to, held, tried, posterior, seed)
     listened = tuple(
         labels_and_levels(
             case.names[i],
@@ -166,7 +169,10 @@ def fitted_causes(
         if tell is not None:
             tell(f"fitting {' and '.join(names)}")
         fitted = fit_effect(comparison, fitted_to, names, alone.model, seed)
-        scores = Scores(before, recalibrated, comparison.squared(fitted.model, held))
+        after = comparison.squared(fitted.model, held)
+        # A model that breaks down on recordings that it has not seen closes nothing there.
+        after = np.where(np.isfinite(after), after, np.maximum(before, recalibrated))
+        scores = Scores(before, recalibrated, after)
         found |= dict.fromkeys(names, (fitted, scores))
     return found
 

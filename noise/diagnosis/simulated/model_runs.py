@@ -92,7 +92,7 @@ class ModelRuns:
     _parts: _Cache[NDArray[np.float64]] = field(init=False, default_factory=lambda: _Cache())
 
     def __post_init__(self) -> None:
-        self.transfer_functions = TransferFunctionCache(self.rig)
+        self.transfer_functions = TransferFunctionCache(self.rig, self.library)
 
     def simulated(
         self, model: Model, template: Recording, seed: int, scatter: Scatter | None = None
