@@ -26,6 +26,7 @@ from noise.screening.map.mapping import map_design
 from noise.screening.map.provenance import fits_remark
 from noise.screening.outcome import Screening
 from noise.screening.parts.statistics import statistics_of
+from noise.screening.ranking.first_hint import first_hint
 from noise.screening.ranking.margins import critical_points
 from noise.screening.ranking.never_slips import why_never_slipping
 from noise.screening.ranking.ranking import standings
@@ -166,18 +167,17 @@ def screen(
         )
         for each, stream in zip(first.values(), streams, strict=True)
     )
+    rigs = [in_environment(screened[one.design].rig, environment(one.environment)) for one in maps]
     never_slipping = [
-        why_never_slipping(
-            in_environment(screened[each.design].rig, environment(each.environment)), each.grid
-        )
-        for each in maps
+        why_never_slipping(rig, each.grid) for rig, each in zip(rigs, maps, strict=True)
     ]
+    hints = [first_hint(rig, each) for rig, each in zip(rigs, maps, strict=True)]
     return Screening(
         designs=tuple(screened.values()),
         maps=tuple(maps),
         critical=critical,
         statistics=statistics,
-        standings=standings(maps, critical, statistics, never_slipping, remarks),
+        standings=standings(maps, critical, statistics, never_slipping, hints, remarks),
         refused=tuple(refused),
         files=tuple(one for one in files if one[0] in screened),
         seconds=mapped - started,
