@@ -54,11 +54,11 @@ def first_hint(rig: Rig, found: DesignMap) -> str:
     --------
     >>> from noise.screening.design.design import Use
     >>> from noise.screening.screen import screen
-    >>> use = Use(speed=(1.0, 5.0, 9.0), interference=(0.279e-3,))
+    >>> use = Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,))
     >>> screen(["PDMS"], use).standings[0].hint
     ''
     >>> screen(["fluorocarbon-thesis"], use).standings[0].hint
-    'quietest with the clamp fixed: 33% of the use is noisy, not 56%'
+    'quietest at 0.178 mm: 33% of the use is noisy, not 44%'
     """
     noisy = found.label[..., found.grid.used] != "none"
     if not noisy.any():
@@ -86,7 +86,7 @@ def _by_stability(rig: Rig, grid: Grid) -> str:
     share, name, change = min(tried)
     if share > _BETTER * now:
         return ""
-    return f"{name} {change:+.0%}: by stability {share:.0%} of the use would be unsteady, not {now:.0%}"
+    return f"{name} {change:+.0%}: by stability {share:.0%} of the use is unsteady, not {now:.0%}"
 
 
 def _unsteady(rig: Rig, grid: Grid) -> float:
