@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from noise.screening.design.design import Design
     from noise.screening.map.mapping import DesignMap
     from noise.screening.parts.statistics import Statistics
     from noise.screening.ranking.margins import CriticalPoint
@@ -27,6 +28,8 @@ class Screening:
 
     Parameters
     ----------
+    designs : tuple of Design
+        Those that were screened, as they were: named, and changed where a change was given.
     maps : tuple of DesignMap
         One for each design, environment and motion.
     critical : tuple of CriticalPoint
@@ -51,6 +54,7 @@ class Screening:
     ((), 1.0, 1)
     """
 
+    designs: tuple[Design, ...]
     maps: tuple[DesignMap, ...]
     critical: tuple[CriticalPoint, ...]
     statistics: tuple[Statistics, ...]

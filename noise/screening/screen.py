@@ -165,6 +165,7 @@ def screen(
         for each in maps
     ]
     return Screening(
+        designs=tuple(screened.values()),
         maps=tuple(maps),
         critical=critical,
         statistics=statistics,
