@@ -83,10 +83,11 @@ def read_screen(path: Path) -> list[ScreenMap]:
             ScreenPoint(
                 speed, fit, label,
                 str(row.get("regime") or ""),
-                number("level_db"),
+                number("level_dba"),
                 number("loudness"),
                 str(row.get("how") or ""),
                 number("frequency_hz") or None,
+                str(row.get("note") or ""),
             )
         )  # fmt: skip
     return [ScreenMap(*key, tuple(points)) for key, points in maps.items()]

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 from noise.base.label_looks import LABEL_LOOKS
 from noise.base.label_names import LABELS
-from noise.pages.screening.looks import DIFFERENCES, LEVEL_STEPS, LEVELS, WAYS, way_look
+from noise.pages.screening.looks import (
+    DIFFERENCES,
+    LEVEL_STEPS,
+    LEVELS,
+    SUBSTITUTED,
+    WAYS,
+    way_look,
+)
 
 if TYPE_CHECKING:
     from noise.base.label_looks import Look
@@ -87,14 +94,15 @@ class Compared:
     def looks(self) -> dict[str, Look]:
         """Of all that is drawn."""
         ways = {f"how-{n}": way_look(how) for n, how in enumerate(self._ways)}
-        return LABEL_LOOKS | LEVELS | DIFFERENCES | ways
+        return LABEL_LOOKS | LEVELS | DIFFERENCES | ways | {"substituted": SUBSTITUTED}
 
     @property
     def keys(self) -> list[tuple[str, str, list[tuple[str, str]]]]:
         """Legends: name, what it is of, and each look with its words."""
         ways = [(f"how-{n}", way_look(how).mark) for n, how in enumerate(self._ways)]
+        ways.append(("substituted", SUBSTITUTED.mark))
         levels = [(key, look.mark) for key, look in LEVELS.items()]
-        keys = [("level", "L_AFmax in dB(A):", levels), ("how", "How a point is known:", ways)]
+        keys = [("level", "L_Aeq in dB(A):", levels), ("how", "How a point is known:", ways)]
         if len(self.names) > 1:
             differences = [(key, look.mark) for key, look in DIFFERENCES.items()]
             keys.append(("difference", "Difference, B against A:", differences))

@@ -36,6 +36,9 @@ _FEW_ROWS = 8
 _LEAST_HEIGHT, _ROW_HEIGHT = 120.0, 45.0
 """Of a map of few interferences, and what each adds [px]."""
 
+_MOST_HEARD = 12
+"""Conditions of one map that are heard: more would hide it."""
+
 _TICK_APART = 18.0
 """Least distance of numbers along the interference [px]."""
 
@@ -128,7 +131,7 @@ def _shares(number: int, designs: Sequence[int]) -> list[int]:
                 shares[i] += 1
                 left -= n
         if left == before:
-            return shares
+            return [min(share, _MOST_HEARD) for share in shares]
 
 
 def _laid_out(
@@ -160,7 +163,7 @@ def _laid_out(
             up,
             areas_of(of, [p.label for p in one.points], across, up, (MAP_SIZE[0], height)),
             _spots(across, up, heard, i, designs, n_designs),
-            f"No sounds: {why}." if why else "",
+            _own_note(one, why),
             speed,
             height,
             number,
@@ -196,6 +199,7 @@ def _laid_out(
 def _cell_values(one: ScreenMap, cells: Cells, ways: Sequence[str]) -> dict[str, object]:
     """Label, level and how it is known of each cell, the lowest row first."""
     points = [one.points[i] if i >= 0 else None for i in cells.point.ravel().tolist()]
+    notes = list(dict.fromkeys(["", *(point.note for point in one.points)]))
     return {
         # Numbers of labels; -1 where it was not screened.
         "label": [-1 if point is None else LABELS.index(point.label) for point in points],
@@ -204,6 +208,8 @@ def _cell_values(one: ScreenMap, cells: Cells, ways: Sequence[str]) -> dict[str,
             for point in points
         ],
         "how": [-1 if point is None else ways.index(point.how) for point in points],
+        "notes": notes,
+        "note": [0 if point is None else notes.index(point.note) for point in points],
     }
 
 
@@ -249,6 +255,16 @@ def _spots(
             )
         )
     return tuple(spots)
+
+
+def _own_note(one: ScreenMap, silent: str) -> str:
+    """Say what to know of a map: where its data are not the design's own, and why it is silent."""
+    counts = Counter(part for point in one.points for part in point.note.split("; ") if part)
+    told = [
+        f"{part[0].upper()}{part[1:]}: {'all' if n == len(one.points) else n} points."
+        for part, n in counts.most_common()
+    ]
+    return " ".join([*told, *([f"No sounds: {silent}."] if silent else [])])
 
 
 def _note(maps: Sequence[ScreenMap], heard: Sequence[tuple[SharedPoint, tuple[str, ...]]]) -> str:

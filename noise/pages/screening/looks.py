@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from noise.base.label_looks import Look
 
-__all__ = ["DIFFERENCES", "LEVELS", "LEVEL_STEPS", "WAYS", "way_look"]
+__all__ = ["DIFFERENCES", "LEVELS", "LEVEL_STEPS", "SUBSTITUTED", "WAYS", "way_look"]
 
 LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
 """Between the colours of levels [dB(A)]."""
@@ -46,10 +46,13 @@ WAYS = {
         "#dcead3", "#7f9a6f", "plain", "not simulated: steady sliding is stable, and silent"
     ),
     "unchanged": Look(
-        "#dcdfe8", "#767d92", "dots", "not simulated: as at another condition of the design"
+        "#dcdfe8", "#767d92", "dots", "not simulated: as at another temperature or fit"
     ),
 }  # fmt: skip
 """By how a point is known."""
+
+SUBSTITUTED = Look("none", "#1d2329", "stripes", "the design has no data of its own there")
+"""Over the look of how a point is known."""
 
 
 def way_look(how: str) -> Look:

@@ -13,6 +13,7 @@ from noise.pages.screening.comparison import compare_designs
 from noise.pages.screening.ranking_display import ranking_rows
 from noise.pages.screening.screen_maps import screen_maps
 from noise.screening.design.environments import environment, in_environment
+from noise.screening.tables.summary import conditions_lines
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -65,7 +66,12 @@ def write_screening(
     """
     rigs = {one.name: one.rig for one in found.designs}
     maps = screen_maps(found)
-    laid = [in_environment(rigs[one.design], environment(one.environment)) for one in maps]
+    held = {one.design: one.never_slips for one in found.standings if one.rank is None}
+    # A contact that is wound up without end would set the gain of all others.
+    laid = [
+        held.get(one.design) or in_environment(rigs[one.design], environment(one.environment))
+        for one in maps
+    ]
     room = 1e6 * megabytes - PAGE_BYTES
     each = CARD_BYTES + SHORTEST * BYTES_A_SECOND
     compared, heard = compare_designs(
@@ -84,6 +90,7 @@ def write_screening(
         summary=_summary(found),
         gain=gain.sentences,
         shortened=shortened,
+        conditions=conditions_lines(found),
         rows=ranking_rows(found),
         refused=found.refused,
         failed=found.failed,

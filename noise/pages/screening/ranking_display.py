@@ -68,6 +68,7 @@ def _row(one: Standing, found: Screening) -> RankingRow:
         for name in LABELS
         if one.shares.get(name)
     )
+    parts = parts_lines(found.statistics_of(one.design, one.environment))
     return RankingRow(
         "\N{EN DASH}" if one.rank is None else str(one.rank),
         one.design,
@@ -76,14 +77,14 @@ def _row(one: Standing, found: Screening) -> RankingRow:
         shares,
         loudest,
         _margin(one),
-        one.never_slips,
-        "",
-        tuple(parts_lines(found.statistics_of(one.design, one.environment))),
+        one.words,
+        one.hint,
+        tuple(dict.fromkeys([*parts, *(note for note in one.notes if note != one.never_slips)])),
     )
 
 
 def _margin(one: Standing) -> str:
-    if math.isnan(one.margin_v_crit2):
+    if math.isnan(one.margin_v_crit2) or one.never_slips:
         return ""
     if math.isinf(one.margin_v_crit2):
         return "nothing vibrates"

@@ -33,9 +33,11 @@ class ScreenPoint(NamedTuple):
     regime, how : str
         Of friction; how it is known.
     level, loudness : float or None
-        L_AFmax [dB re 20 uPa] and N10 [sone].
+        L_Aeq [dB re 20 uPa] and N10 [sone].
     frequency : float or None
         At which the shaft swings [Hz]; None where it turns.
+    note : str
+        What is not the design's own there.
     """
 
     speed: float
@@ -46,6 +48,7 @@ class ScreenPoint(NamedTuple):
     loudness: float | None = None
     how: str = ""
     frequency: float | None = None
+    note: str = ""
 
     @property
     def words(self) -> str:
@@ -156,6 +159,7 @@ def screen_maps(found: Screening) -> list[ScreenMap]:
                     loudness=_known(float(one.loudness[t, k, row, column])),
                     how=str(one.how[t, k, row, column]),
                     frequency=grid.frequency[column] if grid.frequency else None,
+                    note=str(one.note[t, k, row, column]),
                 )
                 for row, column in np.ndindex(one.label.shape[2:])
             )
