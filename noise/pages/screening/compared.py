@@ -12,6 +12,7 @@ from noise.pages.screening.looks import (
     DIFFERENCES,
     LEVEL_STEPS,
     LEVELS,
+    SAID,
     SUBSTITUTED,
     WAYS,
     way_look,
@@ -117,6 +118,7 @@ class Compared:
             "marks": [LABEL_LOOKS[label].mark for label in LABELS],
             "steps": LEVEL_STEPS,
             "ways": self._ways,
+            "said": [SAID.get(how, how) for how in self._ways],
             "pair": self.pair,
             "comparisons": [one.cells for one in self.comparisons],
         }

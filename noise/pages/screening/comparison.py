@@ -18,6 +18,7 @@ from noise.pages.engine.cells import areas_of, cells_of, common_cells
 from noise.pages.engine.maps import Axis, ConditionMap, Spot, axis_of
 from noise.pages.engine.page import MAP_SIZE
 from noise.pages.screening.compared import Compared, Comparison
+from noise.pages.screening.looks import way_look
 from noise.pages.screening.screen_maps import shared_points
 from noise.pages.screening.sounds import chosen_points, simulated_entries
 
@@ -33,7 +34,7 @@ __all__ = ["compare_designs"]
 _FEW_ROWS = 8
 """So many interferences are named by their own numbers."""
 
-_LEAST_HEIGHT, _ROW_HEIGHT = 120.0, 45.0
+_LEAST_HEIGHT, _ROW_HEIGHT = 180.0, 40.0
 """Of a map of few interferences, and what each adds [px]."""
 
 _MOST_HEARD = 12
@@ -270,10 +271,10 @@ def _own_note(one: ScreenMap, silent: str) -> str:
 def _note(maps: Sequence[ScreenMap], heard: Sequence[tuple[SharedPoint, tuple[str, ...]]]) -> str:
     """How many points there are, how they are known, and how many are heard."""
     counts = Counter(point.how for one in maps for point in one.points if point.how)
-    how = ", ".join(f"{n} {how}" for how, n in counts.most_common())
-    n_points = max(len(one.points) for one in maps)
-    told = [f"{counted(n_points, 'point')}{' of each design' if len(maps) > 1 else ''}"]
-    told[0] += f" ({how})." if how else "."
+    how = "; ".join(f"{n} {way_look(how).mark}" for how, n in counts.most_common())
+    n_points = counted(max(len(one.points) for one in maps), "point")
+    of_all = " of each design; of all" if len(maps) > 1 else ""
+    told = [f"{n_points}{of_all}: {how}." if how else f"{n_points}{of_all[:15]}."]
     n_sounds = sum(bool(key) for _, keys in heard for key in keys)
     if n_sounds:
         told.append(

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from noise.base.label_looks import Look
 
-__all__ = ["DIFFERENCES", "LEVELS", "LEVEL_STEPS", "SUBSTITUTED", "WAYS", "way_look"]
+__all__ = ["DIFFERENCES", "LEVELS", "LEVEL_STEPS", "SAID", "SUBSTITUTED", "WAYS", "way_look"]
 
 LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
 """Between the colours of levels [dB(A)]."""
-
-_MINUS = "\N{MINUS SIGN}"
 
 LEVELS = {
     "level-0": Look("#fdf1cf", "#8a6d2f", "plain", "below 50"),
@@ -26,11 +24,11 @@ LEVELS = {
 
 DIFFERENCES = {
     "gone": Look("#3f8fc4", "#dcebf6", "lines", "noise gone"),
-    "softer-much": Look("#8dbfe0", "#3f6f94", "plain", f"by {_MINUS}10 dB or more"),
-    "softer": Look("#cfe3f1", "#3f6f94", "plain", f"{_MINUS}3 to {_MINUS}10 dB"),
+    "softer-much": Look("#8dbfe0", "#3f6f94", "plain", "softer by 10 dB or more"),
+    "softer": Look("#cfe3f1", "#3f6f94", "plain", "softer by 3 to 10 dB"),
     "alike": Look("#e3e6e9", "#6f7b87", "plain", "within 3 dB"),
-    "louder": Look("#fbdcbc", "#94592a", "plain", "+3 to +10 dB"),
-    "louder-much": Look("#f0a55f", "#94592a", "plain", "by +10 dB or more"),
+    "louder": Look("#fbdcbc", "#94592a", "plain", "louder by 3 to 10 dB"),
+    "louder-much": Look("#f0a55f", "#94592a", "plain", "louder by 10 dB or more"),
     "new": Look("#c4571b", "#fbe3d3", "stripes", "noise new"),
     "quiet": Look("#ffffff", "#c9d0d7", "dots", "none in both"),
 }
@@ -40,16 +38,19 @@ WAYS = {
     "simulated": Look("#41719c", "#1d3a55", "plain", "simulated"),
     "refined": Look(
         "#f3e2b0", "#a58a3c", "stripes",
-        "between simulated points of one noise: that noise, the level interpolated",
+        "interpolated between simulated points of one noise",
     ),
     "stability": Look(
-        "#dcead3", "#7f9a6f", "plain", "not simulated: steady sliding is stable, and silent"
+        "#dcead3", "#7f9a6f", "plain", "silent, as steady sliding is stable there"
     ),
     "unchanged": Look(
-        "#dcdfe8", "#767d92", "dots", "not simulated: as at another temperature or fit"
+        "#dcdfe8", "#767d92", "dots", "as at another temperature or fit"
     ),
 }  # fmt: skip
 """By how a point is known."""
+
+SAID = {"refined": "interpolated", "stability": "by stability", "unchanged": "as elsewhere"}
+"""In short, how a point is known whose way of knowing does not say it."""
 
 SUBSTITUTED = Look("none", "#1d2329", "stripes", "the design has no data of its own there")
 """Over the look of how a point is known."""

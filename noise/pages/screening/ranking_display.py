@@ -60,7 +60,7 @@ def ranking_rows(found: Screening) -> list[RankingRow]:
 
 
 def _row(one: Standing, found: Screening) -> RankingRow:
-    loudest = "quiet"
+    loudest = "quiet" if one.rank is not None else ""
     if math.isfinite(one.loudest_level):
         loudest = f"{one.loudest_level:.0f} dB(A)"
     shares = tuple(
