@@ -14,7 +14,9 @@ from models.condition import known_condition
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.causes.unlearned import unlearned_sensors
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
+from noise.diagnosis.evidence.sensor_noise import noise_remarks
 from noise.diagnosis.evidence.summary import case_table
 from noise.diagnosis.gap.floor import case_gap
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
@@ -71,7 +73,8 @@ def diagnose_case(
     gap = case_gap(case.recordings, case.rig, library=library, seed=seed)
     known = {spec.name for spec in case.rig.effects}
     probabilities = _without(posterior.probabilities(table), known)
-    verdict = verdict_of(probabilities, posterior.alarm, gap)
+    unlearned = unlearned_sensors(case.rig.sensors, case.recordings)
+    verdict = verdict_of(probabilities, posterior.alarm, gap, learned=not unlearned)
     findings = stage_findings(table, posterior)
     ranked = [name for name in _ranked(probabilities) if name in EFFECTS]
     stage = EFFECTS[verdict[0]].stage.value if verdict and verdict[0] in EFFECTS else None
@@ -89,7 +92,7 @@ def diagnose_case(
         floor=1.0,
         p_value=gap.p_value,
         seconds=time.perf_counter() - started,
-        notes=(*_notes(case), *case_remarks(case, library)),
+        notes=(*_notes(case), *unlearned, *case_remarks(case, library)),
         differences=differences(table, posterior),
     )
     if not quick:
@@ -160,6 +163,7 @@ def _notes(case: Case) -> tuple[str, ...]:
         )
     elif len(different) == len(case.recordings):
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
+    notes += noise_remarks(case.rig.sensors, kinds)
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
     return tuple(notes)
