@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import soundfile
 
+from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig, load_rig
 from models.sensors import Sensor, Sensors
 from noise.cli import main
@@ -74,8 +75,10 @@ def test_repeats_are_filtered_as_recordings_are():
 
 def test_repeats_are_rounded_and_clipped_as_recordings_are():
     sensor = Sensor(full_scale=9.0, bits=8)
+    impacts = replace(sensed(torque=sensor), effects=(LawSpec("slip_pulse", {"amplitude": 20.0}),))
     for one in (
         nominal(sensed(torque=sensor)),
+        nominal(impacts),
         ModelRuns(sensed(torque=sensor), EFFECTS, {}).simulated(Model(), run(at(2.0)), 3),
     ):
         steps = one["torque"] / sensor.step
