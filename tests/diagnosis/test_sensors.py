@@ -126,8 +126,8 @@ def test_the_command_names_no_cause_and_says_what_its_causes_were_learned_with(c
     found = json.loads(capsys.readouterr().out)
     assert found["verdict"] == []
     (note,) = (note for note in found["notes"] if "learned with better sensors" in note)
-    assert "torque with up to 0.008 N m of noise, here 0.02" in note
-    assert "pressure without a filter at 4000 Hz" in note
+    assert "noise and rounding of torque 0.023 N m (at most 0.008)" in note
+    assert "a filter at 4000 Hz (torque, acceleration, pressure, angle)" in note
 
 
 def test_noise_from_recordings_is_found_and_told(tmp_path):
@@ -166,7 +166,7 @@ def test_good_sensors_are_those_the_causes_were_learned_with():
     assert unlearned_sensors(Sensors(good), [recording]) == ()
     assert unlearned_sensors(Sensors(), [recording]) == ()
     (note,) = unlearned_sensors(Sensors({"torque": Sensor(full_scale=5.0)}), [recording])
-    assert "torque within its range, here up to its end" in note
+    assert "a range that is reached (torque)" in note
 
 
 def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():
