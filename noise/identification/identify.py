@@ -19,7 +19,7 @@ from noise.identification.levels import torque_levels
 from noise.identification.outcome import Identification, Seen
 from noise.identification.rig_text import rig_text
 from noise.identification.static_test import static_evidence, static_notes
-from noise.identification.table_fit import score_table
+from noise.identification.table_fit import held_against
 from noise.identification.table_rig import identify_from_table
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def identify_rig(
         held_out=choice.held_out,
         margin=MARGIN,
         static=static,
-        measured=tuple(score_table(rig, table).found.items()),
+        measured=held_against(rig, table),
         seconds=time.perf_counter() - started,
     )
 

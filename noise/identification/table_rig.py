@@ -70,12 +70,13 @@ def identify_from_table(
     tell = progress or (lambda _text: None)
     known = beforehand.rig
     tested = static_evidence(measurements.static, beforehand.known)
+    given = table
     table = [*table, *(_row(one) for one in with_evidence((), tested) if one.interference)]
     places = sorted({number.interference for number in table})
     # what a row states of the rig itself need not be searched
     stated = with_evidence((), table_evidence(table))
     base = replace(known, fits=tuple(known.fit(place) for place in places))
-    own = [k for k, v in base.friction.parameters.items() if isinstance(v, float) and v > 0.0]
+    own = [k for k, v in base.friction.parameters.items() if not isinstance(v, str) and v > 0.0]
     names = [(name, place) for place in places for name in FIT_PARAMETERS]
     begin = np.zeros(len(names) + len(own))
     for i, (name, place) in enumerate(names):
@@ -104,8 +105,13 @@ def identify_from_table(
     spread = _spread(rig_at, table, fit)
     numbers = []
     for i, (name, place) in enumerate(names):
-        away = math.exp(_NORMAL * spread[i])
         for support in base.fit(place).damping if name == "damping" else (None,):
+            # damping said of one support is no measurement of another
+            of = [n for n in stated if (n.name, n.interference) == (name, place)]
+            other = (
+                name == "damping" and bool(of) and support not in {n.support_stiffness for n in of}
+            )
+            away = math.exp(_NORMAL * (_WIDTH if other else spread[i]))
             at = fit.rig.fit(place)
             value = at.damping[support] if support is not None else float(getattr(at, name))
             numbers.append(
@@ -118,7 +124,7 @@ def identify_from_table(
         rig_toml=rig_text(fit.rig, _HEAD), numbers=tuple(numbers), laws=(),
         law=base.friction.name, seen=(), refused=measurements.refused, static=measurements.static,
         notes=(_LAW_NOTE, *static_notes(measurements.static)),
-        measured=tuple((number, fit.score.found[number]) for number in table),
+        measured=tuple((number, fit.score.found[number]) for number in given),
         seconds=time.perf_counter() - started,
     )  # fmt: skip
 
