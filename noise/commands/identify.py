@@ -66,7 +66,10 @@ def run(options: Namespace) -> int:
 
     beforehand = known_beforehand(options.rig)
     table = () if options.numbers is None else read_numbers(options.numbers)
-    measurements = read_measurements(options.data) if options.data else Measurements((), ())
+    calibrations = beforehand.rig.sensors.calibrations
+    measurements = (
+        read_measurements(options.data, calibrations) if options.data else Measurements((), ())
+    )
     for name, reason in measurements.refused:
         say(f"{name}: {reason}")
     if not (measurements.used or measurements.static or table):

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.rig_files.rig_text import rig_text
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers
 from noise.identification.corrected import corrected, values_of
@@ -17,7 +18,6 @@ from noise.identification.law_choice import MARGIN, choose_law, overall
 from noise.identification.law_numbers import law_numbers
 from noise.identification.levels import torque_levels
 from noise.identification.outcome import Identification, Seen
-from noise.identification.rig_text import rig_text
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.table_fit import held_against
 from noise.identification.table_rig import identify_from_table

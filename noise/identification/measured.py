@@ -15,11 +15,12 @@ from noise.identification.static_test import static_test
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from models.calibration import Calibration
     from models.recording import Recording
     from noise.identification.static_test import StaticTest
 
@@ -91,12 +92,16 @@ class Measurements:
     static: tuple[StaticTest, ...] = ()
 
 
-def read_measurements(paths: Sequence[Path]) -> Measurements:
+def read_measurements(
+    paths: Sequence[Path], calibrations: Mapping[str, Calibration] | None = None
+) -> Measurements:
     """Read the recordings in files and folders.
 
     Parameters
     ----------
     paths : sequence of Path
+    calibrations : mapping of str to Calibration, optional
+        As of `noise.recordings.read_recording`.
 
     Returns
     -------
@@ -111,7 +116,7 @@ def read_measurements(paths: Sequence[Path]) -> Measurements:
     used, refused, static = [], [], []
     for path, name in find_recordings(paths):
         try:
-            recording = read_recording(path)
+            recording = read_recording(path, calibrations=calibrations)
             test = _static(recording, name)
             if test is None:
                 used.append(measured(recording, name))
@@ -155,7 +160,8 @@ def measured(recording: Recording, name: str) -> Measured:
     """
     if not recording.calibrated:
         raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true'
+            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
+            "calibration under [sensors] of the rig file"
         )
     rows = {kind: recording.first(kind) for kind in ("torque", "angle", "speed")}
     turning = rows["angle"] if rows["angle"] is not None else rows["speed"]

@@ -59,7 +59,8 @@ def identify(
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     beforehand = known_beforehand(None if rig is None else Path(rig))
     table = () if numbers is None else read_numbers(Path(numbers))
-    measurements = read_measurements(paths) if paths else Measurements((), ())
+    calibrations = beforehand.rig.sensors.calibrations
+    measurements = read_measurements(paths, calibrations) if paths else Measurements((), ())
     return identify_rig(measurements, beforehand, table=table, seed=seed)
 
 
