@@ -19,6 +19,7 @@ from noise.identification.law_numbers import law_numbers
 from noise.identification.levels import torque_levels
 from noise.identification.outcome import Identification, Seen
 from noise.identification.static_test import static_evidence, static_notes
+from noise.identification.structure_check import structure_notes
 from noise.identification.table_fit import held_against
 from noise.identification.table_rig import identify_from_table
 
@@ -119,7 +120,11 @@ def identify_rig(
         seen=tuple(seen),
         assumed=assumed,
         not_found=not_found,
-        notes=(*_notes(choice, tested=bool(static)), *static_notes(static)),
+        notes=(
+            *_notes(choice, tested=bool(static)),
+            *static_notes(static),
+            *structure_notes(rig, usable),
+        ),
         refused=measurements.refused,
         held_out=choice.held_out,
         margin=MARGIN,
