@@ -16,7 +16,7 @@ import numpy as np
 from models.condition import FIXED
 from models.rig import LawSpec
 from models.rig_files.rig_text import rig_text
-from noise.identification.evidence import UNITS, table_evidence, with_evidence
+from noise.identification.evidence import NORMAL, UNITS, table_evidence, with_evidence
 from noise.identification.outcome import Identification, Number
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.table_fit import fit_table, score_table
@@ -41,7 +41,6 @@ _WIDTH = 0.4
 _SLOPE_STEP = 0.05
 """Of the logarithms, for the curvature at the end."""
 
-_NORMAL = 1.645
 _ROUNDS = 5
 
 
@@ -111,14 +110,14 @@ def identify_from_table(
             other = (
                 name == "damping" and bool(of) and support not in {n.support_stiffness for n in of}
             )
-            away = math.exp(_NORMAL * (_WIDTH if other else spread[i]))
+            away = math.exp(NORMAL * (_WIDTH if other else spread[i]))
             at = fit.rig.fit(place)
             value = at.damping[support] if support is not None else float(getattr(at, name))
             numbers.append(
                 Number(name, UNITS[name], value, value / away, value * away, 0, place, support)
             )
     for i, name in enumerate(own, start=len(names)):
-        value, away = float(fit.rig.friction.parameters[name]), math.exp(_NORMAL * spread[i])
+        value, away = float(fit.rig.friction.parameters[name]), math.exp(NORMAL * spread[i])
         numbers.append(Number(f"friction.{name}", "", value, value / away, value * away, 0))
     return Identification(
         rig_toml=rig_text(fit.rig, _HEAD), numbers=tuple(numbers), laws=(),
@@ -132,7 +131,7 @@ def identify_from_table(
 def _row(said: Number) -> TableNumber:
     assert said.interference is not None  # of the bushing, not of the clamp
     support = FIXED if said.support_stiffness is None else said.support_stiffness
-    error = 0.5 * math.log(said.high / said.low) / _NORMAL
+    error = 0.5 * math.log(said.high / said.low) / NORMAL
     return TableNumber(said.name, said.value, said.interference, support, (), 1.0 / error, "table")
 
 
