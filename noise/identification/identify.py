@@ -80,6 +80,8 @@ def identify_rig(
         levels = torque_levels(fit)
         seen.append(Seen(one, fit, levels, values_of(fit, levels)))
         tell(_sentence(seen[-1]))
+    if not any(one.levels.slips for one in seen) and (measurements.static or table):
+        return identify_from_table(table, beforehand, measurements, progress)
     if not any(one.levels.slips for one in seen):
         raise ParameterError(
             "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
@@ -88,8 +90,9 @@ def identify_rig(
     stated = {one.measured.condition.material for one in seen} - {None}
     material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
     static, known = measurements.static, beforehand.known
-    evidence = (*table_evidence(table), *static_evidence(static, known))
-    first = with_evidence(bushing_numbers(seen), evidence)
+    # what truly sticks tells its stiffness itself; what yields looks softer than it is
+    yielding = [test for test in static if not test.elastic]
+    first = with_evidence(bushing_numbers(seen), static_evidence(yielding, known))
     base = _at_all_supports(found_rig(beforehand, first, material=material))
     known_fits = {fit.interference for fit in base.fits}
     usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]

@@ -122,6 +122,9 @@ def identify_from_table(
     return Identification(
         rig_toml=rig_text(fit.rig, _HEAD), numbers=tuple(numbers), laws=(),
         law=base.friction.name, seen=(), refused=measurements.refused, static=measurements.static,
+        not_found=tuple(
+            f"torques from {one.name}: nothing slips there" for one in measurements.used
+        ),
         notes=(_LAW_NOTE, *static_notes(measurements.static)),
         measured=tuple((number, fit.score.found[number]) for number in given),
         seconds=time.perf_counter() - started,
