@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.html_table import html_table
 from noise.screening.design.axis_values import axis_words
-from noise.screening.design.tolerances import PARAMETERS
+from noise.screening.design.tolerances import unit_of
 from noise.screening.tables.summary import probability_words, risk_words, sensitivity_words
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def _said(values: Sequence[float], unit: str) -> str:
 def _tolerance(one: Tolerance) -> str:
     if one.kind == "relative":
         return f"{one.first:.3g} of the value, standard deviation"
-    unit = PARAMETERS[one.name]
+    unit = unit_of(one.name)
     if one.kind == "absolute":
         return f"{one.first:.3g} {unit}, standard deviation"
     return f"{one.first:.4g} to {one.second:.4g} {unit}"
