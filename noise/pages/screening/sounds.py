@@ -183,6 +183,8 @@ def simulated_entries(
         except BushingNoiseError as error:
             return str(error)
 
+    if not jobs:
+        return []
     with one_thread():
         work = Parallel(n_jobs=workers, prefer="threads", return_as="generator")
         done = work(delayed(entry)(job) for job in jobs)
