@@ -28,6 +28,8 @@ from .rig import (
 from .rig_files.rig_file import (
     load_material_rig as load_material_rig,
     load_rig as load_rig,
+)
+from .rig_files.shipped import (
     material_names as material_names,
 )
 from .structure.beams_exact import (

@@ -146,8 +146,8 @@ def add_condition(parser: ArgumentParser) -> None:
         "--converter",
         action="store_true",
         default=None,
-        help="pass the samples through the rig's 12-bit converter, which hides quiet sounds and "
-        "clips loud ones (default: no)",
+        help="pass the samples through the thesis's 12-bit converter, which hides quiet sounds and "
+        "clips loud ones (default: the range and bits that [sensors] of the rig file states)",
     )
 
 
@@ -197,7 +197,7 @@ def _support_stiffness(text: str) -> float:
 
 
 def _effect(text: str) -> LawSpec:
-    from models.rig_files.rig_file import parse_spec
+    from models.rig_files.rig_parts import parse_spec
 
     try:
         return parse_spec(text)
@@ -206,6 +206,6 @@ def _effect(text: str) -> LawSpec:
 
 
 def _materials() -> tuple[str, ...]:
-    from models.rig_files.rig_file import material_names
+    from models.rig_files.shipped import material_names
 
     return material_names()

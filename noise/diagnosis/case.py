@@ -73,7 +73,7 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
     names, recordings, refused = [], [], []
     for path, name in find_recordings(paths):
         try:
-            recording = usable(read_recording(path), rig)
+            recording = usable(read_recording(path, calibrations=rig.sensors.calibrations), rig)
         except BushingNoiseError as error:
             refused.append((name, str(error)))
         else:
@@ -100,7 +100,8 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     """
     if not recording.calibrated:
         raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true'
+            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
+            "calibration under [sensors] of the rig file"
         )
     if all(recording.first(kind) is None for kind in KINDS):
         raise ParameterError(f"has no channel of {', '.join(KINDS)}")

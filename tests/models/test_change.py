@@ -7,7 +7,8 @@ from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
 from models.plausible import BOUNDS, remark, rig_remarks
-from models.rig_files.rig_file import load_material_rig, load_rig, material_names
+from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_files.shipped import material_names
 
 RIG = load_material_rig("fluorocarbon")
 NAMES = ("elastomer_stiffness", "damping", "elastomer_inertia", "clamp_inertia", "ageing_time")

@@ -6,7 +6,9 @@ import pytest
 
 from models.errors import ParameterError
 from models.rig import damping_at
-from models.rig_files.rig_file import load_material_rig, load_rig, material_names, parse_spec
+from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_files.rig_parts import parse_spec
+from models.rig_files.shipped import material_names
 
 CONTRACT = """
 name = "bench"

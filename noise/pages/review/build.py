@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from noise.pages.engine.entry import Entry
     from noise.pages.review.diagnoses import DiagnosisDisplay
     from noise.pages.review.inputs import Inputs
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["Review", "review"]
 
@@ -75,7 +76,7 @@ def review(
     out: str | os.PathLike[str] = _PAGE,
     *,
     title: str = "Review",
-    full_scale: float | None = None,
+    full_scale: PascalPerFullScale | None = None,
     pascal_per_full_scale: float | None = None,
     seconds: float = 10.0,
     megabytes: float = 25.0,
@@ -93,7 +94,7 @@ def review(
     out : path-like
         The page, or a folder for ``report.html``.
     title : str
-    full_scale : float, optional
+    full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample of the recordings [Pa]; wins over what they say.
     pascal_per_full_scale : float, optional
         Of the page, for a listening room that is calibrated to it [Pa]; by default what the

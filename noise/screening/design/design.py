@@ -27,7 +27,8 @@ from typing import TYPE_CHECKING
 
 from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig, material_names, read_toml, rig_from
+from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
+from models.rig_files.shipped import material_names
 from noise.screening.design.axis_values import (
     FREQUENCY,
     SPEED,
@@ -174,7 +175,7 @@ def load_design(given: str | Path) -> Design:
     where = f"design {path}"
     content = read_toml(path, where)
     table = a_table(content.pop("design", {}), "design", where)
-    tolerances = read_tolerances(content.pop("tolerances", {}), where)
+    tolerances = content.pop("tolerances", {})
     refuse_unknown(table, _USE_KEYS, f"{where}, design")
     rig = rig_from(content, path.parent, where)
     named = table.get("name", content.get("name", path.stem))
@@ -182,7 +183,7 @@ def load_design(given: str | Path) -> Design:
         name=a_text(named, "name", f"{where}, design"),
         rig=rig,
         use=_use(table, f"{where}, design"),
-        tolerances=tolerances,
+        tolerances=read_tolerances(tolerances, where, rig.effects),
     )
 
 

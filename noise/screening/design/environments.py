@@ -14,7 +14,7 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import parse_spec
+from models.rig_files.rig_parts import parse_spec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

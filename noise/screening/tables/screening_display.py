@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.html_table import html_table
 from noise.screening.design.axis_values import axis_words
-from noise.screening.design.tolerances import PARAMETERS
+from noise.screening.design.tolerances import unit_of
 from noise.screening.tables.summary import probability_words, risk_words, sensitivity_words
 
 if TYPE_CHECKING:
@@ -36,11 +36,13 @@ def screening_html(found: Screening) -> str:
                 "" if math.isnan(one.loudest_level) else f"{one.loudest_level:.0f} dB(A)",
                 "" if math.isnan(one.margin_v_crit2) else f"{one.margin_v_crit2:+.3g}",
                 "" if stands is None else probability_words(stands),
+                one.words,
             ]
         )
-    rows += [["", name, reason, *[""] * 5] for name, reason in found.refused]
+    rows += [["", name, reason, *[""] * 6] for name, reason in found.refused]
     header = (
         "rank", "design", "where", "risk", "noisy use", "loudest", "margin [rad/s]", "parts",
+        "in words",
     )  # fmt: skip
     caption = f"Screen of {found.points} points in {found.seconds:.1f} s"
     return html_table(caption, rows, header=header)
@@ -74,7 +76,7 @@ def _said(values: Sequence[float], unit: str) -> str:
 def _tolerance(one: Tolerance) -> str:
     if one.kind == "relative":
         return f"{one.first:.3g} of the value, standard deviation"
-    unit = PARAMETERS[one.name]
+    unit = unit_of(one.name)
     if one.kind == "absolute":
         return f"{one.first:.3g} {unit}, standard deviation"
     return f"{one.first:.4g} to {one.second:.4g} {unit}"

@@ -1,0 +1,77 @@
+"""The bench and the materials that are shipped, as their TOML files say them."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from models.checks import meant
+from models.errors import ParameterError
+
+__all__ = ["bench_content", "material_content", "material_names", "shipped_name"]
+
+_DATA = resources.files("models") / "data"
+
+
+def material_names() -> tuple[str, ...]:
+    """Names of the materials that are shipped.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> "PDMS" in material_names()
+    True
+    """
+    folder = _DATA / "materials"
+    return tuple(sorted(Path(entry.name).stem for entry in folder.iterdir()))
+
+
+def shipped_name(name: str) -> str | None:
+    """Return the name of a shipped material as it is written; case does not matter.
+
+    Examples
+    --------
+    >>> shipped_name("pdms"), shipped_name("our rubber")
+    ('PDMS', None)
+    """
+    known = {each.lower(): each for each in material_names()}
+    return known.get(name.strip().lower())
+
+
+def bench_content() -> dict[str, Any]:
+    """Return what the file of the shipped bench holds.
+
+    Examples
+    --------
+    >>> bench_content()["plate"]["thickness_m"]
+    0.01
+    """
+    return tomllib.loads((_DATA / "rigs" / "bench.toml").read_text(encoding="utf-8"))
+
+
+def material_content(name: str) -> dict[str, Any]:
+    """Return what the file of a shipped material holds; case does not matter.
+
+    Raises
+    ------
+    ParameterError
+        If the material is unknown.
+
+    Examples
+    --------
+    >>> material_content("pdms")["material"]
+    'PDMS'
+    """
+    known = shipped_name(name)
+    if known is None:
+        raise ParameterError(
+            f"material {name!r} is unknown{meant(name, material_names())}; there are "
+            f"{', '.join(material_names())}"
+        )
+    text = (_DATA / "materials" / f"{known}.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text) | {"material": known}
