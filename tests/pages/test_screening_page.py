@@ -111,6 +111,7 @@ def test_a_hostile_name_is_text_and_nothing_else(two, tmp_path, names):
 def test_a_page_asks_nothing_of_the_network(two, tmp_path):
     page = page_of(two, tmp_path, sounds=2)
     assert "default-src 'none'" in page.html
+    assert not re.search(r"https?:|@import", page.html)
     fetched = [
         value
         for _, attrs in page.tags
