@@ -9,6 +9,7 @@ improved only if recordings that no fit has seen agree with it, and nothing is l
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -21,7 +22,7 @@ from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.closing import rms
 from noise.diagnosis.fit.corrected_responses import corrected_responses, is_in_responses
 from noise.diagnosis.fit.fit_effect import is_stated, number_spreads
-from noise.diagnosis.fit.stated_fit import fit_stated
+from noise.diagnosis.fit.stated_fit import fit_again, fit_stated
 from noise.diagnosis.improvement import Improvement
 
 if TYPE_CHECKING:
@@ -39,7 +40,10 @@ CLOSED = 1.75
 more one time in fifty."""
 
 _SIMPLER = 0.95
-"""With effects a rig must leave at most this share of what it leaves with parameters alone."""
+"""What is less simple must leave at most this share of what the simpler leaves."""
+
+_AGAIN = 2
+"""Candidates that are fitted again in floors of their own."""
 
 _UNDETERMINED = 1.4
 """Standard deviation of a logarithm from which on a number is not determined."""
@@ -79,25 +83,33 @@ def improved_rig(
     def offered(batch: Sequence[Fitted]) -> Iterator[tuple[float, Fitted]]:
         """Forms that a file can say, and responses; what is simpler may leave a little more."""
         for one in batch:
-            stated = one is alone or all(is_stated(comparison, s) for s in one.model.effects)
-            yield (
-                1.0 if one is alone else _SIMPLER,
-                (one if one is alone else fit_stated(comparison, fitted_to, one, alone, seed)),
-            )
+            if one is alone:
+                yield 1.0, alone
+                continue
+            plain, recalibrated = fit_stated(comparison, fitted_to, one, alone, seed)
+            yield from ((1.0, each) for each in plain)
+            yield from ((_SIMPLER, each) for each in recalibrated)
+            stated = all(is_stated(comparison, spec) for spec in one.model.effects)
             if not stated and all(_is_said(comparison, spec) for spec in one.model.effects):
-                yield _SIMPLER**2, one
+                yield _SIMPLER, one
 
     for batch in ([alone, *others[:1]], *([one] for one in others[1:])):
-        tried = [
-            (rms(comparison.squared(one.model, held)), ease, one) for ease, one in offered(batch)
-        ]
-        for after, _, fitted in sorted(tried, key=lambda entry: entry[0] / entry[1]):
+        tried = [(rms(comparison.squared(one.model, held)) / ease, one.model)
+                 for ease, one in offered(batch)]  # fmt: skip
+        tried.sort(key=lambda entry: entry[0])
+        again = []
+        for _, model in tried[:_AGAIN]:
+            with suppress(ParameterError):  # it breaks down in one of its repeats
+                own, fitted = fit_again(comparison, fitted_to, model)
+                again.append((rms(own.squared(fitted.model, held)), own, fitted))
+        for after, own, fitted in sorted(again, key=lambda entry: entry[0]):
             made = _made(case, comparison, fitted.model) if after <= CLOSED else None
             if made is None:
                 continue
-            again = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
-            if not again.verdict:
-                return _improvement(case, comparison, fitted_to, held, fitted, *made, after)
+            found = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
+            if not found.verdict:
+                before = rms(comparison.squared(Model(), held))
+                return _improvement(case, own, fitted_to, held, fitted, *made, before, after)
     return None
 
 
@@ -109,6 +121,7 @@ def _improvement(
     fitted: Fitted,
     factors: dict[str, float],
     rig: Rig,
+    before: float,
     after: float,
 ) -> Improvement:
     spread = dict(zip(OFFSETS, fitted.spread, strict=False))
@@ -126,7 +139,7 @@ def _improvement(
         undetermined=tuple(name for name, s in spread.items() if s >= _UNDETERMINED),
         fitted_to=tuple(case.names[i] for i in fitted_to),
         held_out=tuple(case.names[i] for i in held),
-        gap_before=rms(comparison.squared(Model(), held)),
+        gap_before=before,
         gap_after=after,
     )
 
