@@ -90,6 +90,8 @@ def fit_stated(
         starts.append(fit_effect(comparison, chosen, names, alone.model, seed, stated=True).model)
     if len(names) == 1:
         starts += _best_of_forms(comparison, few, names[0], alone.model, seed)
+    if not starts:  # none can be simulated
+        return [[], []]
     as_filed = [replace(one, offsets=Model().offsets) for one in starts]
     plain = [
         _moved(comparison, few, one, offsets=False)
