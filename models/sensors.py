@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from models.calibration import Calibration
+
 __all__ = ["Sensor", "Sensors"]
 
 
@@ -31,6 +33,8 @@ class Sensor:
         Of the converter: `full_scale` in both signs are ``2**bits`` steps.
     antialias : float, optional
         Corner of the anti-alias filter, at which it takes 3 dB [Hz].
+    calibration : Calibration, optional
+        From what is recorded to the quantity, where a recording is not calibrated otherwise.
 
     Examples
     --------
@@ -42,6 +46,7 @@ class Sensor:
     full_scale: float | None = None
     bits: int | None = None
     antialias: float | None = None
+    calibration: Calibration | None = None
 
     @property
     def step(self) -> float:
@@ -71,7 +76,7 @@ class Sensors:
     --------
     >>> fine, coarse = Sensors({"torque": Sensor(1e-3)}), Sensors({"torque": Sensor(bits=8)})
     >>> coarse.over(fine).of("torque")
-    Sensor(noise=0.001, full_scale=None, bits=8, antialias=None)
+    Sensor(noise=0.001, full_scale=None, bits=8, antialias=None, calibration=None)
     """
 
     by_kind: Mapping[str, Sensor] = field(default_factory=dict)
@@ -80,6 +85,17 @@ class Sensors:
     def of(self, kind: str) -> Sensor:
         """Return the sensor of a kind of channel."""
         return self.by_kind.get(kind, _IDEAL)
+
+    def unfiltered(self) -> Sensors:
+        """Return these sensors for signals that have passed their filters."""
+        kept = {kind: replace(sensor, antialias=None) for kind, sensor in self.by_kind.items()}
+        return replace(self, by_kind=kept)
+
+    @property
+    def calibrations(self) -> dict[str, Calibration]:
+        """Calibrations by kind of channel."""
+        found = ((kind, sensor.calibration) for kind, sensor in self.by_kind.items())
+        return {kind: calibration for kind, calibration in found if calibration is not None}
 
     def over(self, other: Sensors) -> Sensors:
         """Return these sensors, with what they do not say taken from others."""

@@ -167,7 +167,7 @@ def _laid(
         rig = replace(rig, measured=_measured(content["measured_response"], folder, where))
     if "sensors" in content:
         table = content["sensors"]
-        rig = replace(rig, sensors=read_sensors(table, rig.sensors, f"{where}, sensors"))
+        rig = replace(rig, sensors=read_sensors(table, rig.sensors, folder, f"{where}, sensors"))
     refuse_impossible(rig, where)
     if "change" in content:
         rig = changed_rig(rig, a_table(content["change"], "change", where), f"{where}, change")

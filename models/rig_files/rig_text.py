@@ -7,6 +7,7 @@ import math
 import os
 from typing import TYPE_CHECKING
 
+from models.rig_files.sensors_file import sensors_text
 from models.rig_files.shipped import material_names
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ __all__ = ["base_name", "changed_rig_text", "rig_text", "support_name"]
 
 
 def rig_text(rig: Rig, notes: Sequence[str] = ()) -> str:
-    """Write a rig's bushing and friction as a rig file; the rest is the shipped bench's.
+    """Write a rig's bushing, friction and sensors; the rest is the shipped bench's.
 
     Parameters
     ----------
@@ -51,6 +52,8 @@ def rig_text(rig: Rig, notes: Sequence[str] = ()) -> str:
         f"law = {json.dumps(rig.friction.name)}",
         *(f"{name} = {value:.5g}" for name, value in rig.friction.parameters.items()),
     ]
+    if sensors := sensors_text(rig.sensors):
+        lines += ["", *sensors]
     for fit in rig.fits:
         lines += [
             "",

@@ -1,4 +1,4 @@
-"""The ``[sensors]`` table of a rig file: noise, range, converter and anti-alias filter.
+"""The ``[sensors]`` table of a rig file: noise, range, converter, anti-alias filter, calibration.
 
 Each key is a table by kind of channel, ``range = { torque = 102.5 }``; ``bits`` and
 ``antialias_hz`` may be one number for all: that of the converter holds for the channels whose range
@@ -10,21 +10,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
 from models.recording import CHANNEL_UNITS
+from models.rig_files.calibration_file import calibration_text, read_calibration
 from models.sensors import Sensor, Sensors
 
-__all__ = ["FROM_RECORDINGS", "read_sensors"]
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["FROM_RECORDINGS", "read_sensors", "sensors_text"]
 
 FROM_RECORDINGS = "from recordings"
 
-_KEYS = {"noise", "range", "bits", "antialias_hz"}
+_KEYS = {"noise", "range", "bits", "antialias_hz", "calibration"}
 
 
-def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
+def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors:
     """Read sensors from a rig file's table, laid over those of its base.
 
     Parameters
@@ -33,6 +37,8 @@ def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
         As the TOML file holds it.
     base : Sensors
         Of what the file changes.
+    folder : Path
+        Of the rig file; names of tables are relative to it.
     where : str
         What messages call the table.
 
@@ -43,7 +49,9 @@ def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
 
     Examples
     --------
-    >>> read_sensors({"range": {"torque": 102.5}, "bits": 12}, Sensors(), "rig").of("torque").step
+    >>> from pathlib import Path
+    >>> table = {"range": {"torque": 102.5}, "bits": 12}
+    >>> read_sensors(table, Sensors(), Path(), "rig").of("torque").step
     0.050048828125
     """
     table = a_table(table, "sensors", where)
@@ -55,7 +63,7 @@ def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
             f'{where}: noise = {noise!r} must be "{FROM_RECORDINGS}", or a table such as '
             "{ torque = 0.01, pressure = 2e-3 }"
         )
-    said = {
+    said: dict[str, dict[str, Any]] = {
         "noise": {} if estimated else _by_kind(noise, "noise", where, closed=True),
         "full_scale": _by_kind(table.get("range", {}), "range", where),
     }
@@ -64,6 +72,12 @@ def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
     said["antialias"] = _by_kind(
         table.get("antialias_hz", {}), "antialias_hz", where, all_of=tuple(CHANNEL_UNITS)
     )
+    calibrations = a_table(table.get("calibration", {}), "calibration", where)
+    refuse_unknown(calibrations, set(CHANNEL_UNITS), f"{where}, calibration")
+    said["calibration"] = {
+        kind: read_calibration(given, kind, folder, f"{where}, calibration of {kind}")
+        for kind, given in calibrations.items()
+    }
     kinds = dict.fromkeys(kind for values in said.values() for kind in values)
     own = Sensors(
         {kind: Sensor(**{n: v[kind] for n, v in said.items() if kind in v}) for kind in kinds}
@@ -104,3 +118,28 @@ def _bits(given: Any, known: list[str], where: str) -> dict[str, int]:
         if bits != int(bits):
             raise ParameterError(f"{where}: bits = {bits!r} must be a whole number")
     return {kind: int(bits) for kind, bits in found.items()}
+
+
+def sensors_text(sensors: Sensors) -> list[str]:
+    """Write sensors as the lines of a rig file's table; none where all are ideal.
+
+    Examples
+    --------
+    >>> sensors_text(Sensors({"torque": Sensor(full_scale=102.5, bits=12)}))
+    ['[sensors]', 'range = { torque = 102.5 }', 'bits = { torque = 12 }']
+    """
+    lines = []
+    if sensors.noise_from_recordings:
+        lines.append(f'noise = "{FROM_RECORDINGS}"')
+    for key, name in (
+        ("noise", "noise"),
+        ("range", "full_scale"),
+        ("bits", "bits"),
+        ("antialias_hz", "antialias"),
+    ):
+        values = {kind: getattr(sensor, name) for kind, sensor in sensors.by_kind.items()}
+        said = ", ".join(f"{kind} = {x:.9g}" for kind, x in values.items() if x is not None)
+        lines += [f"{key} = {{ {said} }}"] if said else []
+    for kind, calibration in sensors.calibrations.items():
+        lines.append(f"calibration.{kind} = {calibration_text(calibration, kind)}")
+    return ["[sensors]", *lines] if lines else []

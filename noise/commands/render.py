@@ -120,7 +120,7 @@ def configure(parser: ArgumentParser) -> None:
         help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
         "needs the extra sound-quality, and some seconds a second of sound",
     )
-    opt.add_full_scale(parser)
+    opt.add_calibration(parser)
     add_condition(parser)
     opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
 

@@ -71,7 +71,7 @@ def _calibrated(surveys: Mapping[str, Survey], pascal: float) -> dict[str, FullS
         if not of.calibrated:
             raise ParameterError(
                 f"--pascal-per-full-scale needs a calibrated input, and {of.name} is not; "
-                "--full-scale gives its calibration"
+                "--full-scale or --calibrator gives its calibration"
             )
     loudest = max(surveys.values(), key=lambda of: of.true_peak)
     if loudest.true_peak > CEILING * pascal:

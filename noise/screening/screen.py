@@ -18,7 +18,7 @@ import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.screening.design.design import Design, Use, load_design
+from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.design.environments import DRY, environment, in_environment
 from noise.screening.map.batches import batch_evaluator
 from noise.screening.map.grid import shared_grid, shared_motions
@@ -26,13 +26,14 @@ from noise.screening.map.mapping import map_design
 from noise.screening.map.provenance import fits_remark
 from noise.screening.outcome import Screening
 from noise.screening.parts.statistics import statistics_of
+from noise.screening.ranking.first_hint import first_hint
 from noise.screening.ranking.margins import critical_points
 from noise.screening.ranking.never_slips import why_never_slipping
 from noise.screening.ranking.ranking import standings
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from models.rig import Rig
     from noise.screening.map.batches import Evaluator
@@ -131,7 +132,7 @@ def screen(
     with batch_evaluator(workers=workers, scheduler=scheduler) as evaluate:
         for design in loaded.values():
             try:
-                remarks[design.name] = _remarks(design, tuple(grids.values()), given)
+                remarks[design.name] = _remarks(design, grids, given)
                 for text in remarks[design.name]:
                     progress(f"{design.name}: {text}")
                 found: list[DesignMap] = []
@@ -166,18 +167,17 @@ def screen(
         )
         for each, stream in zip(first.values(), streams, strict=True)
     )
+    rigs = [in_environment(screened[one.design].rig, environment(one.environment)) for one in maps]
     never_slipping = [
-        why_never_slipping(
-            in_environment(screened[each.design].rig, environment(each.environment)), each.grid
-        )
-        for each in maps
+        why_never_slipping(rig, each.grid) for rig, each in zip(rigs, maps, strict=True)
     ]
+    hints = [first_hint(rig, each) for rig, each in zip(rigs, maps, strict=True)]
     return Screening(
         designs=tuple(screened.values()),
         maps=tuple(maps),
         critical=critical,
         statistics=statistics,
-        standings=standings(maps, critical, statistics, never_slipping, remarks),
+        standings=standings(maps, critical, statistics, never_slipping, hints, remarks),
         refused=tuple(refused),
         files=tuple(one for one in files if one[0] in screened),
         seconds=mapped - started,
@@ -215,13 +215,15 @@ def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
     return replace(design, name=name)
 
 
-def _remarks(design: Design, grids: Sequence[Grid], given: Use | None) -> list[str]:
+def _remarks(
+    design: Design, grids: Mapping[tuple[str, Swinging | None], Grid], given: Use | None
+) -> list[str]:
     """Say what to know of a design's numbers, most of all where they are not its own."""
-    rig, grid = design.rig, grids[0]
-    temperature = sorted({value for each in grids for value in each.temperature})
+    rig, grid = design.rig, next(iter(grids.values()))
+    temperature = sorted({value for each in grids.values() for value in each.temperature})
     found = use_remarks(
         rig,
-        speed=[max(each.use[1] for each in grids)],
+        speed=[max(each.use[1] for each in grids.values())],
         interference=grid.interference,
         support_stiffness=grid.support_stiffness,
         temperature=temperature,
@@ -229,7 +231,9 @@ def _remarks(design: Design, grids: Sequence[Grid], given: Use | None) -> list[s
     found.append(fits_remark(rig, grid.interference))
     if (given is not None and given.temperature) or len(temperature) > 1:
         found.append(temperature_remark(rig, temperature[-1]))
-    return [text for text in (*found, *effect_remarks(rig, EFFECTS)) if text]
+    for where in dict.fromkeys(where for where, _ in grids):
+        found += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
+    return list(dict.fromkeys(filter(None, found)))
 
 
 def _mapped(

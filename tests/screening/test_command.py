@@ -32,7 +32,7 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     assert main([*given, "--out", str(out)]) == 0
     names = sorted(path.name for path in out.iterdir())
     assert names == [
-        "critical_speeds.csv", "designs.csv", "map-1.png", "map-2.png", "map.csv",
+        "critical_speeds.csv", "designs.csv", "map-1.png", "map-2.png", "map.csv", "report.html",
     ]  # fmt: skip
     points = rows(out / "map.csv")
     assert len(points) == 6

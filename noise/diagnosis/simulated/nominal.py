@@ -13,9 +13,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
-from noise.diagnosis.simulated.repeats import Scatter, perturb_run, plan_repeat, record
+from models.sensors import Sensor
+from noise.diagnosis.simulated.repeats import (
+    CHANNELS,
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    record,
+)
 from noise.diagnosis.simulated.transfer_functions import chain_of, predict, shift_clamp_mode
-from sim.acquisition import decimate
+from sim.acquisition import decimate_sensed
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
@@ -39,6 +46,8 @@ __all__ = ["condition_key", "nominal_recordings", "nominal_repeats"]
 
 _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""
+
+_OUTPUTS = ("acceleration", "pressure")
 
 _FADE = 0.1
 """In which a torque fades in and out [s], outside of the recording."""
@@ -93,27 +102,35 @@ def nominal_recordings(
     n = (kept.stop + round(_RUNNING_OUT * rate)) * decimation
     at = (condition.interference, condition.support_stiffness)
     bushing = lumped_bushing(rig, *at)
+    corners = {name: rig.sensors.of(name).antialias for name in CHANNELS}
     recordings = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
         once, found = perturb_run(rig, condition, scatter, rng)
         plan = plan_repeat(once, found, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
         motion = run_motion(replace(plan, n_settling=0, n_kept=n), rng)
-        torque, angle = (decimate(x, decimation) for x in (motion.torque, motion.shaft_angle))
-        faded = torque[kept].mean() + _faded(torque - torque[kept].mean(), rate)
+        # What a sensor's filter does to a sound, it does to the torque that makes it.
+        by_filter = {
+            corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
+            for corner in {corners[name] for name in ("torque", *_OUTPUTS)}
+        }
+        torque = {name: by_filter[corners[name]] for name in ("torque", *_OUTPUTS)}
+        angle = decimate_sensed(motion.shaft_angle, decimation, plan.rate, rig.sensors.of("angle"))
         lumped = lumped_bushing(once, *at)
         outputs = {
-            name: predict(faded, rate, shift_clamp_mode(transfer_functions[name], bushing, lumped))[
-                kept
-            ]
-            for name in ("acceleration", "pressure")
-        }
+            name: predict(
+                _steadied(torque[name], kept, rate), rate,
+                shift_clamp_mode(transfer_functions[name], bushing, lumped),
+            )[kept]
+            for name in _OUTPUTS
+        }  # fmt: skip
         signals = {
-            "torque": torque[kept],
+            "torque": torque["torque"][kept],
             **outputs,
             "angle": angle[kept] - angle[before],
         }
-        recordings.append(record(signals, rate, condition, rng, scatter))
+        through = rig.sensors.unfiltered()
+        recordings.append(record(signals, rate, condition, rng, scatter, sensors=through))
     return recordings
 
 
@@ -187,7 +204,15 @@ def _with_effects(
     motion = run_motion(plan, rng)
     signals = sensor_signals(motion, radiate_motion(motion, paths, effects), plan.n_settling)
     signals = apply_sensor_effects(signals, effects, fine, rng)
-    return record(signals, rate, condition, rng, scatter, decimation=DIAGNOSIS.decimation(rate))
+    return record(
+        signals, rate, condition, rng, scatter,
+        decimation=DIAGNOSIS.decimation(rate), sensors=rig.sensors,
+    )  # fmt: skip
+
+
+def _steadied(torque: NDArray[np.float64], kept: slice, rate: float) -> NDArray[np.float64]:
+    mean = torque[kept].mean()
+    return np.asarray(mean + _faded(torque - mean, rate))
 
 
 def _faded(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
 
-__all__ = ["UNCHANGED", "DesignMap", "map_design"]
+__all__ = ["UNCHANGED", "DesignMap", "growth_rates", "map_design"]
 
 UNCHANGED = "unchanged"
 """How a point is known whose temperature, or interference, makes no difference."""
@@ -163,7 +163,7 @@ def map_design(
         levels[:, plane, row, column] = rows[:, 2:].T
         return (rows[:, 0] * len(LABELS) + rows[:, 1]).astype(np.int64)
 
-    growth = np.full(planes, np.nan) if swings else _growth(rig, axes, speed).reshape(planes)
+    growth = np.full(planes, np.nan) if swings else growth_rates(rig, axes, speed).reshape(planes)
     found = refined_map(
         planes,
         simulate,
@@ -202,9 +202,24 @@ def _stride(values: NDArray[np.float64], apart: float) -> int:
     return max(1, min(STRIDE, round(apart / float(np.diff(values).max()))))
 
 
-def _growth(
+def growth_rates(
     rig: Rig, axes: tuple[NDArray[np.float64], ...], speed: NDArray[np.float64]
 ) -> NDArray[np.float64]:
+    """Growth of a small vibration about steady sliding over a grid.
+
+    Parameters
+    ----------
+    rig : Rig
+    axes : tuple of ndarray
+        Temperatures [degree Celsius], supports [Nm/rad] and interferences [m].
+    speed : ndarray, shape (n_speeds,)
+        [rad/s]
+
+    Returns
+    -------
+    ndarray, shape (n_temperatures, n_supports, n_fits, n_speeds)
+        [1/s]
+    """
     temperature, support, fit = axes
     return np.stack(
         [

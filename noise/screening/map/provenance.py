@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from models.rig import Fit, Rig
     from noise.screening.map.grid import Grid
 
-__all__ = ["RULE", "fits_remark", "is_substituted", "point_notes", "rows_of"]
+__all__ = ["RULE", "fits_remark", "is_substituted", "point_notes", "rows_of", "within_fits"]
 
 RULE = (
     "where a design has no data of its own, stiffness, torques and damping are interpolated "
@@ -117,6 +117,19 @@ def rows_of(rig: Rig, interference: Sequence[float]) -> list[int]:
     for i in above:
         rows[i] = above[0]
     return rows
+
+
+def within_fits(rig: Rig, interference: float) -> bool:
+    """Whether an interference [m] lies within the fits that a rig is given for.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> [within_fits(load_material_rig("PDMS"), fit) for fit in (0.178e-3, 0.254e-3)]
+    [False, True]
+    """
+    low, high = rig.interference_range
+    return low * (1.0 - _SAME) <= interference <= high * (1.0 + _SAME)
 
 
 def fits_remark(rig: Rig, interference: Sequence[float]) -> str:

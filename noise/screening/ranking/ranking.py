@@ -22,7 +22,7 @@ from models.errors import ParameterError
 from noise.screening.map.batches import LABELS
 from noise.screening.parts.advice_words import advice_words
 from noise.screening.parts.estimate import Estimate
-from noise.screening.ranking.plain_words import first_hint, plain_words
+from noise.screening.ranking.plain_words import plain_words
 from noise.screening.ranking.risk import Candidate, ranked
 
 if TYPE_CHECKING:
@@ -121,6 +121,7 @@ def standings(
     critical: Sequence[CriticalPoint],
     statistics: Sequence[Statistics],
     never_slipping: Sequence[str] | None = None,
+    hints: Sequence[str] | None = None,
     remarks: Mapping[str, Sequence[str]] | None = None,
 ) -> tuple[Standing, ...]:
     """Tell how mapped designs do, the quietest first.
@@ -133,6 +134,8 @@ def standings(
         One for each design and environment.
     never_slipping : sequence of str, optional
         Of each map why the contact never slips, empty where it does; by default all slip.
+    hints : sequence of str, optional
+        Of each map what would help, where no advice is told; by default nothing.
     remarks : mapping of str to sequence of str, optional
         What to know of the numbers of a design, by its name.
 
@@ -150,7 +153,8 @@ def standings(
     risks = {(one.design, one.environment): one.risk for one in statistics}
     advised = {(one.design, one.environment): advice_words(one) for one in statistics}
     found = []
-    for mapped, why in zip(maps, never_slipping or [""] * len(maps), strict=True):
+    nothing = [""] * len(maps)
+    for mapped, why, hint in zip(maps, never_slipping or nothing, hints or nothing, strict=True):
         where = mapped.design, mapped.environment
         one = _standing(mapped, critical, risks[where])
         found.append(
@@ -158,7 +162,7 @@ def standings(
                 one,
                 never_slips=why,
                 words=plain_words(mapped, one.margin_v_crit2, why),
-                hint="" if why else advised[where] or first_hint(mapped),
+                hint="" if why else advised[where] or hint,
                 notes=(*(remarks or {}).get(mapped.design, ()), *filter(None, [why])),
             )
         )

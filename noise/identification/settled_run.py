@@ -1,0 +1,107 @@
+"""A run from rest once it has settled, as numbers read off a torque record are read off it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.kernels import slip_drops
+from sim.analysis.critical_speeds import motion_from_rest
+from sim.analysis.regime import LEAST_OSCILLATION, stick_and_oscillation
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+
+__all__ = ["SettledRun", "settled_run"]
+
+_SECONDS = 0.8
+_HIGHEST_LINE = 2500.0
+"""Up to which the strongest line is sought [Hz]."""
+
+
+@dataclass(frozen=True, eq=False)
+class SettledRun:
+    """The last half of a run.
+
+    Parameters
+    ----------
+    stick : float
+        Share of the time in which the contact sticks [-].
+    oscillation : float
+        Standard deviation of the torque over its mean [-].
+    torque : ndarray, shape (n,)
+        [Nm]
+    rate : float
+        [Hz]
+    """
+
+    stick: float
+    oscillation: float
+    torque: NDArray[np.float64]
+    rate: float
+
+    @property
+    def mean_torque(self) -> float:
+        """Mean of the torque [Nm]."""
+        return float(np.mean(self.torque))
+
+    @property
+    def repetition_rate(self) -> float:
+        """Slips or periods a second [Hz]; NaN where nothing repeats."""
+        if self.oscillation <= LEAST_OSCILLATION:
+            return math.nan
+        found = slip_drops.repetition_rate(self.torque, self.rate)
+        return math.nan if found is None else found
+
+    @cached_property
+    def _lines(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        torque = self.torque - self.mean_torque
+        amplitude = np.asarray(np.abs(np.fft.rfft(torque * np.hanning(torque.size))))
+        frequency = np.asarray(np.fft.rfftfreq(torque.size, 1.0 / self.rate))
+        return frequency.astype(np.float64), amplitude.astype(np.float64)
+
+    @property
+    def strongest_line(self) -> float:
+        """Frequency of the strongest line of the torque [Hz]."""
+        frequency, amplitude = self._lines
+        return float(frequency[np.argmax(amplitude[frequency < _HIGHEST_LINE])])
+
+    def line_in(self, low: float, high: float) -> float:
+        """Highest amplitude between two frequencies [Hz] over that of the strongest line [-]."""
+        frequency, amplitude = self._lines
+        strongest = max(float(amplitude[frequency < _HIGHEST_LINE].max()), 1e-12)
+        return float(amplitude[(frequency >= low) & (frequency < high)].max()) / strongest
+
+
+def settled_run(
+    rig: Rig, interference: float, support_stiffness: float, speed: float
+) -> SettledRun:
+    """Run a rig from rest and keep the last half.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]
+    speed : float
+        Of the shaft [rad/s].
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> run = settled_run(load_material_rig("fluorocarbon-thesis"), 0.279e-3, 2214.0, 1.0)
+    >>> run.stick > 0.5, 100.0 < run.repetition_rate < 200.0
+    (True, True)
+    """
+    motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=_SECONDS)
+    stick, oscillation = stick_and_oscillation(motion)
+    last = motion.since(motion.torque.size // 2)
+    return SettledRun(stick, oscillation, last.torque, motion.rate)
