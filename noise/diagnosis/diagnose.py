@@ -84,7 +84,12 @@ def diagnose_case(
         floor=1.0,
         p_value=gap.p_value,
         seconds=time.perf_counter() - started,
-        notes=(*map(_listed, first.suspected), *_notes(case), *case_remarks(case, library)),
+        notes=(
+            *map(_listed, first.suspected),
+            *_notes(case),
+            *first.unlearned,
+            *case_remarks(case, library),
+        ),
         differences=differences(table, posterior),
     )
     if not quick:
@@ -157,6 +162,7 @@ def _notes(case: Case) -> tuple[str, ...]:
         )
     elif len(different) == len(case.recordings):
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
+    notes += noise_remarks(case.rig.sensors, kinds)
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
     return tuple(notes)

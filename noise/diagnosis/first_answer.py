@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.causes.unlearned import unlearned_sensors
 from noise.diagnosis.causes.verdict import NAMED, verdict_of
 from noise.diagnosis.evidence.summary import case_table
 from noise.diagnosis.gap.floor import case_gap
@@ -35,6 +36,8 @@ class FirstAnswer:
         As of `noise.diagnosis.outcome.Diagnosis`.
     suspected : tuple of str
         Effects that the rig file lists and that what is left looks like all the same.
+    unlearned : tuple of str
+        What is said of sensors that the probabilities were not learned with.
     """
 
     table: CaseTable
@@ -42,6 +45,7 @@ class FirstAnswer:
     probabilities: Mapping[str, float]
     verdict: tuple[str, ...]
     suspected: tuple[str, ...]
+    unlearned: tuple[str, ...]
 
 
 def first_answer(
@@ -76,6 +80,7 @@ def first_answer(
     again = {name: p for name, p in probabilities.items() if name in known}
     probabilities |= dict.fromkeys(again, 0.0)
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
-    verdict = verdict_of(probabilities, posterior.alarm, gap)
+    unlearned = unlearned_sensors(case.rig.sensors, case.recordings)
+    verdict = verdict_of(probabilities, posterior.alarm, gap, learned=not unlearned)
     suspected = tuple(name for name, p in again.items() if verdict and p >= NAMED)
-    return FirstAnswer(table, gap, probabilities, verdict, suspected)
+    return FirstAnswer(table, gap, probabilities, verdict, suspected, unlearned)
