@@ -15,6 +15,7 @@ from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
+from noise.diagnosis.evidence.sensor_noise import noise_remarks
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
 from sim.effects import EFFECTS
