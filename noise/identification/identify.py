@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import math
 import time
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.identification.bushing_fit import fit_bushing
-from noise.identification.bushing_numbers import bushing_numbers
-from noise.identification.corrected import corrected, values_of
-from noise.identification.found_rig import found_rig
+from noise.identification.bushing_numbers import bushing_numbers, read_again
 from noise.identification.law_choice import MARGIN, choose_law, overall
 from noise.identification.law_numbers import law_numbers
 from noise.identification.levels import torque_levels
-from noise.identification.outcome import Identification, Seen
+from noise.identification.outcome import Identification, Seen, values_of
 from noise.identification.rig_text import rig_text
+from noise.identification.subjects import subjects_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from models.rig import Rig
     from noise.identification.known import Beforehand
     from noise.identification.law_choice import Choice
     from noise.identification.measured import Measurements
@@ -75,29 +71,20 @@ def identify_rig(
         )
     stated = {one.measured.condition.material for one in seen} - {None}
     material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
-    base = _at_all_supports(found_rig(beforehand, bushing_numbers(seen), material=material))
-    known_fits = {fit.interference for fit in base.fits}
-    usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]
-    choice = choose_law(base, usable, tell, seed=seed)
-    model, vector = choice.fit.model, choice.fit.vector
-    tell("correcting what single recordings said by simulations of them")
-    chosen = model.rig(vector)
-    seen = [
-        corrected(one, chosen, beforehand.known)
-        if one.levels.slips and one.measured.condition.interference in known_fits
-        else one
-        for one in seen
-    ]
-    numbers = bushing_numbers(seen, sticks=model.candidate.sticks)
-    by_law = {fit.interference: (fit.critical_torque, fit.kinetic_torque) for fit in chosen.fits}
-    rig = replace(
-        found_rig(beforehand, numbers, material=material, friction=chosen.friction, torques=by_law),
-        effects=chosen.effects,
-    )
+    subjects = subjects_of(seen, beforehand.known)
+    if not subjects:
+        raise ParameterError(
+            "no recording shows enough slips one like the other to tell a law; record longer, at "
+            "one steady speed"
+        )
+    choice = choose_law(beforehand, subjects, material, tell, seed=seed)
+    model = choice.fit.model
+    seen = read_again(seen, choice.fit)
+    rig = model.rig(choice.fit.vector, beforehand.rig, material)
     assumed, not_found = _assumed(beforehand, seen)
     return Identification(
         rig_toml=rig_text(rig, _HEAD),
-        numbers=(*numbers, *law_numbers(choice.fit)),
+        numbers=(*bushing_numbers(seen, choice.fit), *law_numbers(choice.fit, rig)),
         laws=choice.scores,
         law=model.candidate.name,
         seen=tuple(seen),
@@ -111,19 +98,6 @@ def identify_rig(
     )
 
 
-def _at_all_supports(rig: Rig) -> Rig:
-    """Give each fit the damping of every support, the mean where it was not recorded there."""
-    supports = sorted({support for fit in rig.fits for support in fit.damping})
-    damping = {
-        support: math.exp(
-            sum(math.log(fit.damping[support]) for fit in rig.fits if support in fit.damping)
-            / sum(support in fit.damping for fit in rig.fits)
-        )
-        for support in supports
-    }
-    return replace(rig, fits=tuple(replace(fit, damping=damping) for fit in rig.fits))
-
-
 def _notes(choice: Choice) -> tuple[str, ...]:
     notes = [
         "torques named critical_torque and kinetic_torque are those seen in the recordings; the "
@@ -135,26 +109,25 @@ def _notes(choice: Choice) -> tuple[str, ...]:
             "to; record more speeds"
         )
     best = choice.scores[0]
-    if choice.fit.model.candidate.law in _ELASTIC:
-        notes.append(
-            "this law's contact gives way while it sticks, which torque and angle hardly tell from "
-            "the elastomer: its stiffness was off by a tenth to two thirds and the damping by two "
-            "fifths on rigs of a second simulator; hold both against a test with the shaft clamped "
-            "to the bushing"
-        )
-    rivals = [s.law for s in choice.scores[1:] if overall(s) <= MARGIN * overall(best)]
+    chosen = next(s for s in choice.scores if s.law == choice.fit.model.candidate.name)
+    rivals = [s.law for s in choice.scores if s.missed <= _RIVALS * best.missed and s != chosen]
     if rivals:
-        notes.append(f"these recordings hardly tell {', '.join([best.law, *rivals])} apart")
-    if overall(best) > _FAR:
+        notes.append(f"these recordings hardly tell {', '.join([chosen.law, *rivals])} apart")
+    if overall(chosen) > _FAR or chosen.missed > _MISSED:
         notes.append(
-            f"the best law leaves {overall(best):.1f} floors: none of them describes these "
-            "recordings; diagnose says which effect is missing"
+            f"the best law leaves {overall(chosen):.1f} floors and misses "
+            f"{100.0 * chosen.missed:.0f} % of the oscillation within a cycle: none of them "
+            "describes these recordings, and the numbers are not to be trusted; diagnose says "
+            "which effect is missing"
         )
     return tuple(notes)
 
 
-_ELASTIC = ("contact_with_memory", "lugre", "rate_and_state")
-"""Laws whose contact is a spring before it slides."""
+_RIVALS = 1.2
+"""Laws that miss at most so many times what the best one does are named beside it."""
+
+_MISSED = 0.2
+"""Share of the oscillation from which no law is said to describe the recordings."""
 
 _FAR = 2.0
 """Held-out distance from which no law is said to describe the recordings [floors]."""

@@ -56,6 +56,8 @@ class TorqueSpectrum:
         Samples of the transform.
     kept : slice
         Samples that count.
+    mean : float
+        Of the torque [Nm].
     torque : ndarray, shape (n_kept,)
         Band-limited [Nm].
     shaft_speed : ndarray, shape (n_kept,)
@@ -68,26 +70,54 @@ class TorqueSpectrum:
     s: NDArray[np.complex128]
     n: int
     kept: slice
+    mean: float
     torque: NDArray[np.float64]
     shaft_speed: NDArray[np.float64]
     rate: float
 
     def contact(self, bushing: LumpedBushing) -> Contact:
         """Rebuild the contact for a guess of the bushing."""
-        s = self.s
-        surface = self.spectrum / (bushing.elastomer_stiffness + bushing.elastomer_damping * s)
-        if not bushing.clamp_is_fixed:
-            surface += self.spectrum / (
-                bushing.support_stiffness
-                + bushing.support_damping * s
-                + bushing.clamp_inertia * s * s
-            )
-        turning = surface * s
-        speed = irfft(turning, self.n)[self.kept]
-        acceleration = irfft(turning * s, self.n)[self.kept]
+        twist, clamp = self._angles(bushing)
+        turning = (twist + clamp) * self.s
+        acceleration = self._in_time(turning * self.s)
         return Contact(
-            self.torque + bushing.elastomer_inertia * acceleration, self.shaft_speed - speed
+            self.torque + bushing.elastomer_inertia * acceleration,
+            self.shaft_speed - self._in_time(turning),
         )
+
+    def states(self, bushing: LumpedBushing) -> NDArray[np.float64]:
+        """Rebuild the motion for a guess of the bushing.
+
+        Returns
+        -------
+        ndarray, shape (4, n_kept)
+            theta1 [rad], theta1' [rad/s], theta2, theta2', as of the torque's mean at rest.
+        """
+        twist, clamp = self._angles(bushing)
+        rest = self.mean / bushing.support_stiffness
+        surface = twist + clamp
+        return np.stack([
+            self._in_time(surface) + rest + self.mean / bushing.elastomer_stiffness,
+            self._in_time(surface * self.s),
+            self._in_time(clamp) + rest,
+            self._in_time(clamp * self.s),
+        ])  # fmt: skip
+
+    def _angles(
+        self, bushing: LumpedBushing
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Spectra of the elastomer's twist and of the clamp's angle."""
+        s = self.s
+        twist = self.spectrum / (bushing.elastomer_stiffness + bushing.elastomer_damping * s)
+        if bushing.clamp_is_fixed:
+            return twist, np.zeros_like(twist)
+        clamp = self.spectrum / (
+            bushing.support_stiffness + bushing.support_damping * s + bushing.clamp_inertia * s * s
+        )
+        return twist, clamp
+
+    def _in_time(self, spectrum: NDArray[np.complex128]) -> NDArray[np.float64]:
+        return np.asarray(irfft(spectrum, self.n)[self.kept])
 
 
 def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueSpectrum:
@@ -116,6 +146,6 @@ def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueS
     spectrum = rfft(closed) * (0.5 + 0.5 * np.cos(np.pi * x))
     kept = slice(round(LEAD * rate), n - round(TAIL * rate))
     return TorqueSpectrum(
-        spectrum, 2j * np.pi * frequency, closed.size, kept,
+        spectrum, 2j * np.pi * frequency, closed.size, kept, mean,
         np.asarray(irfft(spectrum, closed.size)[kept]) + mean, measured.shaft_speed[kept], rate,
     )  # fmt: skip

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from noise.identification.levels import Levels
     from noise.identification.measured import Measured
 
-__all__ = ["Identification", "LawScore", "Number", "Seen", "as_json"]
+__all__ = ["Identification", "LawScore", "Number", "Seen", "as_json", "values_of"]
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,8 @@ class LawScore:
         Distance of recordings that its fit has not seen, in floors [-].
     trained : float
         The same of those that it has seen [-].
+    missed : float
+        Share of the oscillation that it does not foretell over a cycle or two [-].
     parameters : mapping of str to float
         [units of the law's file]
     """
@@ -63,6 +65,7 @@ class LawScore:
     law: str
     held_out: float
     trained: float
+    missed: float
     parameters: Mapping[str, float]
 
 
@@ -83,6 +86,18 @@ class Seen:
     fit: BushingFit
     levels: Levels
     values: Mapping[str, float]
+
+
+def values_of(fit: BushingFit, levels: Levels) -> dict[str, float]:
+    """Name what one recording said [SI units]."""
+    return {
+        "elastomer_stiffness": fit.bushing.elastomer_stiffness,
+        "damping": fit.damping,
+        "elastomer_inertia": fit.bushing.elastomer_inertia,
+        "clamp_inertia": fit.bushing.clamp_inertia,
+        "critical_torque": levels.critical,
+        "kinetic_torque": levels.kinetic,
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +173,7 @@ def as_json(found: Identification) -> dict[str, Any]:
                 "law": one.law,
                 "held_out": _rounded(one.held_out),
                 "trained": _rounded(one.trained),
+                "missed": _rounded(one.missed),
                 "parameters": {name: _rounded(value) for name, value in one.parameters.items()},
             }
             for one in found.laws

@@ -16,12 +16,15 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-__all__ = ["LEVEL", "USUAL_SCATTER", "Pooled", "pool"]
+__all__ = ["LEVEL", "NORMAL", "USUAL_SCATTER", "Pooled", "pool"]
 
 Key = TypeVar("Key")
 
 LEVEL = 0.9
 """Of the intervals."""
+
+NORMAL = 1.645
+"""Of a normal distribution, so many standard deviations on either side hold that."""
 
 USUAL_SCATTER = 0.02
 """Relative standard deviation of a bushing's numbers from run to run, as `Scatter` has it."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from noise.base.atomic import atomic
 from noise.identification.law_candidates import CANDIDATES
-from noise.identification.law_choice import overall
 from noise.identification.outcome import as_json
 from noise.pages.engine.page import page_html, write_page
 from noise.pages.identification.figures import law_panel, level_panels, recording_panels
@@ -59,8 +58,8 @@ def _html(found: Identification) -> str:
         law_picture=(law_panel(found),),
         laws=[
             [
-                one.law.replace("_", " "), _WORDS[one.law], f"{one.held_out:.2f}",
-                f"{one.trained:.2f}", f"{overall(one):.2f}",
+                one.law.replace("_", " "), _WORDS[one.law], f"{100.0 * one.missed:.1f}",
+                f"{one.held_out:.2f}", f"{one.trained:.2f}",
             ]
             for one in found.laws
         ],
@@ -81,7 +80,7 @@ def _html(found: Identification) -> str:
 
 
 def _answer(found: Identification) -> list[str]:
-    left = next(score.held_out for score in found.laws if score.law == found.law)
+    chosen = next(score for score in found.laws if score.law == found.law)
     stiffness = [
         f"At {1e3 * (one.interference or 0.0):g} mm the elastomer has "
         f"{one.value:.4g} Nm/rad ({one.low:.4g} to {one.high:.4g})."
@@ -89,8 +88,9 @@ def _answer(found: Identification) -> list[str]:
         if one.name == "elastomer_stiffness"
     ]
     return [
-        f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); it leaves "
-        f"{left:.2f} floors on recordings that its fit has not seen.",
+        f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); within a cycle it "
+        f"misses {100.0 * chosen.missed:.1f} % of the oscillation, and over a run it leaves "
+        f"{chosen.held_out:.2f} floors on recordings that its fit has not seen.",
         *stiffness,
     ]
 
