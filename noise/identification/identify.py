@@ -151,8 +151,12 @@ def _sentence(one: Seen) -> str:
 
 def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     assumed, not_found = [], []
-    if "elastomer_damping_share" not in beforehand.stated:
-        assumed.append("damping is split evenly between elastomer and beams, as the thesis does")
+    flexible = any(not one.fit.bushing.clamp_is_fixed for one in seen)
+    if "elastomer_damping_share" not in beforehand.stated and not flexible:
+        assumed.append(
+            "damping is split evenly between elastomer and beams, as the thesis does: with the "
+            "clamp bolted down only the elastomer's can be told"
+        )
     assumed.append("supports are as stiff as the sidecars say")
     assumed.append("structure, plate and microphone are those of the shipped bench")
     if not beforehand.inertias_stated:
@@ -160,7 +164,6 @@ def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...],
             "no inertia is stated: a contact that gives way elastically counts as elastomer; state "
             "elastomer_inertia_kgm2 and clamp_inertia_kgm2 in --rig"
         )
-    flexible = any(not one.fit.bushing.clamp_is_fixed for one in seen)
     if not flexible:
         not_found.append("clamp inertia: all recordings were made with the clamp fixed")
     slipping = {one.measured.condition.interference for one in seen if one.levels.slips}

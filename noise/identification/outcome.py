@@ -14,7 +14,10 @@ if TYPE_CHECKING:
     from noise.identification.levels import Levels
     from noise.identification.measured import Measured
 
-__all__ = ["Identification", "LawScore", "Number", "Seen", "as_json", "values_of"]
+__all__ = ["NORMAL", "Identification", "LawScore", "Number", "Seen", "as_json", "values_of"]
+
+NORMAL = 1.645
+"""Of a normal distribution, so many standard deviations on either side hold 90 %."""
 
 
 @dataclass(frozen=True)
