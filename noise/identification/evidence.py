@@ -11,15 +11,16 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from noise.identification.outcome import Number
-from noise.identification.pooled import USUAL_SCATTER, pool
+import numpy as np
+
+from noise.identification.outcome import NORMAL, Number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from noise.identification.table_number import TableNumber
 
-__all__ = ["NORMAL", "UNITS", "Evidence", "elastomer_stiffness", "table_evidence", "with_evidence"]
+__all__ = ["UNITS", "Evidence", "elastomer_stiffness", "table_evidence", "with_evidence"]
 
 UNITS = {
     "elastomer_stiffness": "Nm/rad",
@@ -31,8 +32,11 @@ UNITS = {
 }
 """Of the numbers that there may be evidence of."""
 
-NORMAL = 1.645
-"""Of a normal distribution, so many standard deviations on either side hold 90 %."""
+_USUAL_SCATTER = 0.02
+"""Relative standard deviation of a bushing's numbers from run to run."""
+
+_DEGREES = 4.0
+"""So many differences the usual scatter counts as."""
 
 
 @dataclass(frozen=True)
@@ -140,11 +144,20 @@ def with_evidence(numbers: Sequence[Number], evidence: Iterable[Evidence]) -> li
 def _alone(
     key: tuple[str, float | None, float | None], said: list[tuple[float, float]]
 ) -> Number:  # fmt: skip
+    """Put together what was said of one number; runs scatter as usual, and as these do."""
+    from scipy.stats import t as student
+
     name, interference, support = key
-    # no more is known of how much runs differ than the usual, so a large error stays large
-    stated = math.sqrt(1.0 / sum(1.0 / error**2 for _, error in said))
-    p = pool({key: said}, usual=USUAL_SCATTER, shared=stated)[key]
-    return Number(name, UNITS[name], p.value, p.low, p.high, p.n, interference, support)
+    x, error = np.log([value for value, _ in said]), np.array([error for _, error in said])
+    weight = 1.0 / (_USUAL_SCATTER**2 + error**2)
+    centre = float(weight @ x / weight.sum())
+    degrees = _DEGREES + x.size - 1
+    squares = _DEGREES * _USUAL_SCATTER**2 + float(weight @ (x - centre) ** 2 / weight.mean())
+    scatter = math.sqrt(squares / degrees * float(weight @ weight)) / float(weight.sum())
+    stated = math.sqrt(1.0 / float(np.sum(error**-2.0)))
+    half = float(student.ppf(0.95, degrees)) * math.hypot(scatter, stated)
+    low, value, high = (math.exp(centre + side * half) for side in (-1.0, 0.0, 1.0))
+    return Number(name, UNITS[name], value, low, high, x.size, interference, support)
 
 
 def _joined(one: Number, other: Number) -> Number:

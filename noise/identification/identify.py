@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import math
 import time
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig_files.rig_text import rig_text
 from noise.identification.bushing_fit import fit_bushing
-from noise.identification.bushing_numbers import bushing_numbers
-from noise.identification.corrected import corrected, values_of
+from noise.identification.bushing_numbers import bushing_numbers, read_again
 from noise.identification.evidence import table_evidence, with_evidence
-from noise.identification.found_rig import found_rig
 from noise.identification.law_choice import MARGIN, choose_law, overall
 from noise.identification.law_numbers import law_numbers
+from noise.identification.law_priors import fitted_evidence
 from noise.identification.levels import torque_levels
-from noise.identification.outcome import Identification, Seen
+from noise.identification.outcome import Identification, Seen, values_of
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.structure_check import structure_notes
+from noise.identification.subjects import subjects_of
 from noise.identification.table_fit import held_against
 from noise.identification.table_rig import identify_from_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from models.rig import Rig
     from noise.identification.known import Beforehand
     from noise.identification.law_choice import Choice
     from noise.identification.measured import Measurements
@@ -90,43 +87,37 @@ def identify_rig(
     stated = {one.measured.condition.material for one in seen} - {None}
     material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
     static, known = measurements.static, beforehand.known
+    subjects = subjects_of(seen, known)
+    if not subjects:
+        raise ParameterError(
+            "no recording shows enough slips one like the other to tell a law; record longer, at "
+            "one steady speed"
+        )
     # what truly sticks tells its stiffness itself; what yields looks softer than it is
-    yielding = [test for test in static if not test.elastic]
-    first = with_evidence(bushing_numbers(seen), static_evidence(yielding, known))
-    base = _at_all_supports(found_rig(beforehand, first, material=material))
-    known_fits = {fit.interference for fit in base.fits}
-    usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]
-    choice = choose_law(base, usable, tell, seed=seed)
-    model, vector = choice.fit.model, choice.fit.vector
-    tell("correcting what single recordings said by simulations of them")
-    chosen = model.rig(vector)
-    seen = [
-        corrected(one, chosen, beforehand.known)
-        if one.levels.slips and one.measured.condition.interference in known_fits
-        else one
-        for one in seen
-    ]
-    sticks = model.candidate.sticks
-    evidence = (*table_evidence(table), *static_evidence(static, known, sticks=sticks))
-    numbers = with_evidence(bushing_numbers(seen, sticks=sticks), evidence)
-    by_law = {fit.interference: (fit.critical_torque, fit.kinetic_torque) for fit in chosen.fits}
-    rig = replace(
-        found_rig(beforehand, numbers, material=material, friction=chosen.friction, torques=by_law),
-        effects=chosen.effects,
-    )
+    evidence = {
+        sticks: (*table_evidence(table), *static_evidence(static, known, sticks=sticks))
+        for sticks in (True, False)
+    }
+    choice = choose_law(beforehand, subjects, material, tell, evidence=evidence, seed=seed)
+    model = choice.fit.model
+    seen = read_again(seen, choice.fit)
+    rig = model.rig(choice.fit.vector, beforehand.rig, material)
+    fitted = fitted_evidence(model)
+    rest = [one for one in model.evidence if one not in fitted]
+    numbers = with_evidence(bushing_numbers(seen, choice.fit), rest)
     assumed, not_found = _assumed(beforehand, seen)
     return Identification(
         rig_toml=rig_text(rig, _HEAD),
-        numbers=(*numbers, *law_numbers(choice.fit)),
+        numbers=(*numbers, *law_numbers(choice.fit, rig)),
         laws=choice.scores,
         law=model.candidate.name,
         seen=tuple(seen),
         assumed=assumed,
         not_found=not_found,
         notes=(
-            *_notes(choice, tested=bool(static)),
+            *_notes(choice),
             *static_notes(static),
-            *structure_notes(rig, usable),
+            *structure_notes(rig, [one.measured for one in subjects]),
         ),
         refused=measurements.refused,
         held_out=choice.held_out,
@@ -137,20 +128,7 @@ def identify_rig(
     )
 
 
-def _at_all_supports(rig: Rig) -> Rig:
-    """Give each fit the damping of every support, the mean where it was not recorded there."""
-    supports = sorted({support for fit in rig.fits for support in fit.damping})
-    damping = {
-        support: math.exp(
-            sum(math.log(fit.damping[support]) for fit in rig.fits if support in fit.damping)
-            / sum(support in fit.damping for fit in rig.fits)
-        )
-        for support in supports
-    }
-    return replace(rig, fits=tuple(replace(fit, damping=damping) for fit in rig.fits))
-
-
-def _notes(choice: Choice, *, tested: bool) -> tuple[str, ...]:
+def _notes(choice: Choice) -> tuple[str, ...]:
     notes = [
         "torques named critical_torque and kinetic_torque are those seen in the recordings; the "
         "rig file has those that the law means, law_critical_torque and law_kinetic_torque"
@@ -161,26 +139,25 @@ def _notes(choice: Choice, *, tested: bool) -> tuple[str, ...]:
             "to; record more speeds"
         )
     best = choice.scores[0]
-    if choice.fit.model.candidate.law in _ELASTIC and not tested:
-        notes.append(
-            "this law's contact gives way while it sticks, which torque and angle hardly tell from "
-            "the elastomer: its stiffness was off by a tenth to two thirds and the damping by two "
-            "fifths on rigs of a second simulator; a static test tells them apart: turn the shaft "
-            "to and fro, slowly, to three quarters of the torque at which it slips"
-        )
-    rivals = [s.law for s in choice.scores[1:] if overall(s) <= MARGIN * overall(best)]
+    chosen = next(s for s in choice.scores if s.law == choice.fit.model.candidate.name)
+    rivals = [s.law for s in choice.scores if s.missed <= _RIVALS * best.missed and s != chosen]
     if rivals:
-        notes.append(f"these recordings hardly tell {', '.join([best.law, *rivals])} apart")
-    if overall(best) > _FAR:
+        notes.append(f"these recordings hardly tell {', '.join([chosen.law, *rivals])} apart")
+    if overall(chosen) > _FAR or chosen.missed > _MISSED:
         notes.append(
-            f"the best law leaves {overall(best):.1f} floors: none of them describes these "
-            "recordings; diagnose says which effect is missing"
+            f"the best law leaves {overall(chosen):.1f} floors and misses "
+            f"{100.0 * chosen.missed:.0f} % of the oscillation within a cycle: none of them "
+            "describes these recordings, and the numbers are not to be trusted; diagnose says "
+            "which effect is missing"
         )
     return tuple(notes)
 
 
-_ELASTIC = ("contact_with_memory", "lugre", "rate_and_state")
-"""Laws whose contact is a spring before it slides."""
+_RIVALS = 1.2
+"""Laws that miss at most so many times what the best one does are named beside it."""
+
+_MISSED = 0.2
+"""Share of the oscillation from which no law is said to describe the recordings."""
 
 _FAR = 2.0
 """Held-out distance from which no law is said to describe the recordings [floors]."""
@@ -204,8 +181,12 @@ def _sentence(one: Seen) -> str:
 
 def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     assumed, not_found = [], []
-    if "elastomer_damping_share" not in beforehand.stated:
-        assumed.append("damping is split evenly between elastomer and beams, as the thesis does")
+    flexible = any(not one.fit.bushing.clamp_is_fixed for one in seen)
+    if "elastomer_damping_share" not in beforehand.stated and not flexible:
+        assumed.append(
+            "damping is split evenly between elastomer and beams, as the thesis does: with the "
+            "clamp bolted down only the elastomer's can be told"
+        )
     assumed.append("supports are as stiff as the sidecars say")
     assumed.append("structure, plate and microphone are those of the shipped bench")
     if not beforehand.inertias_stated:
@@ -213,7 +194,6 @@ def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...],
             "no inertia is stated: a contact that gives way elastically counts as elastomer; state "
             "elastomer_inertia_kgm2 and clamp_inertia_kgm2 in --rig"
         )
-    flexible = any(not one.fit.bushing.clamp_is_fixed for one in seen)
     if not flexible:
         not_found.append("clamp inertia: all recordings were made with the clamp fixed")
     slipping = {one.measured.condition.interference for one in seen if one.levels.slips}

@@ -27,6 +27,9 @@ class Candidate:
         Parameters that are searched: lowest, highest and some starts [the law's units].
     fixed : mapping of str to float
         Others that differ from the law's own [the law's units].
+    drops : tuple of float
+        What the critical torque exceeds the kinetic one by where a search begins, over what the
+        levels differ by [-].
     """
 
     name: str
@@ -35,6 +38,7 @@ class Candidate:
     effect: str | None = None
     free: Mapping[str, tuple[float, float, tuple[float, ...]]] = field(default_factory=dict)
     fixed: Mapping[str, float] = field(default_factory=dict)
+    drops: tuple[float, ...] = (1.0,)
 
     @property
     def sticks(self) -> bool:
@@ -47,43 +51,48 @@ class Candidate:
         return len(self.free)
 
 
-_STIFFNESS = "contact_stiffness_per_torque"
+_STIFFNESS = {"contact_stiffness_per_torque": (400.0, 9e3, (1500.0, 3500.0))}
+_DAMPING = {"contact_damping_per_torque": 6e-5}
+"""Next to the elastomer's damping it hardly counts."""
 
 CANDIDATES = (
     Candidate("constant", "constant torques", "coulomb"),
     Candidate(
         "ageing", "static torque grows while it sticks", "coulomb", "static_ageing",
-        {"ageing_time": (5e-5, 0.1, (1e-4, 7e-4, 2.5e-3, 8e-3))},
+        {"ageing_time": (5e-5, 0.1, (4e-4, 3e-3))},
+        drops=(1.0, 1.5),
     ),
     Candidate(
         "stribeck", "torque falls with sliding speed", "coulomb", "velocity_weakening",
-        {"share": (0.005, 0.6, (0.02, 0.1, 0.2)), "speed": (0.3, 40.0, (1.5, 5.0, 15.0))},
+        {"share": (0.005, 0.6, (0.05, 0.25)), "speed": (0.3, 40.0, (1.5, 5.0))},
+        drops=(0.05, 0.7),
     ),
     Candidate(
-        "bristle", "elastic contact, torque falls with speed (LuGre)", "lugre", None,
-        {_STIFFNESS: (500.0, 9e3, (1200.0, 2500.0)), "stribeck_speed": (0.3, 30.0, (1.5, 5.0))},
-        {"contact_damping_per_torque": 5e-5},
+        "bristle", "elastic contact, torque falls with speed", "stribeck_lorentzian", None,
+        {**_STIFFNESS, "first_speed": (0.2, 30.0, (1.2, 4.0))},
+        _DAMPING, (1.0, 2.0),
     ),
     Candidate(
         "rate_and_state", "elastic contact, strength by age and slip", "rate_and_state", None,
         {
-            _STIFFNESS: (800.0, 9e3, (3000.0,)),
-            "ageing_time": (2e-5, 0.02, (1e-4, 6e-4)),
-            "renewal_angle": (3e-5, 5e-3, (1.5e-4, 5e-4)),
+            **_STIFFNESS,
+            "ageing_time": (2e-5, 0.02, (1e-4, 1e-3)),
+            "renewal_angle": (6e-5, 5e-3, (2e-4,)),
         },
-        {"contact_damping_per_torque": 5e-5},
+        _DAMPING, (1.0, 2.0),
     ),
     Candidate(
         "memory", "elastic contact with memory, torque falls with speed", "contact_with_memory",
         None,
         {
-            _STIFFNESS: (500.0, 4.9e3, (1600.0,)),
+            "contact_stiffness_per_torque": (400.0, 4.9e3, (1200.0, 2400.0)),
             "ageing_time": (2e-5, 0.02, (3e-4, 1.5e-3)),
-            "renewal_angle": (3e-5, 5e-3, (2e-4,)),
-            "weakening_share": (0.005, 1.0, (0.05, 0.15)),
-            "weakening_speed": (1.0, 60.0, (6.0,)),
+            "renewal_angle": (6e-5, 5e-3, (2e-4,)),
+            "weakening_share": (0.005, 1.0, (0.08,)),
+            "weakening_speed": (1.0, 60.0, (8.0,)),
+            "weakening_exponent": (1.0, 2.5, (1.4,)),
         },
-        {"contact_damping_per_torque": 6e-5},
+        _DAMPING, (1.0, 2.0),
     ),
 )  # fmt: skip
 """By rising number of parameters."""

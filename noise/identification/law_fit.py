@@ -1,20 +1,20 @@
-"""A law's parameters, and the bushing's with them, by statistics that have no phase.
+"""A law fitted to what recordings do next: least squares over excerpts of a cycle or two.
 
-Stick-slip is chaotic: two runs of one rig agree in no waveform. So what is fitted is what repeats
-agree in, levels in bands and the distribution of torque and slope, by damped least squares
-(Levenberg 1944, Marquardt 1963) with slopes from finite steps that are wide against the roughness
-of such statistics, begun at several places.
+Begun where the recording shows what it does, a model's torque depends smoothly on its numbers, so
+the slopes come from small steps and the search is that of Levenberg (1944) and Marquardt (1963). It
+begins at many places with few excerpts, each recording by itself, and ends with all of them and one
+rig about which the recordings scatter.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import ParameterError
-from noise.identification.law_model import simulated_torque, torque_statistics
+from noise.identification.law_misfit import Misfit
+from noise.identification.law_starts import starts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,26 +22,49 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from noise.identification.law_model import LawModel
-    from noise.identification.measured import Measured
 
-__all__ = ["LawFit", "fit_law"]
+__all__ = ["LawFit", "Sketch", "fit_law", "fit_some", "sketch_law"]
 
-_STEP = 0.03
-"""Of the logarithms, for slopes."""
+_FEW = 3
+"""Excerpts of each recording while places to begin at are compared."""
 
-_BEND = 3.0
-_HOPELESS = 30.0
-_GROUPS = 30.0
-"""Statistics hang together: so many count as one observation."""
+_TRIED, _KEPT = 3, 2
+"""Places from which is searched roughly, and then to the end."""
 
-_ITERATIONS = {True: 8, False: 4}
-"""By whether a law truly sticks, which is solved exactly and fast."""
+_LOOSE = 4.0
+"""Meanwhile recordings may differ by so many times what they do."""
 
-_ELASTIC_DAMPING = 0.8
-"""Width for a damping that was read off an elastic contact as if it stuck."""
+_TIGHTENED = (2.0, 1.0)
+"""And so many times in the end."""
 
-_WIDTH = {"stiffness": 0.15, "kinetic": 0.08, "drop": 0.5, "damping": 0.3, "law": 1.0}
-"""Relative standard deviation of the start [-]."""
+_ITERATIONS = {"sketch": 6, "hopeless": 3, "fit": 20}
+
+_ENOUGH = 4e-3
+"""Relative gain of an iteration below which it is the last."""
+
+_TURNS = 4
+"""Shorter steps tried in an iteration."""
+
+_LONGEST_STEP = 0.5
+"""Of a logarithm in one iteration."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sketch:
+    """A law roughly fitted to few excerpts.
+
+    Parameters
+    ----------
+    model : LawModel
+    vectors : tuple of ndarray, shape (n,)
+        Logarithms, best first.
+    away : float
+        Mean size of the deviations of the best [-].
+    """
+
+    model: LawModel
+    vectors: tuple[NDArray[np.float64], ...]
+    away: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,100 +76,130 @@ class LawFit:
     model : LawModel
     vector : ndarray, shape (n,)
         Logarithms.
-    cost : float
-        Root mean square deviation, in standard deviations of repeats [-].
-    spread : ndarray, shape (n,)
-        Standard error of the vector by the curvature [-].
+    missed : ndarray, shape (n_recordings,)
+        Share of each recording's oscillation that is not foretold [-].
+    covariance : ndarray, shape (n, n)
+        Of the vector by the curvature [-].
     """
 
     model: LawModel
     vector: NDArray[np.float64]
-    cost: float
-    spread: NDArray[np.float64]
+    missed: NDArray[np.float64]
+    covariance: NDArray[np.float64]
 
 
-def fit_law(
-    model: LawModel,
-    recordings: Sequence[Measured],
-    targets: Sequence[NDArray[np.float64]],
-    *,
-    iterations: int | None = None,
-    bushing: NDArray[np.float64] | None = None,
-    begin: NDArray[np.float64] | None = None,
-) -> LawFit:
-    """Fit a law to recordings.
+def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
+    """Fit a law roughly, from the best of its starts.
 
     Parameters
     ----------
     model : LawModel
-    recordings : sequence of Measured
-    targets : sequence of ndarray, shape (n_statistics,)
-        Their statistics, as `torque_statistics` gives them [-].
-    iterations : int, optional
-    bushing : ndarray, shape (n_bushing,), optional
-        Numbers of the bushing that a simpler law had, logarithms [-].
-    begin : ndarray, shape (n,), optional
-        Where to begin, logarithms [-]; by default at the best of the law's starts.
+    earlier : sequence of Sketch
+        Of other laws to the same recordings, whose numbers are tried as well.
+
+    Returns
+    -------
+    Sketch
+    """
+    few = replace(model, subjects=tuple(one.with_some(_FEW) for one in model.subjects))
+    begun = []
+    for law, choices in starts(few):
+        misfit = Misfit(few, few.vector(choices[0], law), loose=_LOOSE)
+        # each recording takes what suits it best
+        costs = [misfit.by_recording(misfit.away(few.vector(local, law))) for local in choices]
+        best = np.argmin(costs, axis=0)
+        local = np.stack([choices[c][r] for r, c in enumerate(best)])
+        begun.append((float(np.sum(np.min(costs, axis=0))), few.vector(local, law)))
+    for other in earlier:
+        theirs = other.vectors[0]
+        start = few.vector(other.model.local(theirs), few.law_like(other.model, theirs))
+        misfit = Misfit(few, start, loose=_LOOSE)
+        begun.append((float(np.sum(misfit.by_recording(misfit.away(start)))), start))
+    begun.sort(key=lambda start: start[0])
+    tried = []
+    for _, start in begun[:_TRIED]:
+        misfit = Misfit(few, start, loose=_LOOSE)
+        vector, away, _ = _searched(misfit, start, _ITERATIONS["sketch"])
+        tried.append((float(np.mean(misfit.by_recording(away))), vector))
+    tried.sort(key=lambda one: one[0])
+    return Sketch(model, tuple(vector for _, vector in tried[:_KEPT]), tried[0][0])
+
+
+def fit_law(sketch: Sketch, *, hopeless: bool = False) -> LawFit:
+    """Fit a law to all excerpts.
+
+    Parameters
+    ----------
+    sketch : Sketch
+        Where to begin.
+    hopeless : bool
+        Then it is not searched to the end.
 
     Returns
     -------
     LawFit
     """
-    low, high = model.limits()
-    prior = model.starts()[0]
-    n, s = len(model.base.fits), len(model.supports)
-    if iterations is None:
-        iterations = _ITERATIONS[model.candidate.sticks]
-    of_damping = _WIDTH["damping"] if model.candidate.sticks else _ELASTIC_DAMPING
-    width = np.array([
-        *[_WIDTH["stiffness"]] * n, *[_WIDTH["kinetic"]] * n, *[_WIDTH["drop"]] * n,
-        *[of_damping] * s, *[_WIDTH["law"]] * model.candidate.n_parameters,
-    ])  # fmt: skip
-    prior[model.n_bushing :] = np.mean(
-        [start[model.n_bushing :] for start in model.starts()], axis=0
-    )
+    found = []
+    for start in sketch.vectors[: 1 if hopeless else _KEPT]:
+        vector = start
+        for loose in _TIGHTENED[-1:] if hopeless else _TIGHTENED:
+            misfit = Misfit(sketch.model, vector, loose=loose)
+            iterations = _ITERATIONS["hopeless" if hopeless else "fit"]
+            vector, away, normal = _searched(misfit, vector, iterations)
+        found.append((misfit.cost(vector, away, 1.0), vector, misfit.missed(away), normal))
+    _, vector, missed, normal = min(found, key=lambda one: one[0])
+    return LawFit(sketch.model, vector, missed, _inverse(normal))
 
-    def residuals(vector: NDArray[np.float64]) -> NDArray[np.float64]:
-        rig = model.rig(np.clip(vector, low, high))
-        parts = []
-        for like, target in zip(recordings, targets, strict=True):
-            try:
-                torque, _ = simulated_torque(rig, like)
-                away = torque_statistics(torque, like.rate) - target
-            except ParameterError:
-                away = np.full(target.size, _HOPELESS)
-            size = np.abs(away)
-            bent = np.sign(away) * np.sqrt(_BEND * np.maximum(2.0 * size - _BEND, 0.0))
-            parts.append(np.where(size <= _BEND, away, bent) / np.sqrt(_GROUPS))
-        return np.concatenate([*parts, (vector - prior) / width])
 
-    starts = [begin] if begin is not None else model.starts(bushing)
-    tried = [residuals(start) for start in starts]
-    best = int(np.argmin([r @ r for r in tried]))
-    x, r = starts[best].copy(), tried[best]
-    damping, jacobian = 0.1, np.eye(r.size, x.size)
+def fit_some(model: LawModel, vector: NDArray[np.float64], free: NDArray[np.bool_]) -> LawFit:
+    """Fit some numbers of a law, the others being known.
+
+    Parameters
+    ----------
+    model : LawModel
+    vector : ndarray, shape (n,)
+        Where to begin, logarithms [-].
+    free : ndarray of bool, shape (n,)
+        Which numbers are searched.
+
+    Returns
+    -------
+    LawFit
+    """
+    misfit = Misfit(model, vector)
+    vector, away, normal = _searched(misfit, vector, _ITERATIONS["fit"], free)
+    return LawFit(model, vector, misfit.missed(away), _inverse(normal))
+
+
+def _searched(
+    misfit: Misfit, x: NDArray[np.float64], iterations: int, free: NDArray[np.bool_] | None = None
+) -> tuple[NDArray[np.float64], list[NDArray[np.float64]], NDArray[np.float64]]:
+    """Return the vector found, deviations there, and the curvature of the misfit."""
+    free = np.ones(x.size, dtype=bool) if free is None else free
+    away = misfit.away(x)
+    damping = 1e-3
+    normal = np.eye(x.size)
     for _ in range(iterations):
-        columns = []
-        for i in range(x.size):
-            moved = x.copy()
-            step = _STEP if i < model.n_bushing else 3.0 * _STEP
-            step = -step if x[i] + step > high[i] else step
-            moved[i] += step
-            columns.append((residuals(moved) - r) / step)
-        jacobian = np.stack(columns, axis=1)
-        normal, slope = jacobian.T @ jacobian, jacobian.T @ r
-        before = float(r @ r)
-        for _ in range(3):
-            change = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), -slope)
-            candidate = np.clip(x + np.clip(change, -0.7, 0.7), low, high)
-            tried_r = residuals(candidate)
-            if tried_r @ tried_r < before:
-                x, r, damping = candidate, tried_r, damping / 5.0
+        usual = misfit.usual(away)
+        normal, slope = misfit.curvature(x, away, usual, free)
+        before = misfit.cost(x, away, usual)
+        inner = normal[np.ix_(free, free)]
+        found = False
+        for _ in range(_TURNS):
+            change = np.zeros(x.size)
+            change[free] = np.linalg.solve(inner + damping * np.diag(np.diag(inner)), -slope[free])
+            largest = max(1.0, float(np.abs(change).max()) / _LONGEST_STEP)
+            tried = misfit.within(x + change / largest)
+            new = misfit.away(tried)
+            after = misfit.cost(tried, new, usual)
+            if after < before:
+                x, away, damping, found = tried, new, max(damping / 10.0, 1e-9), True
                 break
-            damping *= 6.0
-        if float(r @ r) > 0.98 * before:
+            damping *= 8.0
+        if not found or after > (1.0 - _ENOUGH) * before:
             break
-    covariance = np.linalg.pinv(jacobian.T @ jacobian)
-    data = r[: -x.size]
-    cost = float(np.sqrt(data @ data * _GROUPS / data.size))
-    return LawFit(model, x, cost, np.sqrt(np.maximum(np.diag(covariance), 0.0)))
+    return x, away, normal
+
+
+def _inverse(normal: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.linalg.pinv(normal), dtype=np.float64)

@@ -1,219 +1,253 @@
-"""A rig as a vector of logarithms: what a law's fit changes, and how its torque is simulated."""
+"""What a fit of a law searches: numbers of each recording, their means over a rig, the law's own.
+
+All are logarithms. A rig is never quite the same twice: each recording has a bushing and torques of
+its own, which scatter about those of the rig, and these are what is to be found.
+"""
 
 from __future__ import annotations
 
-import itertools
+import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.rig import LawSpec
-from noise.diagnosis.gap.signature import channel_signature
-from noise.diagnosis.simulated.repeats import Scatter, perturb_run
+from models.errors import ParameterError
+from models.rig import Fit, LawSpec
+from noise.identification.prediction import foretold, friction_of
+from sim.bushing import LumpedBushing
 from sim.friction import friction_law
-from sim.motion import simulate_motion
 from sim.parameters import resolve
-from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from models.rig import Rig
+    from noise.identification.bushing_fit import Known
+    from noise.identification.evidence import Evidence
     from noise.identification.law_candidates import Candidate
-    from noise.identification.measured import Measured
+    from noise.identification.subjects import Subject
 
-__all__ = ["LawModel", "simulated_torque", "torque_statistics"]
+__all__ = ["LOCAL", "LawModel"]
 
-_SETTLING = 0.1
-"""Simulated before what is looked at [s]."""
+LOCAL = (
+    "elastomer_stiffness", "kinetic_torque", "drop", "damping", "elastomer_inertia",
+    "clamp_inertia", "elastomer_damping_share",
+)  # fmt: skip
+"""Numbers that each recording has of its own; the drop is from critical to kinetic torque."""
 
-_SECONDS = 0.35
-"""Looked at, at most [s]."""
+_LEAST_DROP = 0.004
+"""Over the kinetic torque; equal torques make a weakening contact chatter."""
 
-_TOLERANCE = 1e-6
-"""Of the solver: neighbouring motions part, but their statistics do not."""
-
-_STIFFER = 0.22
-"""Logarithm by which an elastic contact may hide stiffness of the elastomer."""
-
-_QUANTILES = (0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98)
+_LARGEST_SHARE = 0.97
 
 
 @dataclass(frozen=True, eq=False)
 class LawModel:
-    """A rig with a law, as a function of a vector.
+    """A law and recordings.
 
-    The vector holds logarithms: stiffness of each fit, kinetic torque of each fit, what the
-    critical torque exceeds it by, damping at each support, then the law's own parameters.
+    The vector holds `LOCAL` of each recording, then the means of all groups, then the law's own
+    parameters.
 
     Parameters
     ----------
-    base : Rig
-        From which the vector departs; its fits have all supports.
     candidate : Candidate
-    supports : tuple of float
-        [Nm/rad]
+    subjects : tuple of Subject
+    known : Known
+    evidence : tuple of Evidence
+        Of the rig's numbers from elsewhere than stick-slip.
     """
 
-    base: Rig
     candidate: Candidate
-    supports: tuple[float, ...]
+    subjects: tuple[Subject, ...]
+    known: Known
+    evidence: tuple[Evidence, ...] = ()
+
+    @cached_property
+    def groups(self) -> tuple[tuple[int, object], ...]:
+        """Place in `LOCAL` and key of each group of recordings that share a mean."""
+        return tuple(dict.fromkeys(
+            (i, key) for one in self.subjects for i, key in enumerate(_keys(one))
+        ))  # fmt: skip
+
+    @cached_property
+    def group_of(self) -> NDArray[np.int64]:
+        """Group of each number of each recording, shape (n_recordings, 7)."""
+        return np.array([
+            [self.groups.index((i, key)) for i, key in enumerate(_keys(one))]
+            for one in self.subjects
+        ])  # fmt: skip
 
     @property
-    def n_bushing(self) -> int:
-        """Length of the vector's part that any law has."""
-        return 3 * len(self.base.fits) + len(self.supports)
+    def n_local(self) -> int:
+        """Numbers of the recordings' own."""
+        return len(LOCAL) * len(self.subjects)
 
-    def starts(self, bushing: NDArray[np.float64] | None = None) -> list[NDArray[np.float64]]:
-        """Return vectors to begin at, each of the law's starts.
+    @property
+    def n_common(self) -> int:
+        """Numbers that any law has."""
+        return self.n_local + len(self.groups)
+
+    def local(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Numbers of the recordings' own, shape (n_recordings, 7), of a vector of shape (n,)."""
+        return x[: self.n_local].reshape(-1, len(LOCAL))
+
+    def means(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Means of the groups, shape (n_groups,), of a vector of shape (n,)."""
+        return x[self.n_local : self.n_common]
+
+    def vector(self, local: NDArray[np.float64], law: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Put a vector together, each group with the median of its recordings.
 
         Parameters
         ----------
-        bushing : ndarray, shape (n_bushing,), optional
-            The part that any law has, logarithms [-]; by default the base.
+        local : ndarray, shape (n_recordings, 7)
+            Logarithms of `LOCAL` [-].
+        law : ndarray, shape (n_law,)
+            Of the law's own parameters [-].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [-]
         """
-        fits = self.base.fits
-        if bushing is None:
-            drops = [
-                max(fit.critical_torque - fit.kinetic_torque, 0.02 * fit.kinetic_torque)
-                for fit in fits
-            ]
-            bushing = np.log([
-                *(fit.elastomer_stiffness for fit in fits), *(fit.kinetic_torque for fit in fits),
-                *drops, *(fits[0].damping[support] for support in self.supports),
-            ])  # fmt: skip
-        begun = [bushing]
-        if not self.candidate.sticks:  # what gives way in the contact looked like elastomer
-            stiffer = bushing.copy()
-            stiffer[: len(fits)] += _STIFFER
-            begun = [bushing, stiffer]
-        options = [options for _, _, options in self.candidate.free.values()]
-        return [
-            np.concatenate([self._begun(one, chosen), np.log(chosen)]) if chosen else one.copy()
-            for one in begun
-            for chosen in itertools.product(*options)
-        ]
+        flat, group = local.ravel(), self.group_of.ravel()
+        means = [np.median(flat[group == g]) for g in range(len(self.groups))]
+        return np.concatenate([flat, means, law])
 
-    def _begun(
-        self, bushing: NDArray[np.float64], chosen: tuple[float, ...]
-    ) -> NDArray[np.float64]:
-        """Let a torque that fades with speed take the place of the step between two torques."""
-        if "share" not in self.candidate.free:
-            return bushing
-        n, share = len(self.base.fits), chosen[list(self.candidate.free).index("share")]
-        kinetic, drop = np.exp(bushing[n : 2 * n]), np.exp(bushing[2 * n : 3 * n])
-        at_rest = kinetic / (1.0 - share)
-        begun = bushing.copy()
-        begun[n : 2 * n] = np.log(at_rest)
-        begun[2 * n : 3 * n] = np.log(np.maximum(drop - (at_rest - kinetic), 0.1 * drop))
-        return begun
+    def law_like(self, other: LawModel, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Take the law's own parameters from another law's vector, as far as both have them.
 
-    def limits(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the lowest and highest vectors, shape (n_bushing + n_law,)."""
-        middle = self.starts()[0][: self.n_bushing]
-        low = [low for low, _, _ in self.candidate.free.values()]
-        high = [high for _, high, _ in self.candidate.free.values()]
-        n, s = len(self.base.fits), len(self.supports)
-        away = np.log([*[1.8] * n, *[1.8] * n, *[20.0] * n, *[3.0] * s])
-        return (
-            np.concatenate([middle - away, np.log(low)]),
-            np.concatenate([middle + away, np.log(high)]),
-        )
+        Parameters
+        ----------
+        other : LawModel
+        x : ndarray, shape (n,)
+            Its vector [-].
 
-    def _own(self, vector: NDArray[np.float64]) -> dict[str, float]:
-        own = np.exp(vector[self.n_bushing :]).tolist()
-        return {**self.candidate.fixed, **dict(zip(self.candidate.free, own, strict=True))}
+        Returns
+        -------
+        ndarray, shape (n_law,)
+            Logarithms [-].
+        """
+        theirs = dict(zip(other.candidate.free, x[other.n_common :].tolist(), strict=True))
+        return np.array([
+            min(max(theirs.get(name, math.log(some[0])), math.log(low)), math.log(high))
+            for name, (low, high, some) in self.candidate.free.items()
+        ])  # fmt: skip
 
-    def friction(self, vector: NDArray[np.float64]) -> LawSpec:
-        """Return the law at a vector, shape (n,), with all its parameters stated."""
-        law = friction_law(self.candidate.law)
-        given = {} if self.candidate.effect else self._own(vector)
-        return LawSpec(law.name, dict(resolve(law.name, law.parameters, given)))
+    def limits(self, start: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the lowest and highest vectors, shape (n,)."""
+        low = np.log([low for low, _, _ in self.candidate.free.values()])
+        high = np.log([high for _, high, _ in self.candidate.free.values()])
+        common = start[: self.n_common]
+        away = np.log([2.2, 1.6, 40.0, 5.0, 2.5, 2.5, 8.0])
+        width = np.concatenate([
+            np.tile(away, len(self.subjects)), away[[i for i, _ in self.groups]]
+        ])  # fmt: skip
+        return np.concatenate([common - width, low]), np.concatenate([common + width, high])
 
-    def effects(self, vector: NDArray[np.float64]) -> tuple[LawSpec, ...]:
-        """Return the effect that makes the law at a vector, shape (n,), where one does."""
+    def specs(self, x: NDArray[np.float64]) -> tuple[LawSpec, tuple[LawSpec, ...]]:
+        """Return law and effects at a vector, shape (n,)."""
+        own = np.exp(x[self.n_common :]).tolist()
+        values = {**self.candidate.fixed, **dict(zip(self.candidate.free, own, strict=True))}
         if self.candidate.effect is None:
-            return ()
-        return (LawSpec(self.candidate.effect, self._own(vector)),)
+            return LawSpec(self.candidate.law, values), ()
+        return LawSpec(self.candidate.law), (LawSpec(self.candidate.effect, values),)
 
-    def rig(self, vector: NDArray[np.float64]) -> Rig:
-        """Return the rig at a vector, shape (n,)."""
-        n = len(self.base.fits)
-        values = np.exp(vector).tolist()
-        damping = dict(zip(self.supports, values[3 * n : self.n_bushing], strict=True))
-        fits = tuple(
-            replace(
-                fit, elastomer_stiffness=values[i], kinetic_torque=values[n + i],
-                critical_torque=values[n + i] + values[2 * n + i], damping=damping,
-            )
-            for i, fit in enumerate(self.base.fits)
-        )  # fmt: skip
-        return replace(
-            self.base, fits=fits, friction=self.friction(vector), effects=self.effects(vector)
+    def foretell(self, x: NDArray[np.float64]) -> list[NDArray[np.float64] | None]:
+        """Foretell the excerpts of each recording at a vector, shape (n,).
+
+        Returns
+        -------
+        list of ndarray, shape (n_excerpts, length)
+            Torque of the cell [Nm]; None where it cannot be solved.
+        """
+        friction = friction_of(*self.specs(x))
+        found: list[NDArray[np.float64] | None] = []
+        for one, own in zip(self.subjects, np.exp(self.local(x)).tolist(), strict=True):
+            _, kinetic, drop, *_ = own
+            critical = kinetic + max(drop, _LEAST_DROP * kinetic)
+            try:
+                found.append(
+                    foretold(one.excerpts, self.bushing(own, one), friction, critical, kinetic)
+                )
+            except ParameterError:
+                found.append(None)
+        return found
+
+    def bushing(self, own: Sequence[float], one: Subject) -> LumpedBushing:
+        """Bushing of a recording by its numbers, as `LOCAL` has them [SI units]."""
+        stiffness, _, _, damping, inertia, clamp, share = own
+        share = min(share, _LARGEST_SHARE)
+        return LumpedBushing(
+            inertia, clamp, stiffness, one.support, share * damping, (1.0 - share) * damping
         )
 
+    def extended(
+        self, part: LawModel, x: NDArray[np.float64], places: Sequence[int]
+    ) -> NDArray[np.float64]:
+        """Take over the vector of a model of some recordings, at these places among all.
 
-def simulated_torque(
-    rig: Rig, like: Measured, *, seed: int | None = None
-) -> tuple[NDArray[np.float64], float]:
-    """Simulate the torque at the condition of a recording.
+        The others begin at the means, or where they are by themselves if there is none.
 
-    Parameters
-    ----------
-    rig : Rig
-    like : Measured
-    seed : int, optional
-        Of what one run of a rig differs from it by; without one it does not.
+        Parameters
+        ----------
+        part : LawModel
+        x : ndarray, shape (n,)
+            Its vector [-].
+        places : sequence of int
 
-    Returns
-    -------
-    torque : ndarray, shape (n,)
-        [Nm]
-    speed : float
-        Of the shaft [rad/s].
+        Returns
+        -------
+        ndarray, shape (n,)
+            Of this model [-].
+        """
+        known = dict(zip(part.groups, part.means(x).tolist(), strict=True))
+        begun = self.vector(np.stack([one.start for one in self.subjects]), x[part.n_common :])
+        means = np.array([
+            known.get(group, own) for group, own in zip(self.groups, self.means(begun), strict=True)
+        ])  # fmt: skip
+        local = means[self.group_of]
+        local[list(places)] = part.local(x)
+        return np.concatenate([local.ravel(), means, x[part.n_common :]])
 
-    Raises
-    ------
-    ParameterError
-        It cannot be simulated.
-    """
-    once, at = rig, like.condition
-    if seed is not None:
-        once, at = perturb_run(rig, at, Scatter(), np.random.default_rng([seed, 0]))
-    seconds = min(like.torque.size / like.rate, _SECONDS)
-    motion = simulate_motion(
-        once, ConstantSpeed(at.speed), interference=at.interference,
-        support_stiffness=at.support_stiffness, seconds=_SETTLING + seconds, rate=like.rate,
-        tolerance=_TOLERANCE,
-    )  # fmt: skip
-    return motion.torque[round(_SETTLING * like.rate) :], at.speed
+    def rig(self, x: NDArray[np.float64], base: Rig, material: str) -> Rig:
+        """Return the rig at a vector, shape (n,); damping where nothing slid is the support's."""
+        values = dict(zip(self.groups, np.exp(self.means(x)).tolist(), strict=True))
+        cells = {
+            (one.interference, one.support): values[3, (one.interference, one.support)]
+            for one in self.subjects
+        }
+        supports = sorted({support for _, support in cells})
+
+        def damping(fit: float, support: float) -> float:
+            alike = [value for (_, at), value in cells.items() if at == support]
+            return float(cells.get((fit, support), np.exp(np.mean(np.log(alike)))))
+
+        fits = []
+        for fit in sorted({one.interference for one in self.subjects}):
+            stiffness, kinetic, drop = (values[i, fit] for i in range(3))
+            fits.append(
+                Fit(
+                    fit, stiffness, kinetic + max(drop, _LEAST_DROP * kinetic), kinetic,
+                    {support: damping(fit, support) for support in supports},
+                )
+            )  # fmt: skip
+        law, effects = self.specs(x)
+        declared = friction_law(law.name)
+        return replace(
+            base, material=material, elastomer_inertia=values[4, None],
+            clamp_inertia=values[5, None],
+            elastomer_damping_share=min(values[6, None], _LARGEST_SHARE),
+            fits=tuple(fits), effects=effects, assumed=(),
+            friction=LawSpec(law.name, resolve(law.name, declared.parameters, law.parameters)),
+        )  # fmt: skip
 
 
-def torque_statistics(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Describe a torque by what does not depend on phases, in units of what repeats differ by.
-
-    Parameters
-    ----------
-    torque : ndarray, shape (n,)
-        [Nm]
-    rate : float
-        [Hz]
-
-    Returns
-    -------
-    ndarray, shape (n_statistics,)
-        The signature of the torque, and quantiles of it and of its slope.
-    """
-    signed = channel_signature(torque, rate, "torque")
-    bands, cycle = signed[:-7], signed[-7:]
-    cycle = cycle / np.array([0.02, 0.01, 0.02, 0.3, 0.02, 0.02, 0.03])
-    mean = float(np.mean(torque))
-    step = max(1, round(2e-4 * rate))
-    slope = (torque[step:] - torque[:-step]) / mean
-    return np.concatenate([
-        np.nan_to_num(bands) / 0.25,
-        cycle,
-        np.quantile(torque, _QUANTILES) / mean / 0.012,
-        np.quantile(slope, _QUANTILES) / 0.006,
-    ])  # fmt: skip
+def _keys(one: Subject) -> tuple[object, ...]:
+    """Say what each number of `LOCAL` of a recording shares its mean with."""
+    fit = one.interference
+    return fit, fit, fit, (fit, one.support), None, None, None

@@ -9,12 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from noise.identification.bushing_fit import BushingFit
 
 __all__ = ["Levels", "torque_levels"]
 
 _FAST = 0.6
 """Share of the fastest sliding from which the contact counts as sliding fast."""
+
+_SLOW = 0.6
+"""Sliding speed over the shaft's below which it has been slow."""
 
 _LEAST_SAMPLES = 20
 
@@ -59,7 +64,7 @@ def torque_levels(fit: BushingFit) -> Levels:
     mean = float(np.mean(torque))
     fastest = float(np.quantile(v, 0.995))
     fast = v > max(_FAST * fastest, 1.1 * float(np.mean(fit.spectrum.shaft_speed)))
-    begins = np.flatnonzero(np.diff(fit.phases.sliding.astype(np.int8)) == 1)
+    begins = _slips(v, fit.spectrum.shaft_speed)
     if begins.size < 2 or fast.sum() < _LEAST_SAMPLES:
         return Levels(mean, mean, mean, 0, fastest)
     peaks = np.array([
@@ -69,3 +74,10 @@ def torque_levels(fit: BushingFit) -> Levels:
         mean, float(np.median(peaks)), float(np.mean(contact.torque[fast])), int(begins.size),
         fastest,
     )  # fmt: skip
+
+
+def _slips(v: NDArray[np.float64], shaft_speed: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Find the samples at which the contact begins to slide, having been slow before."""
+    state = np.where(v > shaft_speed, 1, np.where(v < _SLOW * shaft_speed, -1, 0))
+    told = np.flatnonzero(state)
+    return np.asarray(told[1:][(state[told[1:]] == 1) & (state[told[:-1]] == -1)])

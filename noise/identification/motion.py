@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
+from scipy.ndimage import uniform_filter1d
 
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 
@@ -24,6 +25,12 @@ __all__ = ["LIMIT", "Contact", "TorqueSpectrum", "torque_spectrum"]
 
 LIMIT = 8000.0
 """Highest frequency kept [Hz], at most 0.3 of the rate; the flank ends a third above."""
+
+_NOISE_ALONE = 0.85
+"""Share of the highest frequency from which there is nothing but the cell's noise."""
+
+_SMOOTHED = 150.0
+"""Width over which a spectrum is smoothed to be told from noise [Hz]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +63,8 @@ class TorqueSpectrum:
         Samples of the transform.
     kept : slice
         Samples that count.
+    mean : float
+        Of the torque [Nm].
     torque : ndarray, shape (n_kept,)
         Band-limited [Nm].
     shaft_speed : ndarray, shape (n_kept,)
@@ -68,26 +77,54 @@ class TorqueSpectrum:
     s: NDArray[np.complex128]
     n: int
     kept: slice
+    mean: float
     torque: NDArray[np.float64]
     shaft_speed: NDArray[np.float64]
     rate: float
 
     def contact(self, bushing: LumpedBushing) -> Contact:
         """Rebuild the contact for a guess of the bushing."""
-        s = self.s
-        surface = self.spectrum / (bushing.elastomer_stiffness + bushing.elastomer_damping * s)
-        if not bushing.clamp_is_fixed:
-            surface += self.spectrum / (
-                bushing.support_stiffness
-                + bushing.support_damping * s
-                + bushing.clamp_inertia * s * s
-            )
-        turning = surface * s
-        speed = irfft(turning, self.n)[self.kept]
-        acceleration = irfft(turning * s, self.n)[self.kept]
+        twist, clamp = self._angles(bushing)
+        turning = (twist + clamp) * self.s
+        acceleration = self._in_time(turning * self.s)
         return Contact(
-            self.torque + bushing.elastomer_inertia * acceleration, self.shaft_speed - speed
+            self.torque + bushing.elastomer_inertia * acceleration,
+            self.shaft_speed - self._in_time(turning),
         )
+
+    def states(self, bushing: LumpedBushing) -> NDArray[np.float64]:
+        """Rebuild the motion for a guess of the bushing.
+
+        Returns
+        -------
+        ndarray, shape (4, n_kept)
+            theta1 [rad], theta1' [rad/s], theta2, theta2', as of the torque's mean at rest.
+        """
+        twist, clamp = self._angles(bushing)
+        rest = self.mean / bushing.support_stiffness
+        surface = twist + clamp
+        return np.stack([
+            self._in_time(surface) + rest + self.mean / bushing.elastomer_stiffness,
+            self._in_time(surface * self.s),
+            self._in_time(clamp) + rest,
+            self._in_time(clamp * self.s),
+        ])  # fmt: skip
+
+    def _angles(
+        self, bushing: LumpedBushing
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Spectra of the elastomer's twist and of the clamp's angle."""
+        s = self.s
+        twist = self.spectrum / (bushing.elastomer_stiffness + bushing.elastomer_damping * s)
+        if bushing.clamp_is_fixed:
+            return twist, np.zeros_like(twist)
+        clamp = self.spectrum / (
+            bushing.support_stiffness + bushing.support_damping * s + bushing.clamp_inertia * s * s
+        )
+        return twist, clamp
+
+    def _in_time(self, spectrum: NDArray[np.complex128]) -> NDArray[np.float64]:
+        return np.asarray(irfft(spectrum, self.n)[self.kept])
 
 
 def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueSpectrum:
@@ -113,9 +150,24 @@ def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueS
     frequency = rfftfreq(closed.size, 1.0 / rate)
     low = min(LIMIT, 0.3 * rate)
     x = np.clip((frequency - low) / (low / 3.0), 0.0, 1.0)
-    spectrum = rfft(closed) * (0.5 + 0.5 * np.cos(np.pi * x))
+    lines = rfft(closed)
+    spectrum = lines * _above_noise(lines, frequency) * (0.5 + 0.5 * np.cos(np.pi * x))
     kept = slice(round(LEAD * rate), n - round(TAIL * rate))
     return TorqueSpectrum(
-        spectrum, 2j * np.pi * frequency, closed.size, kept,
+        spectrum, 2j * np.pi * frequency, closed.size, kept, mean,
         np.asarray(irfft(spectrum, closed.size)[kept]) + mean, measured.shaft_speed[kept], rate,
     )  # fmt: skip
+
+
+def _above_noise(
+    lines: NDArray[np.complex128], frequency: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Share of each line that is no noise of the cell (Wiener 1949), which is taken for white.
+
+    What differentiation would make of it looks like sliding where the contact sticks.
+    """
+    power = np.abs(lines) ** 2
+    noise = float(np.mean(power[frequency > _NOISE_ALONE * frequency[-1]]))
+    width = max(3, round(_SMOOTHED / frequency[1]))
+    smooth = uniform_filter1d(power, width, mode="nearest")
+    return np.asarray(np.maximum(1.0 - noise / np.maximum(smooth, noise), 0.0))

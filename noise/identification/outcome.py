@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from noise.identification.static_test import StaticTest
     from noise.identification.table_number import TableNumber
 
-__all__ = ["Identification", "LawScore", "Number", "Seen", "as_json"]
+__all__ = ["NORMAL", "Identification", "LawScore", "Number", "Seen", "as_json", "values_of"]
+
+NORMAL = 1.645
+"""Of a normal distribution, so many standard deviations on either side hold 90 %."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,8 @@ class LawScore:
         Distance of recordings that its fit has not seen, in floors [-].
     trained : float
         The same of those that it has seen [-].
+    missed : float
+        Share of the oscillation that it does not foretell over a cycle or two [-].
     parameters : mapping of str to float
         [units of the law's file]
     """
@@ -66,6 +71,7 @@ class LawScore:
     law: str
     held_out: float
     trained: float
+    missed: float
     parameters: Mapping[str, float]
 
 
@@ -86,6 +92,18 @@ class Seen:
     fit: BushingFit
     levels: Levels
     values: Mapping[str, float]
+
+
+def values_of(fit: BushingFit, levels: Levels) -> dict[str, float]:
+    """Name what one recording said [SI units]."""
+    return {
+        "elastomer_stiffness": fit.bushing.elastomer_stiffness,
+        "damping": fit.damping,
+        "elastomer_inertia": fit.bushing.elastomer_inertia,
+        "clamp_inertia": fit.bushing.clamp_inertia,
+        "critical_torque": levels.critical,
+        "kinetic_torque": levels.kinetic,
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,6 +185,7 @@ def as_json(found: Identification) -> dict[str, Any]:
                 "law": one.law,
                 "held_out": _rounded(one.held_out),
                 "trained": _rounded(one.trained),
+                "missed": _rounded(one.missed),
                 "parameters": {name: _rounded(value) for name, value in one.parameters.items()},
             }
             for one in found.laws

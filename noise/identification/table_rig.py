@@ -16,8 +16,8 @@ import numpy as np
 from models.condition import FIXED
 from models.rig import LawSpec
 from models.rig_files.rig_text import rig_text
-from noise.identification.evidence import NORMAL, UNITS, table_evidence, with_evidence
-from noise.identification.outcome import Identification, Number
+from noise.identification.evidence import UNITS, table_evidence, with_evidence
+from noise.identification.outcome import NORMAL, Identification, Number
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.table_fit import fit_table, score_table
 from noise.identification.table_number import TableNumber

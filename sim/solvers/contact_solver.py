@@ -10,6 +10,7 @@ as well.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -21,9 +22,11 @@ from sim.solvers.contact_state import (
     ANGLE,
     DONE,
     FRESH,
+    MODE,
     MOST_HOOKS,
     N_CARRIED,
     N_MOTION,
+    NEXT_MODE,
     SHORTEST_STEP,
     STEP_OF_SLIP,
     STEP_OF_STICK,
@@ -60,7 +63,7 @@ class Hook:
 
 
 class ContactRun:
-    """A run of the lumped model that goes on from block to block, from rest.
+    """A run of the lumped model that goes on from block to block, from rest or from a slip.
 
     Parameters
     ----------
@@ -84,6 +87,9 @@ class ContactRun:
         Error of a step [-]; `sim.friction.law.FrictionLaw.tolerance` with a law.
     refined : float
         Steps are so many times shorter than by default, to tell their error.
+    motion : ndarray, shape (4,), optional
+        theta1 [rad], theta1' [rad/s], theta2, theta2' to start from in the middle of a slip; by
+        default the run starts from rest.
 
     Examples
     --------
@@ -109,6 +115,7 @@ class ContactRun:
         name: str = "friction",
         tolerance: float = _TOLERANCE,
         refined: float = 1.0,
+        motion: NDArray[np.float64] | None = None,
     ) -> None:
         # What is not imported before it is needed is not compiled either.
         from sim.solvers.contact_kernel import contact_loop
@@ -154,7 +161,11 @@ class ContactRun:
         self._carried = np.zeros(N_CARRIED)
         self._carried[[STEP_OF_STICK, STEP_OF_SLIP]] = _FIRST_STEP
         self._carried[FRESH] = 1.0
-        if law is None:
+        if motion is not None:
+            self._rows.end[:4] = motion
+            if law is None:
+                self._carried[[MODE, NEXT_MODE]] = math.copysign(1.0, start_speed - motion[1])
+        elif law is None:
             self._rows.end[1] = start_speed
         self._rows.end[N_MOTION : N_MOTION + law_state.size] = law_state
 

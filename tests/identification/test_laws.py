@@ -1,7 +1,6 @@
 """Laws of friction: what is left out, how a rig follows from a vector, which law is found."""
 
 import math
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,18 +9,17 @@ import pytest
 from models.condition import KnownCondition
 from models.rig_files.rig_file import load_material_rig, load_rig
 from models.rig_files.rig_text import rig_text
+from noise.identification.bushing_fit import Known
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.law_choice import left_out
 from noise.identification.law_model import LawModel
+from noise.identification.law_starts import starts
 from noise.identification.run import identify
+from noise.identification.subjects import Subject
 from tests.blind.identify.laws import LAWS
 from tests.blind.identify.rigs import make_rig, write_rig
 
 BASE = load_material_rig("fluorocarbon-thesis")
-BASE = replace(
-    BASE,
-    fits=tuple(replace(fit, damping={2214.0: 0.1, math.inf: 0.08}) for fit in BASE.fits),
-)
 
 
 def at(speed, interference=0.279e-3, support=2214.0):
@@ -32,20 +30,28 @@ def test_the_second_rig_has_each_law_that_is_tried():
     assert {candidate.name for candidate in CANDIDATES} == set(LAWS)
 
 
+def subject(speed, interference=0.279e-3, support=2214.0):
+    start = np.log([665.0, 8.0, 2.7, 0.09, 1.5e-5, 8.3e-4, 0.5])
+    return Subject(at(speed, interference, support), None, start)
+
+
 @pytest.mark.parametrize("candidate", CANDIDATES, ids=lambda c: c.name)
 def test_every_start_is_a_rig_whose_file_loads(candidate, tmp_path):
-    model = LawModel(BASE, candidate, (2214.0, math.inf))
-    low, high = model.limits()
-    for vector in model.starts():
+    subjects = (subject(1.0), subject(2.0, 0.381e-3), subject(2.0, 0.381e-3, math.inf))
+    model = LawModel(candidate, subjects, Known(1.5e-5, 8.3e-4, 0.02))
+    for law, choices in starts(model):
+        vector = model.vector(choices[0], law)
+        low, high = model.limits(vector)
         assert np.all(vector >= low - 1e-9)
         assert np.all(vector <= high + 1e-9)
-        rig = model.rig(vector)
+        rig = model.rig(vector, BASE, "fluorocarbon")
         (tmp_path / "rig.toml").write_text(rig_text(rig))
         loaded = load_rig(tmp_path / "rig.toml")
         assert loaded.friction.name == rig.friction.name
         assert [e.name for e in loaded.effects] == [e.name for e in rig.effects]
         for one, other in zip(loaded.fits, rig.fits, strict=True):
             assert one.critical_torque == pytest.approx(other.critical_torque, rel=1e-3)
+            assert set(one.damping) == {2214.0, math.inf}
 
 
 def test_whole_conditions_are_left_out_and_none_is_left_unknown():

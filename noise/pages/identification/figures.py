@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.drawing import BLUE, GREY, ORANGE, VERMILION, styled
-from noise.identification.law_choice import overall
 from noise.pages.engine.panels import Panel, as_svg, new_panel
 
 if TYPE_CHECKING:
@@ -152,17 +151,17 @@ def law_panel(found: Identification) -> Panel:
     Panel
     """
     with styled():
-        figure, axes = new_panel("What each law leaves", "Distance [floors]", "")
+        figure, axes = new_panel(
+            "What each law misses within a cycle", "Share of the oscillation [%]", ""
+        )
         laws = list(reversed(found.laws))
         for row, score in enumerate(laws):
             colour = BLUE if score.law == found.law else GREY
-            axes.barh(row, overall(score), color=colour, height=0.6)
-            axes.plot([score.held_out], [row], color=VERMILION, marker="o", ls="none", ms=5)
-        axes.axvline(1.0, color="#222222", ls=":", lw=1.0)
+            axes.barh(row, 100.0 * score.missed, color=colour, height=0.6)
         axes.set_yticks(range(len(laws)), [score.law.replace("_", " ") for score in laws])
         axes.tick_params(axis="y", labelsize=8)
         return Panel(
             as_svg(figure),
-            "Distance by law, dots for recordings left out: "
-            + ", ".join(f"{s.law} {overall(s):.2f}" for s in found.laws),
+            "Share of the oscillation that a law does not foretell: "
+            + ", ".join(f"{s.law} {100.0 * s.missed:.1f} %" for s in found.laws),
         )

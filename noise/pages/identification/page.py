@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from models.condition import Condition
 from noise.base.atomic import atomic
 from noise.identification.law_candidates import CANDIDATES
-from noise.identification.law_choice import overall
 from noise.identification.outcome import as_json
 from noise.identification.quantities import QUANTITIES
 from noise.pages.engine.page import page_html, write_page
@@ -70,8 +69,8 @@ def _html(found: Identification) -> str:
         law_picture=(law_panel(found),) if found.laws else (),
         laws=[
             [
-                one.law.replace("_", " "), _WORDS[one.law], f"{one.held_out:.2f}",
-                f"{one.trained:.2f}", f"{overall(one):.2f}",
+                one.law.replace("_", " "), _WORDS[one.law], f"{100.0 * one.missed:.1f}",
+                f"{one.held_out:.2f}", f"{one.trained:.2f}",
             ]
             for one in found.laws
         ],
@@ -122,10 +121,11 @@ def _answer(found: Identification) -> list[str]:
     ]
     if not found.laws:
         return [f"Law of friction as it was known: {found.law.replace('_', ' ')}.", *stiffness]
-    left = next(score.held_out for score in found.laws if score.law == found.law)
+    chosen = next(score for score in found.laws if score.law == found.law)
     return [
-        f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); it leaves "
-        f"{left:.2f} floors on recordings that its fit has not seen.",
+        f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); within a cycle it "
+        f"misses {100.0 * chosen.missed:.1f} % of the oscillation, and over a run it leaves "
+        f"{chosen.held_out:.2f} floors on recordings that its fit has not seen.",
         *stiffness,
     ]
 
