@@ -2,7 +2,7 @@
 
 The measure that is reported is the root mean square of log(simulated / measured) over the critical
 speeds. It weighs most; the other terms are hinges, nil where the thesis's finding is met. Critical
-speeds are where the share of stick, or the oscillation, crosses its limit (`sim.analysis.regime`)
+speeds are where the sudden share, or the oscillation, crosses its limit (`sim.analysis.regime`)
 for the last time on a grid of speeds, fine about what was measured and coarse elsewhere,
 interpolated between its points, so that a small change of a parameter shows. The speeds reported
 afterwards are those of `sim.analysis.critical_speeds`.
@@ -21,7 +21,8 @@ from joblib import Parallel, delayed
 from models.errors import ParameterError
 from noise.training.calibrate.cells import CELLS, NOISES, STICKING, SUPPORTS, THIN_CELLS, Cell
 from sim.analysis.critical_speeds import falls_below, motion_from_rest
-from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK, stick_and_oscillation
+from sim.analysis.regime import LEAST_OSCILLATION, regime_measures
+from sim.analysis.slips import LEAST_SUDDEN
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -67,7 +68,7 @@ Task = tuple[float, float, float]
 class _Settled:
     """What is kept of a run: of its last half."""
 
-    stick: float
+    sudden: float
     oscillation: float
     mean: float
     slip_line: float
@@ -143,7 +144,7 @@ def score(
         thin = {cell: _critical_speed(cell, runs, _THIN_GRID) for cell in THIN_CELLS}
         speeds |= thin
         cost += _THIN * Score(0.0, thin).log_error(THIN_CELLS)
-        cost += _STICK * sum(_above(runs[task].stick, LEAST_STICK) for task in STICKING)
+        cost += _STICK * sum(_above(runs[task].sudden, LEAST_SUDDEN) for task in STICKING)
         cost += _NOISE * sum(
             _HINGES[c.noise](runs[c.interference, c.support_stiffness, c.speed]) for c in NOISES
         )
@@ -165,7 +166,7 @@ def _grid(support_stiffness: float) -> NDArray[np.float64]:
 def _settled(rig: Rig, task: Task) -> _Settled:
     interference, support, speed = task
     motion = motion_from_rest(rig, speed, interference, support, seconds=_SECONDS)
-    stick, oscillation = stick_and_oscillation(motion)
+    sudden, oscillation = regime_measures(motion)
     last = motion.since(motion.torque.size // 2)
     mean = float(np.mean(last.torque))
     torque = last.torque - mean
@@ -178,7 +179,7 @@ def _settled(rig: Rig, task: Task) -> _Settled:
     top = int(np.argmax(amplitude[frequency < 2500.0]))
     strongest = max(float(amplitude[top]), 1e-12)
     return _Settled(
-        stick=stick,
+        sudden=sudden,
         oscillation=oscillation,
         mean=mean,
         slip_line=highest(_SLIP_BAND) / strongest,
@@ -192,8 +193,8 @@ def _critical_speed(cell: Cell, runs: Mapping[Task, _Settled], grid: NDArray[np.
     oscillation = _last_crossing(grid, [run.oscillation for run in row], LEAST_OSCILLATION)
     if cell.item == "v_crit2":
         return oscillation
-    vibrating = [run.stick if run.oscillation > LEAST_OSCILLATION else 0.0 for run in row]
-    return min(oscillation, _last_crossing(grid, vibrating, LEAST_STICK))
+    vibrating = [run.sudden if run.oscillation > LEAST_OSCILLATION else 0.0 for run in row]
+    return min(oscillation, _last_crossing(grid, vibrating, LEAST_SUDDEN))
 
 
 def _last_crossing(speed: NDArray[np.float64], values: list[float], limit: float) -> float:
