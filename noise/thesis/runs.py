@@ -242,7 +242,7 @@ def slip_frequency(material: str, case: Case) -> float:
 
 
 def slip_pattern(material: str, case: Case) -> float:
-    """After how many slips they repeat, 2 where the period has doubled; NaN where they do not."""
+    """After how many slips they repeat [-], 2 for a doubled period; NaN where they do not."""
     return float(_slips(material, case).pattern) or math.nan
 
 
