@@ -46,6 +46,30 @@ class Bounds:
 
 _TORQUE_SLIPS = ((1e-3, "Nmm"), (1e3, "kNm"))
 
+_RANGES = {
+    "torque": Bounds(
+        "Nm", (0.05, 1e4), (1e-9, 1e9), "+-102.5 at the rig (Appendix C); cells of 0.1 Nm to 10 kNm"
+    ),
+    "acceleration": Bounds(
+        "m/s^2",
+        (5.0, 1e6),
+        (1e-6, 1e9),
+        "+-977 at the rig (Appendix D); sensors of 0.5 to 1e5 g",
+    ),
+    "pressure": Bounds(
+        "Pa", (0.02, 2e4), (1e-9, 1e8), "+-28.9 at the rig (Appendix E); microphones to 180 dB"
+    ),
+    "angle": Bounds("rad", (1e-3, 1e4), (1e-9, 1e9), "+-12.4 at the rig (Appendix B)"),
+    "speed": Bounds("rad/s", (0.1, 1e4), (1e-6, 1e9), "ten times the speeds of the rig and more"),
+    "force": Bounds("N", (1.0, 1e6), (1e-6, 1e12), "hammers of 20 N to 200 kN"),
+}
+"""Of full scale, by kind of channel."""
+
+_NOISE = {
+    "torque": 0.5, "acceleration": 5.0, "pressure": 0.15, "angle": 0.06, "speed": 0.5, "force": 5.0,
+}  # fmt: skip
+"""Largest usual standard deviation by kind of channel, in its unit."""
+
 BOUNDS = {
     "elastomer_stiffness_Nm_rad": Bounds(
         "Nm/rad",
@@ -118,6 +142,23 @@ BOUNDS = {
         (-273.15, 2000.0),
         "from a car's cold start to beside its exhaust",
     ),
+    "bits": Bounds(
+        "bit", (8.0, 24.0), (2.0, 32.0), "12 at the rig (3.1.2); what converters have is 8 to 24"
+    ),
+    "antialias_hz": Bounds(
+        "Hz",
+        (500.0, 1e5),
+        (1.0, 1e9),
+        "below half of 30 kHz at the rig (3.1.2); slips repeat above 100 Hz",
+        ((1e3, "kHz"),),
+    ),
+    **{f"range.{kind}": bounds for kind, bounds in _RANGES.items()},
+    **{
+        f"noise.{kind}": Bounds(
+            _RANGES[kind].unit, (0.0, most), (0.0, 1e9), "ten steps of the rig's 12 bits (3.1.2)"
+        )
+        for kind, most in _NOISE.items()
+    },
 }
 """By the key of a rig file or sidecar."""
 
@@ -201,3 +242,9 @@ def _values(rig: Rig) -> Iterator[tuple[str, list[float]]]:
     yield "damping_Nms_rad", [value for fit in rig.fits for value in fit.damping.values()]
     yield "elastomer_inertia_kgm2", [rig.elastomer_inertia]
     yield "clamp_inertia_kgm2", [rig.clamp_inertia]
+    sensors = rig.sensors.by_kind
+    for kind, sensor in sensors.items():
+        yield f"range.{kind}", [] if sensor.full_scale is None else [sensor.full_scale]
+        yield f"noise.{kind}", [] if sensor.noise is None else [sensor.noise]
+    yield "bits", [float(s.bits) for s in sensors.values() if s.bits is not None]
+    yield "antialias_hz", [s.antialias for s in sensors.values() if s.antialias is not None]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig_files.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, Plate
+from models.sensors import Sensors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -175,9 +176,8 @@ class Rig:
         The entries of the files that no source gives.
     measured : tuple of MeasuredResponse
         Responses measured on the rig, each in place of the modelled one of its support.
-    sensor_noise : mapping of str to float
-        Standard deviation of the noise on each kind of channel [unit of the channel], where it
-        differs from that of `sim.acquisition`.
+    sensors : Sensors
+        What its signals are recorded through.
     fastest_fitted : float
         Fastest speed that the bushing was fitted at [rad/s]; infinite if none is stated.
     """
@@ -195,7 +195,7 @@ class Rig:
     microphone: Microphone
     assumed: tuple[str, ...] = ()
     measured: tuple[MeasuredResponse, ...] = ()
-    sensor_noise: Mapping[str, float] = field(default_factory=dict)
+    sensors: Sensors = field(default_factory=Sensors)
     fastest_fitted: float = math.inf
 
     def __post_init__(self) -> None:

@@ -19,6 +19,7 @@ from noise.audio.sound import audible
 from noise.base.progress import say, track
 from noise.base.tables import write_table
 from noise.classifier import load_classifier
+from noise.demo_hits import write_hits
 from noise.labels.labelling import COLUMNS, label_rows
 from noise.labels.segments import file_label, label_recording
 from noise.pages.report import ReportEntry, write_report
@@ -75,8 +76,8 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
     Parameters
     ----------
     out : Path
-        Folder; gets ``recordings/``, ``audio/``, ``features.csv``, ``labels.csv`` and
-        ``report.html``.
+        Folder; gets ``recordings/``, ``audio/``, ``hits/``, ``features.csv``, ``labels.csv``
+        and ``report.html``.
     seed : int
         Of the sensors' noise.
 
@@ -87,7 +88,7 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
     """
     out = Path(out)
     say("simulating four conditions of the rig (the first run compiles the solver)")
-    generators = np.random.default_rng(seed).spawn(len(CASES))
+    *generators, hammer = np.random.default_rng(seed).spawn(len(CASES) + 1)
     for case, rng in track(list(zip(CASES, generators, strict=True)), "simulate"):
         run = simulate(
             load_material_rig(case.material),
@@ -98,6 +99,7 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
             rng=rng,
         )
         write_recording(out / "recordings" / f"{case.name}.wav", run.recording)
+    write_hits(out / "hits", hammer)
 
     say("labelling, rendering, drawing")
     classifier = load_classifier()

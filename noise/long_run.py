@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from noise.base.remarks import NEVER_SLIPS
 from noise.recordings.writing import write_blocks
 
 if TYPE_CHECKING:
@@ -24,9 +25,8 @@ def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...
         ``run07`` and ``run07.wav`` are the same; parent folders are made.
     run : BlockRun
         Of `sim.long_run.simulate_blocks`; a WAV file holds 4 GiB, 2.4 h at 30 kHz.
-
     notes : tuple of str
-        For the sidecar.
+        For the sidecar, which also says so where nothing ever slips.
 
     Returns
     -------
@@ -58,4 +58,5 @@ def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...
         channels=run.channels,
         condition=run.condition,
         notes=notes,
+        found=lambda: (NEVER_SLIPS,) if run.watch.never_slips else (),
     )

@@ -1,25 +1,39 @@
-"""The rig's data acquisition: anti-alias filter, sampling, noise, and a converter of 12 bits.
+"""The rig's data acquisition: anti-alias filter, sampling, noise, and the converter.
 
-Gains and range are those of Section 3.1.2 and Appendices B to E: 12 bits over +-1.25 V, 82 Nm/V,
-781.4 m/s2/V, 23.088 Pa/V, 9.9 rad/V. One bit is then 0.05 Nm, 0.48 m/s2, 14 mPa (53.9 dB re
-20 uPa rms were it a sine) and 6 mrad, so the converter is an option: it would hide a quiet sound.
+A signal goes through it in the order of a laboratory's: a Butterworth low-pass filter of order 8,
+as dedicated anti-alias filters have (assumed; 3 dB down at the corner that `models.sensors.Sensor`
+states, causal, made discrete by the bilinear transform at the rate of the computation with the
+corner kept; it starts settled at its first sample), the sampling with a steep linear-phase filter
+of its own, the noise, and the converter, which rounds to its steps and clips at its range. A corner
+at half the rate of the computation or above changes nothing that is sampled and is left out; what
+an analogue filter lets through above half the sampling rate is not folded back.
+
+Gains and range of the thesis's are those of Section 3.1.2 and Appendices B to E: 12 bits over
++-1.25 V, 82 Nm/V, 781.4 m/s2/V, 23.088 Pa/V, 9.9 rad/V. One bit is then 0.05 Nm, 0.48 m/s2, 14 mPa
+(53.9 dB re 20 uPa rms were it a sine) and 6 mrad, so that converter is an option: it would hide a
+quiet sound.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import firwin, resample_poly
+from scipy.signal import butter, firwin, resample_poly, sosfilt, sosfilt_zi
+
+from models.sensors import Sensor, Sensors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-__all__ = ["CONVERTER_GAIN", "Acquisition", "anti_alias_filter", "decimate", "sample"]
+__all__ = [
+    "CONVERTER_GAIN", "THESIS_CONVERTER", "Acquisition", "analogue_filter", "anti_alias_filter",
+    "decimate", "decimate_sensed", "digitise", "sample",
+]  # fmt: skip
 
 CONVERTER_GAIN = {
     "torque": 82.0,
@@ -32,7 +46,16 @@ CONVERTER_GAIN = {
 _CONVERTER_RANGE = 1.25
 """Largest voltage of the converter, either sign [V]."""
 
-_CONVERTER_STEPS = 2**12
+THESIS_CONVERTER = Sensors(
+    {
+        kind: Sensor(full_scale=_CONVERTER_RANGE * gain, bits=12)
+        for kind, gain in CONVERTER_GAIN.items()
+    }
+)
+"""The board that the thesis recorded with (3.1.2)."""
+
+_FILTER_ORDER = 8
+"""Of the analogue anti-alias filter; assumed."""
 
 _FILTER_HALF_LENGTH = 10
 """Of the anti-alias filter, in samples kept."""
@@ -49,8 +72,8 @@ class Acquisition:
     noise : mapping of str to float
         Standard deviation of the white noise on each kind of channel, in its unit. The defaults
         are a quiet room (32 dB re 20 uPa up to 15 kHz) and good amplifiers; assumed.
-    converter : bool
-        Whether the samples pass the 12-bit converter (and clip at its range).
+    sensors : Sensors
+        What they are recorded through; a noise that these state is the one that counts.
 
     Examples
     --------
@@ -67,7 +90,11 @@ class Acquisition:
             "angle": 1e-4,
         }
     )
-    converter: bool = False
+    sensors: Sensors = field(default_factory=Sensors)
+
+    def over(self, sensors: Sensors) -> Acquisition:
+        """Return it with what it does not say of its sensors taken from those of a rig."""
+        return replace(self, sensors=self.sensors.over(sensors))
 
 
 def sample(
@@ -99,15 +126,105 @@ def sample(
     >>> held["torque"].shape, held["torque"].round(6).max()
     ((20,), np.float64(3.0))
     """
-    sampled = {}
-    for kind, signal in signals.items():
-        values = decimate(signal, decimation)
-        level = acquisition.noise.get(kind, 0.0)
-        values = values + level * rng.standard_normal(values.size)
-        if acquisition.converter:
-            values = _convert(values, CONVERTER_GAIN[kind])
-        sampled[kind] = values
-    return sampled
+    fine = decimation * acquisition.rate
+    return {
+        kind: digitise(
+            decimate_sensed(signal, decimation, fine, acquisition.sensors.of(kind)),
+            kind, acquisition, rng,
+        )
+        for kind, signal in signals.items()
+    }  # fmt: skip
+
+
+def decimate_sensed(
+    signal: NDArray[np.float64], factor: int, rate: float, sensor: Sensor
+) -> NDArray[np.float64]:
+    """Filter a signal as a sensor's anti-alias filter does, and decimate it.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        In any [unit].
+    factor : int
+        Of the rates.
+    rate : float
+        Of `signal` [Hz].
+    sensor : Sensor
+
+    Returns
+    -------
+    ndarray, shape (ceil(n / factor),)
+        In the signal's own [unit].
+
+    Examples
+    --------
+    >>> decimate_sensed(np.full(9, 2.0), 3, 9e3, Sensor(antialias=1e3)).round(9)
+    array([2., 2., 2.])
+    """
+    found = analogue_filter(sensor.antialias, rate)
+    if found is not None:
+        sections, settled = found
+        signal = sosfilt(sections, signal, zi=settled * signal[0])[0]
+    return decimate(signal, factor)
+
+
+def digitise(
+    values: NDArray[np.float64], kind: str, acquisition: Acquisition, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Add the noise of a channel, and convert.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Of a kind of channel, at the sampling rate [unit of the channel].
+    kind : str
+    acquisition : Acquisition
+    rng : numpy.random.Generator
+        Of the noise.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [unit of the channel]
+
+    Examples
+    --------
+    >>> coarse = Acquisition(noise={}, sensors=Sensors({"torque": Sensor(full_scale=8.0, bits=4)}))
+    >>> digitise(np.array([2.4, 2.6, 9.0]), "torque", coarse, np.random.default_rng(0))
+    array([2., 3., 7.])
+    """
+    sensor = acquisition.sensors.of(kind)
+    level = acquisition.noise.get(kind, 0.0) if sensor.noise is None else sensor.noise
+    values = values + level * rng.standard_normal(values.size)
+    if sensor.full_scale is None:
+        return values
+    if sensor.bits is None:
+        return np.clip(values, -sensor.full_scale, sensor.full_scale)
+    most = 2 ** (sensor.bits - 1)  # a two's complement has one step more below zero than above
+    return np.asarray(np.clip(np.round(values / sensor.step), -most, most - 1) * sensor.step)
+
+
+@lru_cache(maxsize=16)
+def analogue_filter(
+    corner: float | None, rate: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Low-pass filter of a corner [Hz] for signals at a rate [Hz], and its state in a steady one.
+
+    Returns
+    -------
+    tuple of (ndarray, shape (4, 6), ndarray, shape (4, 2)) or None
+        Second-order sections [-], and their state at a steady value of one; None where the corner
+        is too high to change anything.
+
+    Examples
+    --------
+    >>> analogue_filter(12e3, 90e3)[0].shape, analogue_filter(50e3, 90e3)
+    ((4, 6), None)
+    """
+    if corner is None or corner >= 0.5 * rate:
+        return None
+    sections = np.asarray(butter(_FILTER_ORDER, corner, fs=rate, output="sos"), np.float64)
+    return sections, np.asarray(sosfilt_zi(sections), np.float64)
 
 
 def decimate(signal: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
@@ -159,9 +276,3 @@ def anti_alias_filter(factor: int) -> NDArray[np.float64]:
     taps = np.asarray(firwin(size, 1.0 / factor, window=("kaiser", 5.0)), np.float64)
     taps.flags.writeable = False  # shared by all that ask for it
     return taps
-
-
-def _convert(values: NDArray[np.float64], gain: float) -> NDArray[np.float64]:
-    bit = 2.0 * _CONVERTER_RANGE / _CONVERTER_STEPS * gain
-    counts = np.clip(np.round(values / bit), -_CONVERTER_STEPS // 2, _CONVERTER_STEPS // 2 - 1)
-    return np.asarray(counts * bit)

@@ -17,12 +17,13 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.radiation.rig_response import impulse_responses
-from sim.acquisition import Acquisition, sample
+from sim.acquisition import Acquisition, digitise
+from sim.analysis.regime import SlidingWatch
 from sim.chain import changed_chain
 from sim.motion import motion_blocks
 from sim.pipeline import pulse_force
 from sim.run import plan_run, sensor_channels
-from sim.streams import Convolution, Decimation
+from sim.streams import AnalogueFilter, Convolution, Decimation
 from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ class BlockRun:
         Of all blocks together.
     blocks : iterator of ndarray, shape (n_channels, n)
         In the units of the channels [unit]; can be run through once.
+    watch : SlidingWatch
+        Of the contact; knows as much of the run as has been read of the blocks.
     """
 
     rate: float
@@ -66,6 +69,7 @@ class BlockRun:
     condition: Condition
     n_samples: int
     blocks: Iterator[NDArray[np.float64]]
+    watch: SlidingWatch
 
 
 def simulate_blocks(
@@ -114,7 +118,7 @@ def simulate_blocks(
         raise ParameterError(
             f"seconds = {seconds:g} and block_seconds = {block_seconds:g} must be above 0, finite"
         )
-    acquisition = acquisition or Acquisition()
+    acquisition = (acquisition or Acquisition()).over(rig.sensors)
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
     plan = plan_run(
         rig,
@@ -131,6 +135,10 @@ def simulate_blocks(
     _refuse_whole_run_effects(plan.effects)
     channels, n_samples = sensor_channels(rig), round(seconds * acquisition.rate)
     decimation = SIMULATION.decimation(acquisition.rate)
+    filters = [
+        AnalogueFilter(acquisition.sensors.of(channel.kind).antialias, plan.rate, plan.n_settling)
+        for channel in channels
+    ]
     decimations = [Decimation(decimation, plan.n_settling) for _ in channels]
     motions = motion_blocks(
         plan.rig,
@@ -143,9 +151,10 @@ def simulate_blocks(
         effects=plan.effects,
         rng=effect_rng,
     )
+    watch = SlidingWatch()
     paths = impulse_responses(plan.rig, interference, support_stiffness, plan.rate)
     signals = _signals(
-        _with_force(motions, plan),
+        _with_force(_watched(motions, watch, plan.n_settling), plan),
         changed_chain(paths, plan.effects, effect_rng.spawn(1)[0]),
         plan.n_settling,
     )
@@ -154,7 +163,8 @@ def simulate_blocks(
         channels=channels,
         condition=plan.condition,
         n_samples=n_samples,
-        blocks=_sampled(signals, decimations, acquisition, noise_rng.spawn(4), n_samples),
+        blocks=_sampled(signals, filters, decimations, acquisition, noise_rng.spawn(4), n_samples),
+        watch=watch,
     )
 
 
@@ -174,6 +184,15 @@ def _refuse_whole_run_effects(effects: Sequence[ActiveEffect]) -> None:
             f"effect {', '.join(names)}: acts on a run as a whole, so it cannot act on one that "
             "is computed in blocks; make the run shorter, or leave the effect out"
         )
+
+
+def _watched(motions: Iterator[Motion], watch: SlidingWatch, n_settling: int) -> Iterator[Motion]:
+    """Pass a motion on, and let what is kept of it be seen."""
+    position = 0
+    for motion in motions:
+        watch.see(motion.since(max(0, n_settling - position)))
+        position += motion.torque.size
+        yield motion
 
 
 def _with_force(
@@ -229,6 +248,7 @@ def _signals(
 
 def _sampled(
     blocks: Iterator[tuple[dict[str, NDArray[np.float64]], float]],
+    filters: Sequence[AnalogueFilter],
     decimations: Sequence[Decimation],
     acquisition: Acquisition,
     noise: Sequence[np.random.Generator],
@@ -237,11 +257,12 @@ def _sampled(
     left = n_samples
     for signals, start_angle in blocks:
         rows = []
-        for (kind, signal), decimate, rng in zip(signals.items(), decimations, noise, strict=True):
-            values = decimate(signal)[:left]
+        steps = zip(signals.items(), filters, decimations, noise, strict=True)
+        for (kind, signal), low_pass, decimate, rng in steps:
+            values = decimate(low_pass(signal))[:left]
             if kind == "angle":
                 values = values - start_angle
-            rows.append(sample({kind: values}, 1, acquisition, rng)[kind])
+            rows.append(digitise(values, kind, acquisition, rng))
         left -= rows[0].size
         if rows[0].size:
             yield np.stack(rows)

@@ -13,7 +13,7 @@ from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import friction_law
-from sim.motion_limits import refuse_fast, refuse_overflow
+from sim.motion_limits import blaming_the_unusual, refuse_fast, refuse_overflow
 from sim.parameters import resolve
 from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
 from sim.solvers.contact_state import MOST_HOOKS
@@ -158,11 +158,12 @@ def simulate_motion(
     for active in effects:
         if active.effect.drive is not None:
             drive = active.effect.drive(drive, rate, active.form, active.values, rng)
-    solver = _Solver(
-        rig, interference, support_stiffness, rate, effects, rng,
-        start_speed=float(drive[0]), top_speed=float(np.abs(drive).max()), tolerance=tolerance,
-    )  # fmt: skip
-    return solver.advance(drive, n)
+    with blaming_the_unusual(rig):
+        solver = _Solver(
+            rig, interference, support_stiffness, rate, effects, rng,
+            start_speed=float(drive[0]), top_speed=float(np.abs(drive).max()), tolerance=tolerance,
+        )  # fmt: skip
+        return solver.advance(drive, n)
 
 
 def motion_blocks(
@@ -211,14 +212,17 @@ def motion_blocks(
     """
     starts = range(0, n_samples, block)
     tops = (float(np.abs(_drive(shaft, start, block + 1, rate)).max()) for start in starts)
-    solver = _Solver(
-        rig, interference, support_stiffness, rate, effects, rng or np.random.default_rng(0),
-        start_speed=float(shaft.speed(np.zeros(1))[0]), top_speed=max(tops), tolerance=None,
-    )  # fmt: skip
+    with blaming_the_unusual(rig):
+        solver = _Solver(
+            rig, interference, support_stiffness, rate, effects, rng or np.random.default_rng(0),
+            start_speed=float(shaft.speed(np.zeros(1))[0]), top_speed=max(tops), tolerance=None,
+        )  # fmt: skip
     beyond = math.ceil(LONGEST_STEP / (1.0 / rate)) + 1  # steps reach beyond the block
     for start in starts:
         n = min(block, n_samples - start)
-        yield solver.advance(_drive(shaft, start, n + beyond, rate), n)
+        with blaming_the_unusual(rig):
+            motion = solver.advance(_drive(shaft, start, n + beyond, rate), n)
+        yield motion
 
 
 class _Solver:

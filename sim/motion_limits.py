@@ -3,27 +3,50 @@
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
+from models.plausible import rig_remarks
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from numpy.typing import NDArray
 
     from models.rig import Rig
     from sim.bushing import LumpedBushing
 
-__all__ = ["refuse_fast", "refuse_overflow"]
+__all__ = ["blaming_the_unusual", "refuse_fast", "refuse_overflow"]
 
 _FASTEST_SLIP = 60.0
 """Sliding speeds exceed the shaft's by about so much [rad/s]; the thesis has 45 (Figure 6.7)."""
 
 _FASTEST_RATE = 3e7
 """That the solver of contacts follows in a bearable time [1/s]."""
+
+
+@contextmanager
+def blaming_the_unusual(rig: Rig) -> Iterator[None]:
+    """Let a refusal begin with what of the rig lies outside the usual, most likely its cause.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> with blaming_the_unusual(load_material_rig("PDMS").changed(critical_torque="x1000")):
+    ...     raise ParameterError("no step is short enough")
+    Traceback (most recent call last):
+    models.errors.ParameterError: critical_torque_Nm = 3000 is outside the usual ...
+    """
+    try:
+        yield
+    except ParameterError as error:
+        unusual = "; ".join(rig_remarks(rig))
+        if not unusual:
+            raise
+        raise ParameterError(f"{unusual}; no motion can be computed: {error}") from None
 
 
 def refuse_fast(

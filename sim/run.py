@@ -144,7 +144,8 @@ def simulate(
     seconds : float
         Length of the recording [s].
     acquisition : Acquisition, optional
-        Sampling rate, noise and converter; by default 30 kHz.
+        Sampling rate, noise and sensors; by default 30 kHz. What it does not say of the sensors is
+        the rig's.
     settling : float, optional
         How long the rig has run before the recording starts [s]; by default that of
         `sim.timing.SIMULATION` at constant speed, else none.
@@ -169,7 +170,7 @@ def simulate(
     >>> run.recording.channel_names, run.recording.samples.shape
     (('torque', 'acceleration', 'pressure', 'angle'), (4, 3000))
     """
-    acquisition = acquisition or Acquisition()
+    acquisition = (acquisition or Acquisition()).over(rig.sensors)
     # Two streams, so that an effect that scatters leaves the sensors' noise as it is.
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
     plan = plan_run(

@@ -1,6 +1,6 @@
-"""Linear filters that go on from block to block: convolution by overlap-add, and decimation.
+"""Linear filters that go on from block to block: convolution, anti-alias filter, decimation.
 
-Both carry what the next block needs, so that the blocks joined are what one call over the whole
+All carry what the next block needs, so that the blocks joined are what one call over the whole
 signal gives, to rounding.
 """
 
@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
-from scipy.signal import upfirdn
+from scipy.signal import sosfilt, upfirdn
 
-from sim.acquisition import anti_alias_filter
+from sim.acquisition import analogue_filter, anti_alias_filter
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["Convolution", "Decimation"]
+__all__ = ["AnalogueFilter", "Convolution", "Decimation"]
 
 
 class Convolution:
@@ -57,6 +57,43 @@ class Convolution:
             self._tails[i] = full[n:]
             outputs.append(full[:n])
         return outputs
+
+
+class AnalogueFilter:
+    """The anti-alias filter of a sensor, as `sim.acquisition.decimate_sensed` has it.
+
+    Parameters
+    ----------
+    corner : float, optional
+        [Hz]; without one, signals pass as they are.
+    rate : float
+        Of the signal [Hz].
+    skip : int
+        Samples at the start that pass as they are: the filter starts settled at the one after.
+
+    Examples
+    --------
+    >>> low = AnalogueFilter(1e3, 90e3, skip=2)
+    >>> [low(np.array(block)).round(9).tolist() for block in ([3.0], [4.0, 5.0], [5.0])]
+    [[3.0], [4.0, 5.0], [5.0]]
+    """
+
+    def __init__(self, corner: float | None, rate: float, skip: int = 0) -> None:
+        self._found, self._skip = analogue_filter(corner, rate), skip
+        self._state: NDArray[np.float64] | None = None
+
+    def __call__(self, block: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the next samples, as many as `block` has."""
+        if self._found is None:
+            return block
+        before, rest = block[: self._skip], block[self._skip :]
+        self._skip -= before.size
+        if not rest.size:
+            return before
+        sections, settled = self._found
+        state = settled * rest[0] if self._state is None else self._state
+        passed, self._state = sosfilt(sections, rest, zi=state)
+        return np.concatenate([before, passed])
 
 
 class Decimation:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from models.rig import Fit, LawSpec, Rig
 
-__all__ = ["changed_rig"]
+__all__ = ["changed_rig", "multiplied"]
 
 _FIT = {
     "elastomer_stiffness": "elastomer_stiffness_Nm_rad",
@@ -116,6 +116,45 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
     a_number(share, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True)
     refuse_impossible(made, where)
     return made
+
+
+def multiplied(
+    rig: Rig, changes: Mapping[str, Any], factors: Mapping[str, float]
+) -> dict[str, str | float]:
+    """Return changes to a rig with quantities of the bushing multiplied besides.
+
+    Changes of effects are left out: who writes a rig file lists these as they have become.
+
+    Parameters
+    ----------
+    rig : Rig
+    changes : mapping of str to str, float or mapping
+        As `changed_rig` has taken them.
+    factors : mapping of str to float
+        By short names [-].
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> multiplied(load_material_rig("PDMS"), {"damping": "x2", "kinetic_torque_Nm": 8.0},
+    ...            {"damping": 1.01, "kinetic_torque": 0.5, "critical_torque": 0.9})
+    {'damping': 'x2.02', 'kinetic_torque_Nm': 4.0, 'critical_torque': 'x0.9'}
+    """
+    rest, found = dict(factors), dict[str, str | float]()
+    for name, given in _flat(changes):
+        target = _target(rig, name, "change")
+        if target.owner not in ("", _FRICTION):
+            continue
+        factor = rest.pop(target.name, 1.0) if not target.owner else 1.0
+        amount = _amount(given, name, target, "change")
+        found[name] = (
+            _factor(amount.factor * factor) if amount.value is None else amount.value * factor
+        )
+    return found | {name: _factor(factor) for name, factor in rest.items()}
+
+
+def _factor(number: float) -> str:
+    return f"x{number:.6g}"
 
 
 def _flat(changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -14,18 +14,17 @@ used.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models.checks import a_number, a_table, a_text, meant, refuse_unknown
+from models.checks import a_table, a_text, meant, refuse_unknown
 from models.errors import ParameterError
 from models.plausible import refuse_impossible
-from models.recording import CHANNEL_UNITS
 from models.rig import Rig
 from models.rig_files.change import changed_rig
 from models.rig_files.rig_parts import RIG_KEYS, friction_law, rig_parts
+from models.rig_files.sensors_file import read_sensors
 from models.rig_files.shipped import (
     bench_content,
     material_content,
@@ -34,6 +33,8 @@ from models.rig_files.shipped import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from models.transfer_functions.measured import MeasuredResponse
 
 __all__ = [
@@ -165,7 +166,8 @@ def _laid(
     if "measured_response" in content:
         rig = replace(rig, measured=_measured(content["measured_response"], folder, where))
     if "sensors" in content:
-        rig = replace(rig, sensor_noise=_sensor_noise(content["sensors"], f"{where}, sensors"))
+        table = content["sensors"]
+        rig = replace(rig, sensors=read_sensors(table, rig.sensors, folder, f"{where}, sensors"))
     refuse_impossible(rig, where)
     if "change" in content:
         rig = changed_rig(rig, a_table(content["change"], "change", where), f"{where}, change")
@@ -222,24 +224,6 @@ def _bushing(given: dict[str, Any], default: str, where: str) -> dict[str, Any]:
             "constant torques"
         )
     return _PLAIN_BUSHING
-
-
-def _sensor_noise(table: Any, where: str) -> dict[str, float]:
-    table = a_table(table, "sensors", where)
-    refuse_unknown(table, {"noise"}, where)
-    noise = table.get("noise", _FROM_RECORDINGS)
-    if noise == _FROM_RECORDINGS:
-        return {}
-    if not isinstance(noise, Mapping):
-        raise ParameterError(
-            f'{where}: noise = {noise!r} must be "{_FROM_RECORDINGS}", or a table such as '
-            "{ torque = 0.01, pressure = 2e-3 }"
-        )
-    refuse_unknown(noise, set(CHANNEL_UNITS), f"{where}, noise")
-    return {name: a_number(noise, name, f"{where}, noise", closed=True) for name in noise}
-
-
-_FROM_RECORDINGS = "from recordings"
 
 
 def _measured(tables: Any, folder: Path, where: str) -> tuple[MeasuredResponse, ...]:

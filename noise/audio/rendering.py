@@ -157,6 +157,7 @@ def render(
     fade: float = FADE,
     bits: int = 24,
     seed: int | Sequence[int] = 0,
+    note: str | None = None,
 ) -> Rendered:
     """Write one file of a set.
 
@@ -173,6 +174,8 @@ def render(
         One of `noise.audio.wav.BITS`; 16 is dithered.
     seed : int or sequence of int
         Of the dither.
+    note : str, optional
+        For the sidecar: what the listener should know of the gain.
 
     Raises
     ------
@@ -216,7 +219,7 @@ def render(
         }
         for part, recording, assessment in zip(of.parts, recordings, of.assessments, strict=True)
     ]
-    made = {**file, "dither": "triangular" if dithered else None}
+    made = {**file, "dither": "triangular" if dithered else None} | ({"note": note} if note else {})
     write_audio(
         path,
         joined.samples,

@@ -14,10 +14,15 @@ from models.plausible import remark, rig_remarks
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from models.recording import Recording
     from models.rig import Rig
+    from models.sensors import Sensors
     from sim.effects.effect import Effect
 
-__all__ = ["NEVER_SLIPS", "effect_remarks", "temperature_remark", "use_remarks"]
+__all__ = [
+    "NEVER_SLIPS", "clipping_remarks", "effect_remarks", "sensor_remarks", "temperature_remark",
+    "use_remarks",
+]  # fmt: skip
 
 NEVER_SLIPS = (
     "nothing ever slips in this run: the contact holds from first to last, so that no friction is "
@@ -50,16 +55,16 @@ def use_remarks(
     """
     finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
     fits = [float(f"{1e3 * fit:.12g}") for fit in interference]
+    beyond = _speed_remark(rig, speed)
     found = [
         *rig_remarks(rig),
-        remark("speed_rad_s", *speed),
+        beyond or remark("speed_rad_s", *speed),
         remark("interference_mm", *fits),
         remark("support_stiffness_Nm_rad", *finite),
         remark("temperature_C", *temperature),
-        _speed_remark(rig, speed),
         _support_remark(rig, support_stiffness),
     ]
-    return [text for text in found if text]
+    return [text for text in dict.fromkeys(found) if text]
 
 
 def _speed_remark(rig: Rig, asked: Sequence[float]) -> str:
@@ -133,3 +138,54 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
         for active in activated(rig.effects, library)
         if not can_act(active, rig.friction)
     ]
+
+
+def sensor_remarks(sensors: Sensors, rate: float) -> list[str]:
+    """Say what of a rig's sensors a simulated recording at a rate [Hz] cannot have.
+
+    Examples
+    --------
+    >>> from models.sensors import Sensor, Sensors
+    >>> sensor_remarks(Sensors({"torque": Sensor(antialias=10e3)}), 30e3)
+    []
+    """
+    found = []
+    if sensors.noise_from_recordings:
+        found.append(
+            'noise = "from recordings" is estimated where recordings are compared; here, without '
+            "any, the noise of good sensors is used"
+        )
+    corners = (sensor.antialias for sensor in sensors.by_kind.values())
+    high = sorted({corner for corner in corners if corner is not None and corner > 0.5 * rate})
+    if high:
+        found.append(
+            f"antialias_hz = {high[0]:g} lies above half the sampling rate, {0.5 * rate:g} Hz; "
+            "what such a filter would let through and fold back is left out"
+        )
+    return found
+
+
+def clipping_remarks(recording: Recording, sensors: Sensors) -> list[str]:
+    """Say which channels of a recording reach the ends of their sensors' ranges.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from models.sensors import Sensor, Sensors
+    >>> held = Recording(np.full((1, 4), 2.0), 1e3, (Channel("torque"),))
+    >>> clipping_remarks(held, Sensors({"torque": Sensor(full_scale=2.0)}))
+    ['torque reaches the range of its sensor, 2 N m, in 4 of 4 samples']
+    """
+    found = []
+    for channel, row in zip(recording.channels, recording.samples, strict=True):
+        sensor = sensors.of(channel.kind)
+        if sensor.full_scale is None:
+            continue
+        ends = int((abs(row) >= sensor.full_scale - 1.5 * sensor.step).sum())
+        if ends:
+            found.append(
+                f"{channel.name} reaches the range of its sensor, {sensor.full_scale:g} "
+                f"{channel.unit}, in {ends} of {row.size} samples"
+            )
+    return found

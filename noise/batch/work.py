@@ -82,7 +82,7 @@ class Work(Protocol):
         """Load what all recordings need; an error here is one of the call."""
         ...
 
-    def identity(self) -> Mapping[str, Cell]:
+    def identity(self) -> Mapping[str, object]:
         """Return what decides the rows beside the recording and the program."""
         ...
 

@@ -146,8 +146,8 @@ def add_condition(parser: ArgumentParser) -> None:
         "--converter",
         action="store_true",
         default=None,
-        help="pass the samples through the rig's 12-bit converter, which hides quiet sounds and "
-        "clips loud ones (default: no)",
+        help="pass the samples through the thesis's 12-bit converter, which hides quiet sounds and "
+        "clips loud ones (default: the range and bits that [sensors] of the rig file states)",
     )
 
 

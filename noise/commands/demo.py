@@ -21,7 +21,8 @@ def configure(parser: ArgumentParser) -> None:
     parser.description = (
         "Run the whole chain: simulate a creak, a squawk, a squeal and a silent run, make them "
         "audible, compute their features, label them, and write a report. The folder then holds "
-        "recordings/, audio/, features.csv, labels.csv and report.html."
+        "recordings/, audio/, features.csv, labels.csv, report.html, and hits/, blows of a hammer "
+        "on the modelled clamp for `bushing-noise frf`."
     )
     parser.add_argument(
         "--out",

@@ -11,6 +11,9 @@ from noise.commands import options as opt
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
+    from noise.diagnosis.improvement import Improvement
+    from noise.diagnosis.outcome import Diagnosis
+
 __all__ = ["configure", "run"]
 
 
@@ -36,7 +39,8 @@ def configure(parser: ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="FOLDER",
-        help="folder for report.html and diagnosis.json (default: JSON on standard output)",
+        help="folder for report.html, diagnosis.json and, where the gap closes, improved.toml, the "
+        "rig file with what closes it (default: JSON on standard output)",
     )
     parser.add_argument(
         "--effects",
@@ -53,22 +57,23 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         opt.check_folder(options.out, file="report.html")
     say("preparing")
-    from models.plausible import rig_remarks
     from models.rig_files.rig_file import load_rig
-    from noise.base.remarks import effect_remarks
     from noise.base.user_effects import effect_library
     from noise.diagnosis.case import read_case
-    from noise.diagnosis.diagnose import diagnose_case
+    from noise.diagnosis.diagnose import case_remarks, diagnose_case
+    from noise.diagnosis.improved_file import check_base
     from noise.diagnosis.outcome import as_json
     from noise.diagnosis.text.sentences import answer, closed_sentence, finding_of
 
     library = effect_library(options.effects)
     rig = opt.changed(load_rig(options.rig), options.change)
-    for text in (*rig_remarks(rig), *effect_remarks(rig, library)):
-        note(text)
+    if options.out is not None:
+        check_base(options.rig, options.out)
     case = read_case(options.data, rig)
     for name, reason in case.refused:
         say(f"{name}: {reason}")
+    for text in case_remarks(case, library):
+        note(text)
     diagnosis = diagnose_case(
         case, quick=options.quick, library=library, seed=options.seed or 0, progress=say
     )
@@ -77,14 +82,38 @@ def run(options: Namespace) -> int:
 
         print(json.dumps(as_json(diagnosis), indent=2))
     else:
-        from noise.pages.diagnosis.page import write_diagnosis
-
-        write_diagnosis(options.out, diagnosis)
-        print(options.out / "report.html")
-        print(options.out / "diagnosis.json")
+        _write(options, diagnosis)
     for sentence in answer(diagnosis):
         say(sentence)
     finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
     if finding is not None and finding.closed is not None:
         say(closed_sentence(finding))
+    if options.out is not None and diagnosis.improvement is not None:
+        from noise.diagnosis.text.improved_sentences import improved_sentence
+
+        say(improved_sentence(diagnosis.improvement))
+        for call in _next(options, diagnosis.improvement):
+            say(f"next: {call}")
     return 1 if case.refused else 0
+
+
+def _write(options: Namespace, diagnosis: Diagnosis) -> None:
+    from models.rig_files.rig_text import base_name
+    from noise.diagnosis.improved_file import NAME, improved_text
+    from noise.pages.diagnosis.page import write_diagnosis
+
+    improved, found = None, diagnosis.improvement
+    if found is not None:
+        base = base_name(options.rig, options.out)
+        improved = improved_text(found, base, dict(options.change or ()))
+    commands = [] if found is None else _next(options, found)
+    write_diagnosis(options.out, diagnosis, improved, commands)
+    for name in ("report.html", "diagnosis.json", *([NAME] if improved is not None else [])):
+        print(options.out / name)
+
+
+def _next(options: Namespace, improvement: Improvement) -> list[str]:
+    from noise.diagnosis.improved_file import NAME
+    from noise.diagnosis.text.improved_sentences import improved_commands
+
+    return improved_commands(improvement, options.out / NAME, options.data, options.effects)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from noise.recordings.blocks import RecordingBlocks
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["Featuring", "configure", "run"]
 
@@ -43,7 +44,7 @@ def configure(parser: ArgumentParser) -> None:
         "seconds and what the classifier of `bushing-noise label` is given of it, in the units "
         "that features.WINDOW_FEATURES and, for the torque, features.FEATURES state",
     )
-    opt.add_full_scale(parser)
+    opt.add_calibration(parser)
     opt.add_seed(parser, "taken by all commands; features use no random numbers")
 
 
@@ -52,7 +53,7 @@ def run(options: Namespace) -> int:
     check_batch(options)
     from noise.batch import find_jobs
 
-    work = Featuring(options.full_scale, options.pitch, options.windows)
+    work = Featuring(opt.full_scale_of(options), options.pitch, options.windows)
     return run_batch(options, work, find_jobs(options.paths))
 
 
@@ -62,7 +63,7 @@ class Featuring:
 
     Parameters
     ----------
-    full_scale : float, optional
+    full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     pitch : bool
         Whether the pitch over time is added.
@@ -70,7 +71,7 @@ class Featuring:
         Whether windows are described as the classifier is given them, not recordings.
     """
 
-    full_scale: float | None = None
+    full_scale: PascalPerFullScale | None = None
     pitch: bool = False
     windows: bool = False
 
@@ -92,7 +93,7 @@ class Featuring:
         """Load the libraries."""
         import noise.recordings  # noqa: F401
 
-    def identity(self) -> dict[str, float | None]:
+    def identity(self) -> dict[str, object]:
         """Return the options that decide the rows, beside the columns."""
         return {"full_scale": self.full_scale}
 

@@ -47,7 +47,7 @@ def configure(parser: ArgumentParser) -> None:
         "the modelled one in a rig file."
     )
     parser.epilog = (
-        "example: bushing-noise frf hits/*.npy --arm 0.05 --out torque_to_acceleration_2214.uff "
+        "example: bushing-noise frf hits --arm 0.05 --out torque_to_acceleration_2214.uff "
         "--modes modes.csv; columns of the modes: natural frequency, fraction of critical damping, "
         "residue (in the response's unit times rad/s), its peak, the coherence there, and through "
         "how many orders of the fit the pole stayed"
@@ -57,8 +57,8 @@ def configure(parser: ArgumentParser) -> None:
         nargs="+",
         type=Path,
         metavar="HIT",
-        help="one hit a file: a recording with a force channel, or .npy or .csv whose rows or "
-        "columns are time in s, force in N, response",
+        help="one hit a file, or a folder of them: a recording with a force channel, or .npy or "
+        ".csv whose rows or columns are time in s, force in N, response",
     )
     parser.add_argument(
         "--out",
@@ -147,9 +147,6 @@ def run(options: Namespace) -> int:
 def _check(options: Namespace) -> None:
     from models.transfer_functions.files import check_transfer_function_path
 
-    for path in options.hits:
-        if not path.exists():
-            raise ParameterError(f"{path}: there is no such file")
     if options.out is not None:
         check_transfer_function_path(options.out)
         check_target(options.out)
@@ -163,12 +160,12 @@ def _check(options: Namespace) -> None:
 def _read(options: Namespace) -> tuple[list[Hit], str, int]:
     """Usable hits, cut to the same length, the unit of the response, and how many were refused."""
     from features.modal.hammer import Hit, check_hit
-    from noise.recordings.hits import read_hit
+    from noise.recordings.hits import find_hits, read_hit
 
     hits: list[Hit] = []
     units: list[str] = []
     refused = 0
-    for path in track(options.hits, "reading", unit="hit"):
+    for path in track(find_hits(options.hits), "reading", unit="hit"):
         try:
             hit, unit = read_hit(path, response=options.response, arm=options.arm)
             check_hit(hit)

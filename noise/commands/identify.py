@@ -13,6 +13,8 @@ from noise.commands import options as opt
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
+    from noise.identification.outcome import Identification
+
 __all__ = ["configure", "run"]
 
 
@@ -23,12 +25,19 @@ def configure(parser: ArgumentParser) -> None:
         "kinetic torque by interference, and the law of friction, each with its 90 %% interval. "
         "Recordings need torque and shaft angle, and a sidecar with interference and support "
         "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
-        "law, a condition recorded twice tells how much repeats differ."
+        "law, a condition recorded twice tells how much repeats differ. A static test, slow motion "
+        "to and fro below any slip, tells the stiffness best, a shaft held after that the damping."
     )
     parser.epilog = "example: bushing-noise identify recordings --rig known.toml --out mine"
     parser.add_argument(
-        "data", type=Path, nargs="+", metavar="DATA", help="recordings, or folders of them"
+        "data", type=Path, nargs="*", metavar="DATA", help="recordings, or folders of them"
     )
+    parser.add_argument(
+        "--numbers", type=Path, metavar="TABLE.csv",
+        help="measured numbers beside or instead of recordings: item, value, unit, "
+        "interference_mm, support_stiffness_Nm_rad, speed_rad_s, error_percent; items as the "
+        "table of `bushing-noise thesis` names them, such as slip_frequency or effective_stiffness",
+    )  # fmt: skip
     parser.add_argument(
         "--rig", type=Path, metavar="RIG.toml",
         help="what is known of the rig: the two inertias, if possible",
@@ -47,25 +56,38 @@ def run(options: Namespace) -> int:
         if options.out.is_file():
             raise ParameterError(f"--out {options.out}: is a file; name a folder")
         check_target(options.out / "report.html")
+    if not options.data and options.numbers is None:
+        raise ParameterError("identify: name recordings, or --numbers TABLE.csv")
     say("preparing")
     from noise.identification.identify import identify_rig
     from noise.identification.known import known_beforehand
-    from noise.identification.measured import read_measurements
+    from noise.identification.measured import Measurements, read_measurements
+    from noise.identification.table_number import read_numbers
 
     beforehand = known_beforehand(options.rig)
-    measurements = read_measurements(options.data)
+    table = () if options.numbers is None else read_numbers(options.numbers)
+    calibrations = beforehand.rig.sensors.calibrations
+    measurements = (
+        read_measurements(options.data, calibrations) if options.data else Measurements((), ())
+    )
     for name, reason in measurements.refused:
         say(f"{name}: {reason}")
-    if not measurements.used:
+    if not (measurements.used or measurements.static or table):
         say("no recording that a rig can be identified from; nothing is written")
         return 1
-    found = identify_rig(measurements, beforehand, seed=options.seed or 0, progress=say)
-    if options.out is None:
-        print(found.rig_toml, end="")
-    else:
-        from noise.pages.identification.page import write_identification
+    found = identify_rig(
+        measurements, beforehand, table=table, seed=options.seed or 0, progress=say
+    )
+    return _written(found, options.out) or (1 if measurements.refused else 0)
 
-        write_identification(options.out, found)
-        for name in ("report.html", "rig.toml", "identification.json"):
-            print(options.out / name)
-    return 1 if measurements.refused else 0
+
+def _written(found: Identification, out: Path | None) -> int:
+    if out is None:
+        print(found.rig_toml, end="")
+        return 0
+    from noise.pages.identification.page import write_identification
+
+    write_identification(out, found)
+    for name in ("report.html", "rig.toml", "identification.json"):
+        print(out / name)
+    return 0

@@ -61,7 +61,7 @@ def configure(parser: ArgumentParser) -> None:
         help="model that infers conditions which were not logged, made by `bushing-noise train` "
         "(default: the one that is shipped)",
     )
-    opt.add_full_scale(parser)
+    opt.add_calibration(parser)
     opt.add_seed(parser, "taken by all commands; labelling uses no random numbers")
 
 
@@ -83,7 +83,7 @@ def run(options: Namespace) -> int:
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
-    work = Labelling(*models, full_scale=options.full_scale)
+    work = Labelling(*models, full_scale=opt.full_scale_of(options))
     return run_batch(options, work, jobs, lambda rows: _export(options, rows))
 
 

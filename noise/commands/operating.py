@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.base.progress import note, say
-from noise.base.remarks import NEVER_SLIPS, effect_remarks, temperature_remark, use_remarks
+from noise.base.remarks import (
+    NEVER_SLIPS,
+    clipping_remarks,
+    effect_remarks,
+    sensor_remarks,
+    temperature_remark,
+    use_remarks,
+)
 from noise.base.user_effects import effect_library
 from noise.commands import condition_options as opt
 from noise.commands.options import changed, number_or_none
@@ -76,6 +83,7 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
     _note_idle(options.effects, rig, library)
     shaft, turning = _shaft(options, seconds)
     notes = _remarks(options, rig, shaft, library, interference_mm, stiffness)
+    notes += tuple(sensor_remarks(rig.sensors, rate))
     for text in notes:
         note(text)
     support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
@@ -83,9 +91,9 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
 
     import numpy as np
 
-    from sim.acquisition import Acquisition
+    from models.sensors import Sensors
+    from sim.acquisition import THESIS_CONVERTER, Acquisition
 
-    acquisition = Acquisition(rate=rate, converter=bool(options.converter))
     arguments = {
         "rig": rig,
         "shaft": shaft,
@@ -93,7 +101,9 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
         "support_stiffness": stiffness,
         "temperature": _or(options.temperature, opt.DEFAULT_TEMPERATURE),
         "seconds": seconds,
-        "acquisition": replace(acquisition, noise={**acquisition.noise, **rig.sensor_noise}),
+        "acquisition": Acquisition(
+            rate=rate, sensors=THESIS_CONVERTER if options.converter else Sensors()
+        ),
         "library": library,
         "rng": np.random.default_rng(options.seed),
     }
@@ -101,14 +111,17 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
 
 
 def with_notes(run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any]) -> Recording:
-    """Return the recording of a run with its notes, that nothing slips in it among them."""
+    """Return the recording of a run with its notes: what slips or clips in it is known only now."""
     from sim.analysis.regime import never_slips
 
-    kinetic = arguments["rig"].fit(arguments["interference"]).kinetic_torque
-    if never_slips(run.motion, kinetic):
-        note(NEVER_SLIPS)
-        notes = (*notes, NEVER_SLIPS)
-    return replace(run.recording, notes=notes)
+    rig: Rig = arguments["rig"]
+    through = arguments["acquisition"].over(rig.sensors).sensors
+    found = clipping_remarks(run.recording, through)
+    if never_slips(run.motion):
+        found.append(NEVER_SLIPS)
+    for text in found:
+        note(text)
+    return replace(run.recording, notes=(*notes, *found))
 
 
 def _remarks(

@@ -10,19 +10,20 @@ from argparse import ArgumentTypeError
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
+from models.errors import BushingNoiseError, ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import say
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, _ArgumentGroup
+    from argparse import ArgumentParser, Namespace, _ArgumentGroup
     from collections.abc import Callable, Sequence
 
     from models.rig import Rig
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = [
-    "add_change", "add_full_scale", "add_seed", "changed", "check_folder", "number",
-    "number_or_none", "refuse", "whole_number",
+    "add_calibration", "add_change", "add_seed", "changed", "check_folder", "full_scale_of",
+    "number", "number_or_none", "refuse", "whole_number",
 ]  # fmt: skip
 
 
@@ -108,15 +109,59 @@ def add_seed(parser: ArgumentParser, use: str) -> None:
     )
 
 
-def add_full_scale(parser: ArgumentParser) -> None:
-    """Add the calibration of plain sound files."""
-    parser.add_argument(
+def add_calibration(parser: ArgumentParser) -> None:
+    """Add the calibration of plain sound files, of which `full_scale_of` makes a number."""
+    calibration = parser.add_mutually_exclusive_group()
+    calibration.add_argument(
         "--full-scale",
         type=number(above=0.0),
         metavar="PA",
         help="sound pressure in Pa that a full-scale sample of the input stands for; wins over "
         "what sidecar and file say (default: what they say, else levels in dBFS only)",
     )
+    calibration.add_argument(
+        "--calibrator",
+        type=Path,
+        metavar="TONE",
+        help="recording of a sound calibrator at 250 Hz or 1 kHz, made with the gain of the "
+        "inputs, in place of --full-scale: one track for all of theirs, or as many as they have",
+    )
+    parser.add_argument(
+        "--level",
+        type=number(least=40.0, most=170.0),
+        metavar="DB",
+        help="of the calibrator in dB re 20 uPa, such as 94 or 114; needed with --calibrator",
+    )
+
+
+def full_scale_of(options: Namespace) -> PascalPerFullScale | None:
+    """Return what the options of `add_calibration` make a full-scale sample worth [Pa].
+
+    Raises
+    ------
+    BushingNoiseError
+        The calibrator's recording cannot be used, or one option is given without the other.
+    """
+    stated: float | None = options.full_scale
+    if (options.calibrator is None) != (options.level is None):
+        raise ParameterError(
+            "--calibrator needs --level, the level that it gives in dB, and --level a --calibrator"
+        )
+    if options.calibrator is None:
+        return stated
+    from noise.recordings.calibrator import read_calibrator
+
+    try:
+        tones = read_calibrator(options.calibrator, options.level)
+    except BushingNoiseError as error:
+        raise ParameterError(f"--calibrator {error}") from None
+    for tone in tones:
+        say(
+            f"{options.calibrator.name}: {options.level:g} dB at {tone.frequency:.4g} Hz make full "
+            f"scale {tone.full_scale:.4g} Pa"
+        )
+    values = tuple(tone.full_scale for tone in tones)
+    return values[0] if len(values) == 1 else values
 
 
 def add_change(parser: ArgumentParser | _ArgumentGroup) -> None:

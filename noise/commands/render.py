@@ -120,7 +120,7 @@ def configure(parser: ArgumentParser) -> None:
         help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
         "needs the extra sound-quality, and some seconds a second of sound",
     )
-    opt.add_full_scale(parser)
+    opt.add_calibration(parser)
     add_condition(parser)
     opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
 
@@ -211,7 +211,7 @@ def _keep_inputs(out: Path, sources: list[Source], plans: list[_Plan]) -> None:
 def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> int:
     from noise.audio.rendering import COLUMNS, render, survey
     from noise.base.tables import write_table
-    from noise.commands.render_gain import full_scales
+    from noise.commands.render_gain import faint_notes, full_scales
 
     surveys: dict[str, Survey] = {}
     refused: dict[str, str] = {}
@@ -233,6 +233,9 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
         surveys, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
     _notes(options, plans, surveys)
+    faint, faint_of = faint_notes(surveys, scales, back_to_back=options.ab)
+    if faint:
+        note(faint)
     rows: list[dict[str, object]] = []
     for index, plan in enumerate(plans):
         if plan.name not in surveys:
@@ -247,14 +250,15 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
             **shape,
             bits=options.bits,
             seed=(options.seed, index),
+            note=faint_of.get(plan.name),
         )
         name = plan.target.name if folder is None else plan.target.relative_to(folder).as_posix()
-        rows += [{"file": name, **row} for row in written.rows]
+        rows += [{"file": name, **row, "note": faint_of.get(plan.name)} for row in written.rows]
         _tell(plan, survey_of, scale.value, written.summary, alone=folder is None)
         print(plan.target)
         print(plan.target.with_suffix(".json"))
     if folder is not None:
-        write_table(folder / "levels.csv", ("file", *COLUMNS, "error"), rows)
+        write_table(folder / "levels.csv", ("file", *COLUMNS, "note", "error"), rows)
         print(folder / "levels.csv")
     return 1 if refused else 0
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -11,7 +12,9 @@ if TYPE_CHECKING:
 
     from noise.audio.rendering import FullScale, Survey
 
-__all__ = ["full_scales"]
+__all__ = ["faint_notes", "full_scales"]
+
+_MOST_NAMED = 4
 
 
 def full_scales(
@@ -68,7 +71,7 @@ def _calibrated(surveys: Mapping[str, Survey], pascal: float) -> dict[str, FullS
         if not of.calibrated:
             raise ParameterError(
                 f"--pascal-per-full-scale needs a calibrated input, and {of.name} is not; "
-                "--full-scale gives its calibration"
+                "--full-scale or --calibrator gives its calibration"
             )
     loudest = max(surveys.values(), key=lambda of: of.true_peak)
     if loudest.true_peak > CEILING * pascal:
@@ -96,3 +99,63 @@ def _common(surveys: Mapping[str, Survey]) -> dict[str, FullScale]:
     if True in known:  # so that silence is not made loud
         value = max(value, QUIETEST_FULL_SCALE)
     return dict.fromkeys(surveys, FullScale(value, "common"))
+
+
+def faint_notes(
+    surveys: Mapping[str, Survey], scales: Mapping[str, FullScale], *, back_to_back: bool = False
+) -> tuple[str, dict[str, str]]:
+    """Say which sounds are nearly inaudible in their files, and what makes them audible.
+
+    Parameters
+    ----------
+    surveys : mapping of str to Survey
+    scales : mapping of str to FullScale
+    back_to_back : bool
+        Whether sounds are played behind one another, at one gain.
+
+    Returns
+    -------
+    of_all : str
+        In one line, empty where every sound can be heard.
+    of_each : dict of str to str
+        The same of each that can hardly be heard.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from noise.audio.rendering import FullScale, survey
+    >>> tone = 0.02 * np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)[np.newaxis]
+    >>> surveys = {"tone": survey([Recording(tone, 48e3, (Channel("pressure", "Pa"),))])}
+    >>> print(faint_notes(surveys, full_scales(surveys, pascal=20.0, matched=False))[0])
+    nearly inaudible (below -48 dBFS(A)) where the volume suits speech, unless playback is ...
+    """
+    from noise.audio.audibility import LEAST_AUDIBLE, nearly_inaudible
+
+    faint = {n: of for n, of in surveys.items() if nearly_inaudible(of, scales[n].value)}
+    if not faint:
+        return "", {}
+    scale = scales[next(iter(faint))]
+    calibrated = scale.gain == "calibrated"
+    lead = f"nearly inaudible (below {LEAST_AUDIBLE:g} dBFS(A)) where the volume suits speech"
+    lead += f", unless playback is calibrated to {scale.value:g} Pa: " if calibrated else ": "
+    remedy = ""
+    if calibrated:
+        louder = 20.0 * math.log10(scale.value / next(iter(_common(surveys).values())).value)
+        remedy = f"; without --pascal-per-full-scale {louder:.0f} dB louder"
+    if len(surveys) > 1 and not back_to_back and scale.gain != "matched":
+        remedy += "; with --match-loudness as loud as the others"
+    told = {name: _levels(name, of, scales[name].value) for name, of in faint.items()}
+    named = ", ".join(list(told.values())[:_MOST_NAMED])
+    more = f" and {len(told) - _MOST_NAMED} more" if len(told) > _MOST_NAMED else ""
+    return lead + named + more + remedy, {name: lead + of + remedy for name, of in told.items()}
+
+
+def _levels(name: str, of: Survey, full_scale: float) -> str:
+    from noise.audio.audibility import loudest_in_file
+
+    in_file = f"{loudest_in_file(of, full_scale):.1f} dBFS(A) in the file"
+    if not of.calibrated:
+        return f"{name} ({in_file})"
+    level = max(one.levels.level_af_max for one in of.assessments)
+    return f"{name} ({level:.1f} dB(A) at the microphone, {in_file})"

@@ -17,11 +17,13 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from models.errors import ParameterError
 from noise.commands.condition_options import CONDITION_OPTIONS, add_condition, given_options
 from noise.commands.operating import run_arguments, with_notes
+from noise.commands.options import full_scale_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from models.recording import Recording
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["RecordedSource", "SimulatedSource", "Source", "sources_of"]
 
@@ -35,7 +37,7 @@ class RecordedSource:
 
     name: str
     path: Path
-    full_scale: float | None
+    full_scale: PascalPerFullScale | None
 
     def recording(self, number: int) -> Recording:
         """Read it; the same whatever `number`."""
@@ -94,8 +96,9 @@ def sources_of(options: Namespace) -> list[Source]:
         raise ParameterError(
             "render needs a recording, or a condition such as --speed 5 to simulate"
         )
-    if options.full_scale is not None and not recorded:
-        raise ParameterError("--full-scale is the calibration of a recording; none is given")
+    if not recorded and (options.full_scale is not None or options.calibrator is not None):
+        option = "--calibrator" if options.full_scale is None else "--full-scale"
+        raise ParameterError(f"{option} is the calibration of a recording; none is given")
     if "" in options.inputs:
         raise ParameterError("one INPUT is empty; give a recording, a folder, or a condition")
     if recorded and given and not simulated:
@@ -108,12 +111,13 @@ def sources_of(options: Namespace) -> list[Source]:
             f"--repeats simulates a run again, but {recorded[0]} is already recorded, and a "
             "recording is not looped; record it for longer"
         )
+    full_scale = full_scale_of(options)
     sources: list[Source] = []
     for text in options.inputs:
         if text in simulated:
             sources.append(_simulated(text, options))
         else:
-            sources += _recorded(Path(text), options.full_scale)
+            sources += _recorded(Path(text), full_scale)
     if not options.inputs:
         sources.append(_source(options.out.name.removesuffix(".wav"), options))
     return _with_names_of_their_own(sources)
@@ -127,7 +131,7 @@ def _is_rig(text: str) -> bool:
     return text.lower().endswith(".toml")
 
 
-def _recorded(path: Path, full_scale: float | None) -> list[Source]:
+def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[Source]:
     from noise.recordings import find_recordings
 
     found = find_recordings(path)

@@ -81,7 +81,7 @@ def configure(parser: ArgumentParser) -> None:
         action="store_true",
         help="leave recordings without a label that no table labels (default: label them)",
     )
-    opt.add_full_scale(parser)
+    opt.add_calibration(parser)
     opt.add_seed(parser, "seed of simulated sounds and of the dither")
 
 
@@ -95,7 +95,7 @@ def run(options: Namespace) -> int:
         options.paths,
         options.out,
         title=options.title,
-        full_scale=options.full_scale,
+        full_scale=opt.full_scale_of(options),
         pascal_per_full_scale=options.pascal_per_full_scale,
         seconds=options.seconds,
         megabytes=options.megabytes,

@@ -95,11 +95,7 @@ def run(options: Namespace) -> int:
             _check_seconds(option, options.seconds)
     arguments, notes = run_arguments(options, options.rate)
     if options.out is not None and is_long(arguments):
-        from noise.long_run import write_run
-        from sim.long_run import simulate_blocks
-
-        _print_names(write_run(options.out, simulate_blocks(**arguments), notes))
-        return 0
+        return _write_in_blocks(options.out, arguments, notes)
     from sim.run import simulate
 
     simulated = simulate(**arguments)
@@ -119,6 +115,19 @@ def run(options: Namespace) -> int:
     if options.sound_power is not None:
         _write_sound_power(options.sound_power, simulated, arguments)
         print(options.sound_power)
+    return 0
+
+
+def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str, ...]) -> int:
+    from noise.base.remarks import NEVER_SLIPS
+    from noise.long_run import write_run
+    from sim.long_run import simulate_blocks
+
+    made = simulate_blocks(**arguments)
+    written = write_run(path, made, notes)
+    if made.watch.never_slips:
+        note(NEVER_SLIPS)
+    _print_names(written)
     return 0
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
+from noise.diagnosis.evidence.sensor_noise import with_estimated_noise
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ class Case:
     Parameters
     ----------
     rig : Rig
+        With the noise of its sensors, where that is to be taken from the recordings.
     names : tuple of str
         Of the files.
     recordings : tuple of Recording
@@ -73,7 +75,7 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
     names, recordings, refused = [], [], []
     for path, name in find_recordings(paths):
         try:
-            recording = usable(read_recording(path), rig)
+            recording = usable(read_recording(path, calibrations=rig.sensors.calibrations), rig)
         except BushingNoiseError as error:
             refused.append((name, str(error)))
         else:
@@ -84,7 +86,8 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         raise ParameterError(
             f"{', '.join(str(path) for path in paths)}: no recording that can be diagnosed{reason}"
         )
-    return Case(rig, tuple(names), tuple(recordings), tuple(refused))
+    seen = with_estimated_noise(rig, recordings)
+    return Case(seen, tuple(names), tuple(recordings), tuple(refused))
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:
@@ -100,7 +103,8 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     """
     if not recording.calibrated:
         raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true'
+            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
+            "calibration under [sensors] of the rig file"
         )
     if all(recording.first(kind) is None for kind in KINDS):
         raise ParameterError(f"has no channel of {', '.join(KINDS)}")

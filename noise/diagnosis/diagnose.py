@@ -10,11 +10,13 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from models.condition import known_condition
+from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
-from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.gap.floor import case_gap
+from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
+from noise.diagnosis.evidence.sensor_noise import noise_remarks
+from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
 from sim.effects import EFFECTS
 
@@ -25,9 +27,9 @@ if TYPE_CHECKING:
     from noise.diagnosis.causes.posterior import Posterior
     from sim.effects.effect import Effect
 
-__all__ = ["diagnose_case"]
+__all__ = ["case_remarks", "diagnose_case"]
 
-_LISTED = 5
+_SHOWN = 5
 """Effects that are listed at least."""
 
 
@@ -63,13 +65,9 @@ def diagnose_case(
     tell = progress or (lambda _text: None)
     library = library or EFFECTS
     posterior = posterior or load_posterior()
-    tell("comparing the recordings with the rig file")
-    table = case_table(case.recordings, case.rig, library=library, seed=seed)
-    tell("measuring the gap against simulated repeats")
-    gap = case_gap(case.recordings, case.rig, library=library, seed=seed)
+    first = first_answer(case, library, posterior, seed, tell)
+    table, gap, probabilities, verdict = first.table, first.gap, first.probabilities, first.verdict
     known = {spec.name for spec in case.rig.effects}
-    probabilities = _without(posterior.probabilities(table), known)
-    verdict = verdict_of(probabilities, posterior.alarm, gap)
     findings = stage_findings(table, posterior)
     ranked = [name for name in _ranked(probabilities) if name in EFFECTS]
     stage = EFFECTS[verdict[0]].stage.value if verdict and verdict[0] in EFFECTS else None
@@ -78,7 +76,7 @@ def diagnose_case(
         equivalent=equivalent_pairs(ranked, probabilities, _kinds(case)),
         location=locate(table, posterior, stage) if verdict else None,
         stages=findings,
-        effects=tuple(_unfitted(name, probabilities) for name in ranked[:_LISTED]),
+        effects=tuple(_unfitted(name, probabilities) for name in ranked[:_SHOWN]),
         probabilities=probabilities,
         parameters={},
         next_measurement=next_measurement(verdict, probabilities, _kinds(case)),
@@ -87,7 +85,12 @@ def diagnose_case(
         floor=1.0,
         p_value=gap.p_value,
         seconds=time.perf_counter() - started,
-        notes=_notes(case),
+        notes=(
+            *map(_listed, first.suspected),
+            *_notes(case),
+            *first.unlearned,
+            *case_remarks(case, library),
+        ),
         differences=differences(table, posterior),
     )
     if not quick:
@@ -103,9 +106,11 @@ def _ranked(probabilities: Mapping[str, float]) -> list[str]:
     return sorted(probabilities, key=lambda name: -probabilities[name])
 
 
-def _without(probabilities: Mapping[str, float], known: set[str]) -> dict[str, float]:
-    """Leave out what the rig file lists."""
-    return {name: 0.0 if name in known else p for name, p in probabilities.items()}
+def _listed(name: str) -> str:
+    return (
+        f"what is left looks like {name}, which the rig file lists already: its form or numbers "
+        "are off"
+    )
 
 
 def _unfitted(name: str, probabilities: Mapping[str, float]) -> EffectFinding:
@@ -118,6 +123,36 @@ def _kinds(case: Case) -> frozenset[str]:
     )
 
 
+def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
+    """Say what of a rig, and of the conditions that it was recorded at, the user should know of.
+
+    Parameters
+    ----------
+    case : Case
+    library : mapping of str to Effect
+        Effects that the rig's can be found among.
+
+    Returns
+    -------
+    list of str
+        One line each, each once.
+    """
+    at = [known_condition(recording.condition) for recording in case.recordings]
+    heat = sorted({c.temperature for c in at if c.temperature is not None})
+    found = [
+        *use_remarks(
+            case.rig,
+            speed=[c.speed for c in at],
+            interference=[c.interference for c in at],
+            support_stiffness=[c.support_stiffness for c in at],
+            temperature=heat,
+        ),
+        *effect_remarks(case.rig, library),
+        temperature_remark(case.rig, heat[-1]) if len(heat) > 1 else "",
+    ]
+    return [text for text in dict.fromkeys(found) if text]
+
+
 def _notes(case: Case) -> tuple[str, ...]:
     kinds = _kinds(case)
     notes = [_COST[kind] for kind in _COST if kind not in kinds]
@@ -128,6 +163,8 @@ def _notes(case: Case) -> tuple[str, ...]:
         )
     elif len(different) == len(case.recordings):
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
+    notes += noise_remarks(case.rig.sensors, kinds)
+    notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
     return tuple(notes)
 

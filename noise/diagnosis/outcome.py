@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from models.recording import Recording
+    from models.rig import Rig
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
+    from noise.diagnosis.improvement import Improvement
 
 __all__ = [
     "ROLES",
@@ -180,6 +182,8 @@ class Diagnosis:
     differences : tuple of Location
         Every stage, channel, band and phase with its p-value, corrected for the number of looks;
         the surest first.
+    improvement : Improvement, optional
+        What closes the gap; None where nothing does, and where it was not looked for.
 
     Examples
     --------
@@ -206,6 +210,12 @@ class Diagnosis:
     labels_and_levels: tuple[LabelsAndLevels, ...] = ()
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
+    improvement: Improvement | None = None
+
+    @property
+    def improved(self) -> Rig | None:
+        """The rig with what closes the gap; None where nothing does."""
+        return None if self.improvement is None else self.improvement.rig
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw how probable each cause is.
@@ -229,8 +239,14 @@ class Diagnosis:
         return diagnosis_html(self)
 
 
-def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
+def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]:
     """Return a diagnosis as ``diagnosis.json`` has it.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    improved : str, optional
+        Name of the file beside it that holds the improved rig.
 
     Examples
     --------
@@ -255,6 +271,7 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "parameters": {
             name: [_rounded(x) for x in interval] for name, interval in diagnosis.parameters.items()
         },
+        "improved": improved,
         "next_measurement": diagnosis.next_measurement,
         "held_out": list(diagnosis.held_out),
         "gap": _rounded(diagnosis.gap),

@@ -8,23 +8,28 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.rig_files.rig_text import rig_text
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers
 from noise.identification.corrected import corrected, values_of
+from noise.identification.evidence import table_evidence, with_evidence
 from noise.identification.found_rig import found_rig
 from noise.identification.law_choice import MARGIN, choose_law, overall
 from noise.identification.law_numbers import law_numbers
 from noise.identification.levels import torque_levels
 from noise.identification.outcome import Identification, Seen
-from noise.identification.rig_text import rig_text
+from noise.identification.static_test import static_evidence, static_notes
+from noise.identification.table_fit import score_table
+from noise.identification.table_rig import identify_from_table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from models.rig import Rig
     from noise.identification.known import Beforehand
     from noise.identification.law_choice import Choice
     from noise.identification.measured import Measurements
+    from noise.identification.table_number import TableNumber
 
 __all__ = ["identify_rig"]
 
@@ -33,6 +38,7 @@ def identify_rig(
     measurements: Measurements,
     beforehand: Beforehand,
     *,
+    table: Sequence[TableNumber] = (),
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> Identification:
@@ -43,6 +49,9 @@ def identify_rig(
     measurements : Measurements
     beforehand : Beforehand
         What is known of it.
+    table : sequence of TableNumber
+        Measured numbers: what they state of the rig itself joins what the recordings say, the
+        others are held against the rig that comes out.
     seed : int
         Of simulated repeats.
     progress : callable, optional
@@ -58,6 +67,8 @@ def identify_rig(
         No recording can be used, or nothing slips in any recording, so that no torque can be told.
     """
     started = time.perf_counter()
+    if not measurements.used and (measurements.static or table):
+        return identify_from_table(table, beforehand, measurements, progress)
     if not measurements.used:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in measurements.refused)
         raise ParameterError(f"no recording that a rig can be identified from: {reasons}")
@@ -75,7 +86,10 @@ def identify_rig(
         )
     stated = {one.measured.condition.material for one in seen} - {None}
     material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
-    base = _at_all_supports(found_rig(beforehand, bushing_numbers(seen), material=material))
+    static, known = measurements.static, beforehand.known
+    evidence = (*table_evidence(table), *static_evidence(static, known))
+    first = with_evidence(bushing_numbers(seen), evidence)
+    base = _at_all_supports(found_rig(beforehand, first, material=material))
     known_fits = {fit.interference for fit in base.fits}
     usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]
     choice = choose_law(base, usable, tell, seed=seed)
@@ -88,7 +102,9 @@ def identify_rig(
         else one
         for one in seen
     ]
-    numbers = bushing_numbers(seen, sticks=model.candidate.sticks)
+    sticks = model.candidate.sticks
+    evidence = (*table_evidence(table), *static_evidence(static, known, sticks=sticks))
+    numbers = with_evidence(bushing_numbers(seen, sticks=sticks), evidence)
     by_law = {fit.interference: (fit.critical_torque, fit.kinetic_torque) for fit in chosen.fits}
     rig = replace(
         found_rig(beforehand, numbers, material=material, friction=chosen.friction, torques=by_law),
@@ -103,10 +119,12 @@ def identify_rig(
         seen=tuple(seen),
         assumed=assumed,
         not_found=not_found,
-        notes=_notes(choice),
+        notes=(*_notes(choice, tested=bool(static)), *static_notes(static)),
         refused=measurements.refused,
         held_out=choice.held_out,
         margin=MARGIN,
+        static=static,
+        measured=tuple(score_table(rig, table).found.items()),
         seconds=time.perf_counter() - started,
     )
 
@@ -124,7 +142,7 @@ def _at_all_supports(rig: Rig) -> Rig:
     return replace(rig, fits=tuple(replace(fit, damping=damping) for fit in rig.fits))
 
 
-def _notes(choice: Choice) -> tuple[str, ...]:
+def _notes(choice: Choice, *, tested: bool) -> tuple[str, ...]:
     notes = [
         "torques named critical_torque and kinetic_torque are those seen in the recordings; the "
         "rig file has those that the law means, law_critical_torque and law_kinetic_torque"
@@ -135,12 +153,12 @@ def _notes(choice: Choice) -> tuple[str, ...]:
             "to; record more speeds"
         )
     best = choice.scores[0]
-    if choice.fit.model.candidate.law in _ELASTIC:
+    if choice.fit.model.candidate.law in _ELASTIC and not tested:
         notes.append(
             "this law's contact gives way while it sticks, which torque and angle hardly tell from "
             "the elastomer: its stiffness was off by a tenth to two thirds and the damping by two "
-            "fifths on rigs of a second simulator; hold both against a test with the shaft clamped "
-            "to the bushing"
+            "fifths on rigs of a second simulator; a static test tells them apart: turn the shaft "
+            "to and fro, slowly, to three quarters of the torque at which it slips"
         )
     rivals = [s.law for s in choice.scores[1:] if overall(s) <= MARGIN * overall(best)]
     if rivals:

@@ -11,15 +11,18 @@ from scipy.fft import irfft, rfft, rfftfreq
 from models.condition import KnownCondition
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
+from noise.identification.static_test import static_test
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from models.calibration import Calibration
     from models.recording import Recording
+    from noise.identification.static_test import StaticTest
 
 __all__ = ["Measured", "Measurements", "measured", "read_measurements"]
 
@@ -77,20 +80,28 @@ class Measurements:
     Parameters
     ----------
     used : tuple of Measured
+        Rotation, with stick and slip.
     refused : tuple of (str, str)
         Name and reason of what was left out.
+    static : tuple of StaticTest
+        Slow motion below any slip.
     """
 
     used: tuple[Measured, ...]
     refused: tuple[tuple[str, str], ...]
+    static: tuple[StaticTest, ...] = ()
 
 
-def read_measurements(paths: Sequence[Path]) -> Measurements:
+def read_measurements(
+    paths: Sequence[Path], calibrations: Mapping[str, Calibration] | None = None
+) -> Measurements:
     """Read the recordings in files and folders.
 
     Parameters
     ----------
     paths : sequence of Path
+    calibrations : mapping of str to Calibration, optional
+        As of `noise.recordings.read_recording`.
 
     Returns
     -------
@@ -102,15 +113,31 @@ def read_measurements(paths: Sequence[Path]) -> Measurements:
     ParameterError
         There is no recording at all.
     """
-    used, refused = [], []
+    used, refused, static = [], [], []
     for path, name in find_recordings(paths):
         try:
-            used.append(measured(read_recording(path), name))
+            recording = read_recording(path, calibrations=calibrations)
+            test = _static(recording, name)
+            if test is None:
+                used.append(measured(recording, name))
+            else:
+                static.append(test)
         except BushingNoiseError as error:
             refused.append((name, str(error)))
-    if not used and not refused:
+    if not (used or refused or static):
         raise ParameterError(f"{', '.join(str(path) for path in paths)}: no recording")
-    return Measurements(tuple(used), tuple(refused))
+    return Measurements(tuple(used), tuple(refused), tuple(static))
+
+
+def _static(recording: Recording, name: str) -> StaticTest | None:
+    """Read a recording as a static test, where it is one."""
+    rows = [recording.first(kind) for kind in ("torque", "angle")]
+    if not recording.calibrated or rows[0] is None or rows[1] is None:
+        return None
+    torque, angle = (np.asarray(recording.samples[row], dtype=np.float64) for row in rows)
+    if not (np.isfinite(torque).all() and np.isfinite(angle).all()):
+        return None
+    return static_test(torque, angle, recording.rate, recording.condition, name)
 
 
 def measured(recording: Recording, name: str) -> Measured:
@@ -133,7 +160,8 @@ def measured(recording: Recording, name: str) -> Measured:
     """
     if not recording.calibrated:
         raise ParameterError(
-            'is not in physical units; state units in a sidecar, with "calibrated": true'
+            'is not in physical units; state units in a sidecar, with "calibrated": true, or '
+            "calibration under [sensors] of the rig file"
         )
     rows = {kind: recording.first(kind) for kind in ("torque", "angle", "speed")}
     turning = rows["angle"] if rows["angle"] is not None else rows["speed"]
@@ -159,7 +187,10 @@ def measured(recording: Recording, name: str) -> Measured:
             "speed of one sign"
         )
     if np.min(speed / mean) <= 0.0:
-        raise ParameterError("turns back and forth; record rotation of one sign")
+        raise ParameterError(
+            "turns back and forth and slips; record rotation of one sign, or, as a static test, "
+            "slow motion to three quarters of the torque at which it slips"
+        )
     speed = np.abs(speed)
     if float(np.mean(torque)) < 0.0:  # the shaft turned backwards, or the cell counts so
         torque = -torque

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
     from noise.identification.bushing_fit import BushingFit
     from noise.identification.levels import Levels
     from noise.identification.measured import Measured
+    from noise.identification.static_test import StaticTest
+    from noise.identification.table_number import TableNumber
 
 __all__ = ["Identification", "LawScore", "Number", "Seen", "as_json"]
 
@@ -107,6 +110,10 @@ class Identification:
         Recordings that the laws were compared on.
     margin : float
         Factor by which a simpler law may be worse and is still chosen.
+    measured : tuple of (TableNumber, float)
+        Numbers of a table, and what the rig gives for them [each in its item's unit].
+    static : tuple of StaticTest
+        Slow motion below any slip, and what rings when the shaft is held.
     seconds : float
         It took [s].
 
@@ -128,6 +135,8 @@ class Identification:
     refused: tuple[tuple[str, str], ...] = ()
     held_out: tuple[str, ...] = ()
     margin: float = 0.0
+    measured: tuple[tuple[TableNumber, float], ...] = ()
+    static: tuple[StaticTest, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
     def number(
@@ -165,6 +174,8 @@ def as_json(found: Identification) -> dict[str, Any]:
         "margin": found.margin,
         "held_out": list(found.held_out),
         "recordings": [_recording(one) for one in found.seen],
+        "static": [_static(one) for one in found.static],
+        "measured": [_measured(*one) for one in found.measured],
         "assumed": list(found.assumed),
         "not_found": list(found.not_found),
         "notes": list(found.notes),
@@ -184,6 +195,32 @@ def _number(one: Number) -> dict[str, Any]:
         "low": _rounded(one.low),
         "high": _rounded(one.high),
         "recordings": one.n_recordings,
+    }
+
+
+def _static(one: StaticTest) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "file": one.name,
+        "interference_mm": _rounded(1e3 * one.interference),
+        "support_stiffness_Nm_rad": _support(one.support_stiffness),
+        "effective_stiffness_Nm_rad": _rounded(one.effective_stiffness),
+        "without_contact_Nm_rad": _rounded(one.held_stiffness),
+        "elastic": one.elastic,
+        "parting": round(one.parting, 4),
+    }
+    if one.ring_down is not None:
+        row["ring_down_hz"] = _rounded(one.ring_down.frequency)
+        row["ring_down_decay_1_s"] = _rounded(one.ring_down.decay)
+    return row
+
+
+def _measured(number: TableNumber, found: float) -> dict[str, Any]:
+    return {
+        "item": number.item,
+        "interference_mm": _rounded(1e3 * number.interference),
+        "support_stiffness_Nm_rad": _support(number.support_stiffness),
+        "value": _rounded(number.value),
+        "found": None if math.isnan(found) else _rounded(found),
     }
 
 

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from noise.identification.identify import identify_rig
 from noise.identification.known import known_beforehand
-from noise.identification.measured import read_measurements
+from noise.identification.measured import Measurements, read_measurements
 from noise.identification.outcome import as_json
+from noise.identification.table_number import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,9 +20,13 @@ __all__ = ["identification_json", "identify"]
 
 
 def identify(
-    data: str | Path | Sequence[str | Path], rig: str | Path | None = None, *, seed: int = 0
+    data: str | Path | Sequence[str | Path] = (),
+    rig: str | Path | None = None,
+    *,
+    numbers: str | Path | None = None,
+    seed: int = 0,
 ) -> Identification:
-    """Identify a rig from recordings.
+    """Identify a rig from recordings, a table of measured numbers, or both.
 
     Parameters
     ----------
@@ -29,6 +34,8 @@ def identify(
         Recordings of torque and angle, or folders of them.
     rig : path, optional
         Rig file that states what is known, the two inertias above all.
+    numbers : path, optional
+        Table of measured numbers, as `noise.identification.table_number` reads it.
     seed : int
         Of simulated repeats.
 
@@ -50,9 +57,11 @@ def identify(
     models.errors.ParameterError: ...
     """
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
-    return identify_rig(
-        read_measurements(paths), known_beforehand(None if rig is None else Path(rig)), seed=seed
-    )
+    beforehand = known_beforehand(None if rig is None else Path(rig))
+    table = () if numbers is None else read_numbers(Path(numbers))
+    calibrations = beforehand.rig.sensors.calibrations
+    measurements = read_measurements(paths, calibrations) if paths else Measurements((), ())
+    return identify_rig(measurements, beforehand, table=table, seed=seed)
 
 
 def identification_json(data: Path, rig: Path) -> dict[str, Any]:

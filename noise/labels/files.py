@@ -15,6 +15,8 @@ from noise.labels.table import LabelTable
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from noise.recordings.meaning import PascalPerFullScale
+
 __all__ = ["label"]
 
 
@@ -23,7 +25,7 @@ def label(
     *,
     classifier: str | Path | None = None,
     inference: str | Path | None = None,
-    full_scale: float | None = None,
+    full_scale: PascalPerFullScale | None = None,
     out: str | Path | None = None,
     fresh: bool = False,
     workers: int = 1,
@@ -37,7 +39,7 @@ def label(
         Recordings, or folders that are searched at any depth.
     classifier, inference : path, optional
         Files that ``bushing-noise train`` made; by default those that are shipped.
-    full_scale : float, optional
+    full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     out : path, optional
         File for the table: .csv, .jsonl or .parquet. As with ``bushing-noise label --out``, a

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from noise.classifier import Classifier
     from noise.inference import Inference, Interval
     from noise.labels.segments import Segment
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["COLUMNS", "Labelling", "label_rows", "names_no_channels"]
 
@@ -70,7 +71,7 @@ class Labelling:
     ----------
     classifier, inference : Path, optional
         Files that ``bushing-noise train`` made; by default those that are shipped.
-    full_scale : float, optional
+    full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
 
     Examples
@@ -81,7 +82,7 @@ class Labelling:
 
     classifier: Path | None = None
     inference: Path | None = None
-    full_scale: float | None = None
+    full_scale: PascalPerFullScale | None = None
 
     doing = "labelling"
 
@@ -94,11 +95,11 @@ class Labelling:
         """Load the classifier and, where the user names one, what infers conditions."""
         _ = self._loaded, self._inference
 
-    def identity(self) -> dict[str, str | float | None]:
+    def identity(self) -> dict[str, object]:
         """Return what decides the rows: the options, and the models by their content."""
         # The shipped ones are part of the program.
         models = {"classifier": self.classifier, "inference": self.inference}
-        said: dict[str, str | float | None] = {"full_scale": self.full_scale}
+        said: dict[str, object] = {"full_scale": self.full_scale}
         for name, path in models.items():
             said[name] = None if path is None else file_digest(path)
         return said

@@ -2,18 +2,20 @@
 
 Colours are those of the conditions map. A white line is where steady sliding loses its stability, a
 dark one where stick ends, so that what stability alone would have told stands beside what
-simulation found. Below the labels is how loud they are. With one fit, or few, a row is a fit.
+simulation found. Below the labels is how loud they are. With one fit, or few, a row is a fit, and a
+star marks one whose data are not the design's own. A panel in which nothing is heard says so.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 
 from models.drawing import axes_or_new, styled
 from noise.base.label_looks import LABEL_COLOURS
@@ -22,6 +24,8 @@ from noise.pictures.titles import support_words
 from sim.analysis.regime import Regime
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
@@ -36,6 +40,18 @@ _LEVELS = 40.0, 100.0
 """Of the colours of levels [dB]."""
 
 _QUIET = "#eef2f5"
+
+_FITS = "Interference [mm]"
+_STAR = "*"
+
+_STICK: dict[str, Any] = {"color": "#222222", "linewidth": 1.6}
+_FITTED: dict[str, Any] = {"color": "#222222", "linewidth": 1.2, "linestyle": ":"}
+_STABLE: dict[str, Any] = {
+    "color": "white",
+    "linewidth": 1.6,
+    "path_effects": [withStroke(linewidth=3.0, foreground="#555555")],
+}
+"""Lines, the same in map and key; the white one has an edge to be seen by on white."""
 
 
 def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
@@ -70,12 +86,14 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
         images = []
         for k in range(n):
             above, below = axes[:, k]
-            above.set_title(support_words(grid.support_stiffness[k]))
+            star = _star(found, np.s_[:, k], "damping")
+            above.set_title(support_words(grid.support_stiffness[k]) + star)
             _draw_labels(above, found, temperature, k)
             below.set_facecolor(_QUIET)
             level = np.where(
                 found.label[temperature, k] == "none", np.nan, found.level[temperature, k]
             )
+            _say_quiet(below, found, temperature, k)
             images.append(
                 below.pcolormesh(
                     _edges(speed),
@@ -90,12 +108,14 @@ def plot_screen(found: DesignMap, *, temperature: int = 0) -> Figure:
             below.set_xlabel(_speed_words(found))
         for panel in axes[:, 0]:
             _name_fits(panel, found)
+        figure.supylabel(_FITS)
         bar = figure.colorbar(images[0], ax=axes[1, :].tolist(), pad=0.01, aspect=12)
-        bar.set_label("L_AFmax [dB]")
+        bar.set_label("Level [dB(A)]")
         figure.legend(
             handles=_handles(found),
             loc="outside lower center",
-            ncols=6,
+            ncols=8,
+            columnspacing=1.3,
         )
     return figure
 
@@ -123,6 +143,7 @@ def plot_map(
         _draw_labels(axes, found, temperature, support)
         axes.set_xlabel(_speed_words(found))
         _name_fits(axes, found)
+        axes.set_ylabel(_FITS)
         axes.set_title(
             f"{found.design}, {found.environment}, {grid.temperature[temperature]:g} °C, {where}"
         )
@@ -145,11 +166,15 @@ def _draw_labels(axes: Axes, found: DesignMap, temperature: int, support: int) -
     colours = ListedColormap([LABEL_COLOURS[name] for name in _LABELS])
     axes.pcolormesh(_edges(speed), _edges(rows), codes, cmap=colours, vmin=-0.5, vmax=3.5)
     axes.grid(visible=False)
+    _say_quiet(axes, found, temperature, support)
+    beyond = _beyond(found)
+    if beyond is not None:
+        axes.axvline(beyond, **_FITTED)
     sticks = found.regime[temperature, support] == Regime.STICK_SLIP.value
-    _outline(axes, speed, rows, np.where(sticks, 1.0, -1.0), "#222222", few=few)
+    _outline(axes, speed, rows, np.where(sticks, 1.0, -1.0), _STICK, few=few)
     growth = found.growth[temperature, support]
     if np.isfinite(growth).all():
-        _outline(axes, speed, rows, growth, "white", few=few)
+        _outline(axes, speed, rows, growth, _STABLE, few=few)
 
 
 def _speed_words(found: DesignMap) -> str:
@@ -158,9 +183,22 @@ def _speed_words(found: DesignMap) -> str:
 
 def _name_fits(axes: Axes, found: DesignMap) -> None:
     _, rows, few = _places(found)
-    axes.set_ylabel("Interference [mm]")
     if few:
-        axes.set_yticks(rows, [f"{1e3 * fit:.3g}" for fit in found.grid.interference])
+        stars = (_star(found, np.s_[:, :, i], "fit") for i in range(rows.size))
+        fits = found.grid.interference
+        axes.set_yticks(
+            rows, [f"{1e3 * fit:.3g}{star}" for fit, star in zip(fits, stars, strict=True)]
+        )
+
+
+def _star(found: DesignMap, at: tuple[slice | int, ...], what: str) -> str:
+    """Star where at all points of a part of a map something is not the design's own."""
+    return _STAR if all(what in str(note) for note in found.note[at].flat) else ""
+
+
+def _say_quiet(axes: Axes, found: DesignMap, temperature: int, support: int) -> None:
+    if (found.label[temperature, support] == "none").all():
+        axes.text(0.5, 0.5, "quiet", transform=axes.transAxes, ha="center", va="center")
 
 
 def _handles(found: DesignMap) -> list[Patch | Line2D]:
@@ -169,16 +207,31 @@ def _handles(found: DesignMap) -> list[Patch | Line2D]:
             Patch(facecolor=LABEL_COLOURS[label], edgecolor="#444444", label=label)
             for label in _LABELS[::-1]
         ),
-        Line2D([], [], color="#222222", label="stick ends"),
+        Line2D([], [], **_STICK, label="stick ends"),
         *_stability_handle(found),
+        *([] if _beyond(found) is None else [Line2D([], [], **_FITTED, label="fastest fitted")]),
+        *_star_handle(found),
     ]
+
+
+def _beyond(found: DesignMap) -> float | None:
+    """Speed from which on a map is of none that the design was fitted at [rad/s]."""
+    fast = ["faster" in str(note) for note in found.note[0, 0, 0]]
+    return _edges(np.array(found.grid.speed))[fast.index(True)] if any(fast) else None
+
+
+def _star_handle(found: DesignMap) -> list[Line2D]:
+    if not found.substituted.any():
+        return []
+    words = "data interpolated or held"
+    return [Line2D([], [], linestyle="none", marker="$*$", color="#222222", label=words)]
 
 
 def _stability_handle(found: DesignMap) -> list[Line2D]:
     """Key of the white line, where there is one: a swing has no steady sliding."""
     if not np.isfinite(found.growth).all():
         return []
-    return [Line2D([], [], color="#999999", linewidth=2.2, label="sliding turns stable (white)")]
+    return [Line2D([], [], **_STABLE, label="sliding turns stable")]
 
 
 def _edges(centres: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -195,17 +248,21 @@ def _outline(
     speed: NDArray[np.float64],
     rows: NDArray[np.float64],
     values: NDArray[np.float64],
-    colour: str,
+    look: Mapping[str, Any],
     *,
     few: bool,
 ) -> None:
     """Draw where values pass through zero; a stroke in each row where these are few."""
     if not few:
         if speed.size > 1 and values.min() < 0.0 < values.max():
-            axes.contour(speed, rows, values, levels=[0.0], colors=[colour], linewidths=1.6)
+            colour, width = look["color"], look["linewidth"]
+            drawn = axes.contour(
+                speed, rows, values, levels=[0.0], colors=[colour], linewidths=width
+            )
+            drawn.set_path_effects(look.get("path_effects", []))
         return
     for row, along in zip(rows, values, strict=True):
         for i in np.flatnonzero(np.signbit(along[:-1]) != np.signbit(along[1:])):
             share = along[i] / (along[i] - along[i + 1])
             where = speed[i] + (share if math.isfinite(share) else 0.5) * (speed[i + 1] - speed[i])
-            axes.plot([where, where], [row - 0.45, row + 0.45], "-", color=colour, linewidth=1.6)
+            axes.plot([where, where], [row - 0.45, row + 0.45], "-", **look)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.condition import Condition
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["RecordingBlocks", "open_blocks"]
 
@@ -121,14 +122,14 @@ class RecordingBlocks:
 
 @contextmanager
 def open_blocks(
-    path: str | os.PathLike[str], *, full_scale: float | None = None
+    path: str | os.PathLike[str], *, full_scale: PascalPerFullScale | None = None
 ) -> Iterator[RecordingBlocks | None]:
     """Open a recording that is better not read whole.
 
     Parameters
     ----------
     path : path-like
-    full_scale : float, optional
+    full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording`.
 
     Yields
@@ -161,11 +162,12 @@ def open_blocks(
             description=bext_description(path),
             comment=sound.comment,
         )
-        channels, condition, calibrated = describe(path, raw, full_scale)
-        file = _File(path, sound, channels)
+        meaning = describe(path, raw, full_scale)
+        file = _File(path, sound, meaning.channels)
         yield RecordingBlocks(
-            raw.rate, channels, condition, calibrated, path.name, int(sound.frames), file.read
-        )
+            raw.rate, meaning.channels, meaning.condition, meaning.calibrated, path.name,
+            int(sound.frames), file.read,
+        )  # fmt: skip
 
 
 def _opened(path: Path) -> Any:

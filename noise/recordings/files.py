@@ -22,13 +22,15 @@ from models.recording import Recording
 from noise.recordings.meaning import check_finite, chosen_rows, describe
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from numpy.typing import NDArray
 
+    from models.calibration import Calibration
     from models.recording import Channel
+    from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = ["MIN_SAMPLES", "READERS", "RawSamples", "find_recordings", "read_recording"]
+__all__ = ["MIN_SAMPLES", "READERS", "RawSamples", "find_recordings", "read_raw", "read_recording"]
 
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
@@ -93,7 +95,12 @@ class RawSamples:
     unclear: str = ""
 
 
-def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = None) -> Recording:
+def read_recording(
+    path: str | os.PathLike[str],
+    *,
+    full_scale: PascalPerFullScale | None = None,
+    calibrations: Mapping[str, Calibration] | None = None,
+) -> Recording:
     """Read a recording and what its sidecar, or the file itself, says about it.
 
     Parameters
@@ -102,8 +109,11 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
         File with one of the endings of `READERS`. A sidecar is the file
         of the same stem with the ending ``.json``. Without one each track is a pressure channel (an
         acceleration channel where a meter says so).
-    full_scale : float, optional
-        Pressure of a full-scale sample [Pa]; wins over all that file and sidecar say.
+    full_scale : float or tuple of float, optional
+        Pressure of a full-scale sample [Pa], of all tracks or of each; wins over all that file and
+        sidecar say.
+    calibrations : mapping of str to Calibration, optional
+        By kind of channel, for channels that neither file nor sidecar calibrates.
 
     Returns
     -------
@@ -132,16 +142,40 @@ def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = N
     ('run07.wav', 30.0, 5.0)
     """
     path = Path(path)
-    raw = chosen_rows(path, _read_raw(path))
-    channels, condition, calibrated = describe(path, raw, full_scale)
+    raw = read_raw(path)
+    meaning = describe(path, raw, full_scale, calibrations)
     n_samples = raw.samples.shape[1]
     if n_samples < MIN_SAMPLES:
         raise RecordingError(f"{path}: holds {n_samples} samples, expected at least {MIN_SAMPLES}")
     with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
-        for channel, row in zip(channels, raw.samples, strict=True):
-            row *= channel.full_scale
-    check_finite(path, raw.samples, raw.rate, channels)
-    return Recording(raw.samples, raw.rate, channels, condition, calibrated, path.name)
+        notes = [
+            _to_units(path, channel, curve, row)
+            for channel, curve, row in zip(
+                meaning.channels, meaning.curves, raw.samples, strict=True
+            )
+        ]
+    check_finite(path, raw.samples, raw.rate, meaning.channels)
+    return Recording(
+        raw.samples, raw.rate, meaning.channels, meaning.condition, meaning.calibrated, path.name,
+        tuple(filter(None, notes)),
+    )  # fmt: skip
+
+
+def _to_units(
+    path: Path, channel: Channel, curve: Calibration | None, row: NDArray[np.float64]
+) -> str:
+    """Bring the samples of a channel to its unit, in place; return what should be known of it."""
+    if curve is None:
+        row *= channel.full_scale
+        return ""
+    try:
+        out = curve.beyond(row)
+        row[:] = curve.of(row)
+    except ParameterError as error:
+        raise RecordingError(f"{path}: channel {channel.name!r} {error}") from None
+    if not out:
+        return ""
+    return f"{channel.name} was read up to {out:.1%} of its span outside of {curve.source}"
 
 
 def find_recordings(
@@ -197,6 +231,17 @@ def _inside(folder: Path) -> Iterable[tuple[Path, str]]:
         hidden = any(part.startswith(".") for part in relative.parts)
         if not hidden and path.suffix.lower() in READERS and path.is_file():
             yield path, relative.as_posix()
+
+
+def read_raw(path: Path) -> RawSamples:
+    """Read what a file holds, before anyone says what it means.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read.
+    """
+    return chosen_rows(path, _read_raw(path))
 
 
 def _read_raw(path: Path) -> RawSamples:

@@ -14,23 +14,56 @@ import numpy as np
 from features.modal.hammer import Hit
 from models.errors import ParameterError, RecordingError
 from models.recording import CHANNEL_UNITS, Channel
-from noise.recordings import read_recording
-from noise.recordings.files import MIN_SAMPLES
+from noise.recordings import find_recordings, read_recording
+from noise.recordings.files import MIN_SAMPLES, READERS
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from models.recording import Recording
 
-__all__ = ["RESPONSES", "read_hit"]
+__all__ = ["RESPONSES", "find_hits", "read_hit"]
 
 RESPONSES = ("acceleration", "pressure")
 """Kinds of channel taken for the response where none is named, in this order."""
 
+_TABLES = (".csv", ".npy")
+
 _UNEVEN = 0.1  # of a sampling interval, as left by a time column of few digits
 _ROUNDING = 1e-5  # of a sampling rate that such a column gives
+
+
+def find_hits(paths: Iterable[Path]) -> list[Path]:
+    """Find hits: files as named, and the tables and recordings that lie in folders, sorted.
+
+    Raises
+    ------
+    ParameterError
+        A path does not exist, or a folder holds none.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     for name in ("hit-2.npy", "hit-1.npy", "notes.txt"):
+    ...         (Path(folder) / name).touch()
+    ...     [path.name for path in find_hits([Path(folder)])]
+    ['hit-1.npy', 'hit-2.npy']
+    """
+    found: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            found += [file for file, _ in find_recordings(path)]
+            continue
+        inside = [file for file in path.iterdir() if file.suffix.lower() in {*_TABLES, *READERS}]
+        if not inside:
+            raise ParameterError(f"{path}: there are no hits in it")
+        found += sorted(inside)
+    return found
 
 
 def read_hit(
@@ -74,7 +107,7 @@ def read_hit(
     (25600.0, 0.05, 'm/s^2')
     """
     wanted = Channel(response or RESPONSES[0])
-    if path.suffix.lower() in (".npy", ".csv"):
+    if path.suffix.lower() in _TABLES:
         time, force, answer = _table(path)
         rate = _rate(path, time)
         unit = wanted.unit

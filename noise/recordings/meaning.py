@@ -2,11 +2,14 @@
 
 The worth is decided per channel by the first of these that says something:
 
-1. the caller's `full_scale` (pressure channels only),
+1. the caller's `full_scale`, an option or a calibrator's tone (pressure channels only),
 2. the sidecar: its ``scale``, or, for floating-point samples, that it names the channel, since
    such samples are then in the channel's unit; ``"calibrated": false`` silences 2 to 4,
 3. the file's description, then its name, as sound level meters write them,
-4. the file's comment.
+4. the file's comment,
+5. the calibration of the chain, a curve from what it read to the quantity, as ``[sensors]`` in a
+   rig file states it. A sidecar that names volts or counts as a channel's unit leaves it to 1 or 5;
+   its ``scale`` is then in these units per full scale.
 
 Unless every channel has its value the recording is not calibrated: its samples stay fractions of
 full scale, and levels can be told in dBFS alone. Half a calibration would only invite comparing
@@ -29,19 +32,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.calibration import READING_UNITS
 from models.errors import ParameterError, RecordingError
 from models.recording import REFERENCE_PRESSURE, Channel
 from noise.recordings.sidecar import Sidecar, find_sidecar, read_sidecar
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from models.calibration import Calibration
     from models.condition import Condition
     from noise.recordings.files import RawSamples
 
-__all__ = ["FullScale", "check_finite", "chosen_rows", "describe", "stated_full_scale"]
+__all__ = [
+    "FullScale", "Meaning", "PascalPerFullScale", "check_finite", "chosen_rows", "describe",
+    "stated_full_scale",
+]  # fmt: skip
+
+PascalPerFullScale = float | tuple[float, ...]
+"""Pressure of a full-scale sample [Pa], of all tracks or of each."""
 
 _NUMBER = r"(-?\d{1,3}(?:[.,]\d{1,6})?)"
 _IN_NAME = re.compile(rf"(?<![a-z0-9])FS\s*{_NUMBER}\s*dB[\s_(-]*PK(?![a-z0-9])", re.I | re.A)
@@ -71,9 +83,32 @@ def chosen_rows(path: Path, raw: RawSamples) -> RawSamples:
     return replace(raw, samples=raw.samples[keep], channels=channels)
 
 
+@dataclass(frozen=True)
+class Meaning:
+    """What the samples of a file are.
+
+    Parameters
+    ----------
+    channels : tuple of Channel
+        With what a sample of 1.0 is worth.
+    condition : Condition
+    calibrated : bool
+    curves : tuple of (Calibration or None)
+        One a channel: from samples to values, where it takes more than a factor.
+    """
+
+    channels: tuple[Channel, ...]
+    condition: Condition
+    calibrated: bool
+    curves: tuple[Calibration | None, ...]
+
+
 def describe(
-    path: Path, raw: RawSamples, full_scale: float | None = None
-) -> tuple[tuple[Channel, ...], Condition, bool]:
+    path: Path,
+    raw: RawSamples,
+    full_scale: PascalPerFullScale | None = None,
+    calibrations: Mapping[str, Calibration] | None = None,
+) -> Meaning:
     """Decide what the samples of a file are, from all that says something about them.
 
     Parameters
@@ -82,15 +117,12 @@ def describe(
         The file, beside which the sidecar is sought.
     raw : RawSamples
         Of the samples only the number of channels counts.
-    full_scale : float, optional
+    full_scale, calibrations
         As for `read_recording`.
 
     Returns
     -------
-    channels : tuple of Channel
-        With what a sample of 1.0 is worth.
-    condition : Condition
-    calibrated : bool
+    Meaning
 
     Raises
     ------
@@ -104,12 +136,11 @@ def describe(
     >>> from pathlib import Path
     >>> from noise.recordings.files import RawSamples
     >>> raw = RawSamples(np.empty((1, 0)), 48e3, fractional=True)
-    >>> channels, _, calibrated = describe(Path("nowhere.wav"), raw, 2.0)
-    >>> channels[0].name, channels[0].full_scale, calibrated
+    >>> meaning = describe(Path("nowhere.wav"), raw, 2.0)
+    >>> meaning.channels[0].name, meaning.channels[0].full_scale, meaning.calibrated
     ('pressure', 2.0, True)
     """
-    if full_scale is not None and not 0 < full_scale < math.inf:
-        raise ParameterError(f"full scale is {full_scale!r} Pa, expected a positive number")
+    options = _by_track(path, full_scale, len(raw.samples))
     sidecar_path, sidecar = find_sidecar(path), _sidecar(path)
     n_channels = len(raw.samples)
     if sidecar.channels is not None and len(sidecar.channels) != n_channels:
@@ -121,8 +152,25 @@ def describe(
             f"{sidecar_path}: gives a scale, but {path.name} holds floating-point samples, which "
             f"are in the channel's unit; remove the scale"
         )
-    channels, calibrated = _interpret(path, raw, sidecar, full_scale)
-    return channels, _united(raw.condition, sidecar.condition), calibrated
+    channels, curves = _interpret(path, raw, sidecar, options, calibrations or {})
+    condition = _united(raw.condition, sidecar.condition)
+    return Meaning(channels, condition, bool(curves), curves or (None,) * n_channels)
+
+
+def _by_track(
+    path: Path, full_scale: PascalPerFullScale | None, n_tracks: int
+) -> tuple[float | None, ...]:
+    """Return what a caller says of each track."""
+    given = full_scale if isinstance(full_scale, tuple) else (full_scale,) * n_tracks
+    for value in given:
+        if value is not None and not 0 < value < math.inf:
+            raise ParameterError(f"full scale is {value!r} Pa, expected a positive number")
+    if len(given) != n_tracks:
+        raise RecordingError(
+            f"{path}: has {n_tracks} tracks, and full scale is given for {len(given)}; record the "
+            "calibrator on as many, or on one for all"
+        )
+    return given
 
 
 def check_finite(
@@ -172,30 +220,68 @@ def _united(stated: Condition, sidecar: Condition) -> Condition:
 
 
 def _interpret(
-    path: Path, raw: RawSamples, sidecar: Sidecar, full_scale: float | None
-) -> tuple[tuple[Channel, ...], bool]:
-    """Channels with the value of their full scale, and whether all of them have one."""
+    path: Path,
+    raw: RawSamples,
+    sidecar: Sidecar,
+    options: tuple[float | None, ...],
+    calibrations: Mapping[str, Calibration],
+) -> tuple[tuple[Channel, ...], tuple[Calibration | None, ...]]:
+    """Channels with the value of their full scale, and curves; none where a channel lacks both."""
     texts = (raw.description, path.name, raw.comment)
     stated = next((found for text in texts if (found := stated_full_scale(text))), None)
     own = tuple(channel for channel in raw.channels or () if channel is not None)
     channels = sidecar.channels or own
     if not channels:
-        kind = "pressure" if stated is None or full_scale is not None else stated.kind
+        kind = "pressure" if stated is None or any(options) else stated.kind
         numbers = range(1, len(raw.samples) + 1)
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
     named = sidecar.channels is not None or raw.channels is not None
     in_units = not raw.fractional and (named or sidecar.calibrated is True)
-    values: list[float] = []
-    for channel, scale in zip(channels, sidecar.scales or (None,) * len(channels), strict=True):
-        opinions = [full_scale if channel.kind == "pressure" else None]
-        if sidecar.calibrated is not False:
+    scales = sidecar.scales or (None,) * len(channels)
+    readings = sidecar.readings or ("",) * len(channels)
+    pairs: list[tuple[Channel, Calibration | None]] = []
+    for channel, scale, reading, option in zip(channels, scales, readings, options, strict=True):
+        opinions = [option if channel.kind == "pressure" else None]
+        if sidecar.calibrated is not False and not reading:
             opinions += [scale, 1.0 if in_units else None]
             opinions += [stated.value if stated and stated.kind == channel.kind else None]
-        values += [value for value in opinions if value is not None][:1]
-    if len(values) < len(channels):
-        return channels, False
-    pairs = zip(channels, values, strict=True)
-    return tuple(replace(channel, full_scale=value) for channel, value in pairs), True
+        values = [value for value in opinions if value is not None]
+        if values:
+            pairs.append((replace(channel, full_scale=values[0]), None))
+        elif channel.kind in calibrations:
+            where = f"{path}: channel {channel.name!r}"
+            curve = _curve(calibrations[channel.kind], reading, scale, raw.fractional, where)
+            pairs.append((replace(channel, full_scale=abs(curve.gain)), curve))
+        else:
+            return channels, ()
+    return tuple(channel for channel, _ in pairs), tuple(curve for _, curve in pairs)
+
+
+def _curve(
+    calibration: Calibration,
+    reading: str,
+    scale: float | None,
+    fractional: bool,
+    where: str,
+) -> Calibration:
+    """Return a calibration for samples as a file holds them."""
+    given = scale if reading else None  # of a channel in its own unit, it was silenced
+    if fractional and given is None and (reading or calibration.unit):
+        unit = reading or calibration.unit
+        raise RecordingError(
+            f"{where} holds fractions of full scale, and {calibration.source} is in {unit}; state "
+            f"its unit, {unit!r}, and scale, in {unit} per full scale, in the sidecar"
+        )
+    size = 1.0 if given is None else given
+    if reading and calibration.unit:
+        (read, one), (calibrated, other) = (READING_UNITS[u] for u in (reading, calibration.unit))
+        if read != calibrated:
+            raise RecordingError(
+                f"{where} is in {reading}, and {calibration.source} in {calibration.unit}; "
+                "calibrate it in the unit that is recorded"
+            )
+        size *= one / other
+    return calibration.in_units_of(size)
 
 
 @dataclass(frozen=True)

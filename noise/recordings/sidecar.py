@@ -5,6 +5,9 @@ field; behind it channels and conditions can be trusted. Keys that are not ours 
 an engineer's own notes may stand in the same file. Values are never guessed: a number in quotes or
 a torque in kN m is refused, only spellings of the same unit are alike.
 
+A channel of which the file holds what the measurement chain read has the unit ``V``, ``mV`` or
+``counts``; it takes a calibration to make that a torque.
+
 ``"support_stiffness_Nm_rad": null`` is the clamp bolted to the baseplate; elsewhere null is the
 same as a missing key. A direction of any length is made a unit vector.
 """
@@ -18,6 +21,7 @@ from dataclasses import dataclass, field
 from reprlib import repr as show
 from typing import TYPE_CHECKING, NoReturn
 
+from models.calibration import READING_UNITS
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import CHANNEL_UNITS, Channel
@@ -41,16 +45,21 @@ class Sidecar:
     channels : tuple of Channel, optional
         In the order of the file; None where the sidecar names none.
     scales : tuple of float or None
-        One a channel [unit of the channel per full scale]; None where not given.
+        One a channel [unit of the channel, or of its readings, per full scale]; None where not
+        given.
     condition : Condition
     calibrated : bool, optional
         None where the sidecar does not say.
+    readings : tuple of str
+        One a channel: the unit of what its chain read, one of `models.calibration.READING_UNITS`;
+        empty where the samples are in the channel's own.
     """
 
     channels: tuple[Channel, ...] | None = None
     scales: tuple[float | None, ...] = ()
     condition: Condition = field(default_factory=Condition)
     calibrated: bool | None = None
+    readings: tuple[str, ...] = ()
 
 
 def find_sidecar(recording: Path) -> Path | None:
@@ -129,8 +138,14 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
     condition = _condition(content.get("conditions"), where)
     if content.get("channels") is None:
         return Sidecar(condition=condition, calibrated=calibrated)
-    channels, scales = _channels(content["channels"], where)
-    return Sidecar(channels, scales, condition, calibrated)
+    entries = _channels(content["channels"], where)
+    return Sidecar(
+        channels=tuple(channel for channel, _, _ in entries),
+        scales=tuple(scale for _, scale, _ in entries),
+        condition=condition,
+        calibrated=calibrated,
+        readings=tuple(reading for _, _, reading in entries),
+    )
 
 
 def sidecar_text(recording: Recording) -> str:
@@ -199,18 +214,18 @@ def _conditions_entry(condition: Condition) -> dict[str, float | str | None]:
     return entry
 
 
-def _channels(entries: object, where: str) -> tuple[tuple[Channel, ...], tuple[float | None, ...]]:
+def _channels(entries: object, where: str) -> list[tuple[Channel, float | None, str]]:
     if not isinstance(entries, list):
         _refuse(where, f"channels is {show(entries)}, expected a list")
-    pairs = [_channel(entry, number, where) for number, entry in enumerate(entries, start=1)]
-    names = [channel.name for channel, _ in pairs]
+    found = [_channel(entry, number, where) for number, entry in enumerate(entries, start=1)]
+    names = [channel.name for channel, _, _ in found]
     if len(set(names)) < len(names):
         name, times = Counter(names).most_common(1)[0]
         _refuse(where, f"channel {name!r} is named {times} times, expected once")
-    return tuple(channel for channel, _ in pairs), tuple(scale for _, scale in pairs)
+    return found
 
 
-def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | None]:
+def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | None, str]:
     if not isinstance(entry, dict):
         _refuse(where, f"channel {number} is {show(entry)}, expected an object {{...}}")
     name = entry.get("name")
@@ -221,14 +236,15 @@ def _channel(entry: object, number: int, where: str) -> tuple[Channel, float | N
         _refuse(where, f"channel {number} has name {show(name)}, expected {known} (or ..._2, _3)")
     channel = f"{where}: channel {plain.name!r}"
     unit = entry.get("unit", plain.unit)
-    if not isinstance(unit, str) or _spelling(unit) != _spelling(plain.unit):
+    reading = unit if isinstance(unit, str) and unit in READING_UNITS else ""
+    if not isinstance(unit, str) or not (reading or _spelling(unit) == _spelling(plain.unit)):
         raise RecordingError(f"{channel} has unit {show(unit)}, expected {plain.unit!r}")
     scale = _number(entry.get("scale"), f"{channel}: scale", positive=True)
     position = _vector(entry.get("position_m"), f"{channel}: position_m")
     direction = _vector(entry.get("direction"), f"{channel}: direction")
     if direction is not None:
         direction = _unit_vector(direction, f"{channel}: direction")
-    return Channel(plain.name, position, direction), scale
+    return Channel(plain.name, position, direction), scale, reading
 
 
 def _condition(entry: object, where: str) -> Condition:

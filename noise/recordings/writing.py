@@ -10,6 +10,7 @@ it, scipy writes these bytes but wants all samples at once: so the header is pac
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,7 +24,7 @@ from noise.recordings.sidecar import sidecar_text
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import NDArray
 
@@ -83,6 +84,7 @@ def write_blocks(
     channels: tuple[Channel, ...],
     condition: Condition,
     notes: tuple[str, ...] = (),
+    found: Callable[[], tuple[str, ...]] = tuple,
 ) -> Path:
     """Write blocks as one 32-bit float WAV with its sidecar, both whole or not at all.
 
@@ -100,6 +102,8 @@ def write_blocks(
     condition : Condition
     notes : tuple of str
         For the sidecar.
+    found : callable, optional
+        Gives further ones, when all blocks have been written.
 
     Returns
     -------
@@ -130,11 +134,15 @@ def write_blocks(
     target = _wav_path(Path(path))
     empty = np.zeros((len(channels), 0))
     about = Recording(empty, rate, channels, condition, name=target.name, notes=notes)
-    return _write(target, about, blocks, n_samples)
+    return _write(target, about, blocks, n_samples, found)
 
 
 def _write(
-    target: Path, about: Recording, blocks: Iterable[NDArray[np.float64]], n_samples: int
+    target: Path,
+    about: Recording,
+    blocks: Iterable[NDArray[np.float64]],
+    n_samples: int,
+    found: Callable[[], tuple[str, ...]] = tuple,
 ) -> Path:
     """Write blocks of samples; of `about` all else counts."""
     rate = about.rate
@@ -159,6 +167,8 @@ def _write(
                 written += block.shape[1]
         if written != n_samples:
             raise ParameterError(f"{target}: {written} samples arrived, expected {n_samples}")
+        if more := found():
+            text = sidecar_text(replace(about, notes=(*about.notes, *more)))
         sidecar.write_text(text, encoding="utf-8")
     return target
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from models.errors import ParameterError
 from noise.screening.design.environments import DRY
 
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from noise.screening.design.design import Design
+    from noise.screening.map.grid import Grid
     from noise.screening.map.mapping import DesignMap
     from noise.screening.parts.statistics import Statistics
     from noise.screening.ranking.margins import CriticalPoint
@@ -27,14 +31,17 @@ class Screening:
 
     Parameters
     ----------
+    designs : tuple of Design
+        Those that were screened, as they were: named, and changed where a change was given.
     maps : tuple of DesignMap
-        One for each design, environment and motion.
+        One for each design, environment and motion; all designs have the same grids.
     critical : tuple of CriticalPoint
         Critical speeds and margins, by simulation and by stability.
     statistics : tuple of Statistics
         Risk and, where it was asked for, robustness; one for each design and environment.
     standings : tuple of Standing
-        The designs ranked, the quietest first; one for each map.
+        The designs ranked, the quietest first, with what each does in plain words, a hint what to
+        change and what to know of its numbers; one for each map.
     refused : tuple of (str, str)
         Designs that could not be screened, and why.
     files : tuple of (str, Path)
@@ -51,6 +58,7 @@ class Screening:
     ((), 1.0, 1)
     """
 
+    designs: tuple[Design, ...]
     maps: tuple[DesignMap, ...]
     critical: tuple[CriticalPoint, ...]
     statistics: tuple[Statistics, ...]
@@ -68,6 +76,24 @@ class Screening:
     def points(self) -> int:
         """How many points the maps have."""
         return sum(found.label.size for found in self.maps)
+
+    @property
+    def conditions(self) -> tuple[Grid, ...]:
+        """Conditions that all designs are compared over, one for each environment and motion."""
+        first = self.maps[0].design
+        return tuple(found.grid for found in self.maps if found.design == first)
+
+    @property
+    def substituted(self) -> dict[str, int]:
+        """How many points of each design rest on data interpolated or held, by the design's name.
+
+        What stands in is said by `noise.screening.map.provenance.RULE`, and of each point by the
+        map's `note`.
+        """
+        counts = {found.design: 0 for found in self.maps}
+        for found in self.maps:
+            counts[found.design] += int(np.sum(found.substituted))
+        return {name: count for name, count in counts.items() if count}
 
     @property
     def failed(self) -> tuple[tuple[str, str], ...]:

@@ -1,12 +1,14 @@
 """Screening of bushing designs: maps of their noise, margins, risk numbers and a ranking.
 
-Each design is mapped in each environment, at constant speed and, where it says so or the caller
-does, swinging to and fro; then graded, and its parts are looked at. A design that cannot be
-simulated is refused by name, and what else fails is told; the others go on.
+Each design is mapped in each environment, at constant speed and, where any of them says so or the
+caller does, swinging to and fro, over conditions that all share; then graded, and its parts are
+looked at. A design that cannot be simulated is refused by name, and what else fails is told; the
+others go on.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -19,26 +21,32 @@ from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.design.environments import DRY, environment, in_environment
 from noise.screening.map.batches import batch_evaluator
-from noise.screening.map.grid import grid_of
+from noise.screening.map.grid import shared_grid, shared_motions
 from noise.screening.map.mapping import map_design
+from noise.screening.map.provenance import fits_remark
 from noise.screening.outcome import Screening
 from noise.screening.parts.statistics import statistics_of
+from noise.screening.ranking.first_hint import first_hint
 from noise.screening.ranking.margins import critical_points
 from noise.screening.ranking.never_slips import why_never_slipping
 from noise.screening.ranking.ranking import standings
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from models.rig import Rig
     from noise.screening.map.batches import Evaluator
+    from noise.screening.map.grid import Grid
     from noise.screening.map.mapping import DesignMap
 
 __all__ = ["DEFAULT_SIMULATIONS", "screen"]
 
 DEFAULT_SIMULATIONS = 500
 """Of a map, more or less: what two cores do of the calibrated fluorocarbon in eight seconds."""
+
+_ONE_SWING = 2
+"""Motions up to which no swing needs a name: constant speed and one swing."""
 
 
 def screen(
@@ -109,36 +117,37 @@ def screen(
         from features.sound_quality import check_available
 
         check_available()
+    loaded, refused, files = _loaded(designs, change)
+    if not loaded:
+        raise ParameterError(refused[0][1])
+    motions = shared_motions(list(loaded.values()), given)
+    grids = {
+        (name, swinging): shared_grid(list(loaded.values()), given, where=name, swinging=swinging)
+        for name in dict.fromkeys(where.name for where in in_environments)
+        for swinging in motions
+    }
     maps: list[DesignMap] = []
-    refused: list[tuple[str, str]] = []
     screened: dict[str, Design] = {}
-    files: list[tuple[str, Path]] = []
+    remarks: dict[str, list[str]] = {}
     with batch_evaluator(workers=workers, scheduler=scheduler) as evaluate:
-        for one in designs:
-            called = one.name if isinstance(one, Design) else str(one)
+        for design in loaded.values():
             try:
-                design = one if isinstance(one, Design) else load_design(one)
-                if change is not None:
-                    design = replace(design, rig=change(design.rig))
-                design = _with_name_of_its_own(design, set(screened))
-                found: list[DesignMap] = []
-                for text in _remarks(design, given):
+                remarks[design.name] = _remarks(design, grids, given)
+                for text in remarks[design.name]:
                     progress(f"{design.name}: {text}")
-                for where in in_environments:
-                    progress(f"mapping {design.name}, {where.name}")
-                    found += [
-                        _mapped(
-                            design, given, where.name, swinging, evaluate, simulations, loudness
-                        )
-                        for swinging in _motions(design, given)
-                    ]
+                found: list[DesignMap] = []
+                for (where, swinging), grid in grids.items():
+                    progress(f"mapping {design.name}, {where}")
+                    one = _mapped(design, where, grid, evaluate, simulations, loudness)
+                    if swinging is not None and len(motions) > _ONE_SWING:
+                        degrees = math.degrees(swinging.amplitude)
+                        one = replace(one, motion=f"swinging by {degrees:.4g} degrees")
+                    found.append(one)
             except BushingNoiseError as error:
-                refused.append((called, str(error)))
+                refused.append((design.name, str(error)))
                 continue
             screened[design.name] = design
             maps += found
-            if change is None and not isinstance(one, Design) and Path(one).is_file():
-                files.append((design.name, Path(one)))
     if not maps:
         raise ParameterError(refused[0][1])
     mapped = time.perf_counter()
@@ -158,22 +167,44 @@ def screen(
         )
         for each, stream in zip(first.values(), streams, strict=True)
     )
+    rigs = [in_environment(screened[one.design].rig, environment(one.environment)) for one in maps]
     never_slipping = [
-        why_never_slipping(
-            in_environment(screened[each.design].rig, environment(each.environment)), each.grid
-        )
-        for each in maps
+        why_never_slipping(rig, each.grid) for rig, each in zip(rigs, maps, strict=True)
     ]
+    hints = [first_hint(rig, each) for rig, each in zip(rigs, maps, strict=True)]
     return Screening(
+        designs=tuple(screened.values()),
         maps=tuple(maps),
         critical=critical,
         statistics=statistics,
-        standings=standings(maps, critical, statistics, never_slipping),
+        standings=standings(maps, critical, statistics, never_slipping, hints, remarks),
         refused=tuple(refused),
-        files=tuple(files),
+        files=tuple(one for one in files if one[0] in screened),
         seconds=mapped - started,
         statistics_seconds=time.perf_counter() - mapped,
     )
+
+
+def _loaded(
+    designs: Sequence[str | Path | Design], change: Callable[[Rig], Rig] | None
+) -> tuple[dict[str, Design], list[tuple[str, str]], list[tuple[str, Path]]]:
+    """Read designs; return them by name, those refused and why, and the files they come from."""
+    loaded: dict[str, Design] = {}
+    refused: list[tuple[str, str]] = []
+    files: list[tuple[str, Path]] = []
+    for one in designs:
+        try:
+            design = one if isinstance(one, Design) else load_design(one)
+            if change is not None:
+                design = replace(design, rig=change(design.rig))
+        except BushingNoiseError as error:
+            refused.append((one.name if isinstance(one, Design) else str(one), str(error)))
+            continue
+        design = _with_name_of_its_own(design, set(loaded))
+        loaded[design.name] = design
+        if change is None and not isinstance(one, Design) and Path(one).is_file():
+            files.append((design.name, Path(one)))
+    return loaded, refused, files
 
 
 def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
@@ -184,46 +215,36 @@ def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
     return replace(design, name=name)
 
 
-def _remarks(design: Design, given: Use | None) -> list[str]:
-    """Say where a map reaches beyond what the design's properties are given for, and the like."""
-    grid = grid_of(design, given)
-    asked, found = grid.interference, []
-    low, high = (1e3 * limit for limit in design.rig.interference_range)
-    if 1e3 * asked[0] < low * (1.0 - 1e-9) or 1e3 * asked[-1] > high * (1.0 + 1e-9):
-        fits = f"{low:g} mm" if low == high else f"{low:g} to {high:g} mm"
-        found.append(f"fits are given for {fits} alone; beyond, those of the nearest are used")
-    found += use_remarks(
-        design.rig,
-        speed=grid.use,
-        interference=asked,
+def _remarks(
+    design: Design, grids: Mapping[tuple[str, Swinging | None], Grid], given: Use | None
+) -> list[str]:
+    """Say what to know of a design's numbers, most of all where they are not its own."""
+    rig, grid = design.rig, next(iter(grids.values()))
+    temperature = sorted({value for each in grids.values() for value in each.temperature})
+    found = use_remarks(
+        rig,
+        speed=[max(each.use[1] for each in grids.values())],
+        interference=grid.interference,
         support_stiffness=grid.support_stiffness,
-        temperature=grid.temperature,
+        temperature=temperature,
     )
-    if (given is not None and given.temperature) or len(grid.temperature) > 1:
-        found.append(temperature_remark(design.rig, grid.temperature[-1]))
-    return [text for text in (*found, *effect_remarks(design.rig, EFFECTS)) if text]
-
-
-def _motions(design: Design, given: Use | None) -> list[Swinging | None]:
-    """How the shaft moves: None is constant speed."""
-    if given is not None and given.swinging is not None:
-        return [None, given.swinging] if given.speed else [given.swinging]
-    if design.use.swinging is not None and not (given is not None and given.speed):
-        return [None, design.use.swinging]
-    return [None]
+    found.append(fits_remark(rig, grid.interference))
+    if (given is not None and given.temperature) or len(temperature) > 1:
+        found.append(temperature_remark(rig, temperature[-1]))
+    for where in dict.fromkeys(where for where, _ in grids):
+        found += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
+    return list(dict.fromkeys(filter(None, found)))
 
 
 def _mapped(
     design: Design,
-    given: Use | None,
     where: str,
-    swinging: Swinging | None,
+    grid: Grid,
     evaluate: Evaluator,
     simulations: int | None,
     loudness: bool,
 ) -> DesignMap:
     rig = in_environment(design.rig, environment(where))
-    grid = grid_of(design, given, where=where, swinging=swinging)
     found = map_design(rig, grid, evaluate, design=design.name, environment=where, most=simulations)
     if loudness:
         from noise.screening.map.loudness import with_loudness

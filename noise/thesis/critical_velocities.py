@@ -29,11 +29,11 @@ from sim.analysis.slips import LEAST_SUDDEN
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["MEASURED", "contradiction", "simulated", "transitions"]
+__all__ = ["MEASURED", "TRANSITIONS", "contradiction", "simulated", "transitions"]
 
 _STEP = SPEEDS[1] - SPEEDS[0]
 _SECONDS = 1.0
-_TRANSITIONS = {
+TRANSITIONS = {
     (0.178, LONG): (below(1.0), number(4.6)),
     (0.178, SHORT): (below(1.0), number(5.9)),
     (0.178, FIXED): (below(1.0), number(2.7)),
@@ -46,7 +46,7 @@ _TRANSITIONS = {
 }
 """V_crit1 and V_crit2 by interference [mm] and support stiffness, Tables 5.1 and 5.2."""
 
-MEASURED = tuple(Case(1.0, *place) for place in _TRANSITIONS)
+MEASURED = tuple(Case(1.0, *place) for place in TRANSITIONS)
 
 
 def transitions(case: Case) -> Iterator[Row]:
@@ -54,7 +54,7 @@ def transitions(case: Case) -> Iterator[Row]:
     place = case.interference, case.support_stiffness
     exact, calibrated = (critical_speeds(rig_of(m), *place) for m in (THESIS, CALIBRATED))
     listing = nan if case.fixed else _listing_end(case)
-    published = _TRANSITIONS[case.interference_mm, case.support_stiffness]
+    published = TRANSITIONS[case.interference_mm, case.support_stiffness]
     where = case.place()
     # What `noise.training.calibrate` searches by: all but V_crit1 at 0.178 mm.
     thin = case.interference_mm == 0.178

@@ -63,7 +63,10 @@ def _clipped(signal: NDArray[np.float64], form: str, amount: float) -> NDArray[n
 def _overdrive(cut: float) -> float:
     """M / L of the soft form: where tanh(u) / u has fallen to 1 - cut."""
     kept = 1.0 - max(cut, 1e-9)  # below, rounding hides the root
-    return float(brentq(lambda u: np.tanh(u) - kept * u, 1e-6, 1.0 / kept))
+    most = 1.0 / kept
+    if np.tanh(most) >= kept * most:  # so much is cut off that the root is there to rounding
+        return most
+    return float(brentq(lambda u: np.tanh(u) - kept * u, 1e-6, most))
 
 
 EFFECT = Effect(

@@ -1,7 +1,8 @@
-"""``python -m tests.blind generate|score|identify``: cases, and how well they are answered.
+"""``python -m tests.blind generate|score|identify|improve``: cases, and how well they are answered.
 
 ``generate`` makes development cases, ``score`` scores a diagnosis on cases, ``identify`` makes rigs
-with six laws of friction and scores what ``bushing-noise identify`` finds of them.
+with six laws of friction and scores what ``bushing-noise identify`` finds of them, ``improve``
+tells how often ``bushing-noise diagnose`` finds no gap any more against the rig that it improved.
 
 ``score`` takes a folder that ``generate`` has written, or ``--sealed``, which makes the sealed set,
 scores it, and writes both to the log in the repository.
@@ -24,6 +25,9 @@ def main(arguments: list[str] | None = None) -> None:
     given = _parser().parse_args(arguments)
     if given.command == "identify":
         _identify(given)
+        return
+    if given.command == "improve":
+        _improve(given)
         return
     wanted = Wanted(given.seed, given.cases, "quotas" if given.balanced else "shares")
     if given.command == "generate":
@@ -53,6 +57,17 @@ def _identify(given: argparse.Namespace) -> None:
     sys.stdout.write(table(result) + "\n")
 
 
+def _improve(given: argparse.Namespace) -> None:
+    import json
+
+    from .score.improving import improve_cases, table
+
+    rows = improve_cases(given.seed, given.cases, given.workers)
+    if given.out is not None:
+        given.out.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    sys.stdout.write(table(rows) + "\n")
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.blind")
     commands = parser.add_subparsers(dest="command", required=True)
@@ -63,6 +78,13 @@ def _parser() -> argparse.ArgumentParser:
     identifying.add_argument("--seed", type=int, default=1, help="from 100 on for reporting")
     identifying.add_argument("--workers", type=int, default=2)
     identifying.add_argument("--out", type=Path, metavar="FILE.json")
+    improving = commands.add_parser("improve", help="score the improved rigs of a diagnosis")
+    improving.add_argument(
+        "--cases", type=int, default=24, help="of one effect, above 1.5 floors; a minute each"
+    )
+    improving.add_argument("--seed", type=int, default=1, help="from 100 on for reporting")
+    improving.add_argument("--workers", type=int, default=1)
+    improving.add_argument("--out", type=Path, metavar="FILE.json")
     for one in (making, scoring):
         one.add_argument("--out", type=Path, required=True)
         one.add_argument("--seed", type=int, default=1)

@@ -56,10 +56,11 @@ def structures_of(design: Design) -> dict[float, Structure]:
     }
 
 
-def _record(design: Design, k: int, structure: Structure, off: frozenset[str]):
-    """Make recording `k`; effects named in `off` are left out."""
-    where = (design.seed, design.kept_for, design.index)
-    condition, chance = design.conditions[k], stream(*where, 7, k)
+def _record(design: Design, k: int, structure: Structure, off: frozenset[str], again: int = 0):
+    """Make recording `k`, or a repeat of it; effects named in `off` are left out."""
+    where, condition = (design.seed, design.kept_for, design.index), design.conditions[k]
+    k += again * len(design.conditions)
+    chance = stream(*where, 7, k)
     decimation = int(np.ceil(_LEAST_RATE / design.rate))
     rate = design.rate * decimation * (1.0 + design.rate_error)
     n = round(design.seconds * design.rate) * decimation
@@ -98,13 +99,19 @@ def sampled(x, decimation, level, name, rng):
     return samples
 
 
-def run_case(design: Design, off: frozenset[str] = frozenset(), *, plain: bool = False) -> Case:
-    """Run all recordings of a case, the effects in `off` left out; a plain one has no offsets."""
+def run_case(
+    design: Design, off: frozenset[str] = frozenset(), *, plain: bool = False, again: int = 0
+) -> Case:
+    """Run all recordings of a case, the effects in `off` left out; a plain one has no offsets.
+
+    `again` numbers further repeats of them: the same truth, other chance.
+    """
     if plain:
         design = replace(design, offsets={})
     structures = structures_of(design)
     recordings = tuple(
-        _record(design, k, structures[c.support], off) for k, c in enumerate(design.conditions)
+        _record(design, k, structures[c.support], off, again)
+        for k, c in enumerate(design.conditions)
     )
     return Case(design, recordings, responses_of(design, structures), answer_of(design))
 

@@ -2,10 +2,16 @@
 
 import csv
 
+import numpy as np
 import pytest
 
+from features.modal.hammer import estimate_transfer_function
+from models.radiation.rig_response import impulse_responses
+from models.rig_files.rig_file import load_material_rig
 from noise.demo import CASES, run_demo
+from noise.demo_hits import ARM, N_HITS
 from noise.recordings import read_recording
+from noise.recordings.hits import find_hits, read_hit
 
 NAMES = [case.name for case in CASES]
 
@@ -23,7 +29,7 @@ def table(path):
 
 
 def test_the_folder_holds_what_the_readme_says(folder):
-    expected = {"report.html", "labels.csv", "features.csv", "recordings", "audio"}
+    expected = {"report.html", "labels.csv", "features.csv", "recordings", "audio", "hits"}
     assert {path.name for path in folder.iterdir()} == expected
     for part in ("recordings", "audio"):
         found = {path.name for path in (folder / part).iterdir()}
@@ -63,3 +69,20 @@ def test_the_same_seed_makes_the_same_recordings(folder, tmp_path):
     for name in NAMES:
         first, again = (root / "recordings" / f"{name}.wav" for root in (folder, tmp_path))
         assert first.read_bytes() == again.read_bytes()
+
+
+def test_its_hits_give_the_response_of_the_modelled_structure(folder):
+    hits = [read_hit(path, arm=ARM)[0] for path in find_hits([folder / "hits"])]
+    assert len(hits) == N_HITS
+    found = estimate_transfer_function(hits, input_unit="N m", output_unit="m/s^2")
+    paths = impulse_responses(load_material_rig("fluorocarbon"), 0.279e-3, 2214.0, 90e3)
+    band = (found.frequencies >= 100.0) & (found.frequencies <= 5000.0)
+    n = 1 << 17
+    exact = np.interp(
+        found.frequencies[band],
+        np.fft.rfftfreq(n, 1.0 / paths.rate),
+        np.abs(np.fft.rfft(paths.torque_to_acceleration, n)),
+    )
+    off = 20.0 * np.log10(np.abs(found.response[band]) / exact)
+    assert np.median(np.abs(off)) < 0.2
+    assert np.median(found.coherence[band]) > 0.98

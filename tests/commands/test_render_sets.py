@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import sys
 
 import numpy as np
@@ -234,3 +235,51 @@ def test_calls_that_make_no_sense_are_refused(runs, tmp_path, capsys, given, sai
     assert said in refusal(capsys, *(part.format(runs=runs, tmp=tmp_path) for part in given))
     assert not (tmp_path / "s.wav").exists()
     assert not (tmp_path / "set").exists()
+
+
+def faint_lines(capsys):
+    err = capsys.readouterr().err.splitlines()
+    return [line for line in err if "nearly inaudible" in line]
+
+
+@pytest.fixture
+def faint(tmp_path):
+    """A set of which one sound is near a rig's squawk, one 40 dB louder."""
+    recorded(tmp_path / "faint" / "squawk", tone(rms=0.03))
+    recorded(tmp_path / "faint" / "loud", tone(rms=3.0))
+    return tmp_path / "faint"
+
+
+def test_a_calibrated_set_says_what_of_it_can_hardly_be_heard(faint, tmp_path, capsys):
+    out = tmp_path / "set"
+    rendered(faint, "--pascal-per-full-scale", "20", "--out", out)
+    (line,) = faint_lines(capsys)
+    in_air = 20 * np.log10(0.03 / 2e-5)
+    in_file = 20 * np.log10(soundfile.read(out / "squawk.wav")[0].std())
+    levels = re.search(r"squawk \((.*) dB\(A\) at the microphone, (.*) dBFS\(A\) in the file", line)
+    assert [float(level) for level in levels.groups()] == pytest.approx([in_air, in_file], abs=0.2)
+    assert "calibrated to 20 Pa" in line
+    assert "loud (" not in line
+    rows = table(out)
+    assert "nearly inaudible" in rows["squawk.wav"]["note"]
+    assert rows["loud.wav"]["note"] == ""
+    told = json.loads((out / "squawk.json").read_text(encoding="utf-8"))["render"]["note"]
+    assert told == rows["squawk.wav"]["note"]
+    assert "note" not in json.loads((out / "loud.json").read_text(encoding="utf-8"))["render"]
+
+
+def test_the_louder_gain_that_is_named_is_what_one_gets(faint, tmp_path, capsys):
+    rendered(faint, "--pascal-per-full-scale", "20", "--out", tmp_path / "as-asked")
+    (line,) = faint_lines(capsys)
+    louder = float(line.partition("without --pascal-per-full-scale ")[2].partition(" dB")[0])
+    rendered(faint, "--out", tmp_path / "louder")
+    levels = [
+        float(table(tmp_path / name)["squawk.wav"]["level_dbfs"]) for name in ("as-asked", "louder")
+    ]
+    assert levels[1] - levels[0] == pytest.approx(louder, abs=0.6)
+
+
+@pytest.mark.parametrize("option", ["--match-loudness", None])
+def test_a_set_that_can_be_heard_says_nothing_of_it(runs, tmp_path, capsys, option):
+    rendered(runs, *filter(None, [option]), "--out", tmp_path / "set")
+    assert faint_lines(capsys) == []

@@ -9,8 +9,10 @@ import pytest
 
 from models.condition import FIXED
 from models.errors import ParameterError
+from models.sensors import Sensors
 from noise.cli import main
 from noise.recordings import read_recording
+from sim.acquisition import THESIS_CONVERTER
 from sim.shaft import ConstantSpeed, LoggedSpeed, Oscillation, SpeedRamp
 
 
@@ -50,7 +52,7 @@ def test_a_condition_has_the_documented_defaults(simulated):
     assert made.rig.material == "fluorocarbon"
     assert made.interference == pytest.approx(0.279e-3, rel=1e-12)
     assert (made.support_stiffness, made.temperature, made.seconds) == (2214.0, 23.0, 1.0)
-    assert (made.acquisition.rate, made.acquisition.converter) == (30e3, False)
+    assert (made.acquisition.rate, made.acquisition.sensors) == (30e3, Sensors())
 
 
 def test_a_condition_is_passed_on_in_si_units(simulated):
@@ -63,7 +65,7 @@ def test_a_condition_is_passed_on_in_si_units(simulated):
     assert made.rig.material == "PDMS"
     assert made.interference == pytest.approx(0.381e-3, rel=1e-12)
     assert (made.support_stiffness, made.temperature, made.seconds) == (FIXED, -10.0, 0.5)
-    assert (made.acquisition.rate, made.acquisition.converter) == (48e3, True)
+    assert (made.acquisition.rate, made.acquisition.sensors) == (48e3, THESIS_CONVERTER)
 
 
 @pytest.mark.parametrize(
@@ -287,3 +289,27 @@ def test_a_long_run_is_written_in_blocks(tmp_path, monkeypatch):
     run = ["simulate", "--speed", "5", "--seconds", "0.3", "--out", str(tmp_path / "run")]
     assert main(run) == 0
     assert read_recording(tmp_path / "run.wav").duration == 0.3
+
+
+def test_a_rig_file_states_what_its_run_is_recorded_through(tmp_path, capsys):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(
+        """[sensors]
+noise = "from recordings"
+range = { torque = 9.0, pressure = 30.0 }
+bits = { torque = 8 }
+antialias_hz = 16000
+"""
+    )
+    options = ["simulate", "--rig", rig, "--speed", "2.5", "--seconds", "0.3"]
+    assert main([str(word) for word in (*options, "--out", tmp_path / "run")]) == 0
+    said = capsys.readouterr().err
+    back = read_recording(tmp_path / "run.wav")
+    steps = back["torque"] / (2.0 * 9.0 / 2**8)
+    assert np.array_equal(steps, np.round(steps))
+    assert back["torque"].max() == 9.0 * (1.0 - 2.0**-7)
+    notes = json.loads((tmp_path / "run.json").read_text())["notes"]
+    assert any('noise = "from recordings"' in note for note in notes)
+    assert any("antialias_hz = 16000 lies above half the sampling rate" in note for note in notes)
+    assert any("torque reaches the range of its sensor, 9 N m" in note for note in notes)
+    assert all(note in said for note in notes)

@@ -109,7 +109,7 @@ def test_the_whole_answer_has_the_contracts_keys_and_a_page(tmp_path, capsys):
     out = tmp_path / "not" / "there" / "yet"
     assert main(["diagnose", str(data), "--rig", str(rig), "--out", str(out)]) == 0
     printed = capsys.readouterr().out.split()
-    assert printed == [str(out / "report.html"), str(out / "diagnosis.json")]
+    assert printed[:2] == [str(out / "report.html"), str(out / "diagnosis.json")]
     told = json.loads((out / "diagnosis.json").read_text())
     _as_the_contract_has_it(told)
     assert told["held_out"]

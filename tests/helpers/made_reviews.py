@@ -17,7 +17,7 @@ TONE = 997.0
 
 SCREEN_COLUMNS = (
     "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
-    "support_stiffness_Nm_rad", "motion", "frequency_hz", "regime", "label", "level_db",
+    "support_stiffness_Nm_rad", "motion", "frequency_hz", "regime", "label", "level_dba",
     "loudness", "how",
 )  # fmt: skip
 
@@ -75,7 +75,7 @@ def screen_rows(design="fluorocarbon", environment="dry"):
             "design": design, "environment": environment, "temperature_C": 23.0,
             "speed_rad_s": speed, "interference_mm": fit, "support_stiffness_Nm_rad": 2214.0,
             "regime": "stick-slip" if label != "none" else "sliding", "label": label,
-            "level_db": 80.0 if label != "none" else None, "how": "simulated",
+            "level_dba": 80.0 if label != "none" else None, "how": "simulated",
         }
         for fit in (0.2, 0.25, 0.3, 0.35)
         for speed, label in zip((2.0, 4.0, 6.0, 8.0, 10.0), labels, strict=True)

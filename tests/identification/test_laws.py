@@ -9,10 +9,10 @@ import pytest
 
 from models.condition import KnownCondition
 from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_files.rig_text import rig_text
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.law_choice import left_out
 from noise.identification.law_model import LawModel
-from noise.identification.rig_text import rig_text
 from noise.identification.run import identify
 from tests.blind.identify.laws import LAWS
 from tests.blind.identify.rigs import make_rig, write_rig

@@ -269,7 +269,7 @@ def test_a_screen_brings_a_map_a_design_and_sounds_of_every_label(tmp_path):
     page = Page(made.path)
     assert made.sounds == 5
     assert {one["label"] for one in page.about.values()} == {"creak", "squawk", "squeal", "none"}
-    assert page.html.count("data-map data-speed") == 2
+    assert page.html.count("data-map data-speed") == 3  # and their difference
     assert "the file of design mine is not at hand; name mine.toml" in page.html
 
 

@@ -7,12 +7,14 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.pages.engine.maps import areas_of, axis_of, recorded_maps
+from noise.pages.engine.cells import areas_of, cells_of
+from noise.pages.engine.maps import axis_of, recorded_maps
 from noise.pages.engine.page import MAP_SIZE
-from noise.pages.review import simulated
 from noise.pages.review.design_rig import rig_of
-from noise.pages.review.screens import ScreenPoint, read_screen
-from noise.pages.review.simulated import MOST_SILENT, chosen_points
+from noise.pages.review.screens import read_screen
+from noise.pages.screening import sounds
+from noise.pages.screening.screen_maps import ScreenPoint, SharedPoint
+from noise.pages.screening.sounds import MOST_SILENT, chosen_points
 from tests.helpers.made_reviews import row, screen_rows, write_screen
 from tests.helpers.small_rigs import RIG_FILE
 
@@ -22,7 +24,17 @@ WIDTH, HEIGHT = MAP_SIZE
 
 
 def points(rows):
-    return [ScreenPoint(one["speed_rad_s"], one["interference_mm"], one["label"]) for one in rows]
+    return [shared(one["speed_rad_s"], one["interference_mm"], one["label"]) for one in rows]
+
+
+def shared(speed, fit, *labels):
+    return SharedPoint(speed, fit, tuple(ScreenPoint(speed, fit, label) for label in labels))
+
+
+def areas_among(speed, fit, labels):
+    cells = cells_of(speed, fit)
+    across, up = (axis_of(e, edges=True) for e in (cells.speed_edges, cells.interference_edges))
+    return across, up, areas_of(cells, labels, across, up, MAP_SIZE)
 
 
 @given(
@@ -33,7 +45,7 @@ def points(rows):
 def test_areas_cover_the_map_once_and_have_the_label_of_their_point(n_across, n_up, labels):
     speed = np.tile(np.arange(n_across) * 2.0 + 1.0, n_up)
     fit = np.repeat(np.arange(n_up) * 0.05 + 0.2, n_across)
-    across, up, areas = areas_of(speed, fit, labels[: speed.size])
+    across, up, areas = areas_among(speed, fit, labels[: speed.size])
     assert sum(a.width * a.height for a in areas) == pytest.approx(
         MAP_SIZE[0] * MAP_SIZE[1], rel=1e-3
     )
@@ -46,7 +58,7 @@ def test_areas_cover_the_map_once_and_have_the_label_of_their_point(n_across, n_
 def test_points_without_a_grid_are_divided_by_the_nearest():
     rng = np.random.default_rng(5)
     speed, fit = rng.uniform(1.0, 11.0, 300), rng.uniform(0.2, 0.4, 300)
-    _, _, areas = areas_of(speed, fit, ["creak" if v < 6.0 else "none" for v in speed])
+    _, _, areas = areas_among(speed, fit, ["creak" if v < 6.0 else "none" for v in speed])
     share = sum(a.width * a.height for a in areas if a.label == "creak") / (
         MAP_SIZE[0] * MAP_SIZE[1]
     )
@@ -57,16 +69,16 @@ def test_points_without_a_grid_are_divided_by_the_nearest():
 def test_no_more_points_are_heard_than_allowed_and_none_twice(most):
     chosen = chosen_points(points(screen_rows()), most)
     assert len(chosen) == len(set(chosen)) <= most
-    assert sum(point.label == "none" for point in chosen) <= MOST_SILENT
+    assert sum(point.labels == ("none",) for point in chosen) <= MOST_SILENT
 
 
 def test_every_label_is_heard_where_there_is_room():
     chosen = chosen_points(points(screen_rows()), 4)
-    assert {point.label for point in chosen} == set(LABELS)
+    assert {point.labels for point in chosen} == {(label,) for label in LABELS}
 
 
 def test_points_of_one_label_lie_apart():
-    line = [ScreenPoint(float(v), 0.3, "squeal") for v in range(31)]
+    line = [shared(float(v), 0.3, "squeal") for v in range(31)]
     heard = [point.speed for point in chosen_points(line, 3)]
     assert np.diff(heard).min() >= 6.0
 
@@ -119,9 +131,9 @@ def test_a_point_of_a_swinging_shaft_is_heard_swinging(tmp_path, monkeypatch):
         turned.append(shaft)
         return run_of(rig, shaft, **(others | {"seconds": 0.1}))
 
-    run_of = simulated.simulate
-    monkeypatch.setattr(simulated, "simulate", simulate)
-    entry = simulated.simulated_entry(
+    run_of = sounds.simulate
+    monkeypatch.setattr(sounds, "simulate", simulate)
+    entry = sounds.simulated_entry(
         screened, rig_of(screened, tmp_path, ()), screened.points[0], seed=0
     )
     (shaft,) = turned

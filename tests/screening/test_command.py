@@ -32,18 +32,18 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     assert main([*given, "--out", str(out)]) == 0
     names = sorted(path.name for path in out.iterdir())
     assert names == [
-        "critical_speeds.csv", "designs.csv", "map-1.png", "map-2.png", "map.csv",
+        "critical_speeds.csv", "designs.csv", "map-1.png", "map-2.png", "map.csv", "report.html",
     ]  # fmt: skip
     points = rows(out / "map.csv")
     assert len(points) == 6
     assert set(points[0]) >= {
         "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
-        "support_stiffness_Nm_rad", "regime", "label", "level_db", "loudness", "how",
+        "support_stiffness_Nm_rad", "regime", "label", "level_dba", "loudness", "how",
     }  # fmt: skip
     quiet, loud = points[0], points[3]
-    assert (quiet["design"], quiet["label"], quiet["level_db"]) == ("PDMS", "none", "")
+    assert (quiet["design"], quiet["label"], quiet["level_dba"]) == ("PDMS", "none", "")
     assert loud["regime"] == "stick-slip"
-    assert float(loud["level_db"]) > 30.0
+    assert float(loud["level_dba"]) > 30.0
     assert {row["how"] for row in points} == {"simulated"}
     ranked = rows(out / "designs.csv")
     assert [(row["rank"], row["design"]) for row in ranked] == [

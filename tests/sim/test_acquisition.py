@@ -1,11 +1,26 @@
 """The rig's data acquisition."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hypothesis import given, strategies as st
 
-from sim.acquisition import CONVERTER_GAIN, Acquisition, sample
+from models.rig_files.rig_file import load_material_rig
+from models.sensors import Sensor, Sensors
+from sim.acquisition import (
+    CONVERTER_GAIN,
+    THESIS_CONVERTER,
+    Acquisition,
+    decimate_sensed,
+    digitise,
+    sample,
+)  # fmt: skip
+from sim.long_run import simulate_blocks
+from sim.run import simulate
 
 QUIET = Acquisition(noise={})
+THESIS = Acquisition(noise={}, sensors=THESIS_CONVERTER)
 
 
 def rng():
@@ -17,13 +32,13 @@ def rng():
 )
 def test_one_bit_of_the_converter_is_what_the_thesis_says(kind, bit):
     ramp = np.linspace(0.0, 20 * bit, 5000)
-    taken = sample({kind: ramp}, 1, Acquisition(noise={}, converter=True), rng())[kind]
+    taken = sample({kind: ramp}, 1, THESIS, rng())[kind]
     assert np.diff(np.unique(taken)) == pytest.approx(np.full(20, bit), rel=0.01)
 
 
 def test_the_converter_clips_at_its_range():
     loud = np.array([-1e3, 1e3])
-    taken = sample({"torque": loud}, 1, Acquisition(noise={}, converter=True), rng())["torque"]
+    taken = sample({"torque": loud}, 1, THESIS, rng())["torque"]
     assert taken == pytest.approx([-1.25 * 82.0, 1.25 * 82.0], rel=1e-3)
 
 
@@ -51,3 +66,83 @@ def test_the_same_seed_gives_the_same_noise_and_another_another():
 
 def test_every_kind_of_channel_has_a_gain():
     assert set(CONVERTER_GAIN) >= set(Acquisition().noise)
+
+
+@given(
+    full_scale=st.floats(1e-3, 1e3),
+    bits=st.integers(2, 24),
+    share=st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=50),
+)
+def test_a_converter_errs_by_half_a_step_inside_its_range_and_ends_at_it(full_scale, bits, share):
+    sensor = Sensor(full_scale=full_scale, bits=bits)
+    through = Acquisition(noise={}, sensors=Sensors({"torque": sensor}))
+    values = 1.5 * full_scale * np.array(share)
+    read = digitise(values, "torque", through, rng())
+    inside = np.abs(values) <= full_scale - sensor.step
+    half = 0.5 * sensor.step * (1.0 + 1e-9)
+    assert np.abs(read - values)[inside].max(initial=0.0) <= half
+    assert np.abs(read - np.clip(values, -full_scale, full_scale)).max() <= 2.0 * half
+    assert np.abs(read / sensor.step - np.round(read / sensor.step)).max() < 1e-6
+
+
+def test_a_range_without_bits_only_clips():
+    through = Acquisition(noise={}, sensors=Sensors({"torque": Sensor(full_scale=2.0)}))
+    values = np.array([-3.0, 0.123456789, 2.5])
+    assert digitise(values, "torque", through, rng()).tolist() == [-2.0, 0.123456789, 2.0]
+
+
+@pytest.mark.parametrize("corner", [500.0, 3e3, 9e3])
+@pytest.mark.parametrize(
+    ("relative", "gain_db", "within"), [(0.5, 0.0, 0.02), (1.0, -3.01, 0.02), (2.0, -48.2, 2.0)]
+)
+def test_the_filter_takes_3_db_at_its_corner_and_48_an_octave_above(
+    corner, relative, gain_db, within
+):
+    rate = 20.0 * corner
+    tone = np.sin(2.0 * np.pi * relative * corner / rate * np.arange(40_000))
+    passed = decimate_sensed(tone, 1, rate, Sensor(antialias=corner))[4000:]
+    assert 20.0 * np.log10(np.sqrt(2.0) * passed.std()) == pytest.approx(gain_db, abs=within)
+
+
+def test_a_filter_starts_settled():
+    held = decimate_sensed(np.full(900, 8.0), 3, 90e3, Sensor(antialias=2e3))
+    assert held == pytest.approx(np.full(300, 8.0))
+
+
+def test_the_filter_acts_before_the_noise_and_the_converter_after_it():
+    sensor = Sensor(noise=0.3, full_scale=2.0, bits=6, antialias=1e3)
+    through = Acquisition(sensors=Sensors({"torque": sensor}))
+    read = sample({"torque": np.zeros(90_000)}, 3, through, rng())["torque"]
+    power = np.abs(np.fft.rfft(read)) ** 2
+    assert read.std() == pytest.approx(np.hypot(0.3, sensor.step / np.sqrt(12.0)), rel=0.02)
+    assert power[: power.size // 10].mean() == pytest.approx(power.mean(), rel=0.1)
+
+
+def test_a_rig_records_through_its_sensors_in_one_piece_as_in_blocks():
+    coarse = Sensors(
+        {
+            "torque": Sensor(full_scale=20.0, antialias=2e3),
+            "pressure": Sensor(noise=0.0, full_scale=0.3, antialias=5e3),
+            "angle": Sensor(noise=0.0, full_scale=12.4, bits=12),
+        }
+    )
+    rig = replace(load_material_rig("fluorocarbon"), sensors=coarse)
+    how = {"seconds": 0.3, "acquisition": QUIET}
+    one = simulate(rig, 5.0, **how).recording
+    parts = simulate_blocks(rig, 5.0, block_seconds=0.07, **how).blocks
+    samples = np.concatenate(list(parts), axis=1)
+    plain = simulate(load_material_rig("fluorocarbon"), 5.0, **how).recording
+    inner = slice(12, -600)  # as of any run in blocks
+    for row, expected in zip(samples[:3], one.samples[:3], strict=True):
+        assert np.abs(row - expected)[inner].max() < 1e-9 * np.abs(expected).max()
+    assert np.mean(samples[3] != one["angle"]) < 1e-3  # rounding tips a step over
+    assert not np.allclose(one["torque"], plain["torque"], atol=1e-3)
+    assert np.array_equal(one["acceleration"], plain["acceleration"])
+    assert np.abs(one["angle"] - plain["angle"]).max() <= 0.5 * coarse.of("angle").step
+
+
+def test_no_sensors_change_nothing():
+    rig = load_material_rig("fluorocarbon-thesis")
+    ideal = replace(rig, sensors=Sensors({"torque": Sensor(antialias=60e3)}))
+    first, second = (simulate(r, 2.0, seconds=0.1).recording.samples for r in (rig, ideal))
+    assert np.array_equal(first, second)

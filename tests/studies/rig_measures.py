@@ -3,7 +3,7 @@
 Counted by one definition each, so that a change of the model can be judged by it: critical speeds
 (`sim.analysis.critical_speeds`), rise of the slip rate (`sim.analysis.slips`), noises of 5.2.3 by
 physics and by the classifier, how irregular the creak is, and what a run costs. Critical speeds
-with a cell left out take searches: ``python -m noise.training.calibrate --leave-out 15``. Rows of
+with a cell left out take searches: ``python -m noise.training.calibrate --leave-out N``. Rows of
 the thesis that are missed stand in the head of ``tests/thesis.md``.
 
 The creak's measures, of two seconds of sound at the microphone without room and noise, the loudest
@@ -31,8 +31,8 @@ from models.rig_files.rig_file import load_material_rig
 from noise.classifier import load_classifier
 from noise.labels.segments import file_label, label_recording
 from noise.noise_definition import label_by_physics
-from noise.training.calibrate.cells import CELLS, THIN_CELLS
 from noise.training.calibrate.report import measured_speeds, speeds_page
+from noise.training.calibrate.thesis_table import CELLS, THIN_CELLS
 from sim.analysis.slips import motion_slips
 from sim.motion import simulate_motion
 from sim.run import simulate

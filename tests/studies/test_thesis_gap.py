@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.training.calibrate.cells import CELLS
+from noise.training.calibrate.thesis_table import CELLS
 from sim.analysis.critical_speeds import critical_speeds
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage, activated
@@ -76,7 +76,7 @@ def test_each_form_is_within_reach():
 
 def test_constant_torques_end_stick_and_vibration_together():
     found = errors(nominal_rig())
-    speeds = [cell.speed * np.exp(e) for cell, e in zip(CELLS, found, strict=True)]
+    speeds = [cell.value * np.exp(e) for cell, e in zip(CELLS, found, strict=True)]
     assert speeds[:3] == pytest.approx(speeds[3:])
     assert rms(found) >= least_without_a_regime()
 
@@ -86,7 +86,7 @@ def test_reported_errors_are_those_of_the_defined_critical_speeds():
     speeds = tuple(0.25 * i for i in range(1, 65))
     for cell, error in zip(CELLS, errors(rig), strict=True):
         found = critical_speeds(rig, cell.interference, cell.support_stiffness, speeds)
-        assert np.log(getattr(found, cell.item) / cell.speed) == pytest.approx(error)
+        assert np.log(getattr(found, cell.item) / cell.value) == pytest.approx(error)
 
 
 def test_the_search_sees_nearly_what_is_reported():
@@ -99,7 +99,7 @@ def test_a_rig_that_never_vibrates_counts_as_half_a_radian_a_second():
     smooth = replace(
         rig, fits=tuple(replace(f, critical_torque=f.kinetic_torque) for f in rig.fits)
     )
-    expected = np.log([0.5 / cell.speed for cell in CELLS])
+    expected = np.log([0.5 / cell.value for cell in CELLS])
     assert errors(smooth) == pytest.approx(expected)
     assert coarse_errors(smooth) == pytest.approx(expected)
     assert slip_errors(smooth)[: len(SLIP_CELLS) - 8] == pytest.approx(np.log(2.0))

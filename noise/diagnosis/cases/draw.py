@@ -38,13 +38,16 @@ if TYPE_CHECKING:
     from noise.diagnosis.cases.rigs import Setting
     from sim.effects.effect import ActiveEffect
 
-__all__ = ["SHARED", "DrawnCase", "draw_case"]
+__all__ = ["NOISE_DRAWN", "SHARED", "DrawnCase", "draw_case"]
 
 SHARED = 4
 """Cases of one rig."""
 
 WEAKEST = 0.02
 """Least strength of an effect that is drawn."""
+
+NOISE_DRAWN = (0.7, 1.6)
+"""Between which the noise of a case's sensors lies, times that of `sim.acquisition`."""
 
 _VARIANTS = 0.65
 """Share of the effects that have none of the simulator's own forms."""
@@ -80,7 +83,9 @@ def draw_case(seed: int) -> DrawnCase:
     rng = np.random.default_rng([1, seed])
     truth, effects = _draw_cause(setting.rig, rng)
     chain_seed = int(rng.integers(2**31))
-    louder = {name: level * rng.uniform(0.7, 1.6) for name, level in Acquisition().noise.items()}
+    louder = {
+        name: level * rng.uniform(*NOISE_DRAWN) for name, level in Acquisition().noise.items()
+    }
     recordings = tuple(
         _record(
             setting, condition, effects, dict(truth.offsets), plain[condition.support_stiffness],

@@ -22,11 +22,19 @@ BEYOND = 2.5
 RARE = 0.002
 """Probability of a gap between repeats that is hardly ever met."""
 
+UNUSUAL = 0.05
+"""Probability of a gap between repeats that has to be small for an alarm of models that have not
+seen such sensors."""
+
 _EXCLUSIVE = ("parameters", "unknown")
 
 
 def verdict_of(
-    probabilities: Mapping[str, float], alarm: float, gap: Gap | None = None
+    probabilities: Mapping[str, float],
+    alarm: float,
+    gap: Gap | None = None,
+    *,
+    learned: bool = True,
 ) -> tuple[str, ...]:
     """Decide what to say.
 
@@ -38,6 +46,9 @@ def verdict_of(
         Probability of ``none`` below which there is something to explain.
     gap : Gap, optional
         Against simulated repeats; one that these hardly ever have needs explaining as well.
+    learned : bool
+        Whether the probabilities were learned with sensors such as these; where they were not,
+        there is nothing to explain unless the gap says so.
 
     Returns
     -------
@@ -50,6 +61,8 @@ def verdict_of(
     >>> verdict_of({"none": 0.0, "parameters": 0.1, "clipping": 0.9, "unknown": 0.1}, 0.05)
     ('clipping',)
     """
+    if gap is not None and not learned and gap.p_value > UNUSUAL:
+        return ()
     if probabilities["none"] >= alarm and not (gap is not None and _is_beyond(gap)):
         return ()
     others = {name: p for name, p in probabilities.items() if name != "none"}

@@ -167,7 +167,7 @@ def _transfer(
     correlation = np.concatenate([correlation[-most:], correlation[: most + 1]])
     best = int(np.argmax(correlation))
     impulse = np.zeros(frequency.size, complex)
-    impulse[inside] = h * np.sqrt(weight / weight.max()) * np.hanning(h.size) ** 0.25
+    impulse[inside] = h * np.sqrt(weight / (weight.max() + 1e-30)) * np.hanning(h.size) ** 0.25
     answer = irfft(impulse)
     energy = answer**2
     whole = float(energy.sum()) + 1e-30

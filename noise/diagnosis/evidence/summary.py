@@ -153,7 +153,7 @@ class NominalNumbers:
     @cached_property
     def transfer_functions(self) -> TransferFunctionCache:
         """The rig's, each looked up once."""
-        return TransferFunctionCache(self.rig)
+        return TransferFunctionCache(self.rig, self.library)
 
     def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
@@ -163,7 +163,7 @@ class NominalNumbers:
                 recording, self.rig, self.transfer_functions,
                 [self.seed + i for i in range(N_REPEATS)], library=self.library,
             )  # fmt: skip
-            transfer_functions = self.transfer_functions.of(recording)
+            transfer_functions = self.transfer_functions.whole(recording)
             alike = [same_channels(repeat, recording) for repeat in repeats]
             self._kept[key] = _moments([summary(x, self.rig, transfer_functions) for x in alike])
         return self._kept[key]
@@ -196,7 +196,7 @@ def case_table(
     """
     nominal = nominal or NominalNumbers(rig, library, seed)
     rows = [
-        summary(recording, rig, nominal.transfer_functions.of(recording))
+        summary(recording, rig, nominal.transfer_functions.whole(recording))
         for recording in recordings
     ]
     means, spreads = zip(*(nominal.moments(recording) for recording in recordings), strict=True)

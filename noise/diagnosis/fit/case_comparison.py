@@ -16,7 +16,7 @@ import numpy as np
 from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import same_channels, summary
-from noise.diagnosis.gap.distance import group_costs
+from noise.diagnosis.gap.distance import group_costs, residual_parts
 from noise.diagnosis.gap.floor import references_of
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
@@ -141,14 +141,16 @@ class CaseComparison:
         Returns
         -------
         ndarray, shape (n_chosen,)
-            In squared floors [-].
+            In squared floors [-]; infinite where the model cannot be simulated.
         """
-        return np.array(
-            [
-                self.references[i].squared_of(deviation)
-                for i, deviation in zip(chosen, self.deviations(model, chosen), strict=True)
-            ]
-        )
+        return np.array([self._squared(model, i) for i in chosen])
+
+    def _squared(self, model: Model, place: int) -> float:
+        try:
+            (deviation,) = self.deviations(model, [place])
+        except ParameterError:
+            return math.inf
+        return self.references[place].squared_of(deviation)
 
     def misfits(
         self, model: Model, chosen: Sequence[int], *, single_run: bool = False
@@ -172,16 +174,41 @@ class CaseComparison:
         """
         found = np.full(len(chosen), np.inf)
         for k, i in enumerate(chosen):
-            reference = self.references[i]
             try:
-                plain = self._middle(Model(), i, single_run=True)
-                middle = self._middle(model, i, single_run=single_run)
+                away = self._away(model, i, single_run=single_run)
             except ParameterError:
                 return found
-            off = np.clip(reference.mean - plain, -reference.scale, reference.scale)
-            away = (self.signatures[i] - middle - off) / reference.scale
             found[k] = math.sqrt(float(np.nanmean(group_costs(away))))
         return found
+
+    def residual_signature(self, model: Model, place: int) -> NDArray[np.float64]:
+        """Tell what the squared misfit of a recording is the sum of the squares of.
+
+        Parameters
+        ----------
+        model : Model
+        place : int
+            Of the recording.
+
+        Returns
+        -------
+        ndarray, shape (n_values,)
+            [-]
+
+        Raises
+        ------
+        ParameterError
+            The model cannot be simulated.
+        """
+        return residual_parts(self._away(model, place, single_run=False))
+
+    def _away(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
+        reference = self.references[place]
+        plain = self._middle(Model(), place, single_run=True)
+        middle = self._middle(model, place, single_run=single_run)
+        off = np.clip(reference.mean - plain, -reference.scale, reference.scale)
+        away: NDArray[np.float64] = (self.signatures[place] - middle - off) / reference.scale
+        return away
 
     def _middle(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
         """Signature of a model without scatter."""
@@ -212,7 +239,7 @@ class CaseComparison:
                 run = same_channels(
                     self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0)), template
                 )
-                found = summary(run, self.rig, self.runs.transfer_functions.of(template))
+                found = summary(run, self.rig, self.runs.transfer_functions.whole(template))
                 self._numbers[key] = np.array([found.get(name, math.nan) for name in self.names])
             scale = np.sqrt(np.nan_to_num(scatter[i]) ** 2 + self.scale**2)
             z = (measured[i] - self._numbers[key]) / scale

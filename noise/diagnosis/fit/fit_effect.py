@@ -36,7 +36,10 @@ if TYPE_CHECKING:
 
     from sim.effects.effect import Effect
 
-__all__ = ["fit_effect", "strength_of"]
+__all__ = [
+    "fit_effect", "fitted_numbers", "is_stated", "number_spreads", "stated_candidates",
+    "strength_of",
+]  # fmt: skip
 
 _DRAWN = 18
 """Of the simulator's own forms tried, and of variants."""
@@ -80,6 +83,8 @@ def fit_effect(
     names: Sequence[str],
     start: Model,
     seed: int = 0,
+    *,
+    stated: bool = False,
 ) -> Fitted:
     """Fit effects together with the parameters.
 
@@ -94,13 +99,16 @@ def fit_effect(
         With the parameters as they were recalibrated alone.
     seed : int
         Of what is tried.
+    stated : bool
+        Whether only forms are tried that a rig file can state.
     """
     few = different(comparison, chosen)
     best = Model()
     for name in names:
-        for form in estimated_forms(comparison, chosen, name):
-            comparison.forms[name, form.name] = form
-        best = _added(comparison, few, best, start.offsets, name, seed)
+        candidates = stated_candidates(comparison.library[name], seed)
+        if not stated:
+            candidates += _further_candidates(comparison, chosen, name, seed)
+        best = _added(comparison, few, best, start.offsets, candidates)
     if len(names) > 1:  # what the first had to stand for is the others' now
         for place in range(len(names)):
             best = _refined(comparison, few, best, place)
@@ -116,13 +124,12 @@ def _added(
     few: Sequence[int],
     model: Model,
     offsets: tuple[float, ...],
-    name: str,
-    seed: int,
+    candidates: Sequence[LawSpec],
 ) -> Model:
     """Add the candidates of one effect; return the best model that comes of it."""
     looked = [
         (offset_cost(comparison, few[:_LOOKED], one, single_run=True), one)
-        for spec in _candidates(comparison, comparison.library[name], seed)
+        for spec in candidates
         for one in [replace(model, effects=(*model.effects, spec))]
     ]
     looked.sort(key=lambda pair: pair[0])
@@ -136,21 +143,31 @@ def _added(
     return min(refined, key=lambda one: offset_cost(comparison, few, one))
 
 
-def _candidates(comparison: CaseComparison, effect: Effect, seed: int) -> list[LawSpec]:
+def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
+    """Return an effect in the simulator's own forms, as a fit of a seed begins with it."""
     rng = np.random.default_rng([seed, 7])
-    for form in drawn_forms(effect.name, _VARIANTS[effect.stage], seed):
-        comparison.forms[effect.name, form.name] = form
-    further = [form for (name, _), form in comparison.forms.items() if name == effect.name]
-    listed = list(drawn_candidates(effect, _DRAWN, rng)) or plain_candidates(effect)
-    for form in further:
-        listed += form.specs()
-    return listed
+    return list(drawn_candidates(effect, _DRAWN, rng)) or plain_candidates(effect)
+
+
+def _further_candidates(
+    comparison: CaseComparison, chosen: Sequence[int], name: str, seed: int
+) -> list[LawSpec]:
+    """Return what the simulator has no form for; the comparison is told how it is made."""
+    number = _VARIANTS[comparison.library[name].stage]
+    forms = [*estimated_forms(comparison, chosen, name), *drawn_forms(name, number, seed)]
+    comparison.forms.update({(name, form.name): form for form in forms})
+    return [spec for form in forms for spec in form.specs()]
+
+
+def is_stated(comparison: CaseComparison, spec: LawSpec) -> bool:
+    """Tell whether a rig file can state an effect as it was fitted."""
+    return (spec.name, str(spec.parameters.get("form"))) not in comparison.forms
 
 
 def _refined(comparison: CaseComparison, few: Sequence[int], model: Model, place: int) -> Model:
     """Search about an effect's numbers."""
     spec = model.effects[place]
-    free = _free(comparison, spec)
+    free = fitted_numbers(comparison, spec)
 
     def model_at(x: NDArray[np.float64]) -> Model:
         values = dict(spec.parameters)
@@ -171,7 +188,7 @@ def _settled(comparison: CaseComparison, few: Sequence[int], model: Model) -> Mo
     """Settle the last effect's strength with scattered repeats, as scores are made."""
     spec = model.effects[-1]
     name = strength_of(comparison, spec)
-    limits = {n: (low, high) for n, _, low, high in _free(comparison, spec)}
+    limits = {n: (low, high) for n, _, low, high in fitted_numbers(comparison, spec)}
     if name not in limits:
         return model
     tried = []
@@ -187,17 +204,50 @@ def _strength_spread(
 ) -> tuple[float, ...]:
     """Return the standard deviation of the logarithm of the last effect's strength."""
     spec = model.effects[-1]
-    name = strength_of(comparison, spec)
+    return _spread_of(comparison, few, model, spec, strength_of(comparison, spec))
+
+
+def number_spreads(
+    comparison: CaseComparison, chosen: Sequence[int], model: Model
+) -> dict[str, float]:
+    """Tell how well each fitted number of the effects of a model is known.
+
+    Parameters
+    ----------
+    comparison : CaseComparison
+    chosen : sequence of int
+        Recordings that it was fitted to.
+    model : Model
+
+    Returns
+    -------
+    dict of str to float
+        Standard deviation of the number's logarithm by ``EFFECT.NUMBER`` [-].
+    """
+    few = different(comparison, chosen)
+    return {
+        f"{spec.name}.{name}": spread
+        for spec in model.effects
+        for name, *_ in fitted_numbers(comparison, spec)
+        for spread in _spread_of(comparison, few, model, spec, name)
+    }
+
+
+def _spread_of(
+    comparison: CaseComparison, few: Sequence[int], model: Model, spec: LawSpec, name: str
+) -> tuple[float, ...]:
     value = spec.parameters.get(name)
     if not isinstance(value, float) or value == 0.0:
         return ()
+    limits = {free: (low, high) for free, _, low, high in fitted_numbers(comparison, spec)}
+    low, high = limits.get(name, (-math.inf, math.inf))
 
     def cost(x: NDArray[np.float64]) -> float:
-        changed = LawSpec(spec.name, {**spec.parameters, name: value * math.exp(float(x[0]))})
+        tried = float(np.clip(value * math.exp(float(x[0])), low, high))
+        changed = LawSpec(spec.name, {**spec.parameters, name: tried})
+        effects = tuple(changed if one is spec else one for one in model.effects)
         try:
-            return offset_cost(
-                comparison, few, replace(model, effects=(*model.effects[:-1], changed))
-            )
+            return offset_cost(comparison, few, replace(model, effects=effects))
         except ParameterError:
             return math.inf
 
@@ -212,7 +262,9 @@ def strength_of(comparison: CaseComparison, spec: LawSpec) -> str:
     return comparison.library[spec.name].strength
 
 
-def _free(comparison: CaseComparison, spec: LawSpec) -> list[tuple[str, float, float, float]]:
+def fitted_numbers(
+    comparison: CaseComparison, spec: LawSpec
+) -> list[tuple[str, float, float, float]]:
     """Numbers that are fitted: name, value, and how far each may go."""
     form = comparison.forms.get((spec.name, str(spec.parameters.get("form"))))
     effect = comparison.library[spec.name]

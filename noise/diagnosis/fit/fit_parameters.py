@@ -23,12 +23,15 @@ if TYPE_CHECKING:
 
     from models.condition import Condition
 
-__all__ = ["Fitted", "different", "fit_parameters", "offset_cost", "split", "spreads"]
+__all__ = [
+    "HOLD", "PRIOR", "Fitted", "different", "fit_parameters", "fitted_with_spreads",
+    "offset_cost", "split", "spreads",
+]  # fmt: skip
 
 PRIOR = 0.12
 """Relative standard deviation of what a rig file may be wrong by."""
 
-_HOLD = 0.15
+HOLD = 0.15
 """Weight of the prior against the distance of one recording."""
 
 _STEP = 0.08
@@ -103,7 +106,7 @@ def offset_cost(
     comparison: CaseComparison, few: Sequence[int], model: Model, *, single_run: bool = False
 ) -> float:
     """Mean distance of recordings from a model in floors [-], and what its offsets cost."""
-    held = _HOLD * float(np.sum((np.array(model.offsets) / PRIOR) ** 2)) / len(few)
+    held = HOLD * float(np.sum((np.array(model.offsets) / PRIOR) ** 2)) / len(few)
     if any(spec.name in _BY_NUMBERS for spec in model.effects):
         held += _NUMBERS * float(np.mean(comparison.residuals(model, few) ** 2))
     return float(np.mean(comparison.misfits(model, few, single_run=single_run))) + held
@@ -134,10 +137,18 @@ def fit_parameters(
         return offset_cost(comparison, few, replace(begin, offsets=tuple(x.tolist())))
 
     steps = np.full(len(OFFSETS), _STEP)
-    x, best = pattern_search(cost, np.array(begin.offsets), steps, _SHRINK[-rounds:])
-    model = replace(begin, offsets=tuple(x.tolist()))
-    look = np.full(len(OFFSETS), _LOOK)
-    return Fitted(model, best, spreads(cost, x, look, PRIOR))
+    x, _ = pattern_search(cost, np.array(begin.offsets), steps, _SHRINK[-rounds:])
+    return fitted_with_spreads(comparison, few, replace(begin, offsets=tuple(x.tolist())))
+
+
+def fitted_with_spreads(comparison: CaseComparison, few: Sequence[int], model: Model) -> Fitted:
+    """Tell how well the parameters of a fitted model are known."""
+
+    def cost(x: NDArray[np.float64]) -> float:
+        return offset_cost(comparison, few, replace(model, offsets=tuple(x.tolist())))
+
+    x = np.array(model.offsets)
+    return Fitted(model, cost(x), spreads(cost, x, np.full(len(OFFSETS), _LOOK), PRIOR))
 
 
 def spreads(
@@ -152,7 +163,7 @@ def spreads(
     ----------
     cost : callable
     x : ndarray, shape (n,)
-        Where it is least [any unit].
+        Where it is least [any unit]. Where the cost is infinite to one side, the other tells.
     look : ndarray, shape (n,)
         So far off it is looked at; it is taken to rise as the square from there inwards In the
         unit of `x` [any unit].
@@ -172,6 +183,7 @@ def spreads(
             away = x.copy()
             away[i] += sign * step
             tried.append(cost(away))
-        rise = max(0.5 * sum(tried) - best, 1e-9)
+        known = [one for one in tried if math.isfinite(one)]
+        rise = max(sum(known) / len(known) - best, 1e-9) if known else 1e-9
         found.append(min(step * math.sqrt(_UNSURE / rise), most))
     return tuple(found)

@@ -19,6 +19,7 @@ from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit_effect import fit_effect, strength_of
 from noise.diagnosis.fit.fit_parameters import Fitted, fit_parameters, split
+from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
 from noise.diagnosis.fit.user_effects import prefer_user_effects
 from noise.diagnosis.outcome import EffectFinding, Illustration
@@ -106,7 +107,14 @@ def add_fits(
         )
         for effect in (*diagnosis.effects, *(findings[name] for name in user_effects))
     ]
-    best = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else alone
+    fitted = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else None
+    best = alone
+    if fitted is not None and np.isfinite(comparison.squared(fitted.model, held)).all():
+        best = fitted
+    tell("looking for an improved rig")
+    others = [one for one, _ in fits.values() if one is not fitted]
+    tried = [alone, *([fitted] if fitted is not None else []), *others]
+    improvement = improved_rig(case, comparison, fitted_to, held, tried, posterior, seed)
     listened = tuple(
         labels_and_levels(
             case.names[i],
@@ -122,6 +130,7 @@ def add_fits(
         parameters=_intervals(best),
         labels_and_levels=listened,
         illustrations=_illustrations(case, comparison, held, best.model),
+        improvement=improvement,
     )
 
 
@@ -160,7 +169,10 @@ def fitted_causes(
         if tell is not None:
             tell(f"fitting {' and '.join(names)}")
         fitted = fit_effect(comparison, fitted_to, names, alone.model, seed)
-        scores = Scores(before, recalibrated, comparison.squared(fitted.model, held))
+        after = comparison.squared(fitted.model, held)
+        # A model that breaks down on recordings that it has not seen closes nothing there.
+        after = np.where(np.isfinite(after), after, np.maximum(before, recalibrated))
+        scores = Scores(before, recalibrated, after)
         found |= dict.fromkeys(names, (fitted, scores))
     return found
 

@@ -36,6 +36,7 @@ __all__ = [
     "gap_of",
     "group_costs",
     "reference",
+    "residual_parts",
     "with_least_scatter",
 ]
 
@@ -277,14 +278,43 @@ def group_costs(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     >>> group_costs(np.full(len(_GROUP_OF), 2.0))
     array([4., 4., 4., 4.])
     """
-    size = np.abs(deviation)
-    cost = np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))
+    cost = _bent(deviation)
     shares = np.full(len(GROUPS), np.nan)
     for i in range(len(GROUPS)):
         inside = cost[(i == _GROUP_OF) & np.isfinite(cost)]
         if inside.size:
             shares[i] = inside.mean()
     return shares
+
+
+def residual_parts(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what the mean of `group_costs` is the sum of the squares of, with signs.
+
+    Parameters
+    ----------
+    deviation : ndarray, shape (n_values,)
+        In standard deviations [-].
+
+    Returns
+    -------
+    ndarray, shape (n_values,)
+        [-]; 0 where unknown.
+
+    Examples
+    --------
+    >>> away = np.linspace(-9.0, 9.0, len(_GROUP_OF))
+    >>> bool(np.isclose(np.sum(residual_parts(away) ** 2), np.mean(group_costs(away))))
+    True
+    """
+    cost = np.nan_to_num(_bent(deviation))
+    count = np.bincount(_GROUP_OF, np.isfinite(deviation), len(GROUPS))
+    weight = 1.0 / (np.maximum(count, 1.0) * max(np.count_nonzero(count), 1))
+    return np.asarray(np.sign(np.nan_to_num(deviation)) * np.sqrt(cost * weight[_GROUP_OF]))
+
+
+def _bent(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
+    size = np.abs(deviation)
+    return np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))
 
 
 def _exchanged(

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 import numpy as np
 
 from models.condition import known_condition
+from models.sensors import Sensor
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
 from noise.diagnosis.simulated.nominal import condition_key
@@ -24,7 +25,7 @@ from noise.diagnosis.simulated.transfer_functions import (
     chain_of,
     shift_clamp_mode,
 )
-from sim.acquisition import decimate
+from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.pipeline import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
@@ -91,7 +92,7 @@ class ModelRuns:
     _parts: _Cache[NDArray[np.float64]] = field(init=False, default_factory=lambda: _Cache())
 
     def __post_init__(self) -> None:
-        self.transfer_functions = TransferFunctionCache(self.rig)
+        self.transfer_functions = TransferFunctionCache(self.rig, self.library)
 
     def simulated(
         self, model: Model, template: Recording, seed: int, scatter: Scatter | None = None
@@ -119,13 +120,13 @@ class ModelRuns:
         signals = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
         return record(
             signals, template.rate, template.condition, np.random.default_rng([seed, 3]), scatter,
-            decimation=DIAGNOSIS.decimation(template.rate),
+            decimation=DIAGNOSIS.decimation(template.rate), sensors=self.rig.sensors,
         )  # fmt: skip
 
     def noise_free_signature(
         self, model: Model, template: Recording, seed: int
     ) -> NDArray[np.float64]:
-        """Return the signature of a run without scatter and noise.
+        """Return the signature of a run without scatter, and without noise of ideal sensors.
 
         Parameters
         ----------
@@ -145,11 +146,16 @@ class ModelRuns:
             The model cannot be simulated.
         """
         effects, fine = self._active(model), DIAGNOSIS.rate(template.rate)
+        through = Acquisition(rate=template.rate, sensors=self.rig.sensors)
         key, signals = self._radiated(model, effects, template, fine, seed, _EXACT)
         read = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
 
         def part(kind: str) -> NDArray[np.float64]:
-            sampled = decimate(read[kind], DIAGNOSIS.decimation(template.rate))
+            sensor = through.sensors.of(kind)
+            decimation = DIAGNOSIS.decimation(template.rate)
+            sampled = decimate_sensed(read[kind], decimation, fine, sensor)
+            if sensor != Sensor():
+                sampled = digitise(sampled, kind, through, np.random.default_rng([seed, 3]))
             return channel_signature(sampled, template.rate, kind)
 
         parts = {}

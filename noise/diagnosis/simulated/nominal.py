@@ -2,25 +2,32 @@
 
 The transfer functions are those of the structure, applied to the simulated
 torque, so a repeat costs a few milliseconds. A rig file that lists effects beyond friction and
-drive is run by `sim.run.simulate` instead, which knows all of them.
+drive is run through impulse responses instead, as the models are that a fit compares.
 """
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.condition import known_condition
-from noise.diagnosis.simulated.repeats import Scatter, perturb_rig, perturb_run, plan_repeat, record
-from noise.diagnosis.simulated.transfer_functions import predict, shift_clamp_mode
-from sim.acquisition import Acquisition, decimate
+from models.sensors import Sensor
+from noise.diagnosis.simulated.repeats import (
+    CHANNELS,
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    record,
+)
+from noise.diagnosis.simulated.transfer_functions import chain_of, predict, shift_clamp_mode
+from sim.acquisition import decimate_sensed
 from sim.bushing import lumped_bushing
+from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.pipeline import run_motion
+from sim.pipeline import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
 from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
@@ -33,12 +40,14 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
-    from sim.effects.effect import Effect
+    from sim.effects.effect import ActiveEffect, Effect
 
 __all__ = ["condition_key", "nominal_recordings", "nominal_repeats"]
 
 _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""
+
+_OUTPUTS = ("acceleration", "pressure")
 
 _FADE = 0.1
 """In which a torque fades in and out [s], outside of the recording."""
@@ -84,7 +93,8 @@ def nominal_recordings(
     effects = activated(rig.effects, library or EFFECTS)
     if any(e.effect.force or e.effect.chain or e.effect.sensors for e in effects):
         return [
-            _full_repeat(rig, condition, rate, seconds, seed, scatter, library) for seed in seeds
+            _with_effects(rig, condition, effects, transfer_functions, rate, seconds, seed, scatter)
+            for seed in seeds
         ]
     decimation = DIAGNOSIS.decimation(rate)
     before = round(DIAGNOSIS.settling * rate)
@@ -92,27 +102,35 @@ def nominal_recordings(
     n = (kept.stop + round(_RUNNING_OUT * rate)) * decimation
     at = (condition.interference, condition.support_stiffness)
     bushing = lumped_bushing(rig, *at)
+    corners = {name: rig.sensors.of(name).antialias for name in CHANNELS}
     recordings = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
         once, found = perturb_run(rig, condition, scatter, rng)
         plan = plan_repeat(once, found, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
         motion = run_motion(replace(plan, n_settling=0, n_kept=n), rng)
-        torque, angle = (decimate(x, decimation) for x in (motion.torque, motion.shaft_angle))
-        faded = torque[kept].mean() + _faded(torque - torque[kept].mean(), rate)
+        # What a sensor's filter does to a sound, it does to the torque that makes it.
+        by_filter = {
+            corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
+            for corner in {corners[name] for name in ("torque", *_OUTPUTS)}
+        }
+        torque = {name: by_filter[corners[name]] for name in ("torque", *_OUTPUTS)}
+        angle = decimate_sensed(motion.shaft_angle, decimation, plan.rate, rig.sensors.of("angle"))
         lumped = lumped_bushing(once, *at)
         outputs = {
-            name: predict(faded, rate, shift_clamp_mode(transfer_functions[name], bushing, lumped))[
-                kept
-            ]
-            for name in ("acceleration", "pressure")
-        }
+            name: predict(
+                _steadied(torque[name], kept, rate), rate,
+                shift_clamp_mode(transfer_functions[name], bushing, lumped),
+            )[kept]
+            for name in _OUTPUTS
+        }  # fmt: skip
         signals = {
-            "torque": torque[kept],
+            "torque": torque["torque"][kept],
             **outputs,
             "angle": angle[kept] - angle[before],
         }
-        recordings.append(record(signals, rate, condition, rng, scatter))
+        through = rig.sensors.unfiltered()
+        recordings.append(record(signals, rate, condition, rng, scatter, sensors=through))
     return recordings
 
 
@@ -163,35 +181,38 @@ def condition_key(recording: Recording) -> tuple[float, ...]:
     return (c.speed, c.interference, c.support_stiffness, recording.rate, recording.duration)
 
 
-def _full_repeat(
+def _with_effects(
     rig: Rig,
     condition: KnownCondition,
+    effects: Sequence[ActiveEffect],
+    transfer_functions: Mapping[str, TransferFunction],
     rate: float,
     seconds: float,
     seed: int,
     scatter: Scatter,
-    library: Mapping[str, Effect] | None,
 ) -> Recording:
-    """Simulate a repeat with all effects there are, as `sim.timing.SIMULATION` has it."""
-    from sim.run import simulate  # only rig files that list such effects need it
+    """Simulate a repeat with effects beyond the contact, as models are that a fit compares."""
+    rng, fine = np.random.default_rng(seed), DIAGNOSIS.rate(rate)
+    once, found = perturb_run(rig, condition, scatter, rng)
+    at = (condition.interference, condition.support_stiffness)
+    bushing, lumped = lumped_bushing(rig, *at), lumped_bushing(once, *at)
+    shifted = {name: shift_clamp_mode(h, bushing, lumped) for name, h in transfer_functions.items()}
+    impacts = any(active.effect.force or active.effect.chain for active in effects)
+    paths = chain_of(rig, *at, shifted, fine, impacts=impacts)
+    paths = changed_chain(paths, effects, np.random.default_rng(0))  # one structure for all runs
+    plan = plan_repeat(once, found, effects, rate=fine, seconds=seconds)
+    motion = run_motion(plan, rng)
+    signals = sensor_signals(motion, radiate_motion(motion, paths, effects), plan.n_settling)
+    signals = apply_sensor_effects(signals, effects, fine, rng)
+    return record(
+        signals, rate, condition, rng, scatter,
+        decimation=DIAGNOSIS.decimation(rate), sensors=rig.sensors,
+    )  # fmt: skip
 
-    rng = np.random.default_rng(seed)
-    speed = condition.speed * scatter.structure_factor(rng)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what measured responses lack was said once already
-        recording = simulate(
-            perturb_rig(rig, scatter, rng),
-            speed,
-            interference=condition.interference,
-            support_stiffness=condition.support_stiffness,
-            seconds=seconds,
-            acquisition=Acquisition(rate=rate),
-            library=library,
-            rng=rng,
-        ).recording
-    gain = 1.0 + scatter.gain * rng.standard_normal((recording.samples.shape[0], 1))
-    gain[[channel.kind == "angle" for channel in recording.channels]] = 1.0
-    return replace(recording, samples=recording.samples * gain)
+
+def _steadied(torque: NDArray[np.float64], kept: slice, rate: float) -> NDArray[np.float64]:
+    mean = torque[kept].mean()
+    return np.asarray(mean + _faded(torque - mean, rate))
 
 
 def _faded(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.recording import Channel, Recording
-from sim.acquisition import Acquisition, decimate
+from models.sensors import Sensors
+from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
 from sim.pipeline import Plan, apply_sensor_effects, radiate_motion, run_motion, sensor_signals
 from sim.shaft import ConstantSpeed
@@ -252,6 +253,7 @@ def record(
     scatter: Scatter | None = None,
     *,
     decimation: int = 1,
+    sensors: Sensors | None = None,
 ) -> Recording:
     """Sample signals by good instruments: gains that scatter, a little white noise.
 
@@ -267,16 +269,19 @@ def record(
     scatter : Scatter, optional
         Of the gains.
     decimation : int
+    sensors : Sensors, optional
+        That a rig file states: its gains scatter before they clip and round.
 
     Returns
     -------
     Recording
     """
     scatter = scatter or Scatter()
-    levels = Acquisition().noise
+    acquisition = Acquisition(rate=rate).over(sensors or Sensors())
     rows = []
     for name in CHANNELS:
-        x = decimate(signals[name], decimation)
+        sensor = acquisition.sensors.of(name)
+        x = decimate_sensed(signals[name], decimation, decimation * rate, sensor)
         gain = 1.0 if name == "angle" else 1.0 + scatter.gain * rng.normal()
-        rows.append(gain * x + levels[name] * rng.standard_normal(x.size))
+        rows.append(digitise(gain * x, name, acquisition, rng))
     return Recording(np.stack(rows), rate, tuple(Channel(name) for name in CHANNELS), condition)

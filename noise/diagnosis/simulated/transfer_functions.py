@@ -21,15 +21,19 @@ from models.transfer_functions.impulse_response import FINER, fill_between_lines
 from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.evidence.reconstruction import closed_loop
+from sim.chain import changed_chain
+from sim.effects import EFFECTS
+from sim.effects.effect import activated
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from models.recording import Recording
     from models.rig import Rig
     from sim.bushing import LumpedBushing
+    from sim.effects.effect import ActiveEffect, Effect
 
 __all__ = [
     "TransferFunctionCache",
@@ -104,11 +108,15 @@ class TransferFunctionCache:
     Parameters
     ----------
     rig : Rig
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
     """
 
-    def __init__(self, rig: Rig) -> None:
+    def __init__(self, rig: Rig, library: Mapping[str, Effect] | None = None) -> None:
         self._rig = rig
+        self._library = library or EFFECTS
         self._known: dict[tuple[float, float], dict[str, TransferFunction]] = {}
+        self._whole: dict[tuple[float, float], dict[str, TransferFunction]] = {}
 
     def at(self, interference: float, support_stiffness: float) -> dict[str, TransferFunction]:
         """Return those at a condition; arguments as of `torque_transfer_functions`."""
@@ -121,6 +129,39 @@ class TransferFunctionCache:
         """Return those at the condition of a recording."""
         c = known_condition(recording.condition)
         return self.at(c.interference, c.support_stiffness)
+
+    def whole(self, recording: Recording) -> dict[str, TransferFunction]:
+        """Return those at the condition of a recording, with the rig's effects on the chain."""
+        c = known_condition(recording.condition)
+        key = (c.interference, c.support_stiffness)
+        effects = [e for e in activated(self._rig.effects, self._library) if e.effect.chain]
+        if not effects:
+            return self.at(*key)
+        if key not in self._whole:
+            self._whole[key] = _with_effects(self._rig, *key, self.at(*key), effects)
+        return self._whole[key]
+
+
+def _with_effects(
+    rig: Rig,
+    interference: float,
+    support_stiffness: float,
+    transfer_functions: Mapping[str, TransferFunction],
+    effects: Sequence[ActiveEffect],
+) -> dict[str, TransferFunction]:
+    """Add to transfer functions what effects change about them."""
+    paths = chain_of(
+        rig, interference, support_stiffness, transfer_functions, _MODEL_RATE, impacts=True
+    )
+    changed = changed_chain(paths, effects, np.random.default_rng(0))
+    found = {}
+    for name, transfer in transfer_functions.items():
+        before, after = (getattr(one, f"torque_to_{name}") for one in (paths, changed))
+        n = FINER * max(before.size, after.size)
+        lines = np.asarray(np.fft.rfftfreq(n, 1.0 / _MODEL_RATE), np.float64)
+        more = TransferFunction(lines, rfft(after, n) - rfft(before, n))
+        found[name] = replace(transfer, response=transfer.response + more.at(transfer.frequencies))
+    return found
 
 
 def predict(

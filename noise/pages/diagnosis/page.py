@@ -7,10 +7,13 @@ to measure next; then the evidence for eye and ear; figures for whoever doubts c
 from __future__ import annotations
 
 import json
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from noise.base.atomic import atomic
+from noise.diagnosis.improved_file import NAME
 from noise.diagnosis.outcome import ROLES, as_json
+from noise.diagnosis.text.improved_sentences import improved_sentence
 from noise.diagnosis.text.sentences import answer, headline
 from noise.diagnosis.text.words import NOT_DETERMINED, number, p_number
 from noise.pages.diagnosis.answer_display import (
@@ -23,6 +26,7 @@ from noise.pages.diagnosis.waterfall import waterfall
 from noise.pages.engine.page import page_html, write_page
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from noise.diagnosis.outcome import Diagnosis, LabelsAndLevels
@@ -32,14 +36,20 @@ if TYPE_CHECKING:
 __all__ = ["write_diagnosis"]
 
 
-def write_diagnosis(folder: Path, diagnosis: Diagnosis) -> None:
-    """Write ``report.html`` and ``diagnosis.json``, both whole or none at all.
+def write_diagnosis(
+    folder: Path, diagnosis: Diagnosis, improved: str | None = None, commands: Sequence[str] = ()
+) -> None:
+    """Write ``report.html``, ``diagnosis.json`` and ``improved.toml``, all whole or none at all.
 
     Parameters
     ----------
     folder : Path
-        Made where it is not there; older files of these names are replaced.
+        Made where it is not there; older files of these names are replaced, or taken away.
     diagnosis : Diagnosis
+    improved : str, optional
+        The rig file of the improved rig; without it none is left there.
+    commands : sequence of str
+        What to call next with it.
 
     Raises
     ------
@@ -57,15 +67,21 @@ def write_diagnosis(folder: Path, diagnosis: Diagnosis) -> None:
     ...     sorted(path.name for path in Path(name).iterdir())
     ['diagnosis.json', 'report.html']
     """
-    data = json.dumps(as_json(diagnosis), indent=2, ensure_ascii=False, allow_nan=False)
-    html = _html(diagnosis)
-    with atomic(folder / "diagnosis.json") as json_part:
+    content = as_json(diagnosis, NAME if improved is not None else None)
+    data = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    html = _html(diagnosis, commands if improved is not None else ())
+    with atomic(folder / "diagnosis.json") as json_part, ExitStack() as files:
         # Names of files may hold what no UTF-8 can.
         json_part.write_bytes(f"{data}\n".encode("utf-8", "backslashreplace"))
+        if improved is not None:
+            rig_part = files.enter_context(atomic(folder / NAME))
+            rig_part.write_bytes(improved.encode("utf-8", "backslashreplace"))
         write_page(folder / "report.html", html)
+        if improved is None:
+            (folder / NAME).unlink(missing_ok=True)
 
 
-def _html(diagnosis: Diagnosis) -> str:
+def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
     entries: dict[str, Entry] = {}
     clips: dict[str, Clip] = {}
     contents: dict[str, Any] = {"comparisons": (), "curves": {}, "gain": ()}
@@ -86,6 +102,9 @@ def _html(diagnosis: Diagnosis) -> str:
         likely=likely,
         unlikely=unlikely,
         next_measurement=diagnosis.next_measurement,
+        improved=NAME if commands else "",
+        improved_words=improved_sentence(diagnosis.improvement) if diagnosis.improvement else "",
+        commands=commands,
         notes=diagnosis.notes,
         places=place_rows(diagnosis.differences),
         parameters=parameter_rows(diagnosis.parameters),

@@ -22,21 +22,13 @@ from noise.pictures.titles import place_title
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
     from noise.labels.conditions import Place, Range
+    from noise.pages.engine.cells import Area
 
-__all__ = [
-    "Area", "Axis", "ConditionMap", "Spot", "areas_of", "axis_of",
-    "recorded_maps",
-]  # fmt: skip
-
-_WIDTH, _HEIGHT = MAP_SIZE
+__all__ = ["Axis", "ConditionMap", "Spot", "axis_of", "recorded_maps"]
 
 _MARGIN = 0.12  # of an axis, beyond its outermost spots
 _MOST_TICKS = 7
-_RASTER = (100, 60)
-"""Into how many areas a map is divided whose points make no grid."""
 
 
 @dataclass(frozen=True)
@@ -61,17 +53,6 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Area:
-    """A rectangle of one label, in units of the drawing, `y` from the top."""
-
-    x: float
-    y: float
-    width: float
-    height: float
-    label: str
-
-
-@dataclass(frozen=True)
 class Spot:
     """Where something can be heard.
 
@@ -84,6 +65,8 @@ class Spot:
         What is there.
     sounds : tuple of str
         Ids; one click plays the first, the next one the second.
+    mates : tuple of str
+        Of designs compared, the ids of each one's sound there, empty where it has none.
     """
 
     x: float
@@ -91,11 +74,29 @@ class Spot:
     label: str
     words: str
     sounds: tuple[str, ...]
+    mates: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class ConditionMap:
-    """One map, drawn by the page."""
+    """One map, drawn by the page.
+
+    Parameters
+    ----------
+    title : str
+    speed, interference : Axis
+    areas : tuple of Area
+    spots : tuple of Spot
+    note : str
+    across : str
+        What the speed is.
+    height : float
+        Of the drawing [px].
+    design : int or None
+        Number of the design among those that are compared with one another; None of any other map.
+    compared : bool
+        Whether it is one of several maps of the same axes side by side.
+    """
 
     title: str
     speed: Axis
@@ -104,6 +105,9 @@ class ConditionMap:
     spots: tuple[Spot, ...]
     note: str = ""
     across: str = "Speed"
+    height: float = MAP_SIZE[1]
+    design: int | None = None
+    compared: bool = False
 
 
 def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
@@ -132,68 +136,6 @@ def axis_of(values: Iterable[float], *, edges: bool) -> Axis:
         for tick in round_ticks(low, high, _MOST_TICKS)
     )
     return Axis(low, high, ticks)
-
-
-def areas_of(
-    speed: NDArray[np.float64],
-    interference: NDArray[np.float64],
-    labels: Sequence[str],
-) -> tuple[Axis, Axis, tuple[Area, ...]]:
-    """Divide a map among its points.
-
-    Parameters
-    ----------
-    speed, interference : ndarray, shape (n,)
-        [rad/s], [mm]
-    labels : sequence of str, length n
-
-    Returns
-    -------
-    speed, interference : Axis
-    areas : tuple of Area
-        Each point's surroundings, half-way to its neighbours where the points make a grid, else
-        what is nearer to it than to any other; equal neighbours taken together, the lowest row
-        first.
-
-    Examples
-    --------
-    >>> speed, fit = np.array([1.0, 3.0, 1.0, 3.0]), np.array([0.2, 0.2, 0.4, 0.4])
-    >>> _, _, areas = areas_of(speed, fit, ["creak", "none", "none", "none"])
-    >>> [(area.x, area.width, area.label) for area in areas]
-    [(0.0, 250.0, 'creak'), (250.0, 250.0, 'none'), (0.0, 500.0, 'none')]
-    """
-    columns, rows = np.unique(speed), np.unique(interference)
-    at = dict(zip(zip(speed.tolist(), interference.tolist(), strict=True), labels, strict=True))
-    if len(at) == columns.size * rows.size:
-        x_edges, y_edges = _edges(columns), _edges(rows)
-        grid = [[at[column, row] for column in columns] for row in rows]
-    else:
-        x_edges = np.linspace(columns[0], columns[-1], _RASTER[0] + 1)
-        y_edges = np.linspace(rows[0], rows[-1], _RASTER[1] + 1)
-        grid = _nearest(x_edges, y_edges, speed, interference, labels)
-    across = axis_of(x_edges, edges=True)
-    up = axis_of(y_edges, edges=True)
-    rows_up = [
-        (float(y_edges[number]), float(y_edges[number + 1]), _runs(labels_across))
-        for number, labels_across in enumerate(grid)
-    ]
-    areas = []
-    for _, group in groupby(rows_up, key=lambda row: row[2]):
-        alike = list(group)
-        bottom, top = up.share(alike[0][0]), up.share(alike[-1][1])
-        for first, last, label in alike[0][2]:
-            left = across.share(float(x_edges[first]))
-            right = across.share(float(x_edges[last]))
-            areas.append(
-                Area(
-                    round(_WIDTH * left, 2),
-                    round(_HEIGHT * (1.0 - top), 2),
-                    round(_WIDTH * (right - left), 2),
-                    round(_HEIGHT * (top - bottom), 2),
-                    label,
-                )
-            )
-    return across, up, tuple(areas)
 
 
 def recorded_maps(
@@ -232,16 +174,6 @@ def recorded_maps(
     return maps, len(everything - placed)
 
 
-def _runs(labels: Sequence[str]) -> tuple[tuple[int, int, str], ...]:
-    """First, end and label of equal neighbours."""
-    runs, first = [], 0
-    for label, run in groupby(labels):
-        end = first + len(list(run))
-        runs.append((first, end, label))
-        first = end
-    return tuple(runs)
-
-
 def _spot(
     place: Place, across: Axis, up: Axis, titles: Mapping[str, str], playable: set[str]
 ) -> Spot:
@@ -259,31 +191,3 @@ def _title(place: Place) -> str:
 
 def _middle(found: Range | None) -> float:
     return math.nan if found is None else found.middle
-
-
-def _edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Half-way between neighbours, and as far beyond the outermost."""
-    if values.size == 1:
-        half = 0.25 * abs(values[0]) or 1.0
-        return np.array([values[0] - half, values[0] + half])
-    middles = 0.5 * (values[1:] + values[:-1])
-    return np.concatenate(([2 * values[0] - middles[0]], middles, [2 * values[-1] - middles[-1]]))
-
-
-def _nearest(
-    x_edges: NDArray[np.float64],
-    y_edges: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    interference: NDArray[np.float64],
-    labels: Sequence[str],
-) -> list[list[str]]:
-    """Label of the nearest point at each place, distances being shares of the axes."""
-    from scipy.spatial import cKDTree
-
-    width = (x_edges[-1] - x_edges[0]) or 1.0
-    height = (y_edges[-1] - y_edges[0]) or 1.0
-    tree = cKDTree(np.column_stack((speed / width, interference / height)))
-    x = 0.5 * (x_edges[1:] + x_edges[:-1]) / width
-    y = 0.5 * (y_edges[1:] + y_edges[:-1]) / height
-    _, found = tree.query(np.stack(np.meshgrid(x, y), axis=-1))
-    return [[labels[one] for one in row] for row in found]

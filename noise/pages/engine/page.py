@@ -27,10 +27,13 @@ if TYPE_CHECKING:
     from noise.pages.engine.entry import Entry
     from noise.pages.engine.entry_display import EntryDisplay
 
-__all__ = ["MAP_SIZE", "as_base64", "page_html", "write_page"]
+__all__ = ["CARD_BYTES", "MAP_SIZE", "PAGE_BYTES", "as_base64", "page_html", "write_page"]
 
 MAP_SIZE = (500.0, 300.0)
 """Width and height of the drawing of a condition map [px]."""
+
+PAGE_BYTES, CARD_BYTES = 75_000.0, 42_000.0
+"""What a page takes up, and at most each of its sounds beside the sound itself [byte]."""
 
 
 def page_html(
@@ -60,7 +63,7 @@ def page_html(
     --------
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> html = page_html("review.html.j2", {}, {}, title="<b>", summary="", gain=(), refused=(),
-    ...                  shortened=None, screened_maps=(), recorded_maps=(), unplaced=0,
+    ...                  shortened=None, compared=None, recorded_maps=(), unplaced=0,
     ...                  diagnoses=(), recorded=(), counts=())
     >>> "<h1>&lt;b&gt;</h1>" in html
     True
@@ -121,7 +124,7 @@ def as_base64(content: bytes) -> str:
 
 def _about(display: EntryDisplay, factor: float | None, *, on_card: bool) -> dict[str, object]:
     """Tell the player of a sound."""
-    facts = [fact.words for fact in display.facts.values()] if on_card else ["simulated"]
+    facts = [fact.words for fact in display.facts.values()] if on_card else [display.note]
     told: dict[str, object] = {
         "title": display.title,
         "label": display.label,

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from models.condition import Condition
 from noise.base.atomic import atomic
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.law_choice import overall
 from noise.identification.outcome import as_json
+from noise.identification.quantities import QUANTITIES
 from noise.pages.engine.page import page_html, write_page
 from noise.pages.identification.figures import law_panel, level_panels, recording_panels
+from noise.pages.identification.static_figures import static_panels
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from noise.identification.outcome import Identification, Number, Seen
+    from noise.identification.table_number import TableNumber
 
 __all__ = ["write_identification"]
 
@@ -52,11 +57,17 @@ def _html(found: Identification) -> str:
         "identification.html.j2",
         {},
         {},
-        title=f"The rig, identified from {len(found.seen)} recordings",
+        title=_title(found),
         answer=_answer(found),
         numbers=[_row(number) for number in found.numbers],
-        levels=level_panels(found),
-        law_picture=(law_panel(found),),
+        levels=level_panels(found) if slipping else (),
+        static=[
+            (one.name, ", ".join(Condition(None, one.interference, one.support_stiffness).words),
+             static_panels(one))
+            for one in found.static
+        ],
+        measured=[_measured(*one) for one in found.measured],
+        law_picture=(law_panel(found),) if found.laws else (),
         laws=[
             [
                 one.law.replace("_", " "), _WORDS[one.law], f"{one.held_out:.2f}",
@@ -80,14 +91,37 @@ def _html(found: Identification) -> str:
     )  # fmt: skip
 
 
+def _title(found: Identification) -> str:
+    sources = [
+        f"{n} {what}"
+        for n, what in (
+            (len(found.seen), "recordings"), (len(found.static), "static tests"),
+            (len(found.measured), "measured numbers"),
+        )
+        if n
+    ]  # fmt: skip
+    return f"The rig, identified from {' and '.join(sources)}"
+
+
+def _measured(number: TableNumber, found: float) -> list[str]:
+    unit = QUANTITIES[number.item].unit
+    at = f"{number}".partition(" at ")[2]
+    if QUANTITIES[number.item].at_a_speed:
+        at += f", {number.speeds[0]:g} rad/s"
+    told = "nothing of the kind" if math.isnan(found) else f"{found:.4g} {unit}"
+    return [number.item.replace("_", " "), at, f"{number.value:.4g} {unit}", told]
+
+
 def _answer(found: Identification) -> list[str]:
-    left = next(score.held_out for score in found.laws if score.law == found.law)
     stiffness = [
         f"At {1e3 * (one.interference or 0.0):g} mm the elastomer has "
         f"{one.value:.4g} Nm/rad ({one.low:.4g} to {one.high:.4g})."
         for one in found.numbers
         if one.name == "elastomer_stiffness"
     ]
+    if not found.laws:
+        return [f"Law of friction as it was known: {found.law.replace('_', ' ')}.", *stiffness]
+    left = next(score.held_out for score in found.laws if score.law == found.law)
     return [
         f"Law of friction: {found.law.replace('_', ' ')} ({_WORDS[found.law]}); it leaves "
         f"{left:.2f} floors on recordings that its fit has not seen.",

@@ -18,7 +18,7 @@ from noise.base.progress import counted
 from noise.pages.engine.clips import common_gain, make_clips
 from noise.pages.engine.entry import label_counts, labels_sentence
 from noise.pages.engine.maps import recorded_maps
-from noise.pages.engine.page import page_html, write_page
+from noise.pages.engine.page import CARD_BYTES, PAGE_BYTES, page_html, write_page
 from noise.pages.review.diagnoses import read_diagnosis
 from noise.pages.review.inputs import Refusal, sort_inputs
 from noise.pages.review.recorded import recorded_entries
@@ -30,12 +30,11 @@ if TYPE_CHECKING:
     from noise.pages.engine.entry import Entry
     from noise.pages.review.diagnoses import DiagnosisDisplay
     from noise.pages.review.inputs import Inputs
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["Review", "review"]
 
 _PAGE = "report.html"
-_PAGE_BYTES, _CARD_BYTES, _AREA_BYTES = 60_000.0, 42_000.0, 120.0
-"""What the page takes up, and at most each card with its spectrogram, and each area of a map."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def review(
     out: str | os.PathLike[str] = _PAGE,
     *,
     title: str = "Review",
-    full_scale: float | None = None,
+    full_scale: PascalPerFullScale | None = None,
     pascal_per_full_scale: float | None = None,
     seconds: float = 10.0,
     megabytes: float = 25.0,
@@ -95,7 +94,7 @@ def review(
     out : path-like
         The page, or a folder for ``report.html``.
     title : str
-    full_scale : float, optional
+    full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample of the recordings [Pa]; wins over what they say.
     pascal_per_full_scale : float, optional
         Of the page, for a listening room that is calibrated to it [Pa]; by default what the
@@ -144,7 +143,7 @@ def review(
         inputs, refused, seconds=seconds, full_scale=full_scale, budget=budget, classify=classify
     )
     diagnosed = _diagnosed(inputs, refused)
-    maps, heard = screened_maps(inputs, refused, number=simulated, seed=seed)
+    compared, heard = screened_maps(inputs, refused, number=simulated, seed=seed)
 
     entries: dict[str, Entry] = {}
     groups: list[list[str]] = []
@@ -152,11 +151,12 @@ def review(
         groups.append([f"s{len(entries) + 1 + i}" for i in range(len(members))])
         entries |= dict(zip(groups[-1], members, strict=True))
     entries |= heard
-    if not (entries or maps or diagnosed):
+    if not (entries or compared or diagnosed):
         raise ParameterError(f"{refused[0].name}: {refused[0].reason}; there is nothing else")
     gain = common_gain(entries.values(), pascal_per_full_scale)
-    n_areas = sum(len(one.areas) for one in maps)
-    left = budget - _PAGE_BYTES - _CARD_BYTES * len(entries) - _AREA_BYTES * n_areas
+    n_maps = 0 if compared is None else compared.n_maps
+    drawn = 0.0 if compared is None else compared.weight
+    left = budget - PAGE_BYTES - CARD_BYTES * len(entries) - drawn
     clips, shortened = make_clips(entries, gain, budget=left, dither=np.random.default_rng(seed))
     rows = [{**row, "file": key} for key in groups[0] for row in entries[key].rows]
     titles = {key: entry.title for key, entry in entries.items()}
@@ -168,7 +168,7 @@ def review(
         clips,
         without_card=heard,
         title=title,
-        summary=_summary(recorded, diagnosed, len(maps), len(heard)),
+        summary=_summary(recorded, diagnosed, n_maps, len(heard)),
         gain=gain.sentences if clips else (),
         shortened=shortened,
         refused=refused,
@@ -176,7 +176,7 @@ def review(
         counts=counts if len(counts) > 1 else [],
         recorded_maps=of_recordings,
         unplaced=unplaced,
-        screened_maps=maps,
+        compared=compared,
         diagnoses=list(zip(diagnosed, groups[1:], strict=True)),
     )
     write_page(target, html)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from models.rig import Rig
-    from noise.pages.review.screens import ScreenMap
+    from noise.pages.screening.screen_maps import ScreenMap
 
 __all__ = ["rig_of"]
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from noise.classifier import Classifier
     from noise.pages.review.inputs import Inputs, LabelTable
+    from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["recorded_entries"]
 
@@ -41,7 +42,7 @@ def recorded_entries(
     refused: list[Refusal],
     *,
     seconds: float,
-    full_scale: float | None,
+    full_scale: PascalPerFullScale | None,
     budget: float,
     classify: bool,
 ) -> list[Entry]:
@@ -54,7 +55,7 @@ def recorded_entries(
         Takes what cannot be read.
     seconds : float
         Longest stretch of a recording that is kept [s].
-    full_scale : float or None
+    full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording` [Pa].
     budget : float
         Of the page [byte].
@@ -130,7 +131,7 @@ def _read_entry(
     classifier: Classifier | None,
     *,
     longest: float,
-    full_scale: float | None = None,
+    full_scale: PascalPerFullScale | None = None,
 ) -> Entry | Refusal:
     """Read what a review shows of a recording.
 
@@ -145,7 +146,7 @@ def _read_entry(
         Labels what no table does; None leaves it without a label.
     longest : float
         Of the stretch that is kept [s].
-    full_scale : float, optional
+    full_scale : float or tuple of float, optional
         As for `noise.recordings.read_recording`.
     """
     try:

@@ -7,90 +7,22 @@ and support, speed across and interference up.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
 from noise.base.label_names import LABELS
 from noise.base.tables import read_table
 from noise.labels.table import cell_number
-from noise.pictures.titles import support_words
+from noise.pages.screening.screen_maps import ScreenMap, ScreenPoint
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["ScreenMap", "ScreenPoint", "read_screen"]
+__all__ = ["read_screen"]
 
 _NEEDED = ("design", "speed_rad_s", "interference_mm", "label")
 _SUPPORT = "support_stiffness_Nm_rad"
-
-
-class ScreenPoint(NamedTuple):
-    """One condition of a screen, and what happens there.
-
-    Parameters
-    ----------
-    speed, interference : float
-        [rad/s], the largest where the shaft swings; [mm]
-    label : str
-    regime, how : str
-        Of friction; how it is known.
-    level, loudness : float or None
-        L_AFmax [dB re 20 uPa] and N10 [sone].
-    frequency : float or None
-        At which the shaft swings [Hz]; None where it turns.
-    """
-
-    speed: float
-    interference: float
-    label: str
-    regime: str = ""
-    level: float | None = None
-    loudness: float | None = None
-    how: str = ""
-    frequency: float | None = None
-
-    @property
-    def words(self) -> str:
-        """What is there, in words."""
-        told = [f"{self.speed:.3g} rad/s, {self.interference:.3g} mm: {self.label}"]
-        told += [self.regime.replace("_", " ")] if self.regime else []
-        told += [f"{self.level:.0f} dB(A)"] if self.level is not None else []
-        told += [f"{self.loudness:.3g} sone"] if self.loudness is not None else []
-        return ", ".join(told)
-
-
-@dataclass(frozen=True)
-class ScreenMap:
-    """Points of one design in one environment, at one temperature, on one support.
-
-    Parameters
-    ----------
-    design, environment, motion : str
-    temperature : float or None
-        [degree Celsius]
-    support_stiffness : float or None
-        [Nm/rad]
-    points : tuple of ScreenPoint
-    """
-
-    design: str
-    environment: str
-    motion: str
-    temperature: float | None
-    support_stiffness: float | None
-    points: tuple[ScreenPoint, ...]
-
-    @property
-    def title(self) -> str:
-        """Name it."""
-        told = [self.design]
-        told += [self.environment] if self.environment else []
-        told += [self.motion] if self.motion not in ("", "steady") else []
-        told += [f"{self.temperature:g} °C"] if self.temperature is not None else []
-        told += [] if self.support_stiffness is None else [support_words(self.support_stiffness)]
-        return ", ".join(told)
 
 
 def read_screen(path: Path) -> list[ScreenMap]:
@@ -151,10 +83,11 @@ def read_screen(path: Path) -> list[ScreenMap]:
             ScreenPoint(
                 speed, fit, label,
                 str(row.get("regime") or ""),
-                number("level_db"),
+                number("level_dba"),
                 number("loudness"),
                 str(row.get("how") or ""),
                 number("frequency_hz") or None,
+                str(row.get("note") or ""),
             )
         )  # fmt: skip
     return [ScreenMap(*key, tuple(points)) for key, points in maps.items()]

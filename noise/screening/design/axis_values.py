@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FREQUENCY", "MOST_POINTS", "POSITIVE", "SPEED", "SPEED_STEP", "SUPPORT", "TEMPERATURE",
-    "AxisRule", "axis_values", "spread", "text_values",
+    "AxisRule", "axis_values", "axis_words", "spread", "text_values",
 ]  # fmt: skip
 
 MOST_POINTS = 2000
@@ -155,6 +155,26 @@ def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[fl
         else:
             raise ParameterError(f"{what} = {given!r}: give numbers, or a range such as '0.25..13'")
     return _checked(found, what, str(given), rule)
+
+
+def axis_words(values: Sequence[float], most: int = 4) -> str:
+    """Name the values of an axis, or where there are more than `most` its ends and their number.
+
+    Parameters
+    ----------
+    values : sequence of float
+        In the unit of the axis, such as [rad/s].
+    most : int
+
+    Examples
+    --------
+    >>> axis_words([2214.0, FIXED]), axis_words([0.25, 0.5, 0.75], most=2)
+    ('2214 and fixed', '0.25 to 0.75 (3 values)')
+    """
+    said = ["fixed" if math.isinf(value) else f"{value:.4g}" for value in values]
+    if len(said) > most:
+        return f"{said[0]} to {said[-1]} ({len(said)} values)"
+    return " and ".join([", ".join(said[:-1]), said[-1]] if len(said) > 1 else said)
 
 
 def _value(text: str, what: str, whole: str, *, fixed: bool = False) -> float:

@@ -175,7 +175,7 @@ def load_design(given: str | Path) -> Design:
     where = f"design {path}"
     content = read_toml(path, where)
     table = a_table(content.pop("design", {}), "design", where)
-    tolerances = read_tolerances(content.pop("tolerances", {}), where)
+    tolerances = content.pop("tolerances", {})
     refuse_unknown(table, _USE_KEYS, f"{where}, design")
     rig = rig_from(content, path.parent, where)
     named = table.get("name", content.get("name", path.stem))
@@ -183,7 +183,7 @@ def load_design(given: str | Path) -> Design:
         name=a_text(named, "name", f"{where}, design"),
         rig=rig,
         use=_use(table, f"{where}, design"),
-        tolerances=tolerances,
+        tolerances=read_tolerances(tolerances, where, rig.effects),
     )
 
 

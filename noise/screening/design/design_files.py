@@ -1,16 +1,20 @@
 """Copies of design files beside a screen, so that a review finds what each map is of.
 
 Measured responses that a file names by a path of its own folder go with it. One named by a way out
-of that folder would not be found from the copy, and the copy is refused.
+of that folder would not be found from the copy, and the copy is refused. A base out of that folder
+is named by the copy from where it lies.
 """
 
 from __future__ import annotations
 
+import json
+import re
 import shutil
 from pathlib import Path
 
 from models.errors import BushingNoiseError, ParameterError
 from models.rig_files.rig_file import read_toml
+from models.rig_files.rig_text import base_name
 from noise.screening.design.design import load_design
 
 __all__ = ["copy_design_file"]
@@ -54,7 +58,12 @@ def copy_design_file(name: str, source: Path, folder: Path) -> Path:
             if not path.is_absolute() and ".." not in path.parts:
                 (folder / path).parent.mkdir(parents=True, exist_ok=True)
                 _copied(source.parent / path, folder / path)
-        _copied(source, target)
+        if (base := _base_elsewhere(source)) is None:
+            _copied(source, target)
+        else:
+            named = f"base = {json.dumps(base_name(base, folder), ensure_ascii=False)}"
+            text = source.read_text(encoding="utf-8")
+            target.write_text(_BASE.sub(lambda _: named, text, count=1), encoding="utf-8")
         load_design(target)
     except OSError as error:
         raise ParameterError(f"{where}: {error.strerror or error}") from None
@@ -62,6 +71,17 @@ def copy_design_file(name: str, source: Path, folder: Path) -> Path:
         target.unlink(missing_ok=True)
         raise ParameterError(f"{where}: {error}") from None
     return target
+
+
+_BASE = re.compile(r"""^base\s*=\s*(?:"[^"]*"|'[^']*')""", re.MULTILINE)
+"""How a file names its base, before any table."""
+
+
+def _base_elsewhere(source: Path) -> Path | None:
+    """Return the base of a file where the way to it leads out of the folder."""
+    named = Path(read_toml(source, f"design {source}").get("base", ""))
+    outside = ".." in named.parts and not named.is_absolute()
+    return source.parent / named if outside and (source.parent / named).is_file() else None
 
 
 def _copied(source: Path, target: Path) -> None:
@@ -78,6 +98,6 @@ def _named_files(source: Path) -> list[Path]:
         if key.startswith("torque_to_") and isinstance(value, str)
     ]
     base = Path(content.get("base", ""))
-    if base.suffix and (source.parent / base).is_file():
+    if base.suffix and ".." not in base.parts and (source.parent / base).is_file():
         found += [base, *(base.parent / named for named in _named_files(source.parent / base))]
     return found

@@ -3,7 +3,8 @@
 Each entry becomes a factor on the nominal value, which is what a population is drawn in: a number
 is a relative standard deviation, ``absolute`` a standard deviation in the unit of the design file,
 ``low`` and ``high`` are limits in it between which all values are equally likely. A temperature's
-factor is one of absolute temperature.
+factor is one of absolute temperature. Parameters of the rig's effects can vary as well, each under
+the name of its effect: ``slip_pulse.amplitude = 0.1``.
 """
 
 from __future__ import annotations
@@ -17,9 +18,12 @@ from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from models.rig import LawSpec
     from noise.screening.parts.sampling import Distribution
 
-__all__ = ["ABSOLUTE_ZERO", "PARAMETERS", "Tolerance", "read_tolerances"]
+__all__ = ["ABSOLUTE_ZERO", "PARAMETERS", "Tolerance", "read_tolerances", "unit_of"]
 
 ABSOLUTE_ZERO = -273.15
 """[degree Celsius]"""
@@ -29,12 +33,30 @@ PARAMETERS = {
     "damping": "Nm s/rad",
     "critical_torque": "Nm",
     "kinetic_torque": "Nm",
+    "elastomer_inertia": "kg m2",
     "support_stiffness": "Nm/rad",
     "interference": "mm",
     "temperature": "degree Celsius",
     "speed": "rad/s",
 }
-"""What can vary, with the unit in which a design file says it."""
+"""What can vary, with the unit in which a design file says it; and parameters of effects."""
+
+
+def unit_of(name: str) -> str:
+    """Return the unit in which a design file says a tolerance.
+
+    Examples
+    --------
+    >>> unit_of("damping"), unit_of("shaft_compliance.inertia")
+    ('Nm s/rad', 'kg m2')
+    """
+    effect, dot, parameter = name.partition(".")
+    if not dot:
+        return PARAMETERS[name]
+    from sim.effects import EFFECTS  # only files with effects that vary need it
+
+    known = EFFECTS[effect].parameters if effect in EFFECTS else {}
+    return known[parameter].unit if parameter in known else ""
 
 
 _WIDEST_NORMAL = 1.0 / 6.0
@@ -51,7 +73,7 @@ class Tolerance:
     Parameters
     ----------
     name : str
-        One of `PARAMETERS`.
+        One of `PARAMETERS`, or ``EFFECT.PARAMETER``.
     kind : str
         ``relative`` or ``absolute``, a standard deviation of a normal distribution; or ``limits``.
     first, second : float
@@ -100,8 +122,19 @@ class Tolerance:
         return factor
 
 
-def read_tolerances(given: object, where: str) -> tuple[Tolerance, ...]:
+def read_tolerances(
+    given: object, where: str, effects: Sequence[LawSpec] = ()
+) -> tuple[Tolerance, ...]:
     """Read the table ``[tolerances]``.
+
+    Parameters
+    ----------
+    given : object
+        What the file holds.
+    where : str
+        What messages call it.
+    effects : sequence of LawSpec
+        Of the rig, the parameters of which can vary where it states them.
 
     Raises
     ------
@@ -113,9 +146,21 @@ def read_tolerances(given: object, where: str) -> tuple[Tolerance, ...]:
     >>> read_tolerances({"damping": 0.1}, "design")
     (Tolerance(name='damping', kind='relative', first=0.1, second=nan),)
     """
-    table = a_table(given, "tolerances", where)
-    refuse_unknown(table, set(PARAMETERS), f"{where}, tolerances")
-    return tuple(_tolerance(name, entry, f"{where}, tolerances") for name, entry in table.items())
+    table, where = a_table(given, "tolerances", where), f"{where}, tolerances"
+    stated = {
+        spec.name: {key for key, value in spec.parameters.items() if not isinstance(value, str)}
+        for spec in effects
+    }
+    refuse_unknown(table, set(PARAMETERS) | set(stated), where)
+    found = []
+    for name, entry in table.items():
+        if name in PARAMETERS:
+            found.append(_tolerance(name, entry, where))
+            continue
+        inner = a_table(entry, name, where)
+        refuse_unknown(inner, stated[name], f"{where}, {name}")
+        found += [_tolerance(f"{name}.{key}", value, where) for key, value in inner.items()]
+    return tuple(found)
 
 
 def _tolerance(name: str, entry: object, where: str) -> Tolerance:

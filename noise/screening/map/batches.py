@@ -71,7 +71,7 @@ class Batch:
 
 
 Evaluator = Callable[[Batch], "NDArray[np.float64]"]
-"""Returns codes of regime and label, and the level [dB], of each point; shape (n, 3)."""
+"""Returns codes of regime and label, L_Aeq and L_AFmax [dB], of each point; shape (n, 4)."""
 
 
 @contextmanager
@@ -88,7 +88,7 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
     Yields
     ------
     callable
-        From a `Batch` to an array of shape (n, 3).
+        From a `Batch` to an array of shape (n, 4).
 
     Raises
     ------
@@ -101,7 +101,7 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
     >>> one, rig = np.ones(1), load_material_rig("PDMS")
     >>> with batch_evaluator() as evaluate:
     ...     evaluate(Batch(rig, one, np.nan * one, 3e-4 * one, 2e3 * one, one))
-    array([[ 0.,  0., nan]])
+    array([[ 0.,  0., nan, nan]])
     """
     if scheduler is None:
 
@@ -142,7 +142,7 @@ def _pieces(batch: Batch, size: int) -> list[NDArray[np.int64]]:
 def _joined(
     batch: Batch, pieces: list[NDArray[np.int64]], found: list[NDArray[np.float64]]
 ) -> NDArray[np.float64]:
-    rows = np.empty((batch.speed.size, 3))
+    rows = np.empty((batch.speed.size, 4))
     for piece, values in zip(pieces, found, strict=True):
         rows[piece] = values
     return rows
@@ -157,7 +157,7 @@ def _evaluate_on_cluster(batch: Batch, index: int) -> tuple[int, NDArray[np.floa
 
 
 def _evaluate(batch: Batch) -> NDArray[np.float64]:
-    rows = np.empty((batch.speed.size, 3))
+    rows = np.empty((batch.speed.size, 4))
     for i in range(batch.speed.size):
         speed, frequency = float(batch.speed[i]), float(batch.frequency[i])
         found = evaluate_point(
@@ -167,5 +167,6 @@ def _evaluate(batch: Batch) -> NDArray[np.float64]:
             support_stiffness=float(batch.support_stiffness[i]),
             temperature=float(batch.temperature[i]),
         )
-        rows[i] = REGIMES.index(found.regime), LABELS.index(found.label), found.level
+        codes = REGIMES.index(found.regime), LABELS.index(found.label)
+        rows[i] = *codes, found.level, found.level_max
     return rows

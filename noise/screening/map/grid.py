@@ -1,29 +1,46 @@
-"""Grid of conditions over which a design is mapped: the caller's, its use's or its rig's."""
+"""Grid of conditions over which designs are mapped: the caller's, their uses' or their rigs'.
+
+Designs that are compared share one grid, the union of what was asked of each: speeds, fits,
+supports, temperatures and swings of all their uses and, where a use says nothing, the fits and
+supports that the rig's tables are given for. On an axis that the caller names his values stand
+instead. So each point is one of each design, and a rank is never a matter of where was looked.
+"""
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from models.condition import FIXED
-from noise.screening.design.axis_values import SPEED_STEP, spread
-from noise.screening.design.design import Use
+from noise.screening.design.axis_values import SPEED_STEP, axis_words, spread
+from noise.screening.design.design import Swinging, Use
 from noise.screening.design.environments import DRY, environment
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
 
     from models.rig import Rig
-    from noise.screening.design.design import Design, Swinging
+    from noise.screening.design.design import Design
 
-__all__ = ["DEFAULT_SPEEDS", "Grid", "grid_of"]
+__all__ = ["DEFAULT_SPEEDS", "Grid", "grid_of", "shared_grid", "shared_motions"]
 
 DEFAULT_SPEEDS = (0.25, 13.0)
 """Limits of use where nobody says any: the range that the thesis measured [rad/s]."""
 
 _DEFAULT_SUPPORT = 2214.0
 _DEFAULT_TEMPERATURE = 23.0
+_ALIKE = 1e-6
+"""Relative distance below which two values of an axis are one."""
+
+_MOST_SAID = 6
+"""Values of an axis that are named one by one."""
+
 _BEYOND = 1.5
 """A map reaches from the slowest of `DEFAULT_SPEEDS`, or of use, so far beyond the fastest use."""
 
@@ -41,7 +58,7 @@ class Grid:
     interference, support_stiffness, temperature : tuple of float
         [m], [Nm/rad], [degree Celsius]
     use : tuple of float
-        Slowest and fastest speed of use [rad/s].
+        Slowest and fastest speed of use, of all designs that share it [rad/s].
     """
 
     speed: tuple[float, ...]
@@ -61,11 +78,34 @@ class Grid:
             len(self.speed),
         )
 
+    @property
+    def used(self) -> NDArray[np.bool_]:
+        """Which speeds are of use, shape (n_speeds,); the middlemost where the map has none."""
+        speed, (low, high) = np.array(self.speed), self.use
+        used = (speed >= low * (1.0 - _ALIKE)) & (speed <= high * (1.0 + _ALIKE))
+        if not used.any():
+            used[np.argmin(np.abs(speed - 0.5 * (low + high)))] = True
+        return used
+
+    @property
+    def words(self) -> str:
+        """Say over which conditions, in a line."""
+        moving = "speed" if not self.frequency else "peak speed"
+        axes = (
+            (moving, self.speed, "rad/s"),
+            ("interference", [1e3 * fit for fit in self.interference], "mm"),
+            ("support", self.support_stiffness, "Nm/rad"),
+            ("temperature", self.temperature, "°C"),
+        )
+        return "; ".join(
+            f"{name} {axis_words(values, _MOST_SAID)} {unit}" for name, values, unit in axes
+        )
+
 
 def grid_of(
     design: Design, given: Use | None = None, *, where: str = DRY, swinging: Swinging | None = None
 ) -> Grid:
-    """Return the conditions of a design's map.
+    """Return the conditions of the map of a design that is compared with no other.
 
     Parameters
     ----------
@@ -87,27 +127,117 @@ def grid_of(
     >>> grid_of(load_design("natural-rubber")).shape
     (1, 3, 1, 103)
     """
+    return shared_grid([design], given, where=where, swinging=swinging)
+
+
+def shared_grid(
+    designs: Sequence[Design],
+    given: Use | None = None,
+    *,
+    where: str = DRY,
+    swinging: Swinging | None = None,
+) -> Grid:
+    """Return the conditions over which designs are compared, the same of each.
+
+    Parameters
+    ----------
+    designs : sequence of Design
+        One at least.
+    given : Use, optional
+        What the caller says; it wins over what the designs say.
+    where : str
+        Environment; any but ``dry`` has a temperature of its own.
+    swinging : Swinging, optional
+        How the shaft swings, instead of turning at constant speed.
+
+    Returns
+    -------
+    Grid
+        The use reaches from the slowest to the fastest speed of any design's.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import load_design
+    >>> grid = shared_grid([load_design("natural-rubber"), load_design("PDMS")])
+    >>> [round(1e3 * fit, 3) for fit in grid.interference]
+    [0.127, 0.254, 0.381]
+    """
     given = given or Use()
-    use = design.use
-    speed = given.speed or use.speed or DEFAULT_SPEEDS
-    limits = (use.speed or speed)[0], (use.speed or speed)[-1]
-    grid = given.speed or (use.speed if len(use.speed) > 2 else _speeds(limits))
-    if not (given.speed or use.speed):
-        grid = _spaced(*DEFAULT_SPEEDS)
+    uses = [design.use for design in designs]
+    stated = [use.speed or given.speed for use in uses if use.speed or given.speed]
+    limits = _hull(stated or [DEFAULT_SPEEDS])
+    speed = given.speed or _asked_speeds([use.speed for use in uses if use.speed])
     if swinging is not None:
-        grid = swinging.peak_speed
-        limits = 0.0, grid[-1]
-    temperature = given.temperature or use.temperature or (_DEFAULT_TEMPERATURE,)
+        speed = swinging.peak_speed
+        limits = 0.0, speed[-1]
+    temperature = given.temperature or _merged(*(use.temperature for use in uses))
     if where != DRY:
         temperature = (environment(where).temperature,)
     return Grid(
-        speed=grid,
+        speed=speed,
         frequency=() if swinging is None else swinging.frequency,
-        interference=given.interference or use.interference or _fits(design.rig),
-        support_stiffness=given.support_stiffness or use.support_stiffness or _supports(design.rig),
-        temperature=temperature,
+        interference=given.interference
+        or _merged(*(one.use.interference or _fits(one.rig) for one in designs)),
+        support_stiffness=given.support_stiffness
+        or _merged(*(one.use.support_stiffness or _supports(one.rig) for one in designs)),
+        temperature=temperature or (_DEFAULT_TEMPERATURE,),
         use=limits,
     )
+
+
+def shared_motions(designs: Sequence[Design], given: Use | None = None) -> list[Swinging | None]:
+    """List how the shaft moves in the maps of designs that are compared; None is constant speed.
+
+    Parameters
+    ----------
+    designs : sequence of Design
+    given : Use, optional
+        With speeds alone, or with a swing alone, only that is mapped.
+
+    Returns
+    -------
+    list of Swinging or None
+        Swings of all designs, those of one amplitude as one.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import load_design
+    >>> shared_motions([load_design("PDMS")], Use(swinging=Swinging(0.26, (1.0, 2.0))))
+    [Swinging(amplitude=0.26, frequency=(1.0, 2.0))]
+    """
+    given = given or Use()
+    if given.swinging is not None:
+        return [None, given.swinging] if given.speed else [given.swinging]
+    if given.speed:
+        return [None]
+    swings: dict[float, tuple[float, ...]] = {}
+    for one in (design.use.swinging for design in designs):
+        if one is not None:
+            swings[one.amplitude] = _merged(swings.get(one.amplitude, ()), one.frequency)
+    return [None, *(Swinging(*swing) for swing in sorted(swings.items()))]
+
+
+def _asked_speeds(stated: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
+    """Speeds of a map, of uses that state limits or lists of speeds."""
+    if not stated:
+        return _spaced(*DEFAULT_SPEEDS)
+    limits = [speeds for speeds in stated if len(speeds) <= 2]
+    lists = [speeds for speeds in stated if len(speeds) > 2]
+    return _merged(*lists, *([_speeds(_hull(limits))] if limits else []))
+
+
+def _hull(spans: Iterable[tuple[float, ...]]) -> tuple[float, float]:
+    spans = list(spans)
+    return min(span[0] for span in spans), max(span[-1] for span in spans)
+
+
+def _merged(*axes: tuple[float, ...]) -> tuple[float, ...]:
+    """Values of all axes, rising, those that are alike once."""
+    values: list[float] = []
+    for value in sorted(itertools.chain(*axes)):
+        if not (values and math.isclose(value, values[-1], rel_tol=_ALIKE)):
+            values.append(value)
+    return tuple(values)
 
 
 def _speeds(limits: Sequence[float]) -> tuple[float, ...]:

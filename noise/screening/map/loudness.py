@@ -67,14 +67,14 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
         rate = sound.motion.rate
         cycles = int(np.ceil(SHORTEST * rate / sound.pressure.size))  # of a fast swing
         n10 = loudness_n10(np.tile(sound.pressure, cycles), rate)
-        heard.append(_LoudPoint(label, float(found.level[where]), n10))
-    loudness = np.full(found.level.shape, np.nan)
+        heard.append(_LoudPoint(label, float(found.level_max[where]), n10))
+    loudness = np.full(found.level_max.shape, np.nan)
     for label in {one.label for one in heard}:
         of_label = [one for one in heard if one.label == label]
         levels = np.array([one.level for one in of_label])
         sones = np.array([one.loudness for one in of_label])
-        cells = (found.label == label) & np.isfinite(found.level)
-        level = found.level[cells]
+        cells = (found.label == label) & np.isfinite(found.level_max)
+        level = found.level_max[cells]
         nearest = np.abs(level[:, None] - levels).argmin(axis=1)
         loudness[cells] = sones[nearest] * loudness_weight(40.0 + level - levels[nearest])
     return replace(found, loudness=loudness)
@@ -87,7 +87,7 @@ def _regions(found: DesignMap) -> list[tuple[tuple[int, ...], str]]:
         numbers, _ = ndimage.label(found.label == label)
         counts = np.bincount(numbers.ravel())[1:]
         for rank, number in enumerate(np.argsort(counts)[::-1][:_MOST_REGIONS]):
-            level = np.where(numbers == number + 1, found.level, -np.inf)
+            level = np.where(numbers == number + 1, found.level_max, -np.inf)
             where = tuple(int(n) for n in np.unravel_index(np.nanargmax(level), level.shape))
             if np.isfinite(level[where]):
                 first = 10 * found.label.size if rank == 0 else 0

@@ -1,7 +1,8 @@
 """Map of one design in one environment: regime, noise and level at each condition of a grid.
 
 Where the friction law does not know the temperature the map of one temperature is that of all, and
-its copies say so. Stability is asked at every point of constant speed; a swinging shaft has no
+where the properties of the nearest fit are held so is the row of that fit; the copies say so.
+Stability is asked at every point of constant speed; a swinging shaft has no
 steady sliding, and its map is refined without.
 """
 
@@ -15,6 +16,7 @@ import numpy as np
 from noise.screening.map.batches import LABELS, Batch
 from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES
+from noise.screening.map.provenance import is_substituted, point_notes, rows_of
 from noise.screening.map.refine import HOW, STRIDE, refined_map
 from sim.analysis.regime import Regime
 from sim.analysis.stability import steady_sliding
@@ -27,10 +29,10 @@ if TYPE_CHECKING:
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
 
-__all__ = ["UNCHANGED", "DesignMap", "map_design"]
+__all__ = ["UNCHANGED", "DesignMap", "growth_rates", "map_design"]
 
 UNCHANGED = "unchanged"
-"""How a point is known whose temperature makes no difference."""
+"""How a point is known whose temperature, or interference, makes no difference."""
 
 _SPEED_APART, _FIT_APART = 1.0, 0.05e-3
 """Largest distance of corners of coarse cells [rad/s] and [m]: a list of few speeds is simulated
@@ -52,14 +54,17 @@ class DesignMap:
     grid : Grid
         Shape (n_temperatures, n_supports, n_fits, n_speeds).
     regime, label : ndarray of str, shape of the grid
-    level : ndarray, shape of the grid
-        L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
+    level, level_max : ndarray, shape of the grid
+        L_Aeq and L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
     loudness : ndarray, shape of the grid
         N10 [sone]; NaN where it was not asked for.
     how : ndarray of str, shape of the grid
         ``simulated``, ``stability``, ``refined`` or ``unchanged``.
     growth : ndarray, shape of the grid
         Of a small vibration about steady sliding [1/s]; NaN where the shaft swings.
+    note : ndarray of str, shape of the grid
+        What is not the design's own there, by `noise.screening.map.provenance.point_notes`: data
+        interpolated or held, a speed beyond those fitted; empty where nothing is.
     open : int
         Points beside a boundary that were left to their nearest neighbour.
     """
@@ -71,10 +76,19 @@ class DesignMap:
     regime: NDArray[np.str_]
     label: NDArray[np.str_]
     level: NDArray[np.float64]
+    level_max: NDArray[np.float64]
     loudness: NDArray[np.float64]
     how: NDArray[np.str_]
     growth: NDArray[np.float64]
+    note: NDArray[np.object_]
     open: int
+
+    @property
+    def substituted(self) -> NDArray[np.bool_]:
+        """At which points data interpolated or held stand in for the design's own."""
+        return np.array([is_substituted(str(note)) for note in self.note.flat]).reshape(
+            self.note.shape
+        )
 
     def count(self, how: str) -> int:
         """How many points are known in a way."""
@@ -118,11 +132,18 @@ def map_design(
     """
     law = friction_law(rig.friction.name)
     warm = "temperature" in law.parameters and "temperature" not in rig.friction.parameters
-    temperature = np.array(grid.temperature if warm else grid.temperature[:1])
-    shape = (temperature.size, *grid.shape[1:])
-    planes = (shape[0] * shape[1], *shape[2:])
-    axes = (temperature, *(np.array(axis) for axis in (grid.support_stiffness, grid.interference)))
-    level = np.full(planes, np.nan)
+    known_by = (
+        np.arange(grid.shape[0]) if warm else np.zeros(grid.shape[0], dtype=int),
+        np.array(rows_of(rig, grid.interference)),
+    )
+    temperature, interference = (
+        np.array(axis)[np.unique(known)]
+        for axis, known in zip((grid.temperature, grid.interference), known_by, strict=True)
+    )
+    axes = (temperature, np.array(grid.support_stiffness), interference)
+    shape = (temperature.size, len(grid.support_stiffness), interference.size, len(grid.speed))
+    planes = (shape[0] * shape[1], shape[2], shape[3])
+    levels = np.full((2, *planes), np.nan)
     swings = bool(grid.frequency)
     frequency = np.array(grid.frequency) if swings else np.full(shape[3], np.nan)
     speed = np.array(grid.speed)
@@ -139,10 +160,10 @@ def map_design(
                 axes[0][plane // shape[1]],
             )
         )
-        level[plane, row, column] = rows[:, 2]
+        levels[:, plane, row, column] = rows[:, 2:].T
         return (rows[:, 0] * len(LABELS) + rows[:, 1]).astype(np.int64)
 
-    growth = np.full(planes, np.nan) if swings else _growth(rig, axes, speed).reshape(planes)
+    growth = np.full(planes, np.nan) if swings else growth_rates(rig, axes, speed).reshape(planes)
     found = refined_map(
         planes,
         simulate,
@@ -152,22 +173,26 @@ def map_design(
         most=most,
         stride=stride or (_stride(axes[2], _FIT_APART), _stride(speed, _SPEED_APART)),
     )
-    level = interpolate_levels(level, found.codes, found.how)
+    level, level_max = (
+        interpolate_levels(one, found.codes, found.how).reshape(shape) for one in levels
+    )
     how = np.array(HOW)[found.how].reshape(shape)
-    result = DesignMap(
+    mapped = DesignMap(
         design=design,
         environment=environment,
         motion="swinging" if swings else "steady",
         grid=grid,
         regime=np.array([str(r.value) for r in REGIMES])[found.codes // len(LABELS)].reshape(shape),
         label=np.array(LABELS)[found.codes % len(LABELS)].reshape(shape),
-        level=level.reshape(shape),
+        level=level,
+        level_max=level_max,
         loudness=np.full(shape, np.nan),
         how=how.astype("U10"),
         growth=growth.reshape(shape),
+        note=point_notes(rig, grid),
         open=found.open,
     )
-    return result if warm else _copied(result)
+    return _copied(mapped, *known_by)
 
 
 def _stride(values: NDArray[np.float64], apart: float) -> int:
@@ -177,9 +202,24 @@ def _stride(values: NDArray[np.float64], apart: float) -> int:
     return max(1, min(STRIDE, round(apart / float(np.diff(values).max()))))
 
 
-def _growth(
+def growth_rates(
     rig: Rig, axes: tuple[NDArray[np.float64], ...], speed: NDArray[np.float64]
 ) -> NDArray[np.float64]:
+    """Growth of a small vibration about steady sliding over a grid.
+
+    Parameters
+    ----------
+    rig : Rig
+    axes : tuple of ndarray
+        Temperatures [degree Celsius], supports [Nm/rad] and interferences [m].
+    speed : ndarray, shape (n_speeds,)
+        [rad/s]
+
+    Returns
+    -------
+    ndarray, shape (n_temperatures, n_supports, n_fits, n_speeds)
+        [1/s]
+    """
     temperature, support, fit = axes
     return np.stack(
         [
@@ -194,11 +234,12 @@ def _growth(
     )
 
 
-def _copied(found: DesignMap) -> DesignMap:
-    """Repeat a map at all temperatures."""
-    n = len(found.grid.temperature)
-    how = np.repeat(found.how, n, axis=0)
-    how[1:] = UNCHANGED
-    alike = ("regime", "label", "level", "loudness", "growth")
-    copies: dict[str, Any] = {name: np.repeat(getattr(found, name), n, axis=0) for name in alike}
-    return replace(found, how=how, **copies)
+def _copied(found: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:
+    """Repeat a map at all temperatures and fits, by those that each is known by."""
+    at = [np.unique(known, return_inverse=True)[1] for known in known_by]
+    own = [known == np.arange(known.size) for known in known_by]
+    names = ("regime", "label", "level", "level_max", "loudness", "how", "growth")
+    copies: dict[str, Any] = {name: getattr(found, name)[at[0]][:, :, at[1]] for name in names}
+    copied = ~(own[0][:, None, None, None] & own[1][:, None])
+    copies["how"] = np.where(copied, UNCHANGED, copies["how"])
+    return replace(found, **copies)

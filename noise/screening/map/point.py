@@ -20,8 +20,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from features.kernels.bands import band_levels
 from features.kernels.levels import a_weighted, fast_levels
 from models.radiation.rig_response import impulse_responses
+from models.recording import REFERENCE_PRESSURE
 from models.rig import damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
 from noise.screening.map.fast_intervals import fast_intervals
@@ -77,13 +79,14 @@ class PointResult:
     regime : Regime
     label : str
         ``creak``, ``squawk``, ``squeal`` or ``none``.
-    level : float
-        L_AFmax of the sound [dB re 20 uPa]; NaN where it slides steadily.
+    level, level_max : float
+        L_Aeq and L_AFmax of the sound [dB re 20 uPa]; NaN where it slides steadily.
     """
 
     regime: Regime
     label: str
     level: float
+    level_max: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +178,7 @@ def evaluate_point(
     swings = isinstance(shaft, Oscillation)
     intervals = fast_intervals(motion.since(plan.n_settling), swings=swings)
     if all(_oscillation(interval) <= 1.0 for interval in intervals):
-        return PointResult(Regime.STEADY_SLIDING, "none", math.nan)
+        return PointResult(Regime.STEADY_SLIDING, "none", math.nan, math.nan)
     made_of, support = structure or (plan.rig, support_stiffness)
     paths = _paths(made_of, interference, support, plan.rate)
     sound = _sound(plan, motion, paths)
@@ -185,7 +188,7 @@ def evaluate_point(
     label = found.label
     if swings and label == "creak" and found.blows < 0.0:
         label = "squawk"  # lines that follow the speed, which no single spectrum shows
-    return PointResult(regime, label, _loudest(sound))
+    return PointResult(regime, label, *_levels(sound))
 
 
 def point_sound(
@@ -268,11 +271,13 @@ def _sound(plan: Plan, motion: Motion, paths: ImpulseResponses) -> Sound:
     )
 
 
-def _loudest(sound: Sound) -> float:
-    """L_AFmax [dB re 20 uPa]."""
-    rate = sound.motion.rate
-    levels = fast_levels(a_weighted(np.concatenate([sound.before, sound.pressure]), rate), rate)
-    return float(levels[sound.before.size :].max())
+def _levels(sound: Sound) -> tuple[float, float]:
+    """L_Aeq and L_AFmax [dB re 20 uPa]."""
+    rate, start = sound.motion.rate, sound.before.size
+    weighted = a_weighted(np.concatenate([sound.before, sound.pressure]), rate)
+    mean_square = np.mean(weighted[start:] ** 2)
+    level = float(band_levels(mean_square, REFERENCE_PRESSURE))
+    return level, float(fast_levels(weighted, rate)[start:].max())
 
 
 def _paths(

@@ -11,11 +11,12 @@ from models.rig import damping_at
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.design.tolerances import ABSOLUTE_ZERO, PARAMETERS
 from noise.screening.map.grid import grid_of
+from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from models.rig import Rig
+    from models.rig import LawSpec, Rig
     from noise.screening.design.design import Design
 
 __all__ = ["UsePoint", "nominal_values", "use_point", "varied"]
@@ -90,6 +91,13 @@ def nominal_values(design: Design, point: UsePoint) -> dict[str, float]:
         "interference": 1e3 * point.interference,
         "temperature": point.temperature,
         "speed": point.speed,
+        "elastomer_inertia": design.rig.elastomer_inertia,
+        **{
+            f"{spec.name}.{key}": value
+            for spec in design.rig.effects
+            for key, value in spec.parameters.items()
+            if not isinstance(value, str)
+        },
     }
 
 
@@ -102,7 +110,8 @@ def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig
     point : UsePoint
     factors : mapping of str to float
         By the names of `noise.screening.design.tolerances.PARAMETERS` [-]. That of the temperature
-        is one of absolute temperature; a critical torque is at least the kinetic one.
+        is one of absolute temperature; a critical torque is at least the kinetic one. A parameter
+        of an effect, by ``EFFECT.PARAMETER``, goes no farther than the effect has it.
 
     Raises
     ------
@@ -118,12 +127,17 @@ def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig
     8.8
     """
     for name, factor in factors.items():
-        if name not in PARAMETERS:
+        if name not in PARAMETERS and not _is_stated(rig, name):
             raise ParameterError(f"{name!r} cannot vary; what can is {', '.join(PARAMETERS)}")
         if not 0.0 < factor < math.inf:
             raise ParameterError(f"the factor {factor:g} on {name} must be above 0 and finite")
     if any(name in factors for name in FIT_PARAMETERS):
         rig = replace(rig, fits=tuple(scaled_fit(fit, factors) for fit in rig.fits))
+    rig = replace(
+        rig,
+        elastomer_inertia=rig.elastomer_inertia * factors.get("elastomer_inertia", 1.0),
+        effects=tuple(_scaled_effect(spec, factors) for spec in rig.effects),
+    )
     absolute = point.temperature - ABSOLUTE_ZERO
     point = replace(
         point,
@@ -135,3 +149,24 @@ def varied(rig: Rig, point: UsePoint, factors: Mapping[str, float]) -> tuple[Rig
         else point.temperature,
     )
     return rig, point
+
+
+def _is_stated(rig: Rig, name: str) -> bool:
+    effect, _, key = name.partition(".")
+    return any(
+        spec.name == effect and isinstance(spec.parameters.get(key), int | float)
+        for spec in rig.effects
+    )
+
+
+def _scaled_effect(spec: LawSpec, factors: Mapping[str, float]) -> LawSpec:
+    known = EFFECTS[spec.name].parameters if spec.name in EFFECTS else {}
+    scaled: dict[str, float | str] = {}
+    for key, value in spec.parameters.items():
+        factor = factors.get(f"{spec.name}.{key}")
+        scaled[key] = value
+        if factor is not None and not isinstance(value, str):
+            scaled[key] = value * factor
+            if key in known:
+                scaled[key] = min(max(value * factor, known[key].low), known[key].high)
+    return replace(spec, parameters=scaled)

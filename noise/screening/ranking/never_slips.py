@@ -61,7 +61,7 @@ def why_never_slipping(rig: Rig, grid: Grid) -> str:
         return ""
     if not swing and twist <= _MOST_TWIST:
         motion = motion_from_rest(rig, fastest, interference, support, seconds=LONGEST_POINT)
-        if not never_slips(motion, rig.fit(interference).kinetic_torque):
+        if not never_slips(motion):
             return ""
     return (
         f"never slips: the contact holds {torque:g} Nm, for which the shaft winds the bushing up "

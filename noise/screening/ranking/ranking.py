@@ -1,7 +1,8 @@
 """Standing of each design in each environment and motion, and its rank among all.
 
 The rank is that of `noise.screening.ranking.risk.ranked`: by risk, by how probably there is noise,
-and by margin, the worst of a design's environments and motions counting. How probably is told by
+and by margin, the worst of a design's environments and motions counting. All maps are over the same
+points, or are refused. How probably is told by
 the parts where those of all designs were looked at; else by the share of the points of use that are
 noisy, of all designs alike, since the two must not be compared with each other.
 
@@ -17,20 +18,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.errors import ParameterError
 from noise.screening.map.batches import LABELS
+from noise.screening.parts.advice_words import advice_words
 from noise.screening.parts.estimate import Estimate
+from noise.screening.ranking.plain_words import plain_words
 from noise.screening.ranking.risk import Candidate, ranked
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from noise.screening.map.grid import Grid
     from noise.screening.map.mapping import DesignMap
     from noise.screening.parts.statistics import Statistics
     from noise.screening.ranking.margins import CriticalPoint
 
-__all__ = ["Standing", "loudness_weight", "standings"]
+__all__ = ["Standing", "loudness_weight", "refuse_unlike", "standings"]
 
 
 @dataclass(frozen=True)
@@ -49,8 +54,9 @@ class Standing:
         Mean of the points of use [-], 1 being 40 dB(A) throughout.
     shares : dict of str to float
         Of the points of use, by label [-].
-    loudest_level : float
-        L_AFmax of the loudest point of use with a noise [dB re 20 uPa]; NaN if there is none.
+    loudest_level, loudest_level_max : float
+        L_Aeq and L_AFmax of the loudest point of use with a noise [dB re 20 uPa]; NaN if there is
+        none.
     loudest_label : str
         Its noise, ``none`` if there is none.
     v_crit1, v_crit2 : float
@@ -59,6 +65,13 @@ class Standing:
         Smallest likewise [rad/s].
     never_slips : str
         Why the contact never slips; empty where it does.
+    words : str
+        What it does, in plain words.
+    hint : str
+        What would help; empty where nothing needs to, or nothing is known to.
+    notes : tuple of str
+        What to know of its numbers: implausible values, data interpolated or held, speeds beyond
+        those fitted, effects and temperatures that change nothing, a contact that never slips.
     """
 
     rank: int | None
@@ -69,6 +82,7 @@ class Standing:
     exposure: float
     shares: dict[str, float]
     loudest_level: float
+    loudest_level_max: float
     loudest_label: str
     v_crit1: float
     v_crit2: float
@@ -76,6 +90,9 @@ class Standing:
     margin_v_crit2: float
     margin_stability: float
     never_slips: str = ""
+    words: str = ""
+    hint: str = ""
+    notes: tuple[str, ...] = ()
 
 
 def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -104,6 +121,8 @@ def standings(
     critical: Sequence[CriticalPoint],
     statistics: Sequence[Statistics],
     never_slipping: Sequence[str] | None = None,
+    hints: Sequence[str] | None = None,
+    remarks: Mapping[str, Sequence[str]] | None = None,
 ) -> tuple[Standing, ...]:
     """Tell how mapped designs do, the quietest first.
 
@@ -115,19 +134,38 @@ def standings(
         One for each design and environment.
     never_slipping : sequence of str, optional
         Of each map why the contact never slips, empty where it does; by default all slip.
+    hints : sequence of str, optional
+        Of each map what would help, where no advice is told; by default nothing.
+    remarks : mapping of str to sequence of str, optional
+        What to know of the numbers of a design, by its name.
 
     Returns
     -------
     tuple of Standing
         One a map; those without a rank are the last.
+
+    Raises
+    ------
+    ParameterError
+        The maps are not over the same points.
     """
+    refuse_unlike(maps)
     risks = {(one.design, one.environment): one.risk for one in statistics}
-    found = [
-        replace(
-            _standing(mapped, critical, risks[mapped.design, mapped.environment]), never_slips=why
+    advised = {(one.design, one.environment): advice_words(one) for one in statistics}
+    found = []
+    nothing = [""] * len(maps)
+    for mapped, why, hint in zip(maps, never_slipping or nothing, hints or nothing, strict=True):
+        where = mapped.design, mapped.environment
+        one = _standing(mapped, critical, risks[where])
+        found.append(
+            replace(
+                one,
+                never_slips=why,
+                words=plain_words(mapped, one.margin_v_crit2, why),
+                hint="" if why else advised[where] or hint,
+                notes=(*(remarks or {}).get(mapped.design, ()), *filter(None, [why])),
+            )
         )
-        for mapped, why in zip(maps, never_slipping or [""] * len(maps), strict=True)
-    ]
     held = {one.design for one in found if one.never_slips and one.motion == "steady"}
     judged = [one for one in statistics if one.design not in held]
     order = ranked(_candidates([one for one in found if one.design not in held], judged))
@@ -137,6 +175,27 @@ def standings(
     return tuple(
         sorted(all_ranked, key=lambda one: (last + 1 if one.rank is None else one.rank, one.design))
     )
+
+
+def refuse_unlike(maps: Sequence[DesignMap]) -> None:
+    """Refuse maps of which not all designs have the same points.
+
+    Raises
+    ------
+    ParameterError
+        They have not; a rank would then be a matter of where was looked.
+    """
+    points: dict[str, set[tuple[str, str, Grid]]] = {}
+    for mapped in maps:
+        where = mapped.environment, mapped.motion, mapped.grid
+        points.setdefault(mapped.design, set()).add(where)
+    first = next(iter(points), "")
+    for name in points:
+        if points[name] != points[first]:
+            raise ParameterError(
+                f"designs {first} and {name} are not mapped over the same points, and cannot be "
+                "ranked"
+            )
 
 
 def _candidates(found: Sequence[Standing], statistics: Sequence[Statistics]) -> list[Candidate]:
@@ -163,12 +222,10 @@ def _candidates(found: Sequence[Standing], statistics: Sequence[Statistics]) -> 
 
 
 def _standing(mapped: DesignMap, critical: Sequence[CriticalPoint], risk: int | None) -> Standing:
-    speed = np.array(mapped.grid.speed)
-    low, high = mapped.grid.use
-    used = (speed >= low * (1.0 - 1e-9)) & (speed <= high * (1.0 + 1e-9))
-    if not used.any():
-        used[np.argmin(np.abs(speed - 0.5 * (low + high)))] = True
-    label, level = mapped.label[..., used], mapped.level[..., used]
+    used = mapped.grid.used
+    label, level, level_max = (
+        each[..., used] for each in (mapped.label, mapped.level, mapped.level_max)
+    )
     noisy = (label != "none") & np.isfinite(level)
     loudest = np.unravel_index(np.argmax(np.where(noisy, level, -np.inf)), level.shape)
     own = [
@@ -184,9 +241,10 @@ def _standing(mapped: DesignMap, critical: Sequence[CriticalPoint], risk: int | 
         environment=mapped.environment,
         motion=mapped.motion,
         risk=risk,
-        exposure=float(np.sum(loudness_weight(level[noisy])) / label.size),
+        exposure=float(np.sum(loudness_weight(level_max[noisy])) / label.size),
         shares={name: float(np.mean(label == name)) for name in LABELS},
         loudest_level=float(level[loudest]) if noisy.any() else nothing,
+        loudest_level_max=float(level_max[loudest]) if noisy.any() else nothing,
         loudest_label=str(label[loudest]) if noisy.any() else "none",
         v_crit1=max((point.v_crit1 for point in own), default=nothing),
         v_crit2=max((point.v_crit2 for point in own), default=nothing),

@@ -24,6 +24,8 @@ from sim.analysis.sweep_features import FEATURES, motion_features
 from sim.friction import at_temperature
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from models.rig import Rig
@@ -76,20 +78,24 @@ def use_grades(design: Design, *, workers: int = -1) -> NDArray[np.float64]:
         If a condition cannot be simulated.
     """
     grid = grid_of(design)
-    conditions = itertools.product(
-        np.linspace(*grid.use, _SPEEDS).tolist(),
-        _few(grid.interference),
-        _few(grid.support_stiffness),
-        _few(grid.temperature),
+    conditions = list(
+        itertools.product(
+            np.linspace(*grid.use, _SPEEDS).tolist(),
+            _few(np.clip(grid.interference, *design.rig.interference_range).tolist()),
+            _few(grid.support_stiffness),
+            _few(grid.temperature),
+        )
     )
+    distinct = list(dict.fromkeys(conditions))  # beyond the fits that are given one is held
     with one_thread():
         rows = Parallel(n_jobs=workers, prefer="threads")(
-            delayed(_measured)(design.rig, *condition) for condition in conditions
+            delayed(_measured)(design.rig, *condition) for condition in distinct
         )
-    return risk_grades(*np.array(rows).T)
+    found = dict(zip(distinct, rows, strict=True))
+    return risk_grades(*np.array([found[condition] for condition in conditions]).T)
 
 
-def _few(values: tuple[float, ...]) -> list[float]:
+def _few(values: Sequence[float]) -> list[float]:
     last = len(values) - 1
     return [values[i] for i in sorted({0, last // 2, last})]
 

@@ -6,7 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from models.html_table import html_table
-from noise.screening.design.tolerances import PARAMETERS
+from noise.screening.design.axis_values import axis_words
+from noise.screening.design.tolerances import unit_of
 from noise.screening.tables.summary import probability_words, risk_words, sensitivity_words
 
 if TYPE_CHECKING:
@@ -67,16 +68,13 @@ def design_html(design: Design) -> str:
 def _said(values: Sequence[float], unit: str) -> str:
     if not values:
         return "not stated"
-    if len(values) <= 4:
-        named = ", ".join("fixed" if math.isinf(value) else f"{value:.4g}" for value in values)
-        return f"{named} {unit}"
-    return f"{values[0]:.4g} to {values[-1]:.4g} {unit}, {len(values)} points"
+    return f"{axis_words(values)} {unit}"
 
 
 def _tolerance(one: Tolerance) -> str:
     if one.kind == "relative":
         return f"{one.first:.3g} of the value, standard deviation"
-    unit = PARAMETERS[one.name]
+    unit = unit_of(one.name)
     if one.kind == "absolute":
         return f"{one.first:.3g} {unit}, standard deviation"
     return f"{one.first:.4g} to {one.second:.4g} {unit}"

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from noise.screening.design.tolerances import PARAMETERS
+from noise.screening.map.provenance import RULE, within_fits
 from noise.screening.ranking.risk import risk_band
 
 if TYPE_CHECKING:
@@ -17,7 +15,7 @@ if TYPE_CHECKING:
     from noise.screening.ranking.ranking import Standing
 
 __all__ = [
-    "advice_words",
+    "conditions_lines",
     "parts_lines",
     "probability_words",
     "risk_words",
@@ -40,18 +38,20 @@ def summary_lines(screening: Screening) -> list[str]:
     lines = []
     told: set[tuple[str, str]] = set()
     for one in screening.standings:
-        lines.append(_standing_line(one, screening))
+        lines += _standing_lines(one)
         where = one.design, one.environment
         if where not in told:
             told.add(where)
             lines += [f"   {line}" for line in parts_lines(screening.statistics_of(*where))]
+            lines += [f"   note: {note}" for note in one.notes if note != one.never_slips]
+    lines += conditions_lines(screening)
     how = ", ".join(
         f"{screening.count(way)} {words}"
         for way, words in (
             ("simulated", "simulated"),
             ("stability", "by stability"),
             ("refined", "by refinement"),
-            ("unchanged", "alike at another temperature"),
+            ("unchanged", "as at another temperature or fit"),
         )
         if screening.count(way)
     )
@@ -62,37 +62,61 @@ def summary_lines(screening: Screening) -> list[str]:
     return lines
 
 
-def _standing_line(one: Standing, screening: Screening) -> str:
-    where = one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
-    mapped = next(
-        found
-        for found in screening.maps
-        if (found.design, found.environment, found.motion)
-        == (one.design, one.environment, one.motion)
+def conditions_lines(screening: Screening) -> list[str]:
+    """Say over which conditions all designs are compared, and where data are not their own.
+
+    Examples
+    --------
+    >>> from noise.screening.design.design import Use
+    >>> from noise.screening.screen import screen
+    >>> use = Use(speed=(1.0, 5.0), interference=(0.3e-3,), support_stiffness=(2214.0,))
+    >>> for line in conditions_lines(screen(["PDMS"], use)):
+    ...     print(line)
+    each design at 2 points: speed 1 and 5 rad/s; interference 0.3 mm; support 2214 Nm/rad; ...
+    not from a design's own data: 2 of PDMS; where a design has no data of its own, stiffness, ...
+    """
+    grids = dict.fromkeys(screening.conditions)
+    n_points = sum(math.prod(grid.shape) for grid in screening.conditions)
+    where = ", and ".join(grid.words for grid in grids)
+    same = "the same " if len(screening.designs) > 1 else ""
+    lines = [f"each design at {same}{n_points} points: {where}"]
+    if screening.substituted:
+        said = ", ".join(f"{count} of {name}" for name, count in screening.substituted.items())
+        lines.append(f"not from a design's own data: {said}; {RULE}")
+        lines += [text for text in [_fair(screening)] if text]
+    return lines
+
+
+def _fair(screening: Screening) -> str:
+    """Say at which interferences no design's torques are held, where at some they are."""
+    fits = sorted({fit for grid in screening.conditions for fit in grid.interference})
+    own = [fit for fit in fits if all(within_fits(one.rig, fit) for one in screening.designs)]
+    if len(screening.designs) == 1 or own == fits:
+        return ""
+    if not own:
+        return "the fits of all designs have no interference in common: ranks are of unlike data"
+    named = ",".join(f"{1e3 * fit:.4g}" for fit in own)
+    return (
+        "a torque held at a larger interference is too small, and flatters; "
+        f"--interference {named} compares within the fits of all"
     )
+
+
+def _standing_lines(one: Standing) -> list[str]:
+    where = one.environment if one.motion == "steady" else f"{one.environment}, {one.motion}"
     if one.rank is None:
         why = one.never_slips or "with the shaft turning it never slips"
-        return f"-. {one.design}, {where}: no rank; {why}"
-    low, high = mapped.grid.use
-    speed = np.array(mapped.grid.speed)
-    used = mapped.label[..., (speed >= low * 0.999999) & (speed <= high * 1.000001)].size
-    head = f"{one.rank}. {one.design}, {where}: risk {risk_words(one.risk)}; "
-    noisy = {name: share for name, share in one.shares.items() if name != "none" and share > 0.0}
-    if not noisy:
-        text = f"quiet at all {used} points of use"
-        text += f" ({one.never_slips})" if one.never_slips else ""
-    else:
-        said = ", ".join(f"{name} {share:.0%}" for name, share in noisy.items())
-        text = f"{said} of {used} points of use, up to {one.loudest_level:.0f} dB(A)"
-        text += f" ({one.loudest_label}), exposure {one.exposure:.3g}"
-    if one.motion != "steady":
-        return head + text
-    if one.v_crit2 == 0.0:
-        return f"{head}{text}; nothing vibrates"
-    return (
-        f"{head}{text}; V_crit1 {_speed(one.v_crit1)}, V_crit2 {_speed(one.v_crit2)}, "
-        f"margin {one.margin_v_crit2:+.3g} rad/s"
-    )
+        return [f"-. {one.design}, {where}: no rank; {why}"]
+    head = f"{one.rank}. {one.design}, {where}: risk {risk_words(one.risk)}; {one.words}"
+    if one.loudest_label == "none":
+        return [head]
+    facts = [f"up to {one.loudest_level:.0f} dB(A) ({one.loudest_label})"]
+    facts += [f"exposure {one.exposure:.3g}"]
+    if one.motion == "steady":
+        facts += [f"V_crit1 {_speed(one.v_crit1)}, V_crit2 {_speed(one.v_crit2)}"]
+        facts += [f"margin {one.margin_v_crit2:+.3g} rad/s"]
+    lines = [head, f"   {', '.join(facts)}"]
+    return [*lines, f"   what helps: {one.hint}"] if one.hint else lines
 
 
 def _speed(value: float) -> str:
@@ -111,7 +135,7 @@ def risk_words(risk: int | None) -> str:
 
 
 def parts_lines(one: Statistics) -> list[str]:
-    """Tell in three lines what noise parts make, what matters most, and what to change.
+    """Tell in two lines what noise parts make, and what matters most.
 
     Examples
     --------
@@ -126,8 +150,6 @@ def parts_lines(one: Statistics) -> list[str]:
     assumed = " (tolerances assumed)" if stands.assumed else ""
     lines.append(f"parts{assumed}: {probability_words(stands)}")
     lines.append(f"matters most: {sensitivity_words(stands)}")
-    if advice := advice_words(one):
-        lines.append(f"advice: {advice}")
     return lines
 
 
@@ -151,30 +173,3 @@ def sensitivity_words(stands: Robustness) -> str:
     return (
         f"the tolerance of {found.name}, {min(1.0, found.total.value):.0%} of the margin's scatter"
     )
-
-
-def advice_words(one: Statistics) -> str:
-    """Tell the least change that widens the margin, and the least that ends the noise."""
-    stands = one.robustness
-    if stands is None:
-        return ""
-    said = []
-    for aim, advised in (("margin", stands.margin_advice), ("noise", stands.noise_advice)):
-        enough = [found for found in advised if found.enough]
-        # What stands on an island is the worse advice, however small the change.
-        best = next((found for found in enough if found.steady), next(iter(enough), None))
-        if best is None and advised:
-            said.append(f"no single change {_FAILS[aim]}")
-        if best is not None:
-            to = f"{one.nominal[best.name] * best.value:.3g} {PARAMETERS[best.name]}"
-            brings = f"{_DOES[aim]} by {best.gain:.2g} rad/s" if aim == "margin" else _DOES[aim]
-            said.append(f"{best.name} {best.change:+.1%} to {to} {brings}")
-    return "; ".join(said)
-
-
-_DOES = {"margin": "widens the margin", "noise": "ends the noise in the middle of the use"}
-
-_FAILS = {
-    "margin": "widens the margin as far as asked",
-    "noise": "ends the noise in the middle of the use",
-}

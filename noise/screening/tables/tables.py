@@ -128,9 +128,11 @@ _MAP: Columns = {
     "support_stiffness_Nm_rad": lambda found, at: _support(found.grid.support_stiffness[at[1]]),
     "regime": lambda found, at: str(found.regime[at]),
     "label": lambda found, at: str(found.label[at]),
-    "level_db": lambda found, at: round(float(found.level[at]), 2),
+    "level_dba": lambda found, at: round(float(found.level[at]), 2),
+    "l_afmax_dba": lambda found, at: round(float(found.level_max[at]), 2),
     "loudness": lambda found, at: round(float(found.loudness[at]), 3),
     "how": lambda found, at: str(found.how[at]),
+    "note": lambda found, at: found.note[at] or None,
 }
 
 _SPEEDS: Columns = {
@@ -161,9 +163,13 @@ _DESIGNS: Columns = {
     **{name: cell for label in NOISES for name, cell in _probability(label).items()},
     "exposure": lambda one, _: _short(one.exposure),
     **{name: cell for label in LABELS for name, cell in _share(label).items()},
-    "loudest_level_db": lambda one, _: round(one.loudest_level, 2),
+    "loudest_level_dba": lambda one, _: round(one.loudest_level, 2),
+    "loudest_l_afmax_dba": lambda one, _: round(one.loudest_level_max, 2),
     "loudest_label": lambda one, _: one.loudest_label,
     **{name: cell for name, cell in _SPEEDS.items() if name != "v_crit2_stability_rad_s"},
+    "words": lambda one, _: one.words,
+    "hint": lambda one, _: one.hint or None,
+    "notes": lambda one, _: "; ".join(one.notes) or None,
     "error": lambda one, told: "; ".join(filter(None, (one.never_slips, *told.failed))) or None,
 }
 

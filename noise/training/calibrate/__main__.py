@@ -1,12 +1,15 @@
 """Fit of the fluorocarbon to the thesis's tables: ``python -m noise.training.calibrate``.
 
-Without options it judges the shipped material. ``--generations N`` searches; ``--leave-out``
-searches again with each of the six critical speeds at 0.279 mm left out, from round numbers.
+A use of `noise.identification`: the thesis's numbers (`thesis_table`) are a table of measurements,
+what no source gives (`unknowns`) is searched. Without options it judges the shipped material.
+``--rounds N`` searches; ``--leave-out N`` searches again with each of the six critical speeds at
+0.279 mm left out, from round numbers.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +19,7 @@ from joblib import Parallel, delayed
 from models.errors import BushingNoiseError
 from models.rig_files.rig_file import load_material_rig
 from noise.base.atomic import atomic
-from noise.training.calibrate.cells import CELLS
+from noise.identification.table_fit import fit_table
 from noise.training.calibrate.report import (
     material_toml,
     measured_speeds,
@@ -24,14 +27,17 @@ from noise.training.calibrate.report import (
     speeds_page,
     values_page,
 )
-from noise.training.calibrate.search import search
-from noise.training.calibrate.unknowns import rig_of
+from noise.training.calibrate.thesis_table import CELLS, SPEEDS_ALONE, THESIS_TABLE
+from noise.training.calibrate.unknowns import rig_of, start, values_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Sequence
 
-    from noise.training.calibrate.cells import Cell
-    from noise.training.calibrate.search import Found
+    from noise.identification.table_fit import TableFit, TableScore
+    from noise.identification.table_number import TableNumber
+
+_STEP, _WIDE_STEP = 0.05, 0.35
+"""First step of the logarithms, about the start and about the round start."""
 
 
 def main() -> int:
@@ -49,27 +55,26 @@ def main() -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m noise.training.calibrate", description=__doc__)
-    parser.add_argument("--generations", type=int, default=0, metavar="N", help="of the search")
+    parser.add_argument(
+        "--rounds", type=int, default=0, metavar="N", help="of the search, with ever finer steps"
+    )
     parser.add_argument(
         "--leave-out", type=int, default=0, metavar="N",
-        help="generations of each of the six searches with a cell left out",
+        help="rounds of each of the six searches with a cell left out",
     )  # fmt: skip
-    parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write what was found")
     return parser
 
 
 def _run(options: argparse.Namespace) -> None:
     rig = load_material_rig("fluorocarbon")
-    if options.generations:
-        found = search(options.generations, options.seed, progress=_progress("all cells"))
-        print(values_page(found))
-        searched = rig_of(found.values)
-        if searched is not None:
-            if options.out:
-                with atomic(options.out) as path:
-                    path.write_text(material_toml(searched), encoding="utf-8")
-            rig = searched
+    if options.rounds:
+        found = _fitted(options, THESIS_TABLE, "all cells")
+        print(values_page(values_at(found.vector)))
+        rig = found.rig
+        if options.out:
+            with atomic(options.out) as path:
+                path.write_text(material_toml(rig), encoding="utf-8")
     speeds = measured_speeds(rig)
     fitted = {cell: speed for cell, speed in speeds.items() if cell in CELLS}
     print(speeds_page("Fitted, at 0.279 mm", fitted))
@@ -77,33 +82,30 @@ def _run(options: argparse.Namespace) -> None:
     print(speeds_page("A hint to the search, at 0.178 mm", hints))
     print(noises_page(rig))
     if options.leave_out:
-        refitted = Parallel(n_jobs=-1)(
-            delayed(_predicted)(cell, options.leave_out, options.seed) for cell in CELLS
-        )
-        predicted = {cell: speed for cell, speed in refitted if speed is not None}
+        predicted = dict(Parallel(n_jobs=-1)(delayed(_predicted)(options, cell) for cell in CELLS))
         print(speeds_page("Held out, each predicted by a search without it", predicted))
 
 
-def _predicted(cell: Cell, generations: int, seed: int) -> tuple[Cell, float | None]:
+def _predicted(options: argparse.Namespace, cell: TableNumber) -> tuple[TableNumber, float]:
     """Critical speed of a rig that is fitted to all cells but this."""
-    found = search(
-        generations, seed, tuple(other for other in CELLS if other != cell),
-        critical_speeds_alone=True, rounded=True, workers=1,
-        progress=_progress(f"without {cell}"),
+    others = [other for other in SPEEDS_ALONE if other != cell]
+    found = _fitted(options, others, f"without {cell}", rounded=True)
+    return cell, measured_speeds(found.rig, (cell,))[cell]
+
+
+def _fitted(
+    options: argparse.Namespace, table: Sequence[TableNumber], what: str, *, rounded: bool = False
+) -> TableFit:
+    def show(score: TableScore) -> None:
+        rms = score.rms(cell for cell in CELLS if cell in score.found) if score.found else math.nan
+        print(f"{what}: cost {score.cost:.3f}, log-rms {rms:.3f}", file=sys.stderr)
+
+    return fit_table(
+        lambda point: rig_of(values_at(point)), table, start(rounded=rounded),
+        step=_WIDE_STEP if rounded else _STEP,
+        rounds=options.leave_out if rounded else options.rounds,
+        workers=1 if rounded else -1, progress=show,
     )  # fmt: skip
-    rig = rig_of(found.values)
-    return cell, None if rig is None else measured_speeds(rig, (cell,))[cell]
-
-
-def _progress(what: str) -> Callable[[int, Found], None]:
-    def show(generation: int, best: Found) -> None:
-        rms = best.score.log_error(CELLS) if best.score.speeds else float("nan")
-        print(
-            f"{what}: generation {generation}, cost {best.score.cost:.3f}, log-rms {rms:.3f}",
-            file=sys.stderr,
-        )
-
-    return show
 
 
 if __name__ == "__main__":

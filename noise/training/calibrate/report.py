@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from models.condition import FIXED
+from noise.identification.table_fit import TableScore
 from noise.noise_definition import label_by_physics
-from noise.training.calibrate.cells import CELLS, NOISES, THIN_CELLS, Cell
-from noise.training.calibrate.objective import Score
+from noise.training.calibrate.thesis_table import CELLS, NOISES, THIN_CELLS
 from noise.training.calibrate.unknowns import UNKNOWNS
 from sim.analysis.critical_speeds import critical_speeds
 from sim.run import simulate
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from models.rig import Rig
-    from noise.training.calibrate.search import Found
+    from noise.identification.table_number import TableNumber
 
 __all__ = ["material_toml", "measured_speeds", "noises_page", "speeds_page", "values_page"]
 
@@ -24,9 +24,11 @@ _SPEEDS = tuple(0.25 * i for i in range(1, 65))
 """To 16 rad/s, so that an end beyond the measured 12.5 is found."""
 
 
-def measured_speeds(rig: Rig, cells: Sequence[Cell] = CELLS + THIN_CELLS) -> dict[Cell, float]:
+def measured_speeds(
+    rig: Rig, cells: Sequence[TableNumber] = CELLS + THIN_CELLS
+) -> dict[TableNumber, float]:
     """Critical speeds of a rig as `sim.analysis.critical_speeds` defines them [rad/s]."""
-    speeds: dict[Cell, float] = {}
+    speeds: dict[TableNumber, float] = {}
     for place in dict.fromkeys((cell.interference, cell.support_stiffness) for cell in cells):
         found = critical_speeds(rig, *place, _SPEEDS)
         speeds |= {
@@ -37,7 +39,7 @@ def measured_speeds(rig: Rig, cells: Sequence[Cell] = CELLS + THIN_CELLS) -> dic
     return speeds
 
 
-def speeds_page(title: str, speeds: Mapping[Cell, float]) -> str:
+def speeds_page(title: str, speeds: Mapping[TableNumber, float]) -> str:
     """Table of measured and simulated critical speeds, with their error.
 
     Examples
@@ -46,10 +48,10 @@ def speeds_page(title: str, speeds: Mapping[Cell, float]) -> str:
     Fitted: log-rms error 0.118
       v_crit1 at 0.279 mm, 2214 Nm/rad      measured   4.50  simulated   4.00  log -0.118
     """
-    lines = [f"{title}: log-rms error {Score(0.0, speeds).log_error(speeds):.3f}"]
+    lines = [f"{title}: log-rms error {TableScore(0.0, speeds).rms(speeds):.3f}"]
     lines += [
-        f"  {cell!s:<37} measured {cell.speed:6.2f}  simulated {speed:6.2f}  "
-        f"log {cell.log_error(speed):+.3f}"
+        f"  {cell!s:<37} measured {cell.value:6.2f}  simulated {speed:6.2f}  "
+        f"log {cell.misfit(speed):+.3f}"
         for cell, speed in speeds.items()
     ]
     return "\n".join(lines)
@@ -60,22 +62,22 @@ def noises_page(rig: Rig) -> str:
     lines = ["Noises, not fitted as such (5.2.3)"]
     for cell in NOISES:
         run = simulate(
-            rig, cell.speed,
+            rig, *cell.speeds,
             interference=cell.interference, support_stiffness=cell.support_stiffness,
         )  # fmt: skip
         lines.append(
             f"  {1e3 * cell.interference:.3f} mm, {cell.support_stiffness:.0f} Nm/rad, "
-            f"{cell.speed:g} rad/s  named {cell.noise:<7} simulated {label_by_physics(run)}"
+            f"{cell.speeds[0]:g} rad/s  named {cell.item:<7} simulated {label_by_physics(run)}"
         )
     return "\n".join(lines)
 
 
-def values_page(found: Found) -> str:
+def values_page(values: Mapping[str, float]) -> str:
     """List what was found of the unknowns, each with its unit."""
     lines = ["Unknowns"]
     lines += [
         f"  {name:<25}{value:12.4g} {UNKNOWNS[name].unit:<9} {UNKNOWNS[name].description}"
-        for name, value in found.values.items()
+        for name, value in values.items()
     ]
     return "\n".join(lines)
 

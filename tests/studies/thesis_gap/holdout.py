@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.diagnosis.gap.distance import closed_fraction
-from noise.training.calibrate.cells import CELLS
+from noise.training.calibrate.thesis_table import CELLS
 from tests.studies.thesis_gap.candidates import Candidate
 from tests.studies.thesis_gap.fit import Trials, fitted_point
 from tests.studies.thesis_gap.slips import slip_errors

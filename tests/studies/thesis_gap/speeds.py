@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from noise.training.calibrate.cells import CELLS, SUPPORTS, THIN_CELLS
+from noise.training.calibrate.thesis_table import CELLS, SUPPORTS, THIN_CELLS
 from sim.analysis.critical_speeds import (
     CriticalSpeeds,
     critical_speeds,
@@ -59,7 +59,7 @@ def reading_error() -> NDArray[np.float64]:
     [0.036, 0.062, 0.065, 0.02, 0.013, 0.019]
     """
     step = math.hypot(_READING, 0.5 * _STEP) / math.sqrt(12.0)
-    return np.array([step / cell.speed for cell in CELLS])
+    return np.array([step / cell.value for cell in CELLS])
 
 
 def coarse_errors(rig: Rig) -> NDArray[np.float64]:
@@ -83,7 +83,7 @@ def cell_error(rig: Rig, position: int) -> float:
     """Error at one of the six cells, as it is reported."""
     cell = CELLS[position]
     found = _fine(rig, cell.interference, cell.support_stiffness, _MOST)
-    return _log(getattr(found, cell.item), cell.speed)
+    return _log(getattr(found, cell.item), cell.value)
 
 
 def other_fits_errors(rig: Rig) -> NDArray[np.float64]:
@@ -100,7 +100,7 @@ def other_fits_errors(rig: Rig) -> NDArray[np.float64]:
     [-0.97, -0.96, 0.45, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
     found = [
-        _log(_fine(rig, cell.interference, cell.support_stiffness, _MOST).v_crit2, cell.speed)
+        _log(_fine(rig, cell.interference, cell.support_stiffness, _MOST).v_crit2, cell.value)
         for cell in THIN_CELLS
     ]
     for support in SUPPORTS:
@@ -111,7 +111,7 @@ def other_fits_errors(rig: Rig) -> NDArray[np.float64]:
 
 def _errors(found: list[CriticalSpeeds]) -> NDArray[np.float64]:
     speeds = [s.v_crit1 for s in found] + [s.v_crit2 for s in found]
-    return np.array([_log(v, cell.speed) for v, cell in zip(speeds, CELLS, strict=True)])
+    return np.array([_log(v, cell.value) for v, cell in zip(speeds, CELLS, strict=True)])
 
 
 def _log(simulated: float, measured: float) -> float:

@@ -88,7 +88,7 @@ def _one(comparison: CaseComparison, i: int) -> Compared:
     expected: dict[str, NDArray[np.float64]] = {}
     transfers: Mapping[str, TransferFunction] = {}
     if "torque" in measured:
-        transfers = comparison.runs.transfer_functions.of(recording)
+        transfers = comparison.runs.transfer_functions.whole(recording)
         expected = {
             kind: predict(measured["torque"], rate, transfers[kind])
             for kind in ("acceleration", "pressure")

@@ -1,0 +1,86 @@
+"""The first answer of a diagnosis: is there a gap, and which cause is how probable."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from noise.diagnosis.causes.unlearned import unlearned_sensors
+from noise.diagnosis.causes.verdict import NAMED, verdict_of
+from noise.diagnosis.evidence.summary import case_table
+from noise.diagnosis.gap.floor import case_gap
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from noise.diagnosis.case import Case
+    from noise.diagnosis.causes.posterior import Posterior
+    from noise.diagnosis.evidence.summary import CaseTable
+    from noise.diagnosis.gap.distance import Gap
+    from sim.effects.effect import Effect
+
+__all__ = ["FirstAnswer", "first_answer"]
+
+
+@dataclass(frozen=True, eq=False)
+class FirstAnswer:
+    """What is said before anything is fitted.
+
+    Parameters
+    ----------
+    table : CaseTable
+    gap : Gap
+    probabilities : mapping of str to float
+        Of each cause [-]; 0 of the effects that the rig file lists.
+    verdict : tuple of str
+        As of `noise.diagnosis.outcome.Diagnosis`.
+    suspected : tuple of str
+        Effects that the rig file lists and that what is left looks like all the same.
+    unlearned : tuple of str
+        What is said of sensors that the probabilities were not learned with.
+    """
+
+    table: CaseTable
+    gap: Gap
+    probabilities: Mapping[str, float]
+    verdict: tuple[str, ...]
+    suspected: tuple[str, ...]
+    unlearned: tuple[str, ...]
+
+
+def first_answer(
+    case: Case,
+    library: Mapping[str, Effect],
+    posterior: Posterior,
+    seed: int = 0,
+    tell: Callable[[str], None] = lambda _text: None,
+) -> FirstAnswer:
+    """Compare a case with its rig file.
+
+    What looks like an effect that the rig file lists is not proposed again: its numbers are off,
+    which is a matter of the rig's parameters.
+
+    Parameters
+    ----------
+    case : Case
+    library : mapping of str to Effect
+        Effects that the rig's can be found among.
+    posterior : Posterior
+    seed : int
+        Of simulated repeats.
+    tell : callable
+        Told what is being done.
+    """
+    tell("comparing the recordings with the rig file")
+    table = case_table(case.recordings, case.rig, library=library, seed=seed)
+    tell("measuring the gap against simulated repeats")
+    gap = case_gap(case.recordings, case.rig, library=library, seed=seed)
+    known = {spec.name for spec in case.rig.effects}
+    probabilities = dict(posterior.probabilities(table))
+    again = {name: p for name, p in probabilities.items() if name in known}
+    probabilities |= dict.fromkeys(again, 0.0)
+    probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
+    unlearned = unlearned_sensors(case.rig.sensors, case.recordings)
+    verdict = verdict_of(probabilities, posterior.alarm, gap, learned=not unlearned)
+    suspected = tuple(name for name, p in again.items() if verdict and p >= NAMED)
+    return FirstAnswer(table, gap, probabilities, verdict, suspected, unlearned)

@@ -1,0 +1,132 @@
+"""``improved.toml``: the rig file of what closes a gap, and when not to trust it."""
+
+from __future__ import annotations
+
+from textwrap import wrap
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from models.rig_files.change import multiplied
+from models.rig_files.rig_file import read_toml
+from models.rig_files.rig_text import changed_rig_text
+from sim.effects import EFFECTS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from noise.diagnosis.improvement import Improvement
+
+__all__ = ["NAME", "check_base", "improved_text", "own_effects"]
+
+NAME = "improved.toml"
+
+_WIDTH = 96
+
+
+def improved_text(
+    improvement: Improvement,
+    base: str,
+    changes: Mapping[str, str | float] | None = None,
+) -> str:
+    """Write an improved rig as a rig file.
+
+    Parameters
+    ----------
+    improvement : Improvement
+    base : str
+        The rig that was diagnosed, as ``base`` names it.
+    changes : mapping of str to str or float, optional
+        What was changed about that file when it was diagnosed, as ``[change]`` takes it [unit of
+        the key].
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), {"damping": 0.02}, (),
+    ...                     ("run01.wav",), ("run02.wav",), 2.4, 1.1)
+    >>> print(improved_text(found, "PDMS").partition("base")[2])
+     = "PDMS"
+    effects = []
+    <BLANKLINE>
+    [change]
+    damping = "x1.03"
+    <BLANKLINE>
+    [tolerances]
+    damping = 0.02
+    <BLANKLINE>
+    """
+    return changed_rig_text(
+        base,
+        multiplied(improvement.rig, changes or {}, improvement.factors),
+        improvement.rig.effects,
+        {name: float(f"{spread:.2g}") for name, spread in improvement.spread.items()},
+        _head(improvement),
+    )
+
+
+def own_effects(improvement: Improvement) -> tuple[str, ...]:
+    """Names of effects of an improved rig that the user has brought."""
+    return tuple(spec.name for spec in improvement.rig.effects if spec.name not in EFFECTS)
+
+
+def _head(improvement: Improvement) -> list[str]:
+    own = own_effects(improvement)
+    paragraphs = [
+        f"Improved by a diagnosis of {len(improvement.fitted_to) + len(improvement.held_out)} "
+        "recordings.",
+        f"Fitted to {', '.join(improvement.fitted_to)}.",
+        f"On {', '.join(improvement.held_out)}, which no fit has seen, the gap fell from "
+        f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g} floors; 1 is what repeats "
+        "of one run differ by."
+        if set(improvement.held_out) - set(improvement.fitted_to)
+        else f"The gap fell from {improvement.gap_before:.2g} to {improvement.gap_after:.2g} "
+        "floors on the recording that it was fitted to: nothing was held out.",
+        "Under [tolerances] stands how well each number is known: a relative standard deviation, "
+        "1.645 of which to either side make the 90 % interval. It is no scatter of built parts.",
+        "Do not trust it at speeds, interferences or supports beyond those recorded, after the "
+        "bushing was assembled anew, or for the name of the cause: another effect may do the same "
+        "here.",
+    ]
+    if improvement.undetermined:
+        paragraphs.append(
+            "The recordings say next to nothing of " + ", ".join(improvement.undetermined) + "."
+        )
+    if own:
+        paragraphs.append(
+            f"It needs --effects FILE.py with {', '.join(own)}, in simulate, render and diagnose; "
+            "screen knows the shipped effects alone."
+        )
+    return [line for paragraph in paragraphs for line in wrap(paragraph, _WIDTH)]
+
+
+def check_base(rig: Path, folder: Path) -> None:
+    """Refuse a rig file that the improved one would take the place of.
+
+    Parameters
+    ----------
+    rig : Path
+        That is diagnosed.
+    folder : Path
+        Of what is written.
+
+    Raises
+    ------
+    ParameterError
+        It, or a file that it is based on, is ``improved.toml`` in this folder.
+    """
+    target, path = (folder / NAME).resolve(), rig.resolve()
+    seen: set[Path] = set()
+    while path.is_file() and path not in seen:
+        if path == target:
+            raise ParameterError(
+                f"--out {folder}: would write {NAME} over the rig file that --rig {rig} needs; "
+                "name another folder"
+            )
+        seen.add(path)
+        base = read_toml(path, f"rig file {path}").get("base")
+        path = (path.parent / str(base)).resolve() if base else path

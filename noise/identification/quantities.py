@@ -1,0 +1,173 @@
+"""Quantities that a rig is measured by, each as a function of the rig and of runs of it.
+
+They have the names of the thesis's table. Critical speeds are where the sudden share, or the
+oscillation, crosses its limit (`sim.analysis.regime`) for the last time on a grid of speeds,
+interpolated between its points, so that a small change of a parameter shows.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from models.rig import damping_at
+from sim.analysis.critical_speeds import falls_below
+from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.slips import LEAST_SUDDEN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from models.rig import Rig
+    from noise.identification.settled_run import SettledRun
+    from noise.identification.table_number import TableNumber
+
+    Found = Callable[[Rig, TableNumber, Sequence[SettledRun]], float]
+
+__all__ = ["MOST", "QUANTITIES", "Quantity"]
+
+MOST = 3.0
+"""No misfit of a single run counts more."""
+
+_LINE_SHARE = 10.0 ** (-18.0 / 20.0)
+"""Amplitude of a line that counts, over the strongest: `noise.noise_definition`."""
+
+_SLIP_BAND, _MIDDLE_BAND, _ELASTOMER_BAND = (120.0, 420.0), (420.0, 760.0), (850.0, 1150.0)
+
+
+def _log_error(found: float, measured: float) -> float:
+    if math.isnan(found):
+        return MOST
+    return math.log(found / measured) if found > 0.0 else -math.inf
+
+
+def _above(value: float, limit: float) -> float:
+    return min(MOST, max(0.0, math.log(1.2 * limit / max(value, 1e-5))))
+
+
+def _below(value: float, limit: float) -> float:
+    return min(MOST, max(0.0, math.log(1.2 * max(value, 1e-5) / limit)))
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity.
+
+    Parameters
+    ----------
+    unit : str
+    found : callable
+        Of a rig, the number asked for, and the runs at its speeds: its value [`unit`].
+    misfit : callable
+        Of found and measured value [-].
+    needs_runs, at_a_speed : bool
+        Whether it takes runs, and whether at one speed.
+    """
+
+    unit: str
+    found: Found
+    misfit: Callable[[float, float], float] = _log_error
+    needs_runs: bool = True
+    at_a_speed: bool = True
+
+
+def _v_crit2(rig: Rig, number: TableNumber, runs: Sequence[SettledRun]) -> float:  # noqa: ARG001
+    return _last_crossing(number.speeds, [run.oscillation for run in runs], LEAST_OSCILLATION)
+
+
+def _v_crit1(rig: Rig, number: TableNumber, runs: Sequence[SettledRun]) -> float:
+    vibrating = [
+        run.slips.sudden_share if run.oscillation > LEAST_OSCILLATION else 0.0 for run in runs
+    ]
+    return min(
+        _v_crit2(rig, number, runs), _last_crossing(number.speeds, vibrating, LEAST_SUDDEN)
+    )  # fmt: skip
+
+
+def _last_crossing(speed: Sequence[float], values: list[float], limit: float) -> float:
+    """Last speed with a value above the limit, on logarithmic scales."""
+    above = [i for i, value in enumerate(values) if value > limit]
+    if not above:
+        return 0.8 * speed[0]
+    last = above[-1]
+    if last == len(values) - 1:
+        return 1.1 * speed[-1]
+    return falls_below(limit, speed[last], values[last], speed[last + 1], values[last + 1])
+
+
+def _of_run(read: Callable[[SettledRun], float]) -> Found:
+    return lambda _rig, _number, runs: read(runs[0])
+
+
+def _of_fit(name: str) -> Quantity:
+    def found(rig: Rig, number: TableNumber, _runs: Sequence[SettledRun]) -> float:
+        return float(getattr(rig.fit(number.interference), name))
+
+    return Quantity("Nm/rad" if name.endswith("stiffness") else "Nm", found, needs_runs=False,
+                    at_a_speed=False)  # fmt: skip
+
+
+def _damping(rig: Rig, number: TableNumber, _runs: Sequence[SettledRun]) -> float:
+    return damping_at(rig.fit(number.interference), number.support_stiffness)
+
+
+def _effective(rig: Rig, number: TableNumber, _runs: Sequence[SettledRun]) -> float:
+    k_e = rig.fit(number.interference).elastomer_stiffness
+    return 1.0 / (1.0 / k_e + 1.0 / number.support_stiffness)
+
+
+def _torque_spread(_rig: Rig, _number: TableNumber, runs: Sequence[SettledRun]) -> float:
+    means = [run.mean_torque for run in runs]
+    return max(means) / min(means)
+
+
+def _squawk(run: SettledRun) -> float:
+    """How far a run is from slips that ring at the first torsional mode."""
+    return (
+        _above(run.oscillation, LEAST_OSCILLATION)
+        + 0.5 * _above(run.line_in(*_SLIP_BAND), _LINE_SHARE)
+        + 0.25 * _above(run.line_in(*_MIDDLE_BAND), 0.5 * _LINE_SHARE)
+    )
+
+
+def _squeal(run: SettledRun) -> float:
+    low, high = _ELASTOMER_BAND
+    return (
+        _above(run.oscillation, LEAST_OSCILLATION)
+        + 0.5 * _below(run.line_in(*_SLIP_BAND), 0.5 * _LINE_SHARE)
+        + 0.5 * _below(run.line_in(*_MIDDLE_BAND), 0.5 * _LINE_SHARE)
+        + (0.0 if low < run.strongest_line < high else 0.5)
+    )
+
+
+def _silence(run: SettledRun) -> float:
+    return _below(run.oscillation, LEAST_OSCILLATION)
+
+
+def _noise(distance: Callable[[SettledRun], float]) -> Quantity:
+    return Quantity("1", _of_run(distance), lambda found, _measured: found)
+
+
+QUANTITIES: Mapping[str, Quantity] = {
+    "elastomer_stiffness": _of_fit("elastomer_stiffness"),
+    "effective_stiffness": Quantity("Nm/rad", _effective, needs_runs=False, at_a_speed=False),
+    "damping": Quantity("Nm s/rad", _damping, needs_runs=False, at_a_speed=False),
+    "critical_torque": _of_fit("critical_torque"),
+    "kinetic_torque": _of_fit("kinetic_torque"),
+    "mean_torque": Quantity("Nm", _of_run(lambda run: run.mean_torque)),
+    "highest_torque": Quantity("Nm", _of_run(lambda run: float(run.torque.max()))),
+    "slip_frequency": Quantity("Hz", _of_run(lambda run: run.repetition_rate)),
+    "strongest_line": Quantity("Hz", _of_run(lambda run: run.strongest_line)),
+    "v_crit1": Quantity("rad/s", _v_crit1, at_a_speed=False),
+    "v_crit2": Quantity("rad/s", _v_crit2, at_a_speed=False),
+    "sudden_share": Quantity("1", _of_run(lambda run: run.slips.sudden_share), _above),
+    "mean_torque_spread": Quantity(
+        "1", _torque_spread, lambda found, most: max(0.0, found - most), at_a_speed=False
+    ),
+    "squawk": _noise(_squawk),
+    "squeal": _noise(_squeal),
+    "none": _noise(_silence),
+}
+"""By the item's name. A ``sudden_share`` is a lower limit, a ``mean_torque_spread`` (highest over
+lowest mean) an upper one; ``squawk``, ``squeal`` and ``none`` say what is heard there."""

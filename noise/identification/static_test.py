@@ -1,0 +1,297 @@
+r"""A static test: torque over angle at slow motion below any slip (3.3.3, Figures 5.25 and 5.26).
+
+While the contact holds, angle and torque go together by the compliance of elastomer and beams,
+1/k_EFF. A contact that yields before it slides adds to it: loading and unloading then part, the
+angle running ahead by
+
+.. math:: -(s S / K) \ln(1 - s T / S), \qquad s = \pm 1
+
+for shear stiffness K and strength S of the contact (Dahl 1968). So one regression of the angle
+tells the compliance at no torque, and whether loading and unloading part; where they do, the
+average over strengths, each by how well it fits, tells how much of the compliance is the contact's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from noise.identification.evidence import Evidence, elastomer_stiffness
+from noise.identification.ring_down import find_ring_down, ring_evidence
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+    from noise.identification.bushing_fit import Known
+    from noise.identification.ring_down import RingDown
+
+__all__ = ["StaticTest", "static_evidence", "static_notes", "static_test"]
+
+_POINTS = 4000
+"""Averages of neighbouring samples that are looked at, at most."""
+
+_SMOOTH = 200
+"""Over so many a record the angle is smoothed to tell which way it goes."""
+
+_RESTING = 0.08
+"""Of the fastest motion; slower counts as rest, at which nothing is learned."""
+
+_FEWEST = 30
+_EXPLAINED = 0.98
+"""Share of the angle's variance that a static test explains; slips leave more."""
+
+_STRENGTHS = np.geomspace(1.03, 12.0, 40)
+"""Strengths of the contact that are tried, over the highest torque."""
+
+_SURE = 10.0
+"""Fall of the log-likelihood, doubled, from which loading and unloading are said to part."""
+
+_LEAST_PARTING = 0.004
+"""Of the angle's range [-]; less is called elastic whatever the statistics."""
+
+_LEAST_ERROR = 0.002
+"""Relative standard error that no regression goes below: nobody's encoder is better [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class StaticTest:
+    """What a static test says.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]
+    effective_stiffness : float
+        At no torque: elastomer, beams and what yields of the contact in series [Nm/rad].
+    error : float
+        Its relative standard error [-].
+    elastic : bool
+        Whether loading and unloading are one line.
+    parting : float
+        By how much they are not: share of the angle that the contact adds at the highest torque
+        [-].
+    held_stiffness, held_error : float
+        The same without what yields of the contact [Nm/rad], and its relative standard error [-].
+    branches : int
+        Runs in one direction.
+    angle, torque, fitted_angle : ndarray, shape (n,)
+        What was looked at [rad], [Nm], and the angle as regressed [rad].
+    ring_down : RingDown, optional
+        What rings after the shaft is held.
+    """
+
+    name: str
+    interference: float
+    support_stiffness: float
+    effective_stiffness: float
+    error: float
+    elastic: bool
+    parting: float
+    held_stiffness: float
+    held_error: float
+    branches: int
+    angle: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    fitted_angle: NDArray[np.float64]
+    ring_down: RingDown | None = None
+
+
+def static_test(
+    torque: NDArray[np.float64], angle: NDArray[np.float64], rate: float, condition: Condition,
+    name: str,
+) -> StaticTest | None:  # fmt: skip
+    """Read a recording as a static test.
+
+    Parameters
+    ----------
+    torque : ndarray, shape (n,)
+        Of the cell [Nm].
+    angle : ndarray, shape (n,)
+        Of the shaft [rad].
+    rate : float
+        [Hz]
+    condition : Condition
+    name : str
+        Of the file.
+
+    Returns
+    -------
+    StaticTest or None
+        None where torque and angle do not go together: something slips, or nothing moves.
+
+    Raises
+    ------
+    ParameterError
+        It is one, but states no interference or support.
+
+    Examples
+    --------
+    >>> from models.condition import Condition
+    >>> angle = 5e-3 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    >>> found = static_test(500.0 * angle, angle, 1000.0, Condition(None, 0.279e-3, 2214.0), "slow")
+    >>> round(found.effective_stiffness), found.elastic, found.branches
+    (500, True, 9)
+    """
+    block = max(1, math.ceil(angle.size / _POINTS))
+    n = angle.size // block
+    t, a = (x[: n * block].reshape(n, block).mean(axis=1) for x in (torque, angle))
+    width = max(3, n // _SMOOTH)
+    speed = np.gradient(np.convolve(np.pad(a, width, "edge"), np.ones(width) / width, "same"))
+    speed = speed[width:-width]
+    moving = np.abs(speed) > _RESTING * float(np.quantile(np.abs(speed), 0.98))
+    way = np.where(moving, np.sign(speed), 0.0)
+    branch = np.cumsum(np.diff(way, prepend=way[0]) != 0.0)
+    counts = np.bincount(branch)
+    kept = moving & (counts[branch] >= max(_FEWEST, n // 200))
+    if kept.sum() < 2 * _FEWEST or float(np.ptp(t[kept])) == 0.0:
+        return None
+    _, branch = np.unique(branch[kept], return_inverse=True)
+    t, a, way = t[kept], a[kept], way[kept]
+    if np.corrcoef(t, a)[0, 1] < 0.0:  # the cell counts against the encoder
+        t = -t
+    fit = _regression(t, a, way, branch)
+    if fit is None:
+        return None
+    if condition.interference is None or condition.support_stiffness is None:
+        what = "interference_mm" if condition.interference is None else "support_stiffness_Nm_rad"
+        raise ParameterError(f"states no {what}; give it under conditions of the sidecar")
+    elastic, parting, compliance, error, held, held_error, fitted = fit
+    return StaticTest(
+        name, condition.interference, condition.support_stiffness, 1.0 / compliance,
+        math.hypot(error, _LEAST_ERROR), elastic, parting, 1.0 / held,
+        math.hypot(held_error, _LEAST_ERROR), int(branch.max()) + 1, a, t, fitted,
+        find_ring_down(torque, angle, rate),
+    )  # fmt: skip
+
+
+def _regression(
+    t: NDArray[np.float64], a: NDArray[np.float64], way: NDArray[np.float64],
+    branch: NDArray[np.intp],
+) -> tuple[bool, float, float, float, float, float, NDArray[np.float64]] | None:  # fmt: skip
+    """Regress the angle: elastic, parting, both compliances with errors, fitted angle."""
+    # each run begins at an angle of its own, which drift and what yielded before decide
+    own = np.eye(int(branch.max()) + 1)[branch]
+    rest, highest = a - a.mean(), float(np.abs(t).max())
+
+    def solved(
+        columns: list[NDArray[np.float64]],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, NDArray[np.float64]]:
+        matrix = np.column_stack([*columns, own])
+        scale = np.abs(matrix).max(axis=0)
+        x, *_ = np.linalg.lstsq(matrix / scale, a, rcond=None)
+        fitted = matrix @ (x / scale)
+        covariance = np.linalg.pinv((matrix / scale).T @ (matrix / scale)) / np.outer(scale, scale)
+        return x / scale, fitted, float(np.sum((a - fitted) ** 2)), covariance
+
+    plain, line, left, spread = solved([t])
+    found = []
+    for strength in _STRENGTHS * highest:
+        ahead = -way * strength * np.log1p(-way * t / strength) - t
+        x, fitted, rest_left, covariance = solved([t, ahead])
+        if x[1] >= 0.0 and x[0] > x[1]:
+            found.append((rest_left, x, fitted, covariance, float(np.ptp(ahead))))
+    best = min(found, key=lambda one: one[0]) if found else None
+    least = best[0] if best else left
+    if plain[0] <= 0.0 or min(left, least) > (1.0 - _EXPLAINED) * float(rest @ rest):
+        return None
+    fitted = best[2] if best else line
+    residual = a - fitted
+    ahead_of = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-300)
+    n = max(t.size * (1.0 - min(ahead_of, 0.99)) / (1.0 + max(ahead_of, 0.0)), 10.0)
+    parting = best[1][1] * best[4] / float(np.ptp(a)) if best else 0.0
+    gained = n * math.log(left / max(least, 1e-300)) if left > least else 0.0
+    if best is None or gained < _SURE or parting < _LEAST_PARTING:
+        error = math.sqrt(left / n * t.size * spread[0, 0] / t.size * (t.size / n)) / plain[0]
+        return True, max(parting, 0.0), plain[0], error, plain[0], error, line
+    weight = np.array([math.exp(-0.5 * n * math.log(max(one[0], 1e-300) / max(least, 1e-300)))
+                       for one in found])  # fmt: skip
+    weight /= weight.sum()
+
+    def averaged(direction: NDArray[np.float64]) -> tuple[float, float]:
+        values = np.array([one[1][:2] @ direction for one in found])
+        own_error = np.array([
+            direction @ one[3][:2, :2] @ direction * one[0] / n * (t.size / n) for one in found
+        ])  # fmt: skip
+        mean = float(weight @ values)
+        variance = float(weight @ (own_error + (values - mean) ** 2))
+        return mean, math.sqrt(max(variance, 0.0)) / mean
+
+    compliance, error = averaged(np.array([1.0, 0.0]))
+    held, held_error = averaged(np.array([1.0, -1.0]))
+    return False, parting, compliance, error, held, held_error, fitted
+
+
+def static_evidence(
+    tests: Sequence[StaticTest], known: Known, *, sticks: bool = False
+) -> tuple[Evidence, ...]:
+    """Return what static tests and ring-downs say of the rig.
+
+    Parameters
+    ----------
+    tests : sequence of StaticTest
+    known : Known
+        The clamp's inertia as it is known, and how the damping is shared.
+    sticks : bool
+        Whether the contact is known to stick truly; otherwise what yields is taken to be its.
+
+    Returns
+    -------
+    tuple of Evidence
+        Stiffness of the elastomer by interference; damping and the clamp's inertia where it rings.
+    """
+    stiffness, yields = [], {}
+    parted = {one.interference for one in tests if not one.elastic}
+    for one in tests:
+        own = sticks or one.elastic
+        if one.elastic and one.branches == 1 and one.interference in parted and not sticks:
+            continue  # without unloading it could not tell
+        effective = one.effective_stiffness if own else one.held_stiffness
+        value, gain = elastomer_stiffness(effective, one.support_stiffness)
+        if math.isinf(value):
+            continue
+        error = gain * (one.error if own else one.held_error)
+        stiffness.append(
+            Evidence("elastomer_stiffness", value, error, one.interference, None, one.name)
+        )
+        series, _ = elastomer_stiffness(one.effective_stiffness, one.support_stiffness)
+        yields[one.interference] = 1.0 if own else min(series / value, 1.0)
+    found = list(stiffness)
+    for one in tests:
+        if one.ring_down is None:
+            continue
+        said = [(e.value, e.error) for e in stiffness if e.interference == one.interference]
+        if said:
+            value = math.exp(float(np.mean(np.log([k for k, _ in said]))))
+            found += ring_evidence(
+                one.ring_down, one.name, one.interference, one.support_stiffness, known, value,
+                max(error for _, error in said), yields=yields[one.interference],
+            )  # fmt: skip
+    return tuple(found)
+
+
+def static_notes(tests: Sequence[StaticTest]) -> list[str]:
+    """Say of static tests what to know: whether they are elastic, and what was taken off.
+
+    Returns
+    -------
+    list of str
+    """
+    parted = [one for one in tests if not one.elastic]
+    return [
+        f"{one.name}: loading and unloading part, by {100.0 * one.parting:.1f} % of the angle, so "
+        f"not all is elastic; with what yields in the contact the slope is "
+        f"{one.effective_stiffness:.4g} Nm/rad, without it {one.held_stiffness:.4g} "
+        f"(+-{100.0 * one.held_error:.1f} %)"
+        for one in parted
+    ]

@@ -1,0 +1,1 @@
+"""A screen as a page: the designs ranked, their maps side by side, what differs, and sounds."""

@@ -1,0 +1,207 @@
+"""A sound calibrator's recorded tone: what a full-scale sample is worth in pascals.
+
+Calibrators sound at 250 Hz or 1 kHz with a stated level, most often 94 or 114 dB re 20 uPa
+(IEC 60942). The tone is fitted in blocks of a tenth of a second together with its harmonics; what
+is not one stable tone is refused, with the reason: a frequency of no calibrator, a level that
+drifts (a microphone not yet seated, or taken out), distortion beyond what the standard allows a
+calibrator of class 2, tops cut off, other sound within 20 dB of the tone. The level is that of the
+fundamental alone, so that rumble and hiss do not count.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError, RecordingError
+from models.recording import REFERENCE_PRESSURE
+from noise.recordings.files import read_raw
+
+if TYPE_CHECKING:
+    import os
+
+    from numpy.typing import NDArray
+
+__all__ = ["CalibratorTone", "read_calibrator"]
+
+FREQUENCIES = (250.0, 1000.0)
+"""Of calibrators [Hz] (IEC 60942)."""
+
+_OFF = 0.025
+"""By which a tone may be off, as a share of its frequency; pistonphones sound at 251.2 Hz."""
+
+_SHORTEST = 0.5
+"""[s]"""
+
+_BLOCK = 0.1
+"""[s]"""
+
+_DRIFT = 0.3
+"""Between the loudest and the quietest block [dB]."""
+
+_DISTORTION = 0.04
+"""Of the harmonics over the fundamental (IEC 60942, class 2)."""
+
+_HARMONICS = 9
+
+_OTHER = 0.1
+"""Rms of what is neither tone nor harmonic, over that of the tone."""
+
+_TOP = 2e-3
+"""Of the peak, in which samples count as being at the top."""
+
+_STEP = 2.0**-15
+"""Of integer samples, over full scale; finer ones have no need of it."""
+
+_CROWDED = 2.5
+"""Times the samples of a sine that lie at its top, beyond which it is cut off."""
+
+
+@dataclass(frozen=True)
+class CalibratorTone:
+    """The tone on one track.
+
+    Parameters
+    ----------
+    frequency : float
+        [Hz]
+    full_scale : float
+        Pressure of a full-scale sample [Pa].
+    """
+
+    frequency: float
+    full_scale: float
+
+
+def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[CalibratorTone, ...]:
+    """Read a recording of a calibrator.
+
+    Parameters
+    ----------
+    path : path-like
+        As `noise.recordings.read_recording` takes it; a calibration of its own is passed over.
+    level : float
+        That the calibrator gives [dB re 20 uPa].
+
+    Returns
+    -------
+    tuple of CalibratorTone
+        One a track.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read, or is not one stable tone; the message says why.
+    ParameterError
+        The level is no number.
+
+    Examples
+    --------
+    >>> import tempfile, soundfile
+    >>> tone = 0.1 * np.sin(2.0 * np.pi * 1000.0 * np.arange(48_000) / 48e3)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     soundfile.write(Path(folder) / "tone.wav", tone, 48_000)
+    ...     found = read_calibrator(Path(folder) / "tone.wav", 94.0)
+    >>> round(found[0].frequency, 2), round(found[0].full_scale, 3)
+    (1000.0, 14.175)
+    """
+    if not math.isfinite(level):
+        raise ParameterError(f"level is {level!r} dB, expected a number")
+    path = Path(path)
+    raw = read_raw(path)
+    pressure = REFERENCE_PRESSURE * 10.0 ** (level / 20.0)
+    found = []
+    for number, row in enumerate(raw.samples, start=1):
+        where = str(path) if len(raw.samples) == 1 else f"{path}: track {number}"
+        try:
+            frequency, amplitude = _tone(row, raw.rate, fractional=raw.fractional)
+        except ParameterError as error:
+            raise RecordingError(f"{where}: is no calibrator's tone: {error}") from None
+        found.append(CalibratorTone(frequency, pressure * math.sqrt(2.0) / amplitude))
+    return tuple(found)
+
+
+def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tuple[float, float]:
+    """Frequency [Hz] and amplitude of the one stable tone of a track."""
+    if samples.size < _SHORTEST * rate:
+        raise ParameterError(f"lasts {samples.size / rate:.3g} s; {_SHORTEST:g} s at least")
+    if not np.isfinite(samples).all():
+        raise ParameterError("holds samples that are no numbers")
+    x = samples - samples.mean()
+    peak = float(np.abs(x).max())
+    if peak == 0.0 or rate < 2.5 * FREQUENCIES[-1]:
+        raise ParameterError("is silent" if peak == 0.0 else f"is sampled at {rate:g} Hz alone")
+    frequency = _strongest(x, rate)
+    if not any(abs(frequency - each) <= _OFF * each for each in FREQUENCIES):
+        raise ParameterError(
+            f"its strongest tone is at {frequency:.4g} Hz, and calibrators sound at 250 or 1000 Hz"
+        )
+    if fractional and float(np.abs(samples).max()) >= 1.0 - _STEP:
+        raise ParameterError("it reaches full scale, where it is cut off; turn the gain down")
+    _refuse_clipped(x, frequency, rate, _STEP if fractional else 0.0)
+    amplitudes, rest = _harmonics(x / peak, frequency, rate)
+    tone = amplitudes[:, 0]
+    if not tone.min() > 0.0:
+        raise ParameterError("its tone is not there all the time")
+    levels = 20.0 * np.log10(tone)
+    drift = float(np.ptp(levels))
+    if drift > _DRIFT:
+        low, high = sorted(_BLOCK * np.array([levels.argmin(), levels.argmax()]))
+        raise ParameterError(
+            f"its level changes by {drift:.2g} dB between {low:.3g} and {high:.3g} s, and may by "
+            f"{_DRIFT:g}; cut it to where it is steady"
+        )
+    power = float(np.mean(tone**2))
+    distortion = math.sqrt(float(np.mean(np.sum(amplitudes[:, 1:] ** 2, axis=1))) / power)
+    if distortion > _DISTORTION:
+        raise ParameterError(
+            f"its harmonics are {distortion:.1%} of the tone, and may be {_DISTORTION:.0%}; it is "
+            "overloaded or badly seated"
+        )
+    other = rest / math.sqrt(0.5 * power)
+    if other > _OTHER:
+        raise ParameterError(
+            f"other sound lies only {-20.0 * math.log10(other):.0f} dB below the tone; "
+            f"{-20.0 * math.log10(_OTHER):.0f} dB at least"
+        )
+    return frequency, peak * math.sqrt(power)
+
+
+def _strongest(x: NDArray[np.float64], rate: float) -> float:
+    """Frequency of the strongest line [Hz], between the lines of a transform."""
+    spectrum = np.abs(np.fft.rfft(x * np.hanning(x.size)))
+    k = int(np.clip(np.argmax(spectrum), 1, spectrum.size - 2))
+    left, middle, right = np.log(spectrum[k - 1 : k + 2] + 1e-300)
+    shift = 0.5 * (left - right) / (left - 2.0 * middle + right) if middle > left else 0.0
+    return float((k + shift) * rate / x.size)
+
+
+def _harmonics(
+    x: NDArray[np.float64], frequency: float, rate: float
+) -> tuple[NDArray[np.float64], float]:
+    """Amplitudes of tone and harmonics by block, and the rms of the rest."""
+    n = round(_BLOCK * rate)
+    blocks = x[: x.size // n * n].reshape(-1, n)
+    orders = [k for k in range(1, _HARMONICS + 2) if k * frequency < 0.45 * rate]
+    phase = 2.0 * np.pi * frequency / rate * np.outer(np.arange(n), orders)
+    basis = np.hstack([np.cos(phase), np.sin(phase), np.ones((n, 1))])
+    found = np.linalg.lstsq(basis, blocks.T, rcond=None)[0]
+    rest = blocks.T - basis @ found
+    m = len(orders)
+    return np.hypot(found[:m], found[m : 2 * m]).T, float(np.sqrt(np.mean(rest**2)))
+
+
+def _refuse_clipped(x: NDArray[np.float64], frequency: float, rate: float, step: float) -> None:
+    """Refuse a tone whose tops are cut off: more samples lie there than of a sine."""
+    for side in (x, -x):
+        peak = float(side.max())
+        top = max(_TOP, 1.5 * step / peak)
+        usual = math.acos(max(-1.0, 1.0 - top)) / math.pi
+        # Sampled a whole number of times a period, the same places are met in each.
+        most = _CROWDED * usual + 2.0 * frequency / rate
+        if float(np.mean(side >= (1.0 - top) * peak)) > most:
+            raise ParameterError("its tops are cut off; turn the gain down")

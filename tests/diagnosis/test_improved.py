@@ -1,0 +1,208 @@
+"""The improved rig: what a diagnosis writes, what reads it, and when there is none."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.condition import FIXED
+from models.errors import ParameterError
+from models.rig import LawSpec
+from models.rig_files.change import changed_rig, multiplied
+from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_files.rig_text import base_name, changed_rig_text
+from noise.cli import main
+from noise.diagnosis.case import Case
+from noise.diagnosis.diagnose import case_remarks
+from noise.diagnosis.improved_file import check_base, improved_text
+from noise.diagnosis.improvement import Improvement
+from noise.diagnosis.run import diagnose
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
+from noise.diagnosis.text.improved_sentences import improved_commands
+from noise.screening.design.design import load_design
+from sim.effects import EFFECTS
+from tests.helpers.small_rigs import RIG, RIG_FILE, at, run, write_case
+
+WEAK = ("velocity_weakening", {"form": "exponential", "share": 0.4, "speed": 5.0})
+CONDITIONS = [at(v, FIXED) for v in (1.0, 1.6, 1.6, 2.5)]
+
+
+@pytest.fixture(scope="module")
+def weak():
+    return [run(c, WEAK, seed=60 + i) for i, c in enumerate(CONDITIONS)]
+
+
+@pytest.fixture(scope="module")
+def improved(weak, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("weak")
+    data, rig = write_case(folder, weak)
+    assert main(["diagnose", str(data), "--rig", str(rig), "--out", str(folder / "out")]) == 0
+    return data, folder / "out"
+
+
+def test_a_diagnosis_writes_the_rig_that_closes_its_gap(improved):
+    data, out = improved
+    told = json.loads((out / "diagnosis.json").read_text())
+    assert told["improved"] == "improved.toml"
+    rig = load_rig(out / "improved.toml")
+    assert [spec.name for spec in rig.effects] == ["velocity_weakening"]
+    again = diagnose(data, out / "improved.toml", quick=True)
+    assert again.verdict == ()
+    assert again.gap < 0.5 * told["gap"]
+
+
+def test_an_improved_rig_says_from_what_it_is_and_how_sure(improved):
+    data, out = improved
+    text = (out / "improved.toml").read_text()
+    for name in (path.name for path in data.glob("*.wav")):
+        assert name in text
+    assert "Do not trust it" in text
+    assert 'base = "../rig.toml"' in text
+    stated = {one.name: one for one in load_design(out / "improved.toml").tolerances}
+    share = load_rig(out / "improved.toml").effects[0].parameters["share"]
+    assert abs(share - 0.4) <= 3.0 * 0.4 * stated["velocity_weakening.share"].first
+    assert 0.0 < stated["kinetic_torque"].first < 0.1
+
+
+def test_the_page_names_the_improved_rig_and_what_to_call_next(improved):
+    _, out = improved
+    page = (out / "report.html").read_text()
+    assert "improved.toml" in page
+    assert "bushing-noise screen" in page
+
+
+def test_an_older_improved_rig_does_not_stay_where_there_is_none(weak, tmp_path, capsys):
+    data, rig = write_case(tmp_path, weak)
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "improved.toml").write_text('base = "PDMS"')
+    assert main(["diagnose", str(data), "--rig", str(rig), "--out", str(out), "--quick"]) == 0
+    assert not (out / "improved.toml").exists()
+    assert "improved.toml" not in capsys.readouterr().out
+    assert json.loads((out / "diagnosis.json").read_text())["improved"] is None
+
+
+def test_a_rig_is_not_written_over_itself_or_its_base(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "improved.toml").write_text('base = "PDMS"')
+    (tmp_path / "mine.toml").write_text('base = "out/improved.toml"')
+    check_base(tmp_path / "mine.toml", tmp_path)
+    for rig in (out / "improved.toml", tmp_path / "mine.toml"):
+        with pytest.raises(ParameterError, match="name another folder"):
+            check_base(rig, out)
+
+
+def test_what_looks_like_a_listed_effect_is_a_matter_of_parameters(weak, tmp_path):
+    faint = 'effects = ["velocity_weakening:form=exponential,share=0.01,speed=5"]'
+    data, rig = write_case(tmp_path, weak, RIG_FILE.replace("effects = []", faint))
+    found = diagnose(data, rig, quick=True)
+    assert found.verdict == ("parameters",)
+    assert any("velocity_weakening, which the rig file lists" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    "listed",
+    [
+        ("plate_modes", {"amount": 0.8, "frequency": 900.0}),
+        ("room_reflections", {"amount": 0.5}),
+        ("slip_pulse", {"amplitude": 60.0}),
+        ("mount_resonance", {"amount": 0.5, "frequency": 3000.0}),
+        ("mains_hum", {"amount": 0.3}),
+    ],
+)
+def test_against_a_rig_with_the_effect_there_is_no_gap(listed, tmp_path):
+    recordings = [run(c, listed, seed=80 + i) for i, c in enumerate(CONDITIONS)]
+    spec = f'effects = ["{LawSpec(*listed)}"]'
+    data, rig = write_case(tmp_path, recordings, RIG_FILE.replace("effects = []", spec))
+    assert diagnose(data, rig, quick=True).verdict == ()
+
+
+def test_an_effect_on_the_chain_is_in_what_a_torque_is_expected_to_sound_like():
+    plate = ("plate_modes", {"amount": 0.9, "frequency": 900.0, "damping_ratio": 0.02})
+    recording = run(CONDITIONS[0], plate)
+    rig = replace(RIG, effects=(LawSpec(*plate),))
+    plain, whole = TransferFunctionCache(RIG), TransferFunctionCache(rig)
+    left = []
+    for transfers in (plain.of(recording), whole.whole(recording)):
+        expected = predict(recording["torque"], recording.rate, transfers["pressure"])
+        left.append(float(np.std((recording["pressure"] - expected)[2000:-2000])))
+    assert left[1] < 0.5 * left[0]
+
+
+AMOUNTS = st.floats(0.7, 1.4)
+
+
+@settings(max_examples=25, deadline=None)
+@given(AMOUNTS, AMOUNTS, AMOUNTS, st.floats(0.01, 0.9))
+def test_an_improved_rig_file_reads_as_the_rig_it_was_written_of(
+    tmp_path_factory, damping, inertia, stiffness, share
+):
+    rig = load_material_rig("fluorocarbon-thesis")
+    factors = {
+        "damping": damping, "elastomer_inertia": inertia, "elastomer_stiffness": stiffness
+    }  # fmt: skip
+    effect = LawSpec("partial_slip", {"form": "mindlin", "share": float(f"{share:.6g}")})
+    changed = changed_rig(rig, multiplied(rig, {}, factors), "rig")
+    made = replace(changed, effects=(*rig.effects, effect))
+    found = Improvement(made, factors, (effect,), {"damping": 0.1}, (), ("a",), ("b",), 3.0, 1.0)
+    path = tmp_path_factory.mktemp("rig") / "improved.toml"
+    path.write_text(improved_text(found, "fluorocarbon-thesis"))
+    assert load_rig(path) == made
+
+
+@settings(max_examples=25, deadline=None)
+@given(AMOUNTS, AMOUNTS)
+def test_a_change_and_a_recalibration_multiply(change, factor):
+    rig = load_material_rig("fluorocarbon")
+    asked = {"damping": f"x{change:.6g}", "elastomer_stiffness_Nm_rad": 700.0}
+    factors = {"damping": factor, "elastomer_stiffness": factor, "elastomer_inertia": factor}
+    one_by_one = changed_rig(
+        changed_rig(rig, asked, "rig"), {k: f"x{v:.9g}" for k, v in factors.items()}, "rig"
+    )
+    at_once = changed_rig(rig, multiplied(rig, asked, factors), "rig")
+    for one, other in zip(one_by_one.fits, at_once.fits, strict=True):
+        assert other.elastomer_stiffness == pytest.approx(one.elastomer_stiffness, rel=1e-5)
+        assert other.damping == pytest.approx(one.damping, rel=1e-5)
+    assert at_once.elastomer_inertia == pytest.approx(one_by_one.elastomer_inertia, rel=1e-5)
+
+
+def test_changes_of_effects_are_not_made_twice():
+    rig = load_material_rig("fluorocarbon")
+    assert rig.effects[0].name == "slip_pulse"
+    assert multiplied(rig, {"slip_pulse.amplitude": "x2", "damping": "x2"}, {}) == {"damping": "x2"}
+
+
+def test_a_base_is_named_from_where_the_file_lies(tmp_path):
+    (tmp_path / "PDMS").write_text('name = "a file like a material"')
+    assert base_name(tmp_path / "PDMS", tmp_path) == "./PDMS"
+    rig = tmp_path / "bench" / "mein Prüfstand.toml"
+    rig.parent.mkdir()
+    rig.write_text('name = "bench"\nmaterial = "PDMS"')
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "improved.toml").write_text(
+        changed_rig_text(base_name(rig, out), {}, (), {}), encoding="utf-8"
+    )
+    assert load_rig(out / "improved.toml").material == "PDMS"
+
+
+def test_effects_of_the_users_own_are_said_to_need_their_file():
+    rig = replace(load_material_rig("PDMS"), effects=(LawSpec("rectifier", {"share": 0.8}),))
+    found = Improvement(rig, {}, rig.effects, {}, (), ("a",), ("b",), 3.0, 1.0)
+    assert "--effects FILE.py" in improved_text(found, "PDMS")
+    calls = improved_commands(found, "improved.toml", [Path("data")], Path("mine.py"))
+    assert calls == ["bushing-noise diagnose data --rig improved.toml --effects mine.py"]
+
+
+def test_recordings_beyond_what_a_rig_was_fitted_to_are_remarked_once(weak):
+    rig = replace(RIG, fastest_fitted=2.0)
+    case = Case(rig, tuple("abcd"), tuple(weak))
+    found = case_remarks(case, EFFECTS)
+    assert len(found) == 1
+    assert "beyond 2, the fastest" in found[0]

@@ -1,0 +1,202 @@
+"""A diagnosis expects the sensors that the rig file states, and says what they cost."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import soundfile
+
+from models.rig_files.rig_file import load_material_rig, load_rig
+from models.sensors import Sensor, Sensors
+from noise.cli import main
+from noise.diagnosis.case import read_case
+from noise.diagnosis.causes.unlearned import unlearned_sensors
+from noise.diagnosis.causes.verdict import verdict_of
+from noise.diagnosis.evidence.sensor_noise import (
+    estimated_noise,
+    noise_remarks,
+    with_estimated_noise,
+)
+from noise.diagnosis.gap.distance import Gap
+from noise.diagnosis.gap.floor import case_gap
+from noise.diagnosis.gap.signature import NAMES
+from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.nominal import nominal_recordings
+from noise.diagnosis.simulated.repeats import Scatter
+from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
+from noise.identification.measured import read_measurements
+from sim.acquisition import Acquisition
+from sim.effects import EFFECTS
+from sim.run import simulate
+from tests.helpers.small_rigs import RATE, RIG, RIG_FILE, SECONDS, at, run
+
+COARSE = """
+[sensors]
+range = { torque = 20, acceleration = 400, pressure = 6, angle = 12.4 }
+bits = 9
+antialias_hz = 4000
+"""
+
+EXACT = Scatter(0.0, 0.0, 0.0)
+CONDITIONS = ((1.0, 2214.0), (2.0, 2214.0), (1.0, 3745.0))
+
+
+def sensed(**by_kind):
+    return replace(RIG, sensors=Sensors(by_kind))
+
+
+def nominal(rig, scatter=EXACT):
+    here = at(2.0)
+    transfers = torque_transfer_functions(RIG, here.interference, here.support_stiffness)
+    (one,) = nominal_recordings(
+        rig, here, transfers, rate=RATE, seconds=SECONDS, seeds=[1], scatter=scatter
+    )
+    return one
+
+
+def test_repeats_are_filtered_as_recordings_are():
+    silent = Sensor(noise=0.0)
+    kinds = ("torque", "acceleration", "pressure", "angle")
+    plain = nominal(sensed(**dict.fromkeys(kinds, silent)))
+    corner = replace(silent, antialias=1500.0)
+    low = nominal(sensed(torque=silent, acceleration=corner, pressure=corner, angle=silent))
+    assert np.array_equal(low["torque"], plain["torque"])
+    frequency = np.fft.rfftfreq(plain.samples.shape[1], 1.0 / RATE)
+    window = np.hanning(plain.samples.shape[1])
+    for kind in ("acceleration", "pressure"):
+        before, after = (np.abs(np.fft.rfft(x[kind] * window)) ** 2 for x in (plain, low))
+        for center, expected in ((750.0, 1.0), (1500.0, 0.5)):
+            band = np.abs(frequency - center) < 60.0
+            assert after[band].sum() / before[band].sum() == pytest.approx(expected, abs=0.15)
+
+
+def test_repeats_are_rounded_and_clipped_as_recordings_are():
+    sensor = Sensor(full_scale=9.0, bits=8)
+    for one in (
+        nominal(sensed(torque=sensor)),
+        ModelRuns(sensed(torque=sensor), EFFECTS, {}).simulated(Model(), run(at(2.0)), 3),
+    ):
+        steps = one["torque"] / sensor.step
+        assert np.array_equal(steps, np.round(steps))
+        assert one["torque"].max() == 127 * sensor.step
+
+
+def test_a_run_without_scatter_keeps_the_noise_that_a_file_states():
+    template, loud = run(at(2.0)), 0.4
+    runs = [ModelRuns(rig, EFFECTS, {}) for rig in (RIG, sensed(torque=Sensor(noise=loud)))]
+    quiet, noisy = (r.noise_free_signature(Model(), template, 0) for r in runs)
+    torque = [name.startswith("torque") for name in NAMES]
+    others = [name.startswith(("acceleration", "pressure")) for name in NAMES]
+    assert np.nanmax(noisy[torque] - quiet[torque]) > 1.0
+    assert np.array_equal(noisy[others], quiet[others])
+
+
+@pytest.fixture(scope="module")
+def coarse(tmp_path_factory):
+    """Recordings by ``simulate`` through a coarse converter, their file, and one without it."""
+    folder = tmp_path_factory.mktemp("coarse")
+    (folder / "rig.toml").write_text(RIG_FILE + COARSE, encoding="utf-8")
+    (folder / "plain.toml").write_text(RIG_FILE, encoding="utf-8")
+    for i, (speed, support) in enumerate(CONDITIONS):
+        given = ["--speed", speed, "--support-stiffness", support, "--seconds", 0.6, "--seed", i]
+        out = folder / "data" / f"run{i}"
+        words = ["simulate", "--rig", folder / "rig.toml", *given, "--out", out]
+        assert main([str(word) for word in words]) == 0
+    return folder
+
+
+def test_recordings_through_a_coarse_converter_are_no_gap_to_a_file_that_states_it(coarse):
+    gaps = {}
+    for name in ("rig", "plain"):
+        rig = load_rig(coarse / f"{name}.toml")
+        gaps[name] = case_gap(read_case([coarse / "data"], rig).recordings, rig, n_repeats=8)
+    assert gaps["rig"].p_value > 0.05
+    assert gaps["plain"].p_value < 0.01
+    assert gaps["plain"].distance > 2.0 * gaps["rig"].distance
+
+
+def test_the_command_names_no_cause_and_says_what_its_causes_were_learned_with(coarse, capsys):
+    words = ["diagnose", coarse / "data", "--quick", "--rig", coarse / "rig.toml"]
+    assert main([str(word) for word in words]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["verdict"] == []
+    (note,) = (note for note in found["notes"] if "learned with better sensors" in note)
+    assert "torque with up to 0.008 N m of noise, here 0.02" in note
+    assert "pressure without a filter at 4000 Hz" in note
+
+
+def test_noise_from_recordings_is_found_and_told(tmp_path):
+    stated = "[sensors]\nnoise = { torque = 0.1, acceleration = 2.0, pressure = 0.04 }\n"
+    (tmp_path / "true.toml").write_text(RIG_FILE + stated, encoding="utf-8")
+    estimated = '[sensors]\nnoise = "from recordings"\nrange.torque = 20\nbits = 12\n'
+    (tmp_path / "rig.toml").write_text(RIG_FILE + estimated, encoding="utf-8")
+    for i, (speed, support) in enumerate(CONDITIONS):
+        given = ["--speed", speed, "--support-stiffness", support, "--seconds", 0.5, "--seed", i]
+        words = ["simulate", "--rig", tmp_path / "true.toml", *given, "--out", tmp_path / f"run{i}"]
+        assert main([str(word) for word in words]) == 0
+    case = read_case([tmp_path], load_rig(tmp_path / "rig.toml"))
+    sensors = case.rig.sensors
+    for kind, level in (("torque", 0.1), ("acceleration", 2.0), ("pressure", 0.04)):
+        assert sensors.of(kind).noise == pytest.approx(level, rel=0.1)
+    assert sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
+    assert sensors.of("torque").bits == 12
+    said = " ".join(noise_remarks(sensors, ("torque", "acceleration", "pressure", "angle")))
+    assert "noise of the sensors, from the quietest tenth of the recordings: torque 0." in said
+
+
+def test_a_sound_without_pause_tells_no_noise():
+    creak = simulate(
+        load_material_rig("fluorocarbon"), 2.5, interference=0.381e-3, seconds=0.5
+    ).recording
+    assert estimated_noise([creak], "acceleration") is None
+    rig = replace(RIG, sensors=Sensors(noise_from_recordings=True))
+    kept = with_estimated_noise(rig, [creak]).sensors
+    assert kept.of("acceleration").noise is None
+    assert kept.of("angle").noise == pytest.approx(1e-4, rel=0.1)
+
+
+def test_good_sensors_are_those_the_causes_were_learned_with():
+    recording = run(at(2.0))
+    good = {kind: Sensor(1.5 * level, 1e3, 24) for kind, level in Acquisition().noise.items()}
+    assert unlearned_sensors(Sensors(good), [recording]) == ()
+    assert unlearned_sensors(Sensors(), [recording]) == ()
+    (note,) = unlearned_sensors(Sensors({"torque": Sensor(full_scale=5.0)}), [recording])
+    assert "torque within its range, here up to its end" in note
+
+
+def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():
+    sure = {"none": 0.001, "clipping": 0.9, "unknown": 0.0, "parameters": 0.0}
+    likely, unlikely = (Gap(1.0, p, np.ones(1)) for p in (0.4, 0.003))
+    assert verdict_of(sure, 0.05, likely) == ("clipping",)
+    assert verdict_of(sure, 0.05, likely, learned=False) == ()
+    assert verdict_of(sure, 0.05, unlikely, learned=False) == ("clipping",)
+
+
+def test_volts_are_identified_and_diagnosed_as_torque_and_angle(tmp_path):
+    sensors = """
+[sensors]
+calibration.torque = "cell.csv"
+calibration.angle = { sensitivity = 0.101, offset = -7e-4, reading = "V" }
+"""
+    (tmp_path / "rig.toml").write_text(RIG_FILE + sensors, encoding="utf-8")
+    table = [(torque, 0.4 + 12.19 * torque) for torque in range(-40, 41, 20)]
+    rows = "".join(f"{reading},{torque}\n" for torque, reading in table)
+    (tmp_path / "cell.csv").write_text(f"reading_mV,torque_Nm\n{rows}", encoding="utf-8")
+    made = run(at(1.0), seconds=0.6)
+    volts = np.array([(0.4 + 12.19 * made["torque"]) / 1e3, -7e-4 + 0.101 * made["angle"]])
+    soundfile.write(tmp_path / "run.wav", volts.T, round(RATE), subtype="DOUBLE")
+    channels = [{"name": name, "unit": "V"} for name in ("torque", "angle")]
+    conditions = {"interference_mm": 0.279, "support_stiffness_Nm_rad": 2214, "speed_rad_s": 1.0}
+    sidecar = {"channels": channels, "conditions": conditions}
+    (tmp_path / "run.json").write_text(json.dumps(sidecar), encoding="utf-8")
+    rig = load_rig(tmp_path / "rig.toml")
+    case = read_case([tmp_path / "run.wav"], rig)
+    used = read_measurements([tmp_path / "run.wav"], rig.sensors.calibrations).used
+    for recording in (case.recordings[0], used[0].recording):
+        assert recording["torque"] == pytest.approx(made["torque"], abs=1e-6)
+        assert recording["angle"] == pytest.approx(made["angle"], abs=1e-6)
+    refused = read_measurements([tmp_path / "run.wav"]).refused
+    assert "calibration under [sensors] of the rig file" in refused[0][1]
+    assert math.isclose(used[0].condition.speed, 1.0, rel_tol=0.01)

@@ -1,0 +1,154 @@
+"""Static tests and ring-downs: what slow motion below any slip says, of both simulators."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.rig import Fit, LawSpec
+from models.rig_files.rig_file import load_material_rig
+from noise.cli import main
+from noise.identification.bushing_fit import Known
+from noise.identification.evidence import elastomer_stiffness
+from noise.identification.measured import read_measurements
+from noise.identification.ring_down import find_ring_down
+from noise.identification.static_test import static_evidence, static_test
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed, LoggedSpeed, Oscillation
+from tests.blind.identify.laws import LAWS, draw_law
+from tests.blind.identify.static import (
+    RATE,
+    held,
+    made_with,
+    record_static,
+    to_and_fro,
+    write_static,
+)
+
+KNOWN = Known(1.0 / 65000.0, 1.0 / 1200.0, 0.02)
+SUPPORT = 2214.0
+EFFECTIVE = 1.0 / (1.0 / 665.0 + 1.0 / SUPPORT)
+STICKING = ("constant", "stribeck", "ageing")
+
+
+def our_own(rig, shaft, support, seconds=3.0, rate=8e3):
+    motion = simulate_motion(
+        rig, shaft, interference=0.279e-3, support_stiffness=support, seconds=seconds, rate=rate
+    )
+    return static_test(
+        motion.torque, motion.shaft_angle, rate, Condition(None, 0.279e-3, support), "slow"
+    )
+
+
+def second(law, omega, seed=3, support=SUPPORT):
+    made = made_with(draw_law(law, np.random.default_rng([seed, 7])), support)
+    return record_static(made, 0.279, support, omega, 100 + seed).astype(float)
+
+
+def slow_test(law, seed=3):
+    torque, angle = second(law, to_and_fro(0.7 * 8.0 / EFFECTIVE, 1.0, 2.5), seed)
+    return static_test(torque, angle, RATE, Condition(None, 0.279e-3, SUPPORT), law)
+
+
+@settings(max_examples=6, deadline=None)
+@given(
+    stiffness=st.floats(300.0, 1200.0),
+    support=st.sampled_from([2214.0, 3745.0, math.inf]),
+    share=st.floats(0.2, 0.8),
+)
+def test_stiffness_of_our_own_rig_that_truly_sticks_is_the_slope(stiffness, support, share):
+    base = load_material_rig("fluorocarbon-thesis")
+    fit = Fit(0.279e-3, stiffness, 10.7, 8.0, {support: 0.09})
+    rig = replace(base, fits=(fit,), friction=LawSpec("coulomb"))
+    effective = 1.0 / (1.0 / stiffness + 1.0 / support)
+    found = our_own(rig, Oscillation(share * 8.0 / effective, 1.0), support)
+    assert found.elastic
+    assert elastomer_stiffness(found.effective_stiffness, support)[0] == pytest.approx(
+        stiffness, rel=0.01
+    )
+
+
+def test_the_shipped_rubbers_contact_is_told_from_its_elastomer():
+    rig = load_material_rig("fluorocarbon")
+    found = our_own(rig, Oscillation(0.7 * 8.0 / 665.0, 1.0), math.inf)
+    contact = 7.395 * rig.friction.parameters["contact_stiffness_per_torque"]
+    assert not found.elastic
+    assert found.effective_stiffness == pytest.approx(1 / (1 / 665.0 + 1 / contact), rel=0.01)
+    assert found.held_stiffness == pytest.approx(665.0, rel=0.02)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_stiffness_of_the_second_rig_is_found_whatever_its_law(law):
+    found = slow_test(law)
+    (said,) = static_evidence([found], KNOWN, sticks=law in STICKING)
+    # the rig and the cell's gain scatter by 2 and 1 %
+    assert said.value == pytest.approx(665.0, rel=0.06)
+
+
+@pytest.mark.parametrize("law", ["constant", "memory", "bristle"])
+def test_loading_and_unloading_part_where_the_contact_yields(law):
+    assert slow_test(law).elastic == (law in STICKING)
+
+
+@pytest.mark.parametrize("law", ["constant", "memory"])
+def test_a_held_shaft_tells_damping_and_the_clamps_inertia(law):
+    torque, angle = second(law, held(0.5 * 8.0 / EFFECTIVE, 1.0, 0.3))
+    stop = static_test(torque, angle, RATE, Condition(None, 0.279e-3, SUPPORT), "held")
+    said = {e.name: e.value for e in static_evidence([slow_test(law), stop], KNOWN)}
+    assert said["damping"] == pytest.approx(0.1, rel=0.08)
+    assert said["clamp_inertia"] == pytest.approx(1.0 / 1200.0, rel=0.03)
+
+
+def test_noise_on_a_held_shaft_is_no_ring_down():
+    rng = np.random.default_rng(1)
+    angle = np.minimum(np.arange(8000) / RATE, 0.1) * 0.1
+    assert find_ring_down(300.0 * angle + 0.005 * rng.standard_normal(8000), angle, RATE) is None
+
+
+@pytest.mark.parametrize("speed", [0.3, 1.0, 5.0, 10.0])
+@pytest.mark.parametrize("material", ["fluorocarbon", "fluorocarbon-thesis"])
+def test_rotation_that_slips_is_no_static_test(material, speed):
+    assert our_own(load_material_rig(material), ConstantSpeed(speed), SUPPORT, 0.5) is None
+
+
+def test_swinging_that_slips_is_no_static_test():
+    rig = load_material_rig("fluorocarbon-thesis")
+    assert our_own(rig, Oscillation(0.1, 1.0), SUPPORT, 1.0) is None
+
+
+def test_a_slow_rise_alone_is_a_static_test():
+    shaft = LoggedSpeed([0.0, 2.0], [4e-3, 4e-3])
+    found = our_own(load_material_rig("fluorocarbon-thesis"), shaft, SUPPORT, 2.0)
+    assert found.effective_stiffness == pytest.approx(EFFECTIVE, rel=0.01)
+    assert found.branches == 1
+
+
+def test_a_static_test_without_its_interference_is_named():
+    angle = 5e-3 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
+    with pytest.raises(ParameterError, match="states no interference_mm"):
+        static_test(500.0 * angle, angle, 1000.0, Condition(None, None, SUPPORT), "slow")
+
+
+def test_static_tests_alone_give_a_rig(tmp_path):
+    data = tmp_path / "data"
+    data.mkdir()
+    made = made_with(draw_law("memory", np.random.default_rng([3, 7])), SUPPORT)
+    for i, omega in enumerate(
+        (to_and_fro(0.7 * 8.0 / EFFECTIVE, 1.0, 2.0), held(0.5 * 8.0 / EFFECTIVE, 1.0, 0.3))
+    ):
+        samples = record_static(made, 0.279, SUPPORT, omega, 100 + i)
+        write_static(data / f"static{i}.wav", samples, 0.279, SUPPORT)
+    assert len(read_measurements([data]).static) == 2
+    assert main(["identify", str(data), "--out", str(tmp_path / "mine")]) == 0
+    found = json.loads((tmp_path / "mine" / "identification.json").read_text())
+    numbers = {one["name"]: one for one in found["numbers"]}
+    stiffness = numbers["elastomer_stiffness"]
+    assert stiffness["value"] == pytest.approx(665.0, rel=0.06)
+    assert 1.05 < stiffness["high"] / stiffness["low"] < 1.25  # one rig is not the next
+    assert found["static"][0]["elastic"] is False
+    assert "loading and unloading part" in (tmp_path / "mine" / "report.html").read_text()

@@ -1,0 +1,65 @@
+"""Pictures of screened designs."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+from noise.pictures.screening import plot_screen
+from noise.screening.design.design import Use
+from noise.screening.screen import screen
+
+
+@pytest.fixture(scope="module")
+def found():
+    use = Use(
+        speed=tuple(np.arange(1.0, 16.0, 2.0)),
+        interference=(0.279e-3,),
+        support_stiffness=(2214.0, 3000.0),
+    )
+    return screen(["fluorocarbon", "PDMS"], use)
+
+
+_APART = 2.0
+"""Between words that are read as two, on either side [px]."""
+
+
+def box(figure, artist):
+    return artist.get_window_extent(figure._get_renderer()).padded(_APART)
+
+
+def test_with_one_interference_no_words_of_the_axes_touch(found):
+    figure = plot_screen(found.maps[0])
+    figure.draw_without_rendering()
+    left = figure.axes[0], figure.axes[2]
+    words = [tick for panel in left for tick in panel.get_yticklabels()]
+    words += [panel.yaxis.label for panel in left]
+    words += [figure._supylabel, figure._suptitle]
+    words += [panel._left_title for panel in figure.axes] + [figure.legends[0]]
+    boxes = [box(figure, one) for one in words if getattr(one, "get_text", lambda: "x")()]
+    assert len(boxes) >= 5
+    for i, one in enumerate(boxes):
+        assert not any(one.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_lines_look_in_the_key_as_they_do_in_the_map(found):
+    figure = plot_screen(found.maps[0])
+    legend = figure.legends[0]
+    key = {
+        text.get_text(): line
+        for text, line in zip(legend.get_texts(), legend.legend_handles, strict=True)
+    }
+    drawn = {to_hex(line.get_color()) for panel in figure.axes for line in panel.get_lines()}
+    for name in ("stick ends", "sliding turns stable"):
+        assert to_hex(key[name].get_color()) in drawn
+
+
+def test_what_is_quiet_and_what_is_not_its_own_is_said(found):
+    told = [
+        [text.get_text() for panel in plot_screen(one).axes for text in panel.texts]
+        for one in found.maps
+    ]
+    assert told == [[], ["quiet"] * 4]
+    figure = plot_screen(found.maps[0])
+    assert [panel.get_title("left") for panel in figure.axes[:2]] == ["2214 Nm/rad", "3000 Nm/rad*"]
+    named = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert named[-2:] == ["fastest fitted", "data interpolated or held"]

@@ -1,0 +1,216 @@
+"""Designs of one screen: the same points for each, and what stands in where data are missing."""
+
+import math
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings, strategies as st
+
+from models.errors import ParameterError
+from models.rig import Fit, damping_at
+from models.rig_files.rig_file import load_material_rig
+from noise.screening.design.design import Design, Swinging, Use, load_design
+from noise.screening.map.grid import grid_of, shared_grid, shared_motions
+from noise.screening.map.point import evaluate_point
+from noise.screening.map.provenance import point_notes, rows_of
+from noise.screening.parts.statistics import Statistics
+from noise.screening.ranking.ranking import refuse_unlike, standings
+from noise.screening.screen import screen
+from noise.screening.tables.summary import summary_lines
+from noise.screening.tables.tables import screening_tables
+
+THESIS = load_material_rig("fluorocarbon-thesis")
+FLUOROCARBON = load_material_rig("fluorocarbon")
+
+
+def rounded(low, high):
+    return st.floats(low, high).map(lambda value: float(f"{value:.4g}"))
+
+
+def axis(values, most=4):
+    return st.lists(values, max_size=most, unique=True).map(lambda some: tuple(sorted(some)))
+
+
+SUPPORT = st.one_of(rounded(200.0, 2e4), st.just(math.inf))
+SWING = st.builds(
+    Swinging,
+    st.sampled_from([0.1, 0.2]),
+    axis(rounded(0.5, 4.0)).filter(bool),
+)
+USE = st.builds(
+    Use,
+    speed=axis(rounded(0.2, 25.0)),
+    interference=axis(rounded(0.1e-3, 0.6e-3)),
+    support_stiffness=axis(SUPPORT),
+    temperature=axis(rounded(-30.0, 90.0), most=2),
+    swinging=st.none() | SWING,
+)
+
+
+@st.composite
+def bushings(draw):
+    """Designs with fits and dampings of their own."""
+    fits = []
+    for interference in draw(axis(rounded(0.1e-3, 0.5e-3), most=3)) or [0.3e-3]:
+        supports = draw(axis(SUPPORT, most=3)) or [math.inf]
+        fits.append(Fit(interference, 600.0, 10.0, 8.0, dict.fromkeys(supports, 0.1)))
+    return Design("bushing", replace(THESIS, fits=tuple(fits)), draw(USE))
+
+
+def judged(batch):
+    """Noise by the speed alone, in no time."""
+    rows = np.full((batch.speed.size, 4), np.nan)
+    rows[:, :2] = np.where(batch.speed < 5.0, 2.0, 0.0)[:, None]
+    rows[:, 2:] = np.where(batch.speed < 5.0, 60.0, np.nan)[:, None]
+    return rows
+
+
+def graded(design, mapped, *_, **__):
+    return Statistics(design.name, mapped.environment, risk=4)
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """A screen that simulates nothing."""
+
+    @contextmanager
+    def evaluator(**_):
+        yield judged
+
+    monkeypatch.setattr("noise.screening.screen.batch_evaluator", evaluator)
+    monkeypatch.setattr("noise.screening.screen.statistics_of", graded)
+    monkeypatch.setattr("noise.screening.screen.why_never_slipping", lambda *_: "")
+    monkeypatch.setattr("noise.screening.screen.first_hint", lambda *_: "")
+
+
+@settings(
+    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    designs=st.lists(bushings(), min_size=2, max_size=3),
+    asked=st.none() | USE,
+    environments=st.sampled_from([("dry",), ("dry", "hot")]),
+)
+def test_all_ranked_designs_have_the_same_points(quick, designs, asked, environments):
+    found = screen(designs, asked, environments=environments)
+    _, rows = screening_tables(found)["map.csv"]
+    points = {}
+    for row in rows:
+        where = tuple(
+            row[name]
+            for name in (
+                "environment", "motion", "temperature_C", "speed_rad_s", "frequency_hz",
+                "interference_mm", "support_stiffness_Nm_rad",
+            )
+        )  # fmt: skip
+        points.setdefault(row["design"], []).append(where)
+    first = points[found.designs[0].name]
+    assert len(points) == len(designs)
+    assert all(own == first for own in points.values())
+    assert len(set(first)) == len(first)
+    assert {one.design for one in found.standings} == set(points)
+
+
+@given(designs=st.lists(bushings(), min_size=2, max_size=3), asked=st.none() | USE)
+def test_what_one_was_asked_all_are(designs, asked):
+    grid = shared_grid(designs, asked)
+    for design in designs:
+        own = grid_of(design, asked)
+        for name in ("interference", "support_stiffness"):
+            values = np.array(getattr(grid, name))
+            for value in getattr(own, name):
+                assert np.isclose(values, value, rtol=1e-6, atol=0.0).any()
+    for axis_values in (grid.speed, grid.interference, grid.support_stiffness, grid.temperature):
+        assert list(axis_values) == sorted(set(axis_values))
+
+
+def test_a_use_reaches_from_the_slowest_to_the_fastest_of_all():
+    slow, fast = (Design("", THESIS, Use(speed=speed)) for speed in ((1.0, 4.0), (2.0, 9.0)))
+    assert shared_grid([slow, fast]).use == (1.0, 9.0)
+    assert shared_grid([slow, fast], Use(speed=(3.0, 5.0))).speed == (3.0, 5.0)
+
+
+def test_swings_of_one_amplitude_are_one_map():
+    uses = [Use(swinging=Swinging(0.2, (1.0,))), Use(swinging=Swinging(0.2, (2.0,))), Use()]
+    designs = [Design("", THESIS, use) for use in uses]
+    assert shared_motions(designs) == [None, Swinging(0.2, (1.0, 2.0))]
+
+
+def test_maps_over_other_points_are_not_ranked(quick):
+    found = screen(["PDMS", "fluorocarbon"], Use(speed=(1.0, 9.0)))
+    refuse_unlike(found.maps)
+    one, other = found.maps
+    fewer = replace(other, grid=replace(other.grid, support_stiffness=(2214.0,)))
+    with pytest.raises(ParameterError, match="not mapped over the same points"):
+        standings((one, fewer), found.critical, found.statistics)
+
+
+SINGLE = Design(
+    "one damping",
+    replace(THESIS, fits=(Fit(0.279e-3, 665.0, 10.7, 8.0, {2214.0: 0.105}),)),
+    Use(support_stiffness=(2214.0,)),
+)
+
+
+def test_a_design_of_one_damping_meets_the_supports_of_the_others(quick):
+    found = screen([SINGLE, "fluorocarbon-thesis"], Use(speed=(1.0, 5.0, 9.0)))
+    own = next(one for one in found.maps if one.design == SINGLE.name)
+    assert own.grid.support_stiffness == (2214.0, 3745.0, math.inf)
+    note = own.note[0, 1, 0, 0]
+    assert "damping of 2214 Nm/rad held" in note
+    assert "fit of 0.279 mm held" in note
+    assert own.note[0, 0, 1, 0] == ""
+    assert found.substituted == {SINGLE.name: 24}
+    told = "\n".join(summary_lines(found))
+    assert "24 of one damping" in told
+    assert "--interference 0.279 compares within the fits of all" in told
+    _, rows = screening_tables(found)["map.csv"]
+    assert [row["note"] for row in rows if row["design"] != SINGLE.name] == [None] * 27
+
+
+@given(support=SUPPORT, interference=rounded(0.1e-3, 0.5e-3))
+def test_notes_say_what_the_rule_does(support, interference):
+    use = Use(speed=(5.0,), interference=(interference,), support_stiffness=(support,))
+    note = point_notes(THESIS, grid_of(Design("", THESIS), use)).item()
+    fit = THESIS.fit(interference)
+    given_fits = {each.interference for each in THESIS.fits}
+    near = any(math.isclose(interference, each, rel_tol=0.01) for each in given_fits)
+    assert ("of 0.178 mm held" in note) == (interference < 0.178e-3 and not near)
+    assert ("interpolated between fits" in note) == (
+        0.178e-3 < interference < 0.381e-3 and not near
+    )
+    ends = sorted((damping_at(fit, 2214.0), damping_at(fit, 3745.0)))
+    if "damping interpolated between 2214 Nm/rad and 3745 Nm/rad" in note:
+        assert ends[0] <= damping_at(fit, support) <= ends[1]
+    if "damping of 2214 Nm/rad held" in note:
+        assert damping_at(fit, support) == damping_at(fit, 2214.0)
+
+
+def test_a_fit_that_is_held_makes_the_same_noise_and_is_not_simulated_twice():
+    fits = (0.1e-3, 0.178e-3, 0.5e-3, 0.6e-3)
+    use = Use(speed=(2.0, 8.0), interference=fits, support_stiffness=(2214.0,))
+    (found,) = screen(["fluorocarbon"], use).maps
+    assert rows_of(FLUOROCARBON, fits) == [1, 1, 2, 2]
+    assert found.count("simulated") == 4
+    assert (found.how[0, 0, (0, 3)] == "unchanged").all()
+    for row, interference in enumerate(fits):
+        one = evaluate_point(FLUOROCARBON, 2.0, interference=interference, support_stiffness=2214.0)
+        assert one.label == found.label[0, 0, row, 0]
+        assert one.level == found.level[0, 0, row, 0]
+
+
+def test_a_copy_by_base_has_the_same_map_bit_for_bit(tmp_path, monkeypatch):
+    path = tmp_path / "copy.toml"
+    path.write_text('base = "fluorocarbon"\n[design]\nname = "copy"\n', encoding="utf-8")
+    assert load_design(path).rig == FLUOROCARBON
+    use = Use(
+        speed=tuple(np.arange(1.0, 13.0)),
+        interference=(0.279e-3, 0.35e-3),
+        support_stiffness=(3745.0,),
+    )
+    monkeypatch.setattr("noise.screening.screen.statistics_of", graded)
+    original, copy = screen(["fluorocarbon", path], use).maps
+    for name in ("regime", "label", "level", "level_max", "how", "growth", "note"):
+        np.testing.assert_array_equal(getattr(original, name), getattr(copy, name))

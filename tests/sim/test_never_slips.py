@@ -1,0 +1,55 @@
+"""Whether the contact ever lets go, which is told from its sliding speed."""
+
+import math
+
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.rig_files.rig_file import load_material_rig
+from models.rig_files.shipped import material_names
+from sim.analysis.regime import SlidingWatch, never_slips
+from sim.run import simulate
+from sim.shaft import Oscillation
+
+FIRM = tuple(name for name in material_names() if name != "natural-rubber-film")
+"""The film's torque does not come from the critical torque."""
+
+
+def motion(rig, shaft, seconds=0.3):
+    interference = rig.fits[0].interference
+    return simulate(rig, shaft, interference=interference, seconds=seconds).motion
+
+
+@pytest.mark.parametrize("material", FIRM)
+def test_a_contact_that_holds_is_not_taken_for_one_that_slips(material):
+    held = load_material_rig(material).changed(critical_torque="x9999")
+    assert never_slips(motion(held, 5.0))
+    assert never_slips(motion(held, Oscillation(math.radians(15.0), 2.0)))
+
+
+@pytest.mark.parametrize("material", material_names())
+def test_one_that_lets_go_is_seen(material):
+    rig = load_material_rig(material)
+    assert not never_slips(motion(rig, 5.0))
+    assert not never_slips(motion(rig, Oscillation(math.radians(15.0), 2.0)))
+
+
+@pytest.mark.parametrize("material", ["fluorocarbon-thesis", "fluorocarbon", "natural-rubber"])
+def test_a_swing_that_does_not_wind_the_bushing_up_never_slips(material):
+    assert never_slips(motion(load_material_rig(material), Oscillation(math.radians(0.3), 2.0)))
+
+
+@settings(max_examples=20, deadline=None)
+@given(cut=st.integers(1, 26999))
+def test_parts_are_seen_as_the_whole(cut):
+    watch = SlidingWatch()
+    for part in (RUN.part(0, cut), RUN.part(cut)):
+        watch.see(part)
+    whole = SlidingWatch()
+    whole.see(RUN)
+    assert watch.shaft_speed == whole.shaft_speed
+    assert watch.sliding_speed == whole.sliding_speed
+    assert watch.never_slips == whole.never_slips == never_slips(RUN)
+
+
+RUN = motion(load_material_rig("fluorocarbon-thesis"), 2.5)
