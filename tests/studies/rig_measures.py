@@ -156,7 +156,7 @@ def _creaks(material: str) -> Iterator[str]:
 
 
 def _cost(material: str) -> float:
-    """Processor time of runs of one second over that of the constant-torque model."""
+    """Processor time of motions of one second over that with constant torques."""
     seconds = []
     for of in ("fluorocarbon-thesis", material):
         rig, total = load_material_rig(of), 0.0
@@ -192,7 +192,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         *_noises(material),
         "Creak",
         *_creaks(material),
-        f"Cost over the constant-torque model: {_cost(material):.0f} times",
+        f"Cost of the motion over that of constant torques: {_cost(material):.0f} times",
     ]
     sys.stdout.write("\n".join(lines) + "\n")
     return 0
