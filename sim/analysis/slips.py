@@ -69,10 +69,10 @@ class Slips:
     Parameters
     ----------
     times : ndarray, shape (n_slips,)
-        When each falls fastest, from the start of the signal [s]; empty where `sudden_share` is no
-        more than `LEAST_SUDDEN`.
+        When the torque begins to fall, from the start of the signal [s]; empty where `sudden_share`
+        is no more than `LEAST_SUDDEN`.
     strengths : ndarray, shape (n_slips,)
-        By how much the twist then falls faster than the shaft turns [rad/s].
+        By how much the twist falls faster than the shaft turns, at most [rad/s].
     sudden_share : float
         Of all that the torque falls, what it falls faster than the shaft could load it [-].
     """
@@ -146,11 +146,11 @@ def find_slips(
     strength = excess[fastest]
     positive = np.maximum(strength, 0.0)
     chosen = strength >= _LEAST_STRENGTH * float(positive @ positive) / float(positive.sum())
-    fastest, strength = fastest[chosen], strength[chosen]
+    first, fastest, strength = first[chosen], fastest[chosen], strength[chosen]
     apart = np.append(True, np.diff(fastest) >= _SWING * own_period * rate)
     if np.count_nonzero(apart) > 1:
-        fastest, strength = fastest[apart], strength[apart]
-    return Slips(fastest / rate, strength, share)
+        first, strength = first[apart], strength[apart]
+    return Slips(first / rate, strength, share)
 
 
 def motion_slips(motion: Motion) -> Slips:

@@ -7,9 +7,9 @@ __all__ = ["READING"]
 READING = """\
 ## Reading
 
-**6.3.1, gradual release** (`partial_slip`) closes nothing of the critical speeds, its best fit being
-almost none. It shortens the time in which the contact truly sticks, but not what a rig sees of it:
-a contact that creeps while it is loaded still lets go at once, and its torque still drops.
+**6.3.1, gradual release** (`partial_slip`) closes nothing of the critical speeds, its best fit
+being almost none. It shortens the time in which the contact truly sticks, but not what a rig sees
+of it: a contact that creeps while it is loaded still lets go at once, and its torque still drops.
 
 **Viscoelastic stiffness** comes first, 0.30 of the gap, by its high stiffness at high frequency
 alone: slips stay smaller and stick-slip ends earlier. But its interval reaches from -0.67 to 0.65,
