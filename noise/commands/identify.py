@@ -22,7 +22,7 @@ def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
         "Identify a rig from recordings: stiffness and damping of the bushing, critical and "
-        "kinetic torque by interference, and the law of friction, each with its 90 %% interval. "
+        "kinetic torque by interference, and the law of friction, each with its 90 % interval. "
         "Recordings need torque and shaft angle, and a sidecar with interference and support "
         "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
         "law, a condition recorded twice tells how much repeats differ. A static test, slow motion "

@@ -53,7 +53,7 @@ _LONG = 60.0
 def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Arguments of `sim.run.simulate` for the run that the options of a condition describe.
 
-    What the user should know of it is noted, and returned beside them.
+    What the user should know of it is returned beside them.
 
     Parameters
     ----------
@@ -84,8 +84,6 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
     shaft, turning = _shaft(options, seconds)
     notes = _remarks(options, rig, shaft, library, interference_mm, stiffness)
     notes += tuple(sensor_remarks(rig.sensors, rate))
-    for text in notes:
-        note(text)
     support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
     say(f"simulating {seconds:g} s: {turning}, {interference_mm:g} mm, {support}, {rig.material}")
 
@@ -110,8 +108,21 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
     return arguments, notes
 
 
-def with_notes(run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any]) -> Recording:
-    """Return the recording of a run with its notes: what slips or clips in it is known only now."""
+def with_notes(
+    run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any], name: str = ""
+) -> Recording:
+    """Return the recording of a run with its notes: what slips or clips in it is known only now.
+
+    Parameters
+    ----------
+    run : Run
+    notes : tuple of str
+        Of `run_arguments`.
+    arguments : mapping
+        That it was made with.
+    name : str
+        What one run of several is called.
+    """
     from sim.analysis.regime import never_slips
 
     rig: Rig = arguments["rig"]
@@ -120,7 +131,7 @@ def with_notes(run: Run, notes: tuple[str, ...], arguments: Mapping[str, Any]) -
     if never_slips(run.motion):
         found.append(NEVER_SLIPS)
     for text in found:
-        note(text)
+        note(f"{name}: {text}" if name else text)
     return replace(run.recording, notes=(*notes, *found))
 
 

@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from models.errors import ParameterError
+from noise.base.progress import note
 from noise.commands.condition_options import CONDITION_OPTIONS, add_condition, given_options
 from noise.commands.operating import run_arguments, with_notes
 from noise.commands.options import full_scale_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from models.recording import Recording
     from noise.recordings.meaning import PascalPerFullScale
@@ -69,7 +70,7 @@ class SimulatedSource:
                 arguments["rng"] = np.random.default_rng([self.seed, number])
             # Its sound is all that is heard of it, and may have to be kept for long.
             made = simulate(**arguments)
-            run = made.recording if number else with_notes(made, self.notes, arguments)
+            run = made.recording if number else with_notes(made, self.notes, arguments, self.name)
             row = run.first("pressure")
             if row is not None:
                 samples, channels = run.samples[row : row + 1].copy(), (run.channels[row],)
@@ -120,7 +121,19 @@ def sources_of(options: Namespace) -> list[Source]:
             sources += _recorded(Path(text), full_scale)
     if not options.inputs:
         sources.append(_source(options.out.name.removesuffix(".wav"), options))
-    return _with_names_of_their_own(sources)
+    named = _with_names_of_their_own(sources)
+    _tell_notes([source for source in named if isinstance(source, SimulatedSource)])
+    return named
+
+
+def _tell_notes(sources: Sequence[SimulatedSource]) -> None:
+    """Note each thing once: what holds of all runs as such, the rest with the names of its runs."""
+    found: dict[str, list[str]] = {}
+    for source in sources:
+        for text in source.notes:
+            found.setdefault(text, []).append(source.name)
+    for text, names in found.items():
+        note(text if len(names) == len(sources) else f"{', '.join(names)}: {text}")
 
 
 def _is_condition(text: str) -> bool:

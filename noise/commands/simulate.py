@@ -94,6 +94,8 @@ def run(options: Namespace) -> int:
         if getattr(options, option) is not None:
             _check_seconds(option, options.seconds)
     arguments, notes = run_arguments(options, options.rate)
+    for text in notes:
+        note(text)
     if options.out is not None and is_long(arguments):
         return _write_in_blocks(options.out, arguments, notes)
     from sim.run import simulate

@@ -134,3 +134,17 @@ def test_one_file_serves_every_command_and_a_misspelt_key_is_answered_alike(
     line = refusal(capsys, command, *calls[command])
     assert "unknown key 'desing'; did you mean 'design'?" in line
     assert "measured_response" in line
+
+
+def test_of_a_set_each_thing_is_said_once_and_of_which_sound(tmp_path, capsys):
+    inputs = ["--interference 0.279", "--interference 0.5", "--change critical_torque=x9999"]
+    given = ["--speed", "5", "--seconds", "0.1", "--temperature", "80"]
+    assert main(["render", *inputs, *given, "--out", str(tmp_path / "set")]) == 0
+    told = [line for line in capsys.readouterr().err.splitlines() if "note: " in line]
+    assert len(set(told)) == len(told)
+    (warm,) = [line for line in told if "temperature 80" in line]
+    assert "note: temperature" in warm
+    (beyond,) = [line for line in told if "lies outside the fits" in line]
+    assert "note: interference-0.5: " in beyond
+    (held,) = [line for line in told if "nothing ever slips" in line]
+    assert "note: change-critical_torque-x9999: " in held

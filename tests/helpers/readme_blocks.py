@@ -1,14 +1,21 @@
-"""The blocks of a section of the README, and what each of them is for."""
+"""The blocks of the README, and a walk through them as somebody takes it who pastes one by one."""
 
+import contextlib
+import io
 import re
+import shlex
 from pathlib import Path
 from typing import NamedTuple
 
+from noise.cli import main
+
 README = Path(__file__).parents[2] / "README.md"
+
+OUTPUTS = ("--out", "--plot", "--plots", "--map", "--modes", "--sound-power", "--audacity")
 
 
 class Block(NamedTuple):
-    """Lines that stand together: a file to save, commands, or Python."""
+    """Lines that stand together: a file to save, commands, a sidecar, or Python."""
 
     kind: str
     name: str
@@ -16,20 +23,86 @@ class Block(NamedTuple):
 
     @property
     def commands(self):
-        """One list of arguments a line, without the name of the program."""
-        return [line.split()[1:] for line in self.text.splitlines()]
+        """One list of arguments a call, without the name of the program; pip and pytest apart."""
+        calls = [shlex.split(part) for line in self.text.splitlines() for part in line.split("&&")]
+        return [call[1:] for call in calls if call[0] == "bushing-noise"]
 
 
-def section(title):
-    """Text of a section, from its heading to the next."""
-    _, _, after = README.read_text(encoding="utf-8").partition(f"\n## {title}\n")
-    return after.partition("\n## ")[0]
+class Said(NamedTuple):
+    """What a call came to."""
+
+    line: list[str]
+    code: int
+    out: str
+    err: str
+
+
+def readme(title=None):
+    """Text of the README, or of one of its sections, from the heading to the next."""
+    text = README.read_text(encoding="utf-8")
+    if title is None:
+        return text
+    return text.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
 
 
 def blocks(text):
-    """The indented blocks of a section; blank lines stand within files and Python."""
-    parts = re.findall(r"(?:^ {4}.*\n(?:\n(?= {4}))*)+", text, re.MULTILINE)
+    """The indented blocks; blank lines stand within files and Python."""
+    parts = re.findall(r"(?:^ {4}.*\n(?:\n+(?= {4}))*)+", text, re.MULTILINE)
     return [_block(piece) for part in parts for piece in _pieces(_flush_left(part))]
+
+
+def prose(text):
+    """The text without its blocks, each paragraph in one line."""
+    return re.sub(r"(?<=\S)\n(?=\S)", " ", re.sub(r"^ {4}.*\n", "", text, flags=re.MULTILINE))
+
+
+def paths(text):
+    """Files that the prose names with a folder."""
+    return sorted(
+        set(re.findall(r"`([\w.-]+/[\w./-]+\.(?:csv|png|html|json|wav|toml))`", prose(text)))
+    )
+
+
+def quoted(text):
+    """What the prose says that a command prints."""
+    return re.findall(r"(?<!\*)\*([^*\n]+)\*(?!\*)", prose(text))
+
+
+def walk(folder, dear=()):
+    """Do all blocks in a folder, but the commands named, and what needs their output."""
+    said, lacking = [], set()
+    with contextlib.chdir(folder):
+        for block in blocks(readme()):
+            if block.kind == "commands":
+                for line in block.commands:
+                    if line[0] in dear or _needs(line[1:], lacking):
+                        lacking |= _made(line)
+                    else:
+                        said.append(_call(line))
+            elif _needs(re.findall(r'"([^"]*)"', block.text), lacking):
+                lacking.add(block.name)
+            elif block.kind == "python":
+                exec(compile(block.text, "README.md", "exec"), {"__name__": "__main__"})
+            elif block.kind == "file":
+                Path(block.name).write_text(block.text, encoding="utf-8")
+    return said
+
+
+def _call(line):
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main(line)
+    return Said(line, code, out.getvalue(), err.getvalue())
+
+
+def _made(line):
+    """Folder or file that a call writes."""
+    values = [line[i + 1] for i, word in enumerate(line) if word in OUTPUTS]
+    return {value.split("/")[0] for value in values}
+
+
+def _needs(words, lacking):
+    return any(word.split("/")[0] in lacking for word in words)
 
 
 def _flush_left(part):
@@ -37,22 +110,18 @@ def _flush_left(part):
 
 
 def _pieces(part):
-    """Cut where a block of commands follows a file without a paragraph between them."""
-    return re.split(r"(?<=\n)\n(?=bushing-noise )", part)
+    """Cut where files and commands follow one another without a paragraph between them."""
+    return re.split(r"(?<=\n)\n(?=bushing-noise |# \S+\.(?:toml|py)\n)", part)
 
 
 def _block(text):
     first = text.splitlines()[0]
     if named := re.fullmatch(r"# (\S+\.(?:toml|py))", first):
         return Block("file", named[1], text)
+    if first.startswith("{"):
+        return Block("sidecar", "", text)
     if first.startswith("import noise"):
         return Block("python", "", text)
-    lines = text.splitlines()
-    assert all(line.startswith("bushing-noise ") for line in lines), f"neither of these: {text}"
+    starts = ("bushing-noise ", "python -m pip install ")
+    assert all(line.startswith(starts) for line in text.splitlines()), f"neither of these: {text}"
     return Block("commands", "", text)
-
-
-def paths(text):
-    """Files that the prose of a section names."""
-    prose = re.sub(r"^ {4}.*\n", "", text, flags=re.MULTILINE)
-    return sorted(set(re.findall(r"`([\w./-]+\.(?:csv|png|html|json|wav))`", prose)))

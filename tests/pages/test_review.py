@@ -163,6 +163,13 @@ def test_a_table_alone_finds_its_recordings_and_shows_the_others_without_a_sound
     assert 'aria-label="5 rad/s, 0.279 mm: none; none.wav, no sound"' in page.html
 
 
+def test_recordings_that_are_given_are_not_looked_for_beside_their_table(campaign):
+    write_recording(campaign / "another" / "creak.wav", recording("squeal"))
+    made = review([campaign / "recordings", campaign / "labels.csv"], campaign / "r.html")
+    assert made.sounds == 3
+    assert not any("another" in one["title"] for one in Page(made.path).about.values())
+
+
 def test_sidecars_that_are_named_with_their_recordings_are_no_inputs_of_their_own(campaign):
     made = review(sorted((campaign / "recordings").iterdir()), campaign / "r.html", classify=False)
     assert made.sounds == 3

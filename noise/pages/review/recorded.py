@@ -66,7 +66,8 @@ def recorded_entries(
         return []
     files = list(inputs.recordings)
     known = {path.resolve() for path, _ in files}
-    files += [found for found in _named_by_tables(inputs.tables) if found[0].resolve() not in known]
+    named = _named_by_tables(inputs.tables, [path for path, _ in files])
+    files += [found for found in named if found[0].resolve() not in known]
     needs = classify and any(not _labelled(path, inputs.tables) for path, _ in files)
     classifier = load_classifier() if needs else None
     # What could never fit is not read at all.
@@ -89,16 +90,24 @@ def _labelled(path: Path, tables: Sequence[LabelTable]) -> bool:
     return any(row["label"] is not None for table in tables for row in table.of(path))
 
 
-def _named_by_tables(tables: Sequence[LabelTable]) -> list[tuple[Path, str]]:
-    """Find recordings that a table names beside or below its own folder."""
+def _named_by_tables(tables: Sequence[LabelTable], given: Sequence[Path]) -> list[tuple[Path, str]]:
+    """Find recordings that a table names beside or below its own folder, and that are not given."""
     found: dict[Path, tuple[Path, str]] = {}
     for table in tables:
+        there = _files_of(table, given)
         for name in dict.fromkeys(str(row["file"]) for row in table.rows):
+            if name in there:
+                continue
             for path in (table.path.parent / name, *_below(table.path.parent, name)):
                 if path.is_file():
                     found.setdefault(path.resolve(), (path, name))
                     break
     return list(found.values())
+
+
+def _files_of(table: LabelTable, recordings: Sequence[Path]) -> set[str]:
+    """Return what a table calls the recordings that it has rows for."""
+    return {str(row["file"]) for path in recordings for row in table.of(path)}
 
 
 def _below(folder: Path, name: str) -> list[Path]:
@@ -111,7 +120,7 @@ def _below(folder: Path, name: str) -> list[Path]:
 def _missing(tables: Sequence[LabelTable], files: Sequence[Path]) -> list[Entry]:
     entries = []
     for table in tables:
-        used = {str(row["file"]) for path in files for row in table.of(path)}
+        used = _files_of(table, files)
         for name in dict.fromkeys(str(row["file"]) for row in table.rows):
             rows = [row for row in table.rows if row["file"] == name and row["label"] is not None]
             if name not in used and rows:

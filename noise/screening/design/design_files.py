@@ -1,8 +1,8 @@
 """Copies of design files beside a screen, so that a review finds what each map is of.
 
 Measured responses that a file names by a path of its own folder go with it. One named by a way out
-of that folder would not be found from the copy, and the copy is refused. A base out of that folder
-is named by the copy from where it lies.
+of that folder would not be found from the copy, and the copy is refused. A base out of that folder,
+or with such a base of its own, is named by the copy from where it lies.
 """
 
 from __future__ import annotations
@@ -78,10 +78,12 @@ _BASE = re.compile(r"""^base\s*=\s*(?:"[^"]*"|'[^']*')""", re.MULTILINE)
 
 
 def _base_elsewhere(source: Path) -> Path | None:
-    """Return the base of a file where the way to it leads out of the folder."""
+    """Return the base of a file where the way to it, or to its own, leads out of a folder."""
     named = Path(read_toml(source, f"design {source}").get("base", ""))
-    outside = ".." in named.parts and not named.is_absolute()
-    return source.parent / named if outside and (source.parent / named).is_file() else None
+    base = source.parent / named
+    if named.is_absolute() or not base.is_file():
+        return None
+    return base if ".." in named.parts or _base_elsewhere(base) is not None else None
 
 
 def _copied(source: Path, target: Path) -> None:
@@ -98,6 +100,6 @@ def _named_files(source: Path) -> list[Path]:
         if key.startswith("torque_to_") and isinstance(value, str)
     ]
     base = Path(content.get("base", ""))
-    if base.suffix and ".." not in base.parts and (source.parent / base).is_file():
+    if base.suffix and (source.parent / base).is_file() and _base_elsewhere(source) is None:
         found += [base, *(base.parent / named for named in _named_files(source.parent / base))]
     return found
