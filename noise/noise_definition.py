@@ -32,7 +32,7 @@ from features.kernels.bands import overall_level
 from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
-from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK
+from sim.analysis.regime import LEAST_OSCILLATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,6 +49,11 @@ __all__ = [
 
 LEAST_LEVEL = 35.0
 """Sound below it is not heard in a quiet room [dB(A) re 20 uPa]."""
+
+_LEAST_STICK = 0.02
+"""Of the time that the contact sticks, for a torque without lines to chatter. That is the solver's
+stick, which tells contact from none; whether the torque shows stick-slip is another thing
+(`sim.analysis.regime`), on which no noise depends."""
 
 _CREAK_MARGIN = 10.0
 """How far the blows' sound may lie below all the rest [dB(A)]."""
@@ -78,7 +83,7 @@ class NoiseCriteria:
     audible : float
         The same of its part from 20 Hz to 5 kHz [-].
     stick : float
-        Share of the time that the contact sticks, re the least of stick-slip [-].
+        Share of the time that the contact sticks, re the least of chatter [-].
     second : float
         Level of the second line of the torque re the first, re the least that counts [dB].
     share : float
@@ -177,7 +182,7 @@ def noise_criteria(
         blows=-math.inf if math.isnan(blows) else blows + _CREAK_MARGIN,
         swing=float(np.std(motion.torque)) / mean / LEAST_OSCILLATION,
         audible=math.sqrt(lines.total) / mean / LEAST_OSCILLATION,
-        stick=float(np.mean(motion.stuck)) / LEAST_STICK,
+        stick=float(np.mean(motion.stuck)) / _LEAST_STICK,
         second=_second(lines) + _LINE_RANGE,
         share=lines.strongest_share / _LEAST_SHARE,
     )

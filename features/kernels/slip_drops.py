@@ -17,13 +17,12 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from features.kernels.conditioning import NOTHING, checked_signal
-from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import interpolated
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["TorqueSlips", "repetition_rate", "torque_slips"]
+__all__ = ["TorqueSlips", "torque_slips"]
 
 _SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
 """Standard deviation of a Gaussian that halves 2 kHz [s]: the torque has little above (5.2.3)."""
@@ -165,40 +164,6 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
         stick_fraction=float(rises.sum() / rate / intervals.sum()),
         asymmetry=asymmetry,
     )
-
-
-def repetition_rate(torque: ArrayLike, rate: float) -> float | None:
-    """Slips a second, or periods of the torque where nothing slips suddenly.
-
-    Parameters
-    ----------
-    torque : array_like, shape (n_samples,)
-        [N m]
-    rate : float
-        Sampling rate [Hz].
-
-    Returns
-    -------
-    float or None
-        [Hz]; None where nothing repeats.
-
-    Raises
-    ------
-    ParameterError
-        A signal that can't be analysed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> t = np.arange(6000) / 30e3
-    >>> round(repetition_rate(8.0 + np.sin(2 * np.pi * 300.0 * t), 30e3))
-    300
-    """
-    interval = torque_slips(torque, rate).mean_interval
-    if math.isfinite(interval):
-        return 1.0 / interval
-    period = analyse_harmonics(torque, rate).fundamental
-    return period if math.isfinite(period) else None
 
 
 def _no_slips(asymmetry: float) -> TorqueSlips:

@@ -1,6 +1,6 @@
 """Quantities that a rig is measured by, each as a function of the rig and of runs of it.
 
-They have the names of the thesis's table. Critical speeds are where the share of stick, or the
+They have the names of the thesis's table. Critical speeds are where the sudden share, or the
 oscillation, crosses its limit (`sim.analysis.regime`) for the last time on a grid of speeds,
 interpolated between its points, so that a small change of a parameter shows.
 """
@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from models.rig import damping_at
 from sim.analysis.critical_speeds import falls_below
-from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK
+from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.slips import LEAST_SUDDEN
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -76,9 +77,11 @@ def _v_crit2(rig: Rig, number: TableNumber, runs: Sequence[SettledRun]) -> float
 
 
 def _v_crit1(rig: Rig, number: TableNumber, runs: Sequence[SettledRun]) -> float:
-    vibrating = [run.stick if run.oscillation > LEAST_OSCILLATION else 0.0 for run in runs]
+    vibrating = [
+        run.slips.sudden_share if run.oscillation > LEAST_OSCILLATION else 0.0 for run in runs
+    ]
     return min(
-        _v_crit2(rig, number, runs), _last_crossing(number.speeds, vibrating, LEAST_STICK)
+        _v_crit2(rig, number, runs), _last_crossing(number.speeds, vibrating, LEAST_SUDDEN)
     )  # fmt: skip
 
 
@@ -158,7 +161,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "strongest_line": Quantity("Hz", _of_run(lambda run: run.strongest_line)),
     "v_crit1": Quantity("rad/s", _v_crit1, at_a_speed=False),
     "v_crit2": Quantity("rad/s", _v_crit2, at_a_speed=False),
-    "stick_share": Quantity("1", _of_run(lambda run: run.stick), _above),
+    "sudden_share": Quantity("1", _of_run(lambda run: run.slips.sudden_share), _above),
     "mean_torque_spread": Quantity(
         "1", _torque_spread, lambda found, most: max(0.0, found - most), at_a_speed=False
     ),
@@ -166,5 +169,5 @@ QUANTITIES: Mapping[str, Quantity] = {
     "squeal": _noise(_squeal),
     "none": _noise(_silence),
 }
-"""By the item's name. A ``stick_share`` is a lower limit, a ``mean_torque_spread`` (highest over
+"""By the item's name. A ``sudden_share`` is a lower limit, a ``mean_torque_spread`` (highest over
 lowest mean) an upper one; ``squawk``, ``squeal`` and ``none`` say what is heard there."""

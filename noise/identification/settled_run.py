@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels import slip_drops
+from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_speeds import motion_from_rest
-from sim.analysis.regime import LEAST_OSCILLATION, stick_and_oscillation
+from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.slips import motion_slips
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Rig
+    from sim.analysis.slips import Slips
 
 __all__ = ["SettledRun", "settled_run"]
 
@@ -31,20 +33,23 @@ class SettledRun:
 
     Parameters
     ----------
-    stick : float
-        Share of the time in which the contact sticks [-].
-    oscillation : float
-        Standard deviation of the torque over its mean [-].
+    slips : Slips
+        Those that the torque shows.
     torque : ndarray, shape (n,)
         [Nm]
     rate : float
         [Hz]
     """
 
-    stick: float
-    oscillation: float
+    slips: Slips
     torque: NDArray[np.float64]
     rate: float
+
+    @property
+    def oscillation(self) -> float:
+        """Standard deviation of the torque over its mean [-]; infinite where that is zero."""
+        deviation, mean = float(np.std(self.torque)), abs(self.mean_torque)
+        return deviation / mean if mean > 0.0 else math.inf if deviation > 0.0 else 0.0
 
     @property
     def mean_torque(self) -> float:
@@ -56,8 +61,7 @@ class SettledRun:
         """Slips or periods a second [Hz]; NaN where nothing repeats."""
         if self.oscillation <= LEAST_OSCILLATION:
             return math.nan
-        found = slip_drops.repetition_rate(self.torque, self.rate)
-        return math.nan if found is None else found
+        return repetition_rate(self.slips, self.torque, self.rate)
 
     @cached_property
     def _lines(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -98,10 +102,9 @@ def settled_run(
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> run = settled_run(load_material_rig("fluorocarbon-thesis"), 0.279e-3, 2214.0, 1.0)
-    >>> run.stick > 0.5, 100.0 < run.repetition_rate < 200.0
+    >>> run.slips.sudden_share > 0.5, 100.0 < run.repetition_rate < 200.0
     (True, True)
     """
     motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=_SECONDS)
-    stick, oscillation = stick_and_oscillation(motion)
     last = motion.since(motion.torque.size // 2)
-    return SettledRun(stick, oscillation, last.torque, motion.rate)
+    return SettledRun(motion_slips(last), last.torque, motion.rate)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.slip_drops import torque_slips
 from models.errors import ParameterError
 from noise.thesis.runs import CALIBRATED, THESIS, Case, listing_run, motion
+from sim.analysis.slips import motion_slips
 from sim.analysis.thesis_listing import STEP
 
 if TYPE_CHECKING:
@@ -160,7 +160,7 @@ def _simulated(material: str, case: Case, seconds: float, name: str) -> Trace:
     if material == THESIS:
         slips = time[1:][run.stuck[:-1] & ~run.stuck[1:]]
     else:
-        slips = torque_slips(run.torque, _RATE).times
+        slips = motion_slips(run).times
     return Trace(
         name=name,
         time=time,

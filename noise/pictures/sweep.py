@@ -1,8 +1,7 @@
 """Torque against speed and frequency against speed, over a sweep of speeds.
 
 Of a sweep only the torque is kept, at a rate that holds all its lines; means, extremes and lines
-follow from it for any friction law in the same way. Slips of true stick are counted exactly by the
-sweep itself; elsewhere a slip is a sudden drop of the torque.
+follow from it for any friction law in the same way; slips are those of `sim.analysis.slips`.
 """
 
 from __future__ import annotations
@@ -15,7 +14,9 @@ import numpy as np
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
-from noise.pictures.window import oscillates, repetition_rate
+from noise.pictures.window import oscillates
+from noise.thesis.repetition import repetition_rate
+from sim.analysis.slips import find_slips
 from sim.analysis.sweep import Sweep
 
 if TYPE_CHECKING:
@@ -112,17 +113,24 @@ def sweep_torque(
         rate=_RATE,
     )
     torque = runs.torque(every=_EVERY).astype(np.float64)
-    if rig.friction.name == "coulomb":
-        slips = runs.features()["slip_frequency"]
-    else:
-        slips = _each(torque, lambda one: repetition_rate(one, _RATE / _EVERY))
+    stiffness = rig.fit(interference).elastomer_stiffness
+    own_period = 2.0 * math.pi * math.sqrt(rig.elastomer_inertia / stiffness)
+    rate = _RATE / _EVERY
+
+    def cycles(one: NDArray[np.float64], at_speed: float) -> float:
+        if not oscillates(one):
+            return math.nan
+        slips = find_slips(one / stiffness, at_speed, rate, own_period=own_period)
+        return repetition_rate(slips, one, rate)
+
+    slips = [[cycles(*pair) for pair in zip(row, speeds, strict=True)] for row in torque]
     return SweptTorque(
         speed=speeds,
         support_stiffness=tuple(map(float, supports)),
         mean=torque.mean(axis=-1),
         low=torque.min(axis=-1),
         high=torque.max(axis=-1),
-        slip_frequency=slips,
+        slip_frequency=np.array(slips),
         strongest_line=_each(torque, _strongest_line),
     )
 

@@ -33,11 +33,11 @@ from noise.thesis.runs import (
     SHORT,
     THESIS,
     Case,
-    listing_stick_share,
+    listing_sudden_share,
     rig_of,
 )
 from sim.analysis.critical_damping import critical_damping, largest_sticking
-from sim.analysis.regime import LEAST_STICK
+from sim.analysis.slips import LEAST_SUDDEN
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -181,7 +181,7 @@ def _damping() -> dict[str, dict[str, Trace]]:
         highest=_HIGHEST_DAMPING,
     )
     listing = largest_sticking(
-        lambda damping: listing_stick_share(replace(case, damping=damping), 1.0) > LEAST_STICK,
+        lambda damping: listing_sudden_share(replace(case, damping=damping), 1.0) > LEAST_SUDDEN,
         _HIGHEST_DAMPING,
         1e-5,
     )

@@ -6,20 +6,23 @@ quiet for most of the time; there it is the part about the largest acceleration 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels import slip_drops
+from noise.thesis.repetition import repetition_rate
 from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.slips import motion_slips
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from sim.motion import Motion
     from sim.run import Run
 
-__all__ = ["Window", "oscillates", "repetition_rate", "run_window"]
+__all__ = ["Window", "oscillates", "run_window"]
 
 _CYCLES = 6
 _SHORTEST, _LONGEST = 2e-3, 0.1
@@ -69,7 +72,7 @@ def run_window(run: Run) -> Window:
         loudest = int(np.argmax(np.abs(recording["acceleration"])))
         middle = min(round(loudest * rate / recording.rate), n - 1)
     reach = round(_AROUND * rate)
-    frequency = repetition_rate(motion.torque[max(0, middle - reach) : middle + reach], rate)
+    frequency = _cycles(motion.part(max(0, middle - reach), middle + reach))
     seconds = _WITHOUT_CYCLES
     if frequency is not None:
         seconds = min(max(_CYCLES / frequency, _SHORTEST), _LONGEST)
@@ -78,32 +81,12 @@ def run_window(run: Run) -> Window:
     return Window(first, first + size, frequency)
 
 
-def repetition_rate(torque: NDArray[np.floating], rate: float) -> float | None:
-    """Slips a second, or periods of the torque where nothing slips suddenly [Hz].
-
-    Parameters
-    ----------
-    torque : ndarray, shape (n_samples,)
-        [Nm]
-    rate : float
-        [Hz]
-
-    Returns
-    -------
-    float or None
-        [Hz]; None where the torque does not oscillate, or not regularly.
-
-    Examples
-    --------
-    >>> t = np.arange(6000) / 30e3
-    >>> round(repetition_rate(8.0 + np.sin(2 * np.pi * 300.0 * t), 30e3))
-    300
-    >>> repetition_rate(np.full(6000, 8.0), 30e3) is None
-    True
-    """
-    if torque.size < _LEAST_SAMPLES or not oscillates(torque):
+def _cycles(motion: Motion) -> float | None:
+    """Slips a second, or periods of the torque [Hz]; None where it does not oscillate."""
+    if motion.torque.size < _LEAST_SAMPLES or not oscillates(motion.torque):
         return None
-    return slip_drops.repetition_rate(torque, rate)
+    found = repetition_rate(motion_slips(motion), motion.torque, motion.rate)
+    return None if math.isnan(found) else found
 
 
 def oscillates(torque: NDArray[np.floating]) -> bool:

@@ -2,48 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING
-
 from noise.thesis.row import Column, Row, between, number
-from sim.acquisition import CONVERTER_GAIN
 from sim.analysis.thesis_listing import STEP
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["converter", "lengths"]
 
 _BIT = 2.5 / 2**12
 """Of a 12-bit converter over +-1.25 V [V]."""
 
-_UNITS = {"torque": "Nm", "acceleration": "m/s2", "pressure": "Pa", "angle": "rad"}
-
 _PRINTED_ERROR = 0.625e-3
 """Quantization error that 3.1.2 states [V]."""
 
-_REFERENCE_PRESSURE = 20e-6
 
-
-def converter() -> Iterator[Row]:
-    """One bit of the converter, in volts and in each channel's unit."""
+def converter() -> list[Row]:
+    """One bit of the converter; in the channels' units the thesis does not state it."""
     error = number(1e3 * _PRINTED_ERROR)
-    yield Row("converter_bit", "12 bit over +-1.25 V", "mV", error, exact=1e3 * _BIT)
-    for channel, gain in CONVERTER_GAIN.items():
-        printed = _PRINTED_ERROR * gain
-        yield Row(
-            "converter_bit", f"{channel}, 0.625 mV at {gain:g} {_UNITS[channel]}/V",
-            _UNITS[channel], number(printed, f"{printed:.3g}"), exact=_BIT * gain, digits=3,
-        )  # fmt: skip
-    gain = CONVERTER_GAIN["pressure"]
-    printed_level, level = (
-        20.0 * math.log10(volts * gain / math.sqrt(2.0) / _REFERENCE_PRESSURE)
-        for volts in (_PRINTED_ERROR, _BIT)
-    )
-    yield Row(
-        "converter_bit", "level of a sine of one bit", "dB",
-        number(printed_level, f"{printed_level:.1f}"), exact=level, digits=3,
-    )  # fmt: skip
+    return [Row("converter_bit", "12 bit over +-1.25 V", "mV", error, exact=1e3 * _BIT)]
 
 
 def lengths() -> list[Row]:

@@ -12,12 +12,12 @@ from noise.thesis.runs import (
     SHORT,
     THESIS,
     Case,
-    listing_stick_share,
+    listing_sudden_share,
     rig_of,
-    stick_share,
+    sudden_share,
 )
 from sim.analysis.critical_damping import critical_damping, largest_sticking
-from sim.analysis.regime import LEAST_STICK
+from sim.analysis.slips import LEAST_SUDDEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,13 +43,13 @@ def critical() -> Iterator[Row]:
             meant=number(printed / 10.0), tolerance=0.001, limit=_HIGHEST, digits=digits,
         )  # fmt: skip
     for damping, published in (
-        (0.05, above(LEAST_STICK, "sticks")),
-        (0.1, below(LEAST_STICK, "slides")),
+        (0.05, above(LEAST_SUDDEN, "sticks")),
+        (0.1, below(LEAST_SUDDEN, "slides")),
     ):
         case = replace(_CASE, damping=damping)
         yield Row(
-            "stick_share", str(case), "1", published,
-            listing=listing_stick_share(case), exact=stick_share(THESIS, case), digits=2,
+            "sudden_share", str(case), "1", published,
+            listing=listing_sudden_share(case), exact=sudden_share(THESIS, case), digits=2,
         )  # fmt: skip
 
 
@@ -85,6 +85,6 @@ def _listing_limit(case: Case) -> float:
     def sticks(damping: float) -> bool:
         # Below any damping that matters; the listing takes none of zero.
         at = replace(case, damping=max(damping, 1e-9))
-        return listing_stick_share(at, _SECONDS) > LEAST_STICK
+        return listing_sudden_share(at, _SECONDS) > LEAST_SUDDEN
 
     return largest_sticking(sticks, _HIGHEST, _TOLERANCE)

@@ -50,6 +50,7 @@ def heating() -> list[Row]:
         Row(
             "temperature_rise", f"{where}, contact 7.69 cm2; (G3)", "K", number(_RISE),
             exact=interface_rise(_POWER, 7.69e-4, _SECONDS), as_printed=printed, digits=3,
+            in_sample=True,
         ),
         Row(
             "temperature_rise", f"{where}, 0.4 mm deep, printed 0.0004 mm", "K",

@@ -95,13 +95,15 @@ def beam_modes() -> Iterator[Row]:
     """Modes that 3.1.1 computes and 5.2.2 measures."""
     beams = rig_of(THESIS).beams
     long, short = clamp_modes(beams, 0.123), clamp_modes(beams, 0.092)
-    for text, printed, mode in (
-        ("12.3 cm, lowest of 140-2100 Hz", 140.0, long[0]),
-        ("9.2 cm, highest of 140-2100 Hz", 2100.0, short[3]),
+    # Mass and inertia of the clamp were chosen for the two lowest of the long beams.
+    for text, printed, mode, in_sample in (
+        ("12.3 cm, lowest of 140-2100 Hz", 140.0, long[0], True),
+        ("9.2 cm, highest of 140-2100 Hz", 2100.0, short[3], False),
     ):
         yield Row(
-            "beam_mode", text, "Hz", number(printed), exact=float(mode), tolerance=_MODE_TOLERANCE
-        )
+            "beam_mode", text, "Hz", number(printed), exact=float(mode), tolerance=_MODE_TOLERANCE,
+            in_sample=in_sample,
+        )  # fmt: skip
     for text, support, modes, measured, k in (
         ("12.3 cm, first torsional", LONG, long, 250.0, 1),
         ("9.2 cm, first torsional", SHORT, short, 310.0, 1),
@@ -111,7 +113,7 @@ def beam_modes() -> Iterator[Row]:
         yield Row(
             "beam_mode", text, "Hz", number(measured), exact=float(modes[k]),
             calibrated=_shipped_mode(support, k - 1), measured=True,
-            tolerance=_MODE_TOLERANCE,
+            tolerance=_MODE_TOLERANCE, in_sample=(support, k) == (LONG, 1),
         )  # fmt: skip
     for measured in (4500.0, 6000.0):
         nearest = float(long[np.abs(long - measured).argmin()])

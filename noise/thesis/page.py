@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from noise.thesis.row import Row
 
-__all__ = ["thesis_page", "verdict_counts"]
+__all__ = ["measured_counts", "thesis_page", "verdict_counts"]
 
 _TEXT = """\
 # The thesis's numbers, checked
@@ -25,14 +25,17 @@ computes:
 - **exact**: the thesis's equations, solved exactly (material `fluorocarbon-thesis`)
 - **calibrated**: the calibrated material (`fluorocarbon`, or PDMS where it says so)
 
-V_crit1 is the last speed with stick, V_crit2 the last with an oscillation of the torque above 1 %
-of its mean, both from rest, over 1 s, at speeds 0.25 rad/s apart up to 13 rad/s; 0 is no speed.
+V_crit1 is the last speed of stick-slip, V_crit2 the last with an oscillation of the torque above
+1 % of its mean, both from rest, over 1 s, at speeds 0.25 rad/s apart up to 13 rad/s; 0 is no speed.
+Stick-slip is told by the torque, of all three alike: more than 6 % of its falls are faster than a
+contact that sticks could load it (`sudden_share`). Such falls are the slips that are counted.
 
 Verdicts follow from the numbers and from each row's tolerance. **holds**: within it. **off by
 N %**: beyond it, up to 25 %. **fails**: further. **misprint**: wrong as printed, right as it must
 have been meant. **refuted**: the thesis's equations contradict its own measurement by more than
 25 %. **not checkable**: nothing to compare with. What was measured is judged on the calibrated
-material too; what follows a semicolon is that, where it does not hold.
+material too; what follows a semicolon is that, where it does not hold. **(in sample)**: parameters
+of what is judged were chosen for this number, so that it says nothing of what the model predicts.
 """
 
 
@@ -46,15 +49,37 @@ def verdict_counts(rows: Sequence[Row]) -> dict[str, int]:
     {'misprint': 5}
     """
     words = Counter(
-        part if not part.removeprefix("calibrated ").startswith("off by") else _off(part)
+        _counted(part) + (" (in sample)" if row.in_sample else "")
         for row in rows
-        for part in row.verdict.split("; ")
+        for part in row.verdict.removesuffix(" (in sample)").split("; ")
     )
     return dict(words.most_common())
 
 
-def _off(part: str) -> str:
-    return "calibrated off" if part.startswith("calibrated ") else "off"
+def _counted(part: str) -> str:
+    plain = part.removeprefix("calibrated ")
+    if not plain.startswith("off by"):
+        return part
+    return "off" if plain == part else "calibrated off"
+
+
+def measured_counts(rows: Sequence[Row]) -> str:
+    """Count what was measured, what of it the program misses, and what of that is out of sample.
+
+    Examples
+    --------
+    >>> from noise.thesis.row import Row, number
+    >>> measured_counts([Row("x", "y", "Hz", number(1.0), calibrated=2.0, measured=True)])
+    'Measured: 1 row, of which 1 out of sample; more than 25 % off 1, of which 1 out of sample.'
+    """
+    measured = [row for row in rows if row.measured]
+    missed = [row for row in measured if row.misses]
+    one, other = (sum(not row.in_sample for row in of) for of in (measured, missed))
+    plural = "" if len(measured) == 1 else "s"
+    return (
+        f"Measured: {len(measured)} row{plural}, of which {one} out of sample; more than 25 % off "
+        f"{len(missed)}, of which {other} out of sample."
+    )
 
 
 def thesis_page(rows: Sequence[Row]) -> str:
@@ -73,6 +98,8 @@ def thesis_page(rows: Sequence[Row]) -> str:
     lines = [
         _TEXT,
         f"{len(rows)} rows: {counts}.",
+        "",
+        measured_counts(rows),
         "",
         "| " + " | ".join(COLUMNS) + " |",
         "|" + " --- |" * len(COLUMNS),

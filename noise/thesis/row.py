@@ -104,6 +104,8 @@ class Row:
         unit `unit` [-].
     scale : float, optional
         What deviations are relative to, where the published value is zero.
+    in_sample : bool
+        Whether parameters of what is judged were chosen for this number.
     limit : float, optional
         The last value tried, where a search may end without a result; in the unit `unit` [-].
     digits : int
@@ -123,12 +125,15 @@ class Row:
     meant: Published | None = None
     as_printed: float | None = None
     scale: float | None = None
+    in_sample: bool = False
     limit: float | None = None
     digits: int = 4
 
     @property
     def verdict(self) -> str:
         """``holds``, ``off by N %``, ``misprint``, ``fails``, ``refuted`` or ``not checkable``.
+
+        A verdict on a number for which parameters were chosen ends in ``(in sample)``.
 
         Examples
         --------
@@ -138,7 +143,21 @@ class Row:
         >>> Row("critical_damping", "7.5 rad/s", "Nm s/rad", number(0.7599), listing=0.07598,
         ...     judged=Column.LISTING, meant=number(0.07599)).verdict
         'misprint'
+        >>> Row("mean_torque", "0.279 mm", "Nm", number(8.0), exact=8.01, in_sample=True).verdict
+        'holds (in sample)'
         """
+        return self._words() + (" (in sample)" if self.in_sample else "")
+
+    @property
+    def misses(self) -> bool:
+        """Whether this was measured and the program's best is more than a quarter off it."""
+        best = self.exact if math.isnan(self.calibrated) else self.calibrated
+        if self.judged is Column.CALIBRATED:
+            best = self.calibrated
+        checkable = self.measured and not math.isnan(best)
+        return checkable and self._word(best, self.meant or self.published) == "fails"
+
+    def _words(self) -> str:
         value = getattr(self, self.judged.value)
         if math.isnan(value):
             return "not checkable"

@@ -1,8 +1,7 @@
 """Runs of the three models at a condition, reduced to the numbers that the thesis reports.
 
-A slip of the constant-torque model is an event: stick ends. The calibrated contact never sticks
-truly, and chatters within one slip, so its slips are counted as a reader of the torque counts them:
-sudden drops, or else the period of the torque.
+Slips and stick-slip are those that the torque shows, of all three models (`sim.analysis.slips`):
+the calibrated contact never sticks truly, and of true stick the count is that of its ends.
 """
 
 from __future__ import annotations
@@ -14,13 +13,14 @@ from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
-from features.kernels import slip_drops
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
 from models.rig_files.rig_file import load_material_rig
+from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import with_damping
-from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime
+from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.slips import find_slips, motion_slips
 from sim.analysis.thesis_listing import STEP, run_listing
 from sim.motion import simulate_motion
 from sim.run import simulate
@@ -30,14 +30,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from models.rig import Rig
+    from sim.analysis.slips import Slips
     from sim.analysis.thesis_listing import ListingRun
     from sim.motion import Motion
 
 __all__ = [
     "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "acceleration", "both",
-    "listing_peak_speed", "listing_run", "listing_slip_frequency", "listing_stick_share",
-    "mean_torque", "motion", "oscillation", "peak_speed", "repetition_rate", "rig_of",
-    "slip_frequency", "stick_share", "strongest_line", "strongest_share", "third_over_second",
+    "cycle_frequency", "listing_peak_speed", "listing_run", "listing_slip_frequency",
+    "listing_sudden_share", "mean_torque", "motion", "oscillation", "peak_pressure", "peak_speed",
+    "rig_of", "slip_frequency", "slip_pattern", "strongest_line", "strongest_share", "sudden_share",
+    "third_over_second", "torque_swing",
 ]  # fmt: skip
 
 THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
@@ -177,9 +179,20 @@ def mean_torque(material: str, case: Case) -> float:
     return float(_settled(motion(material, case)).torque.mean())
 
 
-def stick_share(material: str, case: Case) -> float:
-    """Share of the time in which the contact sticks, once the run has settled."""
-    return float(_settled(motion(material, case)).stuck.mean())
+def torque_swing(material: str, case: Case) -> float:
+    """Root mean square of the torque about its mean [Nm], once the run has settled."""
+    return float(_settled(motion(material, case)).torque.std())
+
+
+def sudden_share(material: str, case: Case) -> float:
+    """Share of the torque's falls that is sudden, once it has settled; 0 where it is steady."""
+    if oscillation(material, case) <= LEAST_OSCILLATION:
+        return 0.0
+    return _slips(material, case).sudden_share
+
+
+def _slips(material: str, case: Case) -> Slips:
+    return motion_slips(_settled(motion(material, case)))
 
 
 def peak_speed(material: str, case: Case) -> float:
@@ -212,22 +225,33 @@ def acceleration(material: str, case: Case) -> float:
     return float(np.std(run.recording["acceleration"]))
 
 
+def peak_pressure(material: str, case: Case) -> float:
+    """Largest sound pressure [Pa]."""
+    run = simulate(
+        rig_of(material), case.speed,
+        interference=case.interference, support_stiffness=case.support_stiffness,
+    )  # fmt: skip
+    return float(np.abs(run.pressure).max())
+
+
 def slip_frequency(material: str, case: Case) -> float:
-    """Slips a second [Hz]; NaN where the contact does not stick."""
-    if friction_regime(motion(material, case)) is not Regime.STICK_SLIP:
+    """Slips a second [Hz]; NaN where nothing slips."""
+    if oscillation(material, case) <= LEAST_OSCILLATION:
         return math.nan
-    return repetition_rate(material, case)
+    return _slips(material, case).rate
 
 
-def repetition_rate(material: str, case: Case) -> float:
-    """Slips a second, or periods of the torque where nothing slips suddenly [Hz]; NaN for none."""
+def slip_pattern(material: str, case: Case) -> float:
+    """After how many slips they repeat [-], 2 for a doubled period; NaN where they do not."""
+    return float(_slips(material, case).pattern) or math.nan
+
+
+def cycle_frequency(material: str, case: Case) -> float:
+    """Slips a second, or periods of the torque where nothing slips [Hz]; NaN where it is steady."""
     if oscillation(material, case) <= LEAST_OSCILLATION:
         return math.nan
     run = _settled(motion(material, case))
-    if rig_of(material).friction.name == "coulomb":
-        return _rate_of_ends(run.stuck, RATE)
-    found = slip_drops.repetition_rate(run.torque, RATE)
-    return math.nan if found is None else found
+    return repetition_rate(motion_slips(run), run.torque, run.rate)
 
 
 def third_over_second(material: str, case: Case) -> float:
@@ -268,21 +292,29 @@ def listing_slip_frequency(case: Case) -> float:
     """Slips a second of the listing [Hz]; NaN where nothing slips, and for a fixed clamp."""
     if case.fixed:
         return math.nan
-    stuck = listing_run(case).stuck
-    return _rate_of_ends(stuck[stuck.size // 4 :], 1.0 / STEP)
+    return _listing_slips(case, listing_run(case).torque, 0.25).rate
 
 
-def listing_stick_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
-    """Share of the last half of a run in which the listing sticks."""
-    stuck = listing_run(case, seconds).stuck
-    return float(stuck[stuck.size // 2 :].mean())
+def listing_sudden_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
+    """Share of the falls of the listing's torque that is sudden, in the last half of a run."""
+    torque = listing_run(case, seconds).torque
+    last = torque[torque.size // 2 :]
+    if last.std() <= LEAST_OSCILLATION * abs(last.mean()):
+        return 0.0
+    return _listing_slips(case, torque, 0.5).sudden_share
+
+
+def _listing_slips(
+    case: Case, torque: np.ndarray[tuple[int], np.dtype[np.float64]], settling: float
+) -> Slips:
+    rig = rig_of(THESIS)
+    stiffness = rig.fit(case.interference).elastomer_stiffness
+    return find_slips(
+        torque[round(settling * torque.size) :] / stiffness, case.speed, 1.0 / STEP,
+        own_period=2.0 * math.pi * math.sqrt(rig.elastomer_inertia / stiffness),
+    )  # fmt: skip
 
 
 def listing_peak_speed(case: Case) -> float:
     """Largest sliding speed of a run of the listing [rad/s]."""
     return float(-listing_run(case).relative_speed.min())
-
-
-def _rate_of_ends(stuck: np.ndarray[tuple[int], np.dtype[np.bool_]], rate: float) -> float:
-    ends = np.flatnonzero(stuck[:-1] & ~stuck[1:])
-    return float((ends.size - 1) * rate / (ends[-1] - ends[0])) if ends.size > 1 else math.nan

@@ -18,6 +18,7 @@ from noise.thesis import (
     slip_frequencies,
     stiffness,
     torques,
+    waveforms,
 )
 
 if TYPE_CHECKING:
@@ -47,6 +48,9 @@ GROUPS: tuple[Callable[[], Iterable[Row]], ...] = (
     critical_velocities.simulated,
     *(partial(critical_velocities.transitions, case) for case in critical_velocities.MEASURED),
     critical_velocities.contradiction,
+    waveforms.regimes,
+    waveforms.amplitudes,
+    waveforms.patterns,
     torques.peaks,
     torques.first_slip,
     torques.friction,
@@ -57,6 +61,7 @@ GROUPS: tuple[Callable[[], Iterable[Row]], ...] = (
     *(partial(slip_frequencies.bounded, *where) for where in slip_frequencies.BOUNDED),
     slip_frequencies.rising,
     slip_frequencies.harmonics,
+    slip_frequencies.constant,
     slip_frequencies.falling_with_interference,
 )
 """All groups, in the order of the table."""

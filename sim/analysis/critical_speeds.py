@@ -1,9 +1,11 @@
-"""Critical speeds: where stick ends (V_crit1), and where vibration ends (V_crit2).
+"""Critical speeds: where stick-slip ends (V_crit1), and where vibration ends (V_crit2).
 
 Tables 5.1 and 5.2 give speeds found by ear and eye. To be compared they need a definition: the rig
-runs from rest for a second or more, at speeds 0.25 rad/s apart, and is judged on the last half.
-V_crit1 is the last speed at which it sticks, V_crit2 the last at which the torque oscillates, by
-the limits of `sim.analysis.regime`. The first torsional mode dies slowly: in 0.2 s an oscillation
+runs from rest for a second or more, at speeds 0.25 rad/s apart, and is judged on the last half by
+`sim.analysis.regime`. V_crit1 is the last speed of stick-slip ("the maximum velocity at which
+stick-slip occurs", 5.1.1), V_crit2 the last at which the torque oscillates, islands included, of
+measured and of simulated rigs alike: a design is free of either only beyond. The first torsional
+mode dies slowly: in 0.2 s an oscillation
 that is about to die out still looks alive. Speeds are tried from the fastest down, so that what
 lies below both critical speeds costs nothing.
 """
@@ -52,7 +54,7 @@ class CriticalSpeeds:
     Parameters
     ----------
     v_crit1 : float
-        Last speed with stick [rad/s]; 0 if there is none, ``inf`` if it is the fastest tried.
+        Last speed of stick-slip [rad/s]; 0 if there is none, ``inf`` if it is the fastest tried.
     v_crit2 : float
         Last speed at which the torque oscillates [rad/s]; likewise.
     """
@@ -258,7 +260,7 @@ def falls_below(
     Parameters
     ----------
     limit : float
-        Such as `sim.analysis.regime.LEAST_STICK` [-].
+        Such as `sim.analysis.slips.LEAST_SUDDEN` [-].
     speed, next_speed : float
         [rad/s]
     value, next_value : float

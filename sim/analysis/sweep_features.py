@@ -4,9 +4,9 @@
 """Features that a sweep keeps of each run: a few numbers, so that thousands of runs need no memory.
 
 The plain model is solved in blocks that stay in the processor's cache; its slips and sticks are
-the solver's own. Elsewhere a run is in stick as `sim.motion.Motion.stuck` defines it, and a slip
-begins where a stick ends, if its sliding speed exceeds the shaft's own before the next: a contact
-that creeps stutters.
+the solver's own. Elsewhere a run is in stick as `sim.motion.Motion.stuck` defines it, and slips are
+those that its torque shows (`sim.analysis.slips`): a contact that creeps stutters. With true stick
+the two are the same.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
+from sim.analysis.slips import motion_slips
 from sim.solvers.stick_slip_kernel import (
     DIRECTION,
     FIRST_SLIP,
@@ -129,17 +130,12 @@ def motion_features(motion: Motion) -> NDArray[np.float64]:
     >>> dict(zip(FEATURES, motion_features(motion).round(2), strict=True))["slip_count"]
     np.float64(43.0)
     """
-    stuck = motion.stuck
-    starts = np.flatnonzero(stuck[:-1] & ~stuck[1:])
-    if starts.size:
-        excess = np.abs(motion.sliding_speed) - np.abs(motion.shaft_speed)
-        starts = starts[np.maximum.reduceat(excess, starts) > 0.0]
-    lasted = (starts[-1] - starts[0]) / motion.rate if starts.size > 1 else math.nan
+    slips = motion_slips(motion)
     return np.array(
         [
-            starts.size,
-            (starts.size - 1) / lasted,
-            np.mean(stuck),
+            slips.times.size,
+            slips.rate,
+            np.mean(motion.stuck),
             np.mean(motion.torque),
             np.std(motion.torque),
             np.min(motion.torque),

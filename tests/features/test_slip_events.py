@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import lfilter
 
-from features.kernels.slip_drops import repetition_rate, torque_slips
+from features.kernels.slip_drops import torque_slips
 from features.kernels.slip_pulses import acoustic_slips
 from features.kernels.slip_speeds import in_intervals, slip_intervals
 from models.errors import ParameterError
@@ -219,14 +219,6 @@ def test_four_slips_have_no_glide():
     found = torque_slips(stick_slip(20.0, seconds=0.22), 30e3)
     assert 2 <= found.times.size <= 4
     assert math.isnan(found.glide)
-
-
-def test_a_torque_repeats_at_its_slips_or_its_period_or_not_at_all():
-    t = np.arange(30_000) / 30e3
-    assert repetition_rate(stick_slip(150), 30e3) == pytest.approx(150.0, rel=0.01)
-    hum = 8.0 + np.sin(2 * np.pi * 90.0 * t)
-    assert repetition_rate(hum, 30e3) == pytest.approx(90.0, rel=0.01)
-    assert repetition_rate(np.full(6000, 8.0), 30e3) is None
 
 
 # --- slips of a sliding speed -----------------------------------------------------------------

@@ -41,7 +41,8 @@ def test_a_swept_torque_is_that_of_the_sweep():
     ).features()
     sweep = swept()
     np.testing.assert_allclose(sweep.mean, features["torque_mean"], rtol=1e-3)
-    np.testing.assert_array_equal(sweep.slip_frequency, features["slip_frequency"])
+    # Slips that the torque shows are the solver's.
+    np.testing.assert_allclose(sweep.slip_frequency, features["slip_frequency"], rtol=0.02)
     # The extremes of a slip pass through an anti-alias filter.
     np.testing.assert_allclose(sweep.high, features["torque_max"], rtol=0.02)
     np.testing.assert_allclose(sweep.low, features["torque_min"], rtol=0.02)

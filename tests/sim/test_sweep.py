@@ -140,8 +140,11 @@ def test_a_stutter_is_no_slip():
         seconds=0.1, rate=30e3,
     )  # fmt: skip
     stuttering = replace(motion, interface_speed=motion.interface_speed.copy())
-    stuck = np.flatnonzero(motion.stuck)
-    stuttering.interface_speed[stuck[50:-50:20]] -= 0.2  # creeps for one sample
+    stuck = np.flatnonzero(motion.stuck)[50:-50:20]
+    stuttering.interface_speed[stuck] -= 0.2  # creeps for one sample
+    angle = motion.interface_angle.copy()
+    angle[stuck] -= 0.2 / motion.rate
+    stuttering = replace(stuttering, interface_angle=angle)
     before, after = (motion_features(m)[0] for m in (motion, stuttering))
     assert np.count_nonzero(np.diff(stuttering.stuck)) > 2 * np.count_nonzero(np.diff(motion.stuck))
     assert before == after

@@ -28,6 +28,7 @@ from models.rig import damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
 from noise.screening.map.fast_intervals import fast_intervals
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
+from sim.analysis.slips import motion_slips
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import at_temperature
@@ -181,8 +182,9 @@ def evaluate_point(
     made_of, support = structure or (plan.rig, support_stiffness)
     paths = _paths(made_of, interference, support, plan.rate)
     sound = _sound(plan, motion, paths)
-    found = _criteria(sound, intervals)
-    regime = Regime.STICK_SLIP if found.stick > 1.0 else Regime.QUASI_HARMONIC
+    found, interval = _liveliest(sound, intervals)
+    slips = motion_slips(interval).times.size > 0
+    regime = Regime.STICK_SLIP if slips else Regime.QUASI_HARMONIC
     label = found.label
     if swings and label == "creak" and found.blows < 0.0:
         label = "squawk"  # lines that follow the speed, which no single spectrum shows
@@ -290,9 +292,10 @@ def _paths(
     return impulse_responses(rig, interference, support_stiffness, rate)
 
 
-def _criteria(sound: Sound, intervals: list[Motion]) -> NoiseCriteria:
-    """Criteria of the liveliest interval, with the sound of all."""
+def _liveliest(sound: Sound, intervals: list[Motion]) -> tuple[NoiseCriteria, Motion]:
+    """Criteria of the liveliest interval, with the sound of all, and that interval."""
     found = [
-        noise_criteria(interval, sound.pressure, sound.pulse_pressure) for interval in intervals
+        (noise_criteria(interval, sound.pressure, sound.pulse_pressure), interval)
+        for interval in intervals
     ]
-    return max(found, key=lambda criteria: criteria.audible)
+    return max(found, key=lambda one: one[0].audible)

@@ -1,6 +1,6 @@
 """Critical speeds of a mapped design, by simulation and by stability, and their margins to its use.
 
-V_crit1 is the last speed of the map at which the contact sticks, V_crit2 the last at which it
+V_crit1 is the last speed of the map at which it sticks and slips, V_crit2 the last at which it
 vibrates (`sim.analysis.critical_speeds`). Stability gives the last speed at which steady sliding
 cannot last: no vibration that is reached from rest can end below it, so V_crit2 by simulation is
 that or more, by as much as stick-slip outlives the stability of sliding. It says nothing of
@@ -48,7 +48,7 @@ class CriticalPoint:
     v_crit2_stability : float
         By stability [rad/s]; likewise.
     margin_v_crit1, margin_v_crit2, margin_stability : float
-        Of the use to what sticks, to what vibrates, and to where sliding is unstable [rad/s];
+        Of the use to stick-slip, to what vibrates, and to where sliding is unstable [rad/s];
         positive where no speed of use does.
     """
 

@@ -1,7 +1,7 @@
 """Measurements of the fluorocarbon in the thesis, by which the calibration is judged.
 
 The six critical speeds at 0.279 mm (Tables 5.1 and 5.2) are what is fitted, and what can be left
-out. The rest steers the search with less weight: V_crit2 at 0.178 mm, stick beyond 13 rad/s at
+out. The rest steers the search with less weight: V_crit2 at 0.178 mm, stick-slip beyond 13 rad/s at
 0.381 mm, mean torques that hardly vary with speed (5.1.1), and the noises of 5.2.3.
 """
 
@@ -13,7 +13,7 @@ from models.condition import FIXED
 from noise.identification.table_number import TableNumber
 from noise.thesis.critical_velocities import TRANSITIONS
 from noise.thesis.runs import LONG, SHORT
-from sim.analysis.regime import LEAST_STICK
+from sim.analysis.slips import LEAST_SUDDEN
 
 __all__ = ["CELLS", "NOISES", "SPEEDS_ALONE", "SUPPORTS", "THESIS_TABLE", "THIN_CELLS"]
 
@@ -71,7 +71,7 @@ _FLAT_TORQUES = tuple(
 )
 
 _STICKING = tuple(
-    TableNumber("stick_share", LEAST_STICK, 0.381e-3, support, (speed,), _STICK)
+    TableNumber("sudden_share", LEAST_SUDDEN, 0.381e-3, support, (speed,), _STICK)
     for support, speed in (*((support, 13.0) for support in SUPPORTS), (LONG, 5.0))
 )
 NOISES = tuple(

@@ -7,14 +7,14 @@ __all__ = ["READING"]
 READING = """\
 ## Reading
 
-**6.3.1, gradual release** (`partial_slip`) comes first of the single effects, and does what the
-thesis expects: stick ends earlier, and slip frequencies, which it was not fitted to, come under the
-mode. But its interval on the critical speeds reaches below nil, V_crit1 comes out too low at 2214
-and too high at 3745 Nm/rad, and V_crit2 stays within a step of where the constant torques have it:
-what acts in stick alone sustains no oscillation. Nor does it carry over: the creep that fits
-0.279 mm leaves no stick at 0.381 mm, where the rig sticks beyond 13 rad/s. And its rank hangs on
-one cell: a finer search (runs of 0.8 s, speeds 15 % apart) took, without V_crit1 at 2214, a creep
-at which nothing sticks there, and the left-out error was 1.01.
+**6.3.1, gradual release** (`partial_slip`) closes nothing of the critical speeds, its best fit
+being almost none. It shortens the time in which the contact truly sticks, but not what a rig sees
+of it: a contact that creeps while it is loaded still lets go at once, and its torque still drops.
+
+**Viscoelastic stiffness** comes first, 0.30 of the gap, by its high stiffness at high frequency
+alone: slips stay smaller and stick-slip ends earlier. But its interval reaches from -0.67 to 0.65,
+its slip frequencies, which it was not fitted to, come out well above the mode, and V_crit2 at
+3745 Nm/rad stays too low. `transfer_film` is next, with the same width.
 
 **6.3.3, constant kinetic torque**: weakening alone closes nothing, its best fit being almost none;
 with true stick a falling torque only prolongs stick-slip. So the tables do not ask for it by
@@ -25,8 +25,8 @@ other fits.
 
 **What no effect alone closes** is the width of the quasi-harmonic range, least of all at
 3745 Nm/rad (2.6 to 12.5 rad/s). The shipped contact comes near by release, memory, weakening and an
-elastomer damped less than the beams, all at once: nine fitted numbers and in sample here; 0.294
-with each cell left out, says `python -m noise.training.calibrate --leave-out`. Simple pairs, which
-hold nothing but release or ageing and weakening, do not get there with the damping as printed.
+elastomer damped less than the beams, all at once: nine fitted numbers, in sample, found by the time
+in stick rather than by slips. Simple pairs, which hold nothing but release or ageing and weakening,
+do not get there with the damping as printed.
 """
 """Follows the tables."""

@@ -3,9 +3,9 @@
 Conclusion 3: with beams the slip frequency never exceeds the first torsional mode, 250 or 310 Hz.
 5.2.1: at 0.381 mm it rises by 10 to 25 Hz with each 2.5 rad/s. With the clamp fixed, at 1 rad/s and
 0.279 mm, the harmonics at 620 and 930 Hz make it 155 Hz. All three are errors of a logarithm, those
-of the first two nil where they hold. Slips are counted as a reader of the torque counts them,
-sudden drops or else the period, since a contact that creeps knows no end of stick. Where nothing
-repeats although the rig vibrated, the error counts as log 2.
+of the first two nil where they hold. Slips are those that the torque shows (`sim.analysis.slips`),
+or else its periods, since a contact that creeps knows no end of stick. Where nothing repeats
+although the rig vibrated, the error counts as log 2.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.slip_drops import repetition_rate
 from models.errors import ParameterError
+from noise.thesis.repetition import repetition_rate
 from sim.analysis.regime import LEAST_OSCILLATION
+from sim.analysis.slips import motion_slips
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -112,10 +113,11 @@ def _slip_rate(rig: Rig, interference: float, support: float, speed: float) -> f
         )
     except ParameterError:
         return None
-    torque = motion.since(motion.torque.size // 4).torque
-    if float(torque.std()) <= LEAST_OSCILLATION * abs(float(torque.mean())):
+    last = motion.since(motion.torque.size // 4)
+    if float(last.torque.std()) <= LEAST_OSCILLATION * abs(float(last.torque.mean())):
         return None
-    return repetition_rate(torque, _RATE)
+    found = repetition_rate(motion_slips(last), last.torque, _RATE)
+    return None if math.isnan(found) else found
 
 
 def _rise_error(steps: float, before: float | None, after: float | None) -> float:

@@ -1,8 +1,8 @@
 """Critical speeds of a rig as errors: log(simulated / measured), cell by cell.
 
 There are two readings of the same definition (`sim.analysis.critical_speeds`). The search takes a
-coarse one: runs of 0.7 s at speeds 20 % apart, from the fastest down, interpolated where the share
-of stick, or the oscillation, crosses its limit, so that a small change of a parameter shows. What
+coarse one: runs of 0.7 s at speeds 20 % apart, from the fastest down, interpolated where the sudden
+share, or the oscillation, crosses its limit, so that a small change of a parameter shows. What
 is reported comes from runs of 1 s at speeds 0.5 rad/s apart and one bisection to 0.25, so an island
 narrower than 0.5 rad/s can be missed. A cell without any critical speed counts as 0.5 rad/s, which
 is below the slowest speed measured, one that never ends as 16 rad/s: errors of about -2 and +1.
@@ -25,7 +25,8 @@ from sim.analysis.critical_speeds import (
     motion_from_rest,
     regime_at,
 )
-from sim.analysis.regime import LEAST_OSCILLATION, LEAST_STICK, Regime, stick_and_oscillation
+from sim.analysis.regime import LEAST_OSCILLATION, Regime, regime_measures
+from sim.analysis.slips import LEAST_SUDDEN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -137,26 +138,26 @@ def _fine(rig: Rig, interference: float, support: float, highest: float) -> Crit
 
 def _coarse(rig: Rig, support: float) -> CriticalSpeeds:
     v_crit2 = 0.0
-    stick_above = oscillation_above = 0.0
+    sudden_above = oscillation_above = 0.0
     above = _MOST
     for speed in reversed(_COARSE):
         try:
-            stick, oscillation = _stick_and_oscillation(rig, speed, support)
+            sudden, oscillation = _measures(rig, speed, support)
         except ParameterError:
             return CriticalSpeeds(0.0, 0.0)
         if oscillation > LEAST_OSCILLATION:
             v_crit2 = max(
                 v_crit2, _crossing(speed, oscillation, above, oscillation_above, LEAST_OSCILLATION)
             )
-            if stick > LEAST_STICK:
-                v_crit1 = _crossing(speed, stick, above, stick_above, LEAST_STICK)
+            if sudden > LEAST_SUDDEN:
+                v_crit1 = _crossing(speed, sudden, above, sudden_above, LEAST_SUDDEN)
                 return CriticalSpeeds(min(v_crit1, v_crit2), v_crit2)
-        above, stick_above, oscillation_above = speed, stick, oscillation
+        above, sudden_above, oscillation_above = speed, sudden, oscillation
     return CriticalSpeeds(0.0, v_crit2)
 
 
-def _stick_and_oscillation(rig: Rig, speed: float, support: float) -> tuple[float, float]:
-    return stick_and_oscillation(
+def _measures(rig: Rig, speed: float, support: float) -> tuple[float, float]:
+    return regime_measures(
         motion_from_rest(rig, speed, _INTERFERENCE, support, seconds=_COARSE_SECONDS)
     )
 

@@ -1,0 +1,53 @@
+"""How often a torque repeats: slips a second, or periods of an oscillation that does not slip."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from features.kernels.harmonics import analyse_harmonics
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from sim.analysis.slips import Slips
+
+__all__ = ["repetition_rate"]
+
+
+def repetition_rate(slips: Slips, torque: ArrayLike, rate: float) -> float:
+    """Slips a second, or periods of the torque where nothing slips.
+
+    Slips that differ, as where the period has doubled, are counted each: this is no subharmonic.
+
+    Parameters
+    ----------
+    slips : Slips
+        Those of the torque.
+    torque : array_like, shape (n,)
+        [Nm]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    float
+        [Hz]; NaN where nothing repeats.
+
+    Raises
+    ------
+    ParameterError
+        A signal that can't be analysed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from sim.analysis.slips import find_slips
+    >>> t = np.arange(6000) / 30e3
+    >>> torque = 8.0 + np.sin(2 * np.pi * 300.0 * t)
+    >>> slips = find_slips(torque / 665.0, 5.0, 30e3, own_period=1e-3)
+    >>> round(repetition_rate(slips, torque, 30e3))
+    300
+    """
+    found = slips.rate
+    return analyse_harmonics(torque, rate).fundamental if math.isnan(found) else found

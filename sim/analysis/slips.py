@@ -1,0 +1,200 @@
+"""Slips of a bushing, as its torque shows them: it falls faster than the shaft could load it.
+
+Section 5.1.1 of the thesis tells stick-slip by a torque "which increased with time, and then
+suddenly dropped", and (5.1) gives the scale of sudden: a contact that sticks loads the elastomer at
+k_E times the shaft's speed, and nothing on the rig loads it faster while the clamp is at rest. So a
+fall is *sudden* where torque over k_E, the elastomer's twist, falls faster than the shaft turns,
+
+    -dT/dt / k_E > omega,
+
+and the measure of stick-slip is the share of all that the torque falls which it falls beyond that,
+the integral of max(0, -dT/dt - k_E omega) over that of max(0, -dT/dt). Its limits are known:
+
+- Harmonic or triangular, without stick: the surface never goes back faster than the shaft goes
+  forward, however often it grazes the shaft's speed, and the share is nil.
+- Stick and slip of one undamped degree of freedom, with x = (T_crit - T_kin) omega_n / (k_E omega):
+  a slip of duration 2 (pi - atan x) / omega_n after a stick of 2 x / omega_n, and the share is
+  (x - atan x) / sqrt(1 + x^2), from x^3 / 3 where stick is about to end to 1 for a sawtooth; less
+  by up to 0.1 as it is measured, since the torque is smoothed to 2 kHz.
+- A sawtooth that falls in the share q of its period: (1 - 2 q) / (1 - q), nil where it falls as
+  slowly as it rises.
+
+A *slip* is a sudden fall. One that is much weaker than the others is the swing of a clamp or an
+elastomer after a slip. One that follows within an own period 2 pi / omega_n of the elastomer is the
+same slip swinging once more: with a stick between them, slips are 2 (x - atan x) / omega_n further
+apart than that. With true stick, slips are those of the solver. None of this is what the solver
+calls stick, `Motion.stuck`, which no sensor sees: a surface that grazes the shaft's speed at every
+swing is in stick for a few percent of the time, and neither sticks nor slips.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from sim.motion import Motion
+
+__all__ = ["LEAST_SUDDEN", "Slips", "find_slips", "motion_slips"]
+
+LEAST_SUDDEN = 0.06
+"""Stick-slip: the torque falls suddenly by more than this share of all its falls. Over the cells of
+Tables 5.1 and 5.2 few speeds lie near: most stick-slip above 0.2, all that grazes below 0.025."""
+
+_SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
+"""Standard deviation of a Gaussian that halves 2 kHz [s]: the torque has little above (5.2.3)."""
+
+_LEAST_STRENGTH = 1.0 / 3.0
+"""Of a slip re their mean, each weighed by itself; the counts are the same from a quarter on."""
+
+_SWING = 1.2
+"""Slips are further apart than so many own periods. Where nothing holds the swings are 1.03 to 1.15
+apart, for the contact yields; those of true stick are seldom nearer than 1.25."""
+
+_ALIKE = 0.02
+"""Slips whose strengths and intervals differ by less, re their means, are alike."""
+
+_LONGEST_PATTERN = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Slips:
+    """Slips in a torque.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n_slips,)
+        When the torque begins to fall, from the start of the signal [s]; empty where `sudden_share`
+        is no more than `LEAST_SUDDEN`.
+    strengths : ndarray, shape (n_slips,)
+        By how much the twist falls faster than the shaft turns, at most [rad/s].
+    sudden_share : float
+        Of all that the torque falls, what it falls faster than the shaft could load it [-].
+    """
+
+    times: NDArray[np.float64]
+    strengths: NDArray[np.float64]
+    sudden_share: float
+
+    @property
+    def rate(self) -> float:
+        """Slips a second [Hz], from the first to the last; NaN for fewer than two."""
+        if self.times.size < 2:
+            return math.nan
+        return float((self.times.size - 1) / (self.times[-1] - self.times[0]))
+
+    @property
+    def pattern(self) -> int:
+        """After how many slips they repeat: 1, 2 where the period has doubled, to 4; 0 for none."""
+        described = self.strengths[1:], np.diff(self.times)
+        for lag in range(1, _LONGEST_PATTERN + 1):
+            if self.times.size <= 2 * lag + 1:
+                return 0
+            changes = [float(np.std(one[lag:] - one[:-lag]) / one.mean()) for one in described]
+            if max(changes) < _ALIKE:
+                return lag
+        return 0
+
+
+def find_slips(
+    twist: ArrayLike, shaft_speed: ArrayLike, rate: float, *, own_period: float
+) -> Slips:
+    """Find the slips in a torque.
+
+    Parameters
+    ----------
+    twist : array_like, shape (n,)
+        Of the elastomer [rad]: the torque over its stiffness k_E.
+    shaft_speed : array_like, shape (n,) or a number
+        [rad/s]; of either sign.
+    rate : float
+        Sampling rate [Hz].
+    own_period : float
+        Of the elastomer on the clamp at rest, 2 pi sqrt(J_E / k_E) [s].
+
+    Returns
+    -------
+    Slips
+
+    Examples
+    --------
+    >>> time = np.arange(30000) / 30e3
+    >>> sawtooth = 5.0 / 150.0 * ((150.0 * time) % 1.0)
+    >>> found = find_slips(sawtooth, 5.0, 30e3, own_period=1e-3)
+    >>> round(found.rate), found.pattern, found.sudden_share > 0.9
+    (150, 1, True)
+    >>> find_slips(4.9 / 943 * np.sin(943 * time), 5.0, 30e3, own_period=1e-3).times.size
+    0
+    """
+    smooth = _smooth(np.asarray(twist, dtype=np.float64), rate)
+    speed = np.broadcast_to(np.asarray(shaft_speed, dtype=np.float64), smooth.shape)[:-1]
+    falling = -np.sign(speed) * np.diff(smooth) * rate
+    total = float(falling[falling > 0.0].sum())
+    excess = falling - np.abs(speed)
+    share = float(excess[(excess > 0.0) & (speed != 0.0)].sum()) / total if total > 0.0 else 0.0
+    if share <= LEAST_SUDDEN:
+        return Slips(np.empty(0), np.empty(0), share)
+    first, last = np.flatnonzero(np.diff(np.pad(falling > 0.0, 1))).reshape(-1, 2).T
+    fastest = np.array(
+        [i + int(excess[i:j].argmax()) for i, j in zip(first, last, strict=True)], dtype=np.intp
+    )
+    strength = excess[fastest]
+    positive = np.maximum(strength, 0.0)
+    chosen = strength >= _LEAST_STRENGTH * float(positive @ positive) / float(positive.sum())
+    first, fastest, strength = first[chosen], fastest[chosen], strength[chosen]
+    apart = np.append(True, np.diff(fastest) >= _SWING * own_period * rate)
+    if np.count_nonzero(apart) > 1:
+        first, strength = first[apart], strength[apart]
+    return Slips(first / rate, strength, share)
+
+
+def motion_slips(motion: Motion) -> Slips:
+    """Find the slips of a simulated motion.
+
+    Its twist needs no stiffness, and its own period follows from what turns the surface,
+    J_E theta1'' = T - T_E, and from T_E over the twist, both by least squares; within 1 % from
+    30 kHz on.
+
+    Parameters
+    ----------
+    motion : Motion
+
+    Returns
+    -------
+    Slips
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.run import simulate
+    >>> found = motion_slips(simulate(load_material_rig("fluorocarbon"), 2.5).motion)
+    >>> round(found.rate), found.pattern
+    (244, 1)
+    """
+    twist = motion.interface_angle - motion.clamp_angle
+    return find_slips(twist, motion.shaft_speed, motion.rate, own_period=_own_period(motion, twist))
+
+
+def _own_period(motion: Motion, twist: NDArray[np.float64]) -> float:
+    acceleration = _smooth(np.gradient(motion.interface_speed) * motion.rate, motion.rate)
+    turning = _smooth(motion.friction_torque - motion.torque, motion.rate)
+    bent = twist - twist.mean()
+    stiffness = float(bent @ motion.torque)
+    inertia = float(acceleration @ turning)
+    if not (stiffness > 0.0 and inertia > 0.0):
+        return 0.0
+    stiffness /= float(bent @ bent)
+    inertia /= float(acceleration @ acceleration)
+    return 2.0 * math.pi * math.sqrt(inertia / stiffness)
+
+
+def _smooth(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    from scipy.ndimage import gaussian_filter1d
+
+    smoothed = gaussian_filter1d(values, _SMOOTHING * rate, mode="nearest", truncate=4.0)
+    return np.asarray(smoothed, dtype=np.float64)

@@ -1,0 +1,191 @@
+"""Slips and regimes as the torque shows them: sawteeth, oscillators, the solver's own slips."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.condition import FIXED
+from models.rig_files.rig_file import load_material_rig
+from sim.analysis.critical_damping import with_damping
+from sim.analysis.critical_speeds import SPEEDS, motion_from_rest
+from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime, regime_measures
+from sim.analysis.slips import LEAST_SUDDEN, find_slips, motion_slips
+from sim.analysis.sweep import Sweep
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+
+RATE = 30e3
+OWN = 1e-3
+TIME = np.arange(round(RATE)) / RATE
+THESIS = load_material_rig("fluorocarbon-thesis")
+FLUOROCARBON = load_material_rig("fluorocarbon")
+SUPPORTS = (2214.0, 3745.0, FIXED)
+PLACES = [(fit, support) for fit in (0.178e-3, 0.279e-3, 0.381e-3) for support in SUPPORTS]
+
+
+def motion(rig, speed, interference=0.279e-3, support=FIXED, seconds=1.0, rate=RATE):
+    return simulate_motion(
+        rig, ConstantSpeed(speed), interference=interference, support_stiffness=support,
+        seconds=seconds, rate=rate,
+    )  # fmt: skip
+
+
+def sawtooth(drops, speed=5.0, fall=0.4e-3):
+    """Twist that is loaded by the shaft and drops by each of `drops` in turn, over and over."""
+    drops = np.resize(drops, 400)
+    steps = np.column_stack([drops / speed, np.full(drops.size, fall)])
+    corners = np.append(0.0, np.cumsum(steps))
+    level = np.append(0.0, np.column_stack([drops, np.zeros(drops.size)]))
+    slips = corners[1::2]
+    return np.interp(TIME, corners, level), slips[slips < TIME[-1] - fall]
+
+
+# The measure
+
+
+@pytest.mark.parametrize("shape", [np.sin, lambda x: 2.0 / np.pi * np.arcsin(np.sin(x))])
+@settings(deadline=None, max_examples=25)
+@given(frequency=st.floats(50.0, 900.0), reach=st.floats(0.05, 1.0))
+def test_an_oscillation_that_does_not_outrun_the_shaft_has_no_sudden_fall(shape, frequency, reach):
+    turn = 2.0 * np.pi * frequency
+    steepest = 1.0 if shape is np.sin else 2.0 / np.pi
+    twist = reach * 5.0 / (steepest * turn) * shape(turn * TIME)
+    assert find_slips(twist, 5.0, RATE, own_period=OWN).sudden_share < 1e-3
+
+
+def test_a_sawtooth_that_falls_as_slowly_as_it_rises_does_not_slip_and_a_sudden_one_does():
+    slow, sudden = (
+        find_slips(sawtooth([0.02], fall=fall)[0], 5.0, RATE, own_period=OWN)
+        for fall in (4e-3, 0.4e-3)
+    )
+    assert slow.times.size == 0
+    assert 0.8 < sudden.sudden_share < 1.0 - 5.0 * 0.4e-3 / 0.02
+
+
+@pytest.mark.parametrize("speed", [1.0, 3.0, 6.0, 9.0])
+def test_undamped_stick_slip_has_the_share_and_the_period_of_its_formula(speed):
+    fit = THESIS.fit(0.279e-3)
+    turn = np.sqrt(fit.elastomer_stiffness / THESIS.elastomer_inertia)
+    drop = fit.critical_torque - fit.kinetic_torque
+    x = drop * turn / (fit.elastomer_stiffness * speed)
+    found = motion_slips(motion(with_damping(THESIS, 1e-6), speed, rate=90e3).since(9000))
+    share = (x - np.arctan(x)) / np.hypot(1.0, x)
+    assert share - 0.1 < found.sudden_share < share  # the torque is smoothed to 2 kHz
+    period = 2.0 * np.pi / turn + 2.0 / turn * (x - np.arctan(x))
+    assert found.rate == pytest.approx(1.0 / period, rel=1e-4)
+    assert found.pattern == 1
+
+
+def test_the_measure_is_that_of_the_torque_over_the_stiffness():
+    run = motion(FLUOROCARBON, 2.0, support=2214.0).since(9000)
+    stiffness = FLUOROCARBON.fit(0.279e-3).elastomer_stiffness
+    own = 2.0 * np.pi * np.sqrt(FLUOROCARBON.elastomer_inertia / stiffness)
+    read = find_slips(run.torque / stiffness, 2.0, RATE, own_period=own)
+    exact = motion_slips(run)
+    assert read.sudden_share == pytest.approx(exact.sudden_share, abs=0.02)
+    assert read.rate == pytest.approx(exact.rate, rel=1e-3)
+
+
+def test_a_shaft_that_turns_back_slips_alike():
+    forward, backward = (motion_slips(motion(THESIS, speed)) for speed in (2.0, -2.0))
+    np.testing.assert_array_equal(forward.times, backward.times)
+
+
+def test_a_shaft_at_rest_neither_sticks_nor_slips():
+    twist = 1e-3 * np.sin(300.0 * TIME)
+    assert find_slips(twist, 0.0, RATE, own_period=OWN).sudden_share == 0.0
+
+
+# Slips
+
+
+@pytest.mark.parametrize("lesser", [1.0, 0.95, 0.9, 0.8, 0.7])
+def test_slips_of_alternate_size_are_counted_each_and_their_doubled_period_is_stated(lesser):
+    twist, slips = sawtooth([0.02, 0.02 * lesser])
+    found = find_slips(twist, 5.0, RATE, own_period=OWN)
+    rate = (slips.size - 1) / (slips[-1] - slips[0])
+    assert found.rate == pytest.approx(rate, rel=5e-3)
+    assert found.pattern == (1 if lesser == 1.0 else 2)
+
+
+def test_slips_without_a_period_are_counted_as_well():
+    drops = np.random.default_rng(0).normal(0.02, 0.005, 400).clip(0.008, 0.03)
+    twist, slips = sawtooth(drops)
+    found = find_slips(twist, 5.0, RATE, own_period=OWN)
+    assert found.rate == pytest.approx((slips.size - 1) / (slips[-1] - slips[0]), rel=0.02)
+    assert found.pattern == 0
+
+
+@pytest.mark.parametrize(("fit", "support"), PLACES)
+def test_with_true_stick_slips_are_those_of_the_solver(fit, support):
+    for speed in (0.5, 1.0, 1.5):
+        by_solver = Sweep(
+            THESIS, speed, interference=fit, support_stiffness=support, settling=0.25, seconds=0.75
+        ).features()["slip_frequency"]
+        run = motion(THESIS, speed, fit, support).since(round(0.25 * RATE))
+        assert motion_slips(run).rate == pytest.approx(float(by_solver), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("support", "speed", "rate"), [(2214.0, 9.0, 250.0), (3745.0, 10.0, 326.0)]
+)
+def test_slips_of_the_tight_fit_are_no_subharmonics(support, speed, rate):
+    run = motion(FLUOROCARBON, speed, 0.381e-3, support).since(round(0.5 * RATE))
+    assert motion_slips(run).rate == pytest.approx(rate, rel=0.01)
+
+
+def test_a_swing_after_a_slip_is_no_slip():
+    lobes, slips = sawtooth([0.02])
+    for slip in slips:
+        after = TIME - slip - 0.5e-3
+        lobes += np.where(
+            (after > 0) & (after < 1.1e-3), 4e-3 * np.sin(np.pi * after / 1.1e-3), 0.0
+        )
+    found = find_slips(lobes, 5.0, RATE, own_period=OWN)
+    assert found.rate == pytest.approx(1.0 / float(np.diff(slips).mean()), rel=5e-3)
+
+
+# Regimes
+
+
+@pytest.mark.parametrize("speed", [0.25, 0.5, 1.0])
+def test_a_contact_that_creeps_sticks_and_slips_on_a_fixed_clamp_at_the_lowest_speeds(speed):
+    assert friction_regime(motion(FLUOROCARBON, speed)) is Regime.STICK_SLIP
+
+
+def test_grazing_the_shafts_speed_is_no_stick_slip():
+    run = motion(FLUOROCARBON, 13.0, 0.381e-3)
+    assert run.since(15000).stuck.mean() > 0.01
+    assert friction_regime(run) is Regime.QUASI_HARMONIC
+
+
+@pytest.mark.parametrize("rig", [THESIS, FLUOROCARBON], ids=lambda rig: rig.material)
+@pytest.mark.parametrize(("fit", "support"), PLACES)
+def test_no_critical_speed_hangs_on_a_limit(rig, fit, support):
+    # Twice and half of each limit; from the fastest speed down to one that is beyond all.
+    limits = {"sudden": LEAST_SUDDEN, "oscillation": LEAST_OSCILLATION}
+    ends = {(name, factor): 0.0 for name in limits for factor in (0.5, 1.0, 2.0)}
+    for speed in reversed(SPEEDS):
+        sudden, oscillation = regime_measures(motion_from_rest(rig, speed, fit, support))
+        sudden *= oscillation > LEAST_OSCILLATION
+        measures = {"sudden": sudden, "oscillation": oscillation}
+        for (name, factor), end in ends.items():
+            if end == 0.0 and measures[name] > factor * limits[name]:
+                ends[name, factor] = speed
+        if all(ends.values()):
+            break
+    step = SPEEDS[1] - SPEEDS[0]
+    for name in limits:
+        assert abs(ends[name, 0.5] - ends[name, 1.0]) <= step
+        assert abs(ends[name, 2.0] - ends[name, 1.0]) <= step
+
+
+def test_stick_that_no_torque_shows_is_told_apart():
+    run = motion(FLUOROCARBON, 1.0)
+    creeping = replace(run, interface_speed=0.9 * run.interface_speed)
+    assert creeping.stuck.mean() != run.stuck.mean()
+    assert friction_regime(creeping) is friction_regime(run)
