@@ -1,3 +1,6 @@
+from .calibration import (
+    Calibration as Calibration,
+)
 from .condition import (
     FIXED as FIXED,
     Condition as Condition,
@@ -31,6 +34,10 @@ from .rig_files.rig_file import (
 )
 from .rig_files.shipped import (
     material_names as material_names,
+)
+from .sensors import (
+    Sensor as Sensor,
+    Sensors as Sensors,
 )
 from .structure.beams_exact import (
     BeamResponse as BeamResponse,

@@ -7,10 +7,11 @@
 ['squeal']
 
 Simulate: `load_rig`, `load_material_rig`, `material_names`, `simulate`, `Run`, `Acquisition`,
-`ConstantSpeed`, `SpeedRamp`, `Oscillation`, `LoggedSpeed`, `Condition`, `FIXED`.
+`Sensors`, `Sensor`, `ConstantSpeed`, `SpeedRamp`, `Oscillation`, `LoggedSpeed`, `Condition`,
+`FIXED`.
 
-Listen: `find_recordings`, `read_recording`, `write_recording`, `Recording`, `Channel`, `plot_run`,
-`write_picture`.
+Listen: `find_recordings`, `read_recording`, `read_calibrator`, `Calibration`, `write_recording`,
+`Recording`, `Channel`, `plot_run`, `write_picture`.
 
 Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segments`, `LABELS`,
 `Classifier`, `load_classifier`, `train`, `Inference`, `Inferred`, `Interval`, `load_inference`,
@@ -41,11 +42,13 @@ from pathlib import Path
 from typing import Any
 
 _EXPORTS = {
+    "models.calibration": ("Calibration",),
     "models.condition": ("FIXED", "Condition"),
     "models.errors": ("BushingNoiseError", "ParameterError", "RecordingError"),
     "models.recording": ("Channel", "Recording"),
     "models.rig_files.rig_file": ("load_material_rig", "load_rig"),
     "models.rig_files.shipped": ("material_names",),
+    "models.sensors": ("Sensor", "Sensors"),
     "noise.classifier": ("LABELS", "Classifier", "load_classifier"),
     "noise.training.classifier.fit": ("train",),
     "noise.diagnosis.outcome": ("Diagnosis",),
@@ -62,6 +65,7 @@ _EXPORTS = {
     "noise.pictures.screening": ("plot_screen",),
     "noise.pictures.speeds": ("plot_sweep",),
     "noise.pictures.sweep": ("sweep_torque",),
+    "noise.recordings.calibrator": ("read_calibrator",),
     "noise.recordings": ("find_recordings", "read_recording", "write_recording"),
     "noise.screening.design.design": ("Design", "Swinging", "Use", "load_design"),
     "noise.screening.parts.robustness": ("Robustness", "robustness"),

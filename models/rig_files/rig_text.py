@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from models.rig import LawSpec, Rig
 
-__all__ = ["base_name", "changed_rig_text", "rig_text"]
+__all__ = ["base_name", "changed_rig_text", "rig_text", "support_name"]
 
 
 def rig_text(rig: Rig, notes: Sequence[str] = ()) -> str:
@@ -162,9 +162,20 @@ def _quoted(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
+def support_name(support: float) -> str:
+    """Name a support stiffness [Nm/rad] as keys and names of files do.
+
+    Examples
+    --------
+    >>> support_name(2214.0), support_name(math.inf)
+    ('2214', 'fixed')
+    """
+    return "fixed" if math.isinf(support) else f"{support:.6g}"
+
+
 def _by_support(damping: Mapping[float, float]) -> str:
     def name(support: float) -> str:
-        return "fixed" if math.isinf(support) else f'"{support:.6g}"'
+        return "fixed" if math.isinf(support) else _quoted(support_name(support))
 
     inside = ", ".join(f"{name(support)} = {value:.5g}" for support, value in damping.items())
     return f"{{ {inside} }}"

@@ -8,18 +8,24 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.rig_files.change import multiplied
 from models.rig_files.rig_file import read_toml
-from models.rig_files.rig_text import changed_rig_text
+from models.rig_files.rig_text import changed_rig_text, support_name
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from models.transfer_functions.measured import MeasuredResponse
+    from models.transfer_functions.transfer_function import TransferFunction
     from noise.diagnosis.improvement import Improvement
 
-__all__ = ["NAME", "check_base", "improved_text", "own_effects"]
+__all__ = [
+    "NAME", "RESPONSES", "check_base", "improved_text", "own_effects", "response_files",
+]  # fmt: skip
 
 NAME = "improved.toml"
+RESPONSES = "improved_"
+"""What names of files of its responses begin with."""
 
 _WIDTH = 96
 
@@ -47,7 +53,9 @@ def improved_text(
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
-    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), {"damping": 0.02}, (),
+    >>> from noise.diagnosis.improvement import Improvement
+    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (),
+    ...                     {"damping": 0.02}, (),
     ...                     ("run01.wav",), ("run02.wav",), 2.4, 1.1)
     >>> print(improved_text(found, "PDMS").partition("base")[2])
      = "PDMS"
@@ -66,7 +74,36 @@ def improved_text(
         improvement.rig.effects,
         {name: float(f"{spread:.2g}") for name, spread in improvement.spread.items()},
         _head(improvement),
+        [
+            {"support_stiffness_Nm_rad": support_name(entry.support_stiffness)}
+            | {key: name for name, (key, _) in _responses_of(entry).items()}
+            for entry in _responses(improvement)
+        ],
     )
+
+
+def response_files(improvement: Improvement) -> dict[str, TransferFunction]:
+    """Return the measured responses of an improved rig, by the names of their files."""
+    return {
+        name: transfer
+        for entry in _responses(improvement)
+        for name, (_, transfer) in _responses_of(entry).items()
+    }
+
+
+def _responses(improvement: Improvement) -> Sequence[MeasuredResponse]:
+    return improvement.rig.measured if improvement.in_responses else ()
+
+
+def _responses_of(entry: MeasuredResponse) -> dict[str, tuple[str, TransferFunction]]:
+    keys = ("torque_to_acceleration", "torque_to_pressure")
+    given = ((key, getattr(entry, key)) for key in keys)
+    support = support_name(entry.support_stiffness)
+    return {
+        f"{RESPONSES}{key}_{support}.npz": (key, transfer)
+        for key, transfer in given
+        if transfer is not None
+    }
 
 
 def own_effects(improvement: Improvement) -> tuple[str, ...]:
@@ -82,7 +119,7 @@ def _head(improvement: Improvement) -> list[str]:
         f"Fitted to {', '.join(improvement.fitted_to)}.",
         f"On {', '.join(improvement.held_out)}, which no fit has seen, the gap fell from "
         f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g} floors; 1 is what repeats "
-        "of one run differ by."
+        "of one run differ by. Of several forms the one was taken that left least there."
         if set(improvement.held_out) - set(improvement.fitted_to)
         else f"The gap fell from {improvement.gap_before:.2g} to {improvement.gap_after:.2g} "
         "floors on the recording that it was fitted to: nothing was held out.",
@@ -95,6 +132,11 @@ def _head(improvement: Improvement) -> list[str]:
     if improvement.undetermined:
         paragraphs.append(
             "The recordings say next to nothing of " + ", ".join(improvement.undetermined) + "."
+        )
+    if improvement.in_responses:
+        paragraphs.append(
+            f"Under [[measured_response]] the rig's own have {', '.join(improvement.in_responses)} "
+            "in them, as estimated from the recordings."
         )
     if own:
         paragraphs.append(

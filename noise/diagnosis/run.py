@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from models.rig import Rig
 from models.rig_files.rig_file import load_rig
 from noise.base.user_effects import effect_library
 from noise.diagnosis.case import read_case
@@ -21,7 +22,7 @@ __all__ = ["diagnose", "diagnosis_json"]
 
 def diagnose(
     data: str | Path | Sequence[str | Path],
-    rig: str | Path,
+    rig: Rig | str | Path,
     *,
     quick: bool = False,
     effects: str | Path | Sequence[str | Path] = (),
@@ -33,8 +34,8 @@ def diagnose(
     ----------
     data : path or sequence of paths
         Recordings, or folders of them.
-    rig : path
-        Rig file.
+    rig : Rig or path
+        Rig, or its file.
     quick : bool
         Whether to give the first answer alone, without fits.
     effects : path or sequence of paths
@@ -46,6 +47,7 @@ def diagnose(
     Returns
     -------
     Diagnosis
+        Its ``improved`` is the rig with what closes the gap, None where nothing does.
 
     Raises
     ------
@@ -63,7 +65,7 @@ def diagnose(
     models.errors.ParameterError: ...
     """
     library = effect_library(_paths(effects))
-    case = read_case(_paths(data), load_rig(rig))
+    case = read_case(_paths(data), rig if isinstance(rig, Rig) else load_rig(rig))
     return diagnose_case(case, quick=quick, library=library, seed=seed)
 
 

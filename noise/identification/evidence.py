@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from noise.identification.table_number import TableNumber
 
-__all__ = ["UNITS", "Evidence", "elastomer_stiffness", "table_evidence", "with_evidence"]
+__all__ = ["NORMAL", "UNITS", "Evidence", "elastomer_stiffness", "table_evidence", "with_evidence"]
 
 UNITS = {
     "elastomer_stiffness": "Nm/rad",
@@ -31,7 +31,7 @@ UNITS = {
 }
 """Of the numbers that there may be evidence of."""
 
-_NORMAL = 1.645
+NORMAL = 1.645
 """Of a normal distribution, so many standard deviations on either side hold 90 %."""
 
 
@@ -148,15 +148,15 @@ def _alone(
 
 
 def _joined(one: Number, other: Number) -> Number:
-    weights = [(0.5 * math.log(n.high / n.low) / _NORMAL) ** -2 for n in (one, other)]
+    weights = [(0.5 * math.log(n.high / n.low) / NORMAL) ** -2 for n in (one, other)]
     centre = sum(
         w * math.log(n.value) for w, n in zip(weights, (one, other), strict=True)
     ) / sum(weights)  # fmt: skip
     error = math.sqrt(1.0 / sum(weights))
     # two that contradict each other are less sure than either says
     apart = math.log(one.value / other.value)
-    error *= max(1.0, abs(apart) / (_NORMAL * math.sqrt(1.0 / weights[0] + 1.0 / weights[1])))
-    low, high = (math.exp(centre + side * _NORMAL * error) for side in (-1.0, 1.0))
+    error *= max(1.0, abs(apart) / (NORMAL * math.sqrt(1.0 / weights[0] + 1.0 / weights[1])))
+    low, high = (math.exp(centre + side * NORMAL * error) for side in (-1.0, 1.0))
     return replace(
         one, value=math.exp(centre), low=low, high=high,
         n_recordings=one.n_recordings + other.n_recordings,

@@ -19,7 +19,8 @@ from noise.identification.law_numbers import law_numbers
 from noise.identification.levels import torque_levels
 from noise.identification.outcome import Identification, Seen
 from noise.identification.static_test import static_evidence, static_notes
-from noise.identification.table_fit import score_table
+from noise.identification.structure_check import structure_notes
+from noise.identification.table_fit import held_against
 from noise.identification.table_rig import identify_from_table
 
 if TYPE_CHECKING:
@@ -79,6 +80,8 @@ def identify_rig(
         levels = torque_levels(fit)
         seen.append(Seen(one, fit, levels, values_of(fit, levels)))
         tell(_sentence(seen[-1]))
+    if not any(one.levels.slips for one in seen) and (measurements.static or table):
+        return identify_from_table(table, beforehand, measurements, progress)
     if not any(one.levels.slips for one in seen):
         raise ParameterError(
             "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
@@ -87,8 +90,9 @@ def identify_rig(
     stated = {one.measured.condition.material for one in seen} - {None}
     material = str(stated.pop() if len(stated) == 1 else beforehand.rig.material)
     static, known = measurements.static, beforehand.known
-    evidence = (*table_evidence(table), *static_evidence(static, known))
-    first = with_evidence(bushing_numbers(seen), evidence)
+    # what truly sticks tells its stiffness itself; what yields looks softer than it is
+    yielding = [test for test in static if not test.elastic]
+    first = with_evidence(bushing_numbers(seen), static_evidence(yielding, known))
     base = _at_all_supports(found_rig(beforehand, first, material=material))
     known_fits = {fit.interference for fit in base.fits}
     usable = [one.measured for one in seen if one.measured.condition.interference in known_fits]
@@ -119,12 +123,16 @@ def identify_rig(
         seen=tuple(seen),
         assumed=assumed,
         not_found=not_found,
-        notes=(*_notes(choice, tested=bool(static)), *static_notes(static)),
+        notes=(
+            *_notes(choice, tested=bool(static)),
+            *static_notes(static),
+            *structure_notes(rig, usable),
+        ),
         refused=measurements.refused,
         held_out=choice.held_out,
         margin=MARGIN,
         static=static,
-        measured=tuple(score_table(rig, table).found.items()),
+        measured=held_against(rig, table),
         seconds=time.perf_counter() - started,
     )
 

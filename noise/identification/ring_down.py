@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
 from noise.identification.evidence import Evidence
@@ -35,7 +36,7 @@ _LEAST, _LOOKED_AT = 0.02, 0.06
 _SETTLED = 1e-3
 """Left out after the shaft stops [s]."""
 
-_CLEAR = 0.25
+_CLEAR = 0.1
 """Share of the band's power that a ring-down explains."""
 
 
@@ -94,7 +95,8 @@ def find_ring_down(
     """
     if rate < _LEAST_RATE:
         return None
-    away = np.abs(angle - float(np.median(angle[-max(10, angle.size // 100) :])))
+    rest = float(np.median(angle[-max(10, angle.size // 100) :]))
+    away = np.abs(uniform_filter1d(angle - rest, max(1, round(_SETTLED * rate))))
     # an encoder's noise is less than what a shaft that still moves goes
     noise = 1.4826 * float(np.median(np.abs(np.diff(angle)))) * 4.0
     moving = np.flatnonzero(away > max(_STILL * float(np.ptp(angle)), noise))

@@ -143,6 +143,8 @@ def static_test(
     >>> round(found.effective_stiffness), found.elastic, found.branches
     (500, True, 9)
     """
+    if angle.size < 4 * _FEWEST:
+        return None
     block = max(1, math.ceil(angle.size / _POINTS))
     n = angle.size // block
     t, a = (x[: n * block].reshape(n, block).mean(axis=1) for x in (torque, angle))

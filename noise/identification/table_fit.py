@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from noise.identification.table_number import TableNumber
 
-__all__ = ["TableFit", "TableScore", "fit_table", "score_table"]
+__all__ = ["TableFit", "TableScore", "fit_table", "held_against", "score_table"]
 
 _UNUSABLE = 100.0
 
@@ -102,6 +102,14 @@ def score_table(
         weighted = number.weight * number.misfit(found[number])
         squares.setdefault(number.group or number, []).append(weighted * weighted)
     return TableScore(sum(math.sqrt(sum(s) / len(s)) for s in squares.values()), found)
+
+
+def held_against(rig: Rig, table: Sequence[TableNumber]) -> tuple[tuple[TableNumber, float], ...]:
+    """Return each number with what a rig gives [the item's unit], NaN at fits that it lacks."""
+    fits = {round(fit.interference, 9) for fit in rig.fits}
+    known = [number for number in table if round(number.interference, 9) in fits]
+    found = score_table(rig, known).found
+    return tuple((number, found.get(number, math.nan)) for number in table)
 
 
 def _tasks(number: TableNumber) -> list[Task]:

@@ -16,7 +16,7 @@ import numpy as np
 from models.condition import FIXED
 from models.rig import LawSpec
 from models.rig_files.rig_text import rig_text
-from noise.identification.evidence import UNITS, table_evidence, with_evidence
+from noise.identification.evidence import NORMAL, UNITS, table_evidence, with_evidence
 from noise.identification.outcome import Identification, Number
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.table_fit import fit_table, score_table
@@ -41,7 +41,6 @@ _WIDTH = 0.4
 _SLOPE_STEP = 0.05
 """Of the logarithms, for the curvature at the end."""
 
-_NORMAL = 1.645
 _ROUNDS = 5
 
 
@@ -70,12 +69,13 @@ def identify_from_table(
     tell = progress or (lambda _text: None)
     known = beforehand.rig
     tested = static_evidence(measurements.static, beforehand.known)
+    given = table
     table = [*table, *(_row(one) for one in with_evidence((), tested) if one.interference)]
     places = sorted({number.interference for number in table})
     # what a row states of the rig itself need not be searched
     stated = with_evidence((), table_evidence(table))
     base = replace(known, fits=tuple(known.fit(place) for place in places))
-    own = [k for k, v in base.friction.parameters.items() if isinstance(v, float) and v > 0.0]
+    own = [k for k, v in base.friction.parameters.items() if not isinstance(v, str) and v > 0.0]
     names = [(name, place) for place in places for name in FIT_PARAMETERS]
     begin = np.zeros(len(names) + len(own))
     for i, (name, place) in enumerate(names):
@@ -104,21 +104,29 @@ def identify_from_table(
     spread = _spread(rig_at, table, fit)
     numbers = []
     for i, (name, place) in enumerate(names):
-        away = math.exp(_NORMAL * spread[i])
         for support in base.fit(place).damping if name == "damping" else (None,):
+            # damping said of one support is no measurement of another
+            of = [n for n in stated if (n.name, n.interference) == (name, place)]
+            other = (
+                name == "damping" and bool(of) and support not in {n.support_stiffness for n in of}
+            )
+            away = math.exp(NORMAL * (_WIDTH if other else spread[i]))
             at = fit.rig.fit(place)
             value = at.damping[support] if support is not None else float(getattr(at, name))
             numbers.append(
                 Number(name, UNITS[name], value, value / away, value * away, 0, place, support)
             )
     for i, name in enumerate(own, start=len(names)):
-        value, away = float(fit.rig.friction.parameters[name]), math.exp(_NORMAL * spread[i])
+        value, away = float(fit.rig.friction.parameters[name]), math.exp(NORMAL * spread[i])
         numbers.append(Number(f"friction.{name}", "", value, value / away, value * away, 0))
     return Identification(
         rig_toml=rig_text(fit.rig, _HEAD), numbers=tuple(numbers), laws=(),
         law=base.friction.name, seen=(), refused=measurements.refused, static=measurements.static,
+        not_found=tuple(
+            f"torques from {one.name}: nothing slips there" for one in measurements.used
+        ),
         notes=(_LAW_NOTE, *static_notes(measurements.static)),
-        measured=tuple((number, fit.score.found[number]) for number in table),
+        measured=tuple((number, fit.score.found[number]) for number in given),
         seconds=time.perf_counter() - started,
     )  # fmt: skip
 
@@ -126,7 +134,7 @@ def identify_from_table(
 def _row(said: Number) -> TableNumber:
     assert said.interference is not None  # of the bushing, not of the clamp
     support = FIXED if said.support_stiffness is None else said.support_stiffness
-    error = 0.5 * math.log(said.high / said.low) / _NORMAL
+    error = 0.5 * math.log(said.high / said.low) / NORMAL
     return TableNumber(said.name, said.value, said.interference, support, (), 1.0 / error, "table")
 
 

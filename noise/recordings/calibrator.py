@@ -106,8 +106,8 @@ def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[Calibra
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     soundfile.write(Path(folder) / "tone.wav", tone, 48_000)
     ...     found = read_calibrator(Path(folder) / "tone.wav", 94.0)
-    >>> round(found[0].frequency, 2), round(found[0].full_scale, 3)
-    (1000.0, 14.175)
+    >>> round(found[0].frequency, 2), round(found[0].full_scale, 2)
+    (1000.0, 14.18)
     """
     if not math.isfinite(level):
         raise ParameterError(f"level is {level!r} dB, expected a number")

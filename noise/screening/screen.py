@@ -152,9 +152,13 @@ def screen(
         raise ParameterError(refused[0][1])
     mapped = time.perf_counter()
     critical = tuple(point for found in maps for point in critical_points(found))
-    first: dict[tuple[str, str], DesignMap] = {}
-    for each in maps:
-        first.setdefault((each.design, each.environment), each)
+    rigs = [in_environment(screened[one.design].rig, environment(one.environment)) for one in maps]
+    never_slipping = [
+        why_never_slipping(rig, each.grid) for rig, each in zip(rigs, maps, strict=True)
+    ]
+    first: dict[tuple[str, str], tuple[DesignMap, str]] = {}
+    for each, why in zip(maps, never_slipping, strict=True):
+        first.setdefault((each.design, each.environment), (each, why))
     streams = (rng or np.random.default_rng(0)).spawn(len(first))
     statistics = tuple(
         statistics_of(
@@ -162,15 +166,12 @@ def screen(
             each,
             stream,
             tolerances=tolerances,
+            slips=not why,
             workers=workers,
             progress=progress,
         )
-        for each, stream in zip(first.values(), streams, strict=True)
+        for (each, why), stream in zip(first.values(), streams, strict=True)
     )
-    rigs = [in_environment(screened[one.design].rig, environment(one.environment)) for one in maps]
-    never_slipping = [
-        why_never_slipping(rig, each.grid) for rig, each in zip(rigs, maps, strict=True)
-    ]
     hints = [first_hint(rig, each) for rig, each in zip(rigs, maps, strict=True)]
     return Screening(
         designs=tuple(screened.values()),

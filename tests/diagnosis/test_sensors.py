@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import soundfile
 
+from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig, load_rig
 from models.sensors import Sensor, Sensors
 from noise.cli import main
@@ -74,8 +75,10 @@ def test_repeats_are_filtered_as_recordings_are():
 
 def test_repeats_are_rounded_and_clipped_as_recordings_are():
     sensor = Sensor(full_scale=9.0, bits=8)
+    impacts = replace(sensed(torque=sensor), effects=(LawSpec("slip_pulse", {"amplitude": 20.0}),))
     for one in (
         nominal(sensed(torque=sensor)),
+        nominal(impacts),
         ModelRuns(sensed(torque=sensor), EFFECTS, {}).simulated(Model(), run(at(2.0)), 3),
     ):
         steps = one["torque"] / sensor.step
@@ -123,8 +126,8 @@ def test_the_command_names_no_cause_and_says_what_its_causes_were_learned_with(c
     found = json.loads(capsys.readouterr().out)
     assert found["verdict"] == []
     (note,) = (note for note in found["notes"] if "learned with better sensors" in note)
-    assert "torque with up to 0.008 N m of noise, here 0.02" in note
-    assert "pressure without a filter at 4000 Hz" in note
+    assert "noise and rounding of torque 0.023 N m (at most 0.008)" in note
+    assert "a filter at 4000 Hz (torque, acceleration, pressure, angle)" in note
 
 
 def test_noise_from_recordings_is_found_and_told(tmp_path):
@@ -163,7 +166,7 @@ def test_good_sensors_are_those_the_causes_were_learned_with():
     assert unlearned_sensors(Sensors(good), [recording]) == ()
     assert unlearned_sensors(Sensors(), [recording]) == ()
     (note,) = unlearned_sensors(Sensors({"torque": Sensor(full_scale=5.0)}), [recording])
-    assert "torque within its range, here up to its end" in note
+    assert "a range that is reached (torque)" in note
 
 
 def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():

@@ -35,6 +35,25 @@ def find_chromium() -> str | None:
     return next(filter(None, map(shutil.which, _NAMES)), None)
 
 
+TAP = """
+window.heard = [];
+const connect = AudioNode.prototype.connect;
+AudioNode.prototype.connect = function (target, ...rest) {
+  if (target instanceof AudioDestinationNode && !(this instanceof ScriptProcessorNode)) {
+    if (!window.tap) {
+      window.tap = this.context.createScriptProcessor(1024, 1, 1);
+      window.tap.onaudioprocess = (event) =>
+        window.heard.push(...event.inputBuffer.getChannelData(0));
+      connect.call(window.tap, target);
+    }
+    connect.call(this, window.tap);
+  }
+  return connect.call(this, target, ...rest);
+};
+"""
+"""Script that collects in `heard` what goes to the loudspeaker."""
+
+
 @contextmanager
 def chromium() -> Iterator[Browser]:
     """Start a browser; skip the test where there is none."""
@@ -46,3 +65,25 @@ def chromium() -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=path, args=list(_FLAGS))
         yield browser
         browser.close()
+
+
+class OpenedPage:
+    """The page in the browser, with all that it complains of and asks for."""
+
+    def __init__(self, browser, file, width=1280, before=""):
+        self.complaints = []
+        self.requests = []
+        self.page = browser.new_page(viewport={"width": width, "height": 800})
+        self.page.on("console", lambda message: self.complaints.append(message.text))
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        if before:
+            self.page.add_init_script(before)
+        self.page.goto(file.as_uri())
+
+    def state(self):
+        return self.page.evaluate(
+            "({ playing: engine.playing, at: engine.now(), active: engine.active, "
+            "a: engine.slots.a, b: engine.slots.b, looping: engine.looping, "
+            "title: engine.key === null ? null : about[engine.key].title, gains: engine.gains() })"
+        )

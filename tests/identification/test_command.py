@@ -12,6 +12,7 @@ from noise.cli import main
 from noise.identification import law_choice
 from noise.identification.law_candidates import CANDIDATES
 from tests.blind.identify.rigs import make_rig, write_rig
+from tests.blind.identify.static import record_static, to_and_fro, write_static
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -25,7 +26,11 @@ def few_laws():
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     where = tmp_path_factory.mktemp("rig") / "data"
-    write_rig(make_rig(1, 0, recordings=3), where)
+    made = make_rig(1, 0, recordings=3)
+    write_rig(made, where)
+    _, fit, support = made.conditions[0]
+    slowly = record_static(made, fit, support, to_and_fro(4e-3, 1.0, 1.5), 7)
+    write_static(where / "slowly.wav", slowly, fit, support)
     return where
 
 
@@ -96,4 +101,18 @@ def test_an_empty_folder_is_an_unusable_call(tmp_path):
 def test_a_notebook_gets_the_same(folder):
     found = noise.identify(folder, folder / "known.toml")
     assert found.law
-    assert found.number("elastomer_stiffness").n_recordings == 3
+    stiffness = found.number("elastomer_stiffness")
+    assert stiffness.n_recordings == 3 + len(found.static) == 4
+
+
+def test_a_table_beside_recordings_joins_them_and_is_held_against_the_rig(folder, tmp_path):
+    known = make_rig(1, 0, recordings=3).conditions[0][1]
+    (tmp_path / "measured.csv").write_text(
+        "item,value,unit,interference_mm,support_stiffness_Nm_rad,speed_rad_s,error_percent\n"
+        f"elastomer_stiffness,500,Nm/rad,{known:g},fixed,,0.1\n"
+        "mean_torque,8,Nm,0.5,fixed,1,\n"
+    )
+    found = noise.identify(folder, folder / "known.toml", numbers=tmp_path / "measured.csv")
+    said, elsewhere = (value for _, value in found.measured)
+    assert said == pytest.approx(found.number("elastomer_stiffness").value)
+    assert np.isnan(elsewhere)  # no recording was made with that interference

@@ -121,6 +121,24 @@ def test_swinging_that_slips_is_no_static_test():
     assert our_own(rig, Oscillation(0.1, 1.0), SUPPORT, 1.0) is None
 
 
+@settings(max_examples=60, deadline=None)
+@given(
+    n=st.integers(1, 3000),
+    seed=st.integers(0, 1000),
+    shape=st.sampled_from(["noise", "steady", "steps", "still"]),
+)
+def test_torque_that_does_not_go_with_the_angle_is_no_static_test(n, seed, shape):
+    rng = np.random.default_rng(seed)
+    angle = {
+        "noise": rng.standard_normal(n),
+        "steady": np.linspace(0.0, 1.0, n),
+        "steps": np.round(np.linspace(0.0, 3.0, n)),
+        "still": np.zeros(n),
+    }[shape]
+    torque = rng.standard_normal(n)
+    assert static_test(torque, angle, 1e4, Condition(None, 0.279e-3, SUPPORT), "x") is None
+
+
 def test_a_slow_rise_alone_is_a_static_test():
     shaft = LoggedSpeed([0.0, 2.0], [4e-3, 4e-3])
     found = our_own(load_material_rig("fluorocarbon-thesis"), shaft, SUPPORT, 2.0)

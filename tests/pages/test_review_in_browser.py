@@ -7,29 +7,12 @@ import pytest
 
 from noise.pages.diagnosis.page import write_diagnosis
 from noise.pages.review.build import review
-from tests.helpers.browser import chromium
+from tests.helpers.browser import TAP, OpenedPage, chromium
 from tests.helpers.made_diagnoses import one_effect
 from tests.helpers.made_reviews import screen_rows, write_campaign, write_screen
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 CREAK, SQUEAL = "day1/recordings/creak.wav", "day1/recordings/squeal.wav"
-
-TAP = """
-window.heard = [];
-const connect = AudioNode.prototype.connect;
-AudioNode.prototype.connect = function (target, ...rest) {
-  if (target instanceof AudioDestinationNode && !(this instanceof ScriptProcessorNode)) {
-    if (!window.tap) {
-      window.tap = this.context.createScriptProcessor(1024, 1, 1);
-      window.tap.onaudioprocess = (event) =>
-        window.heard.push(...event.inputBuffer.getChannelData(0));
-      connect.call(window.tap, target);
-    }
-    connect.call(this, window.tap);
-  }
-  return connect.call(this, target, ...rest);
-};
-"""
 
 
 @pytest.fixture(scope="module")
@@ -49,19 +32,8 @@ def browser():
         yield started
 
 
-class Opened:
-    """The page in the browser, with all that it complains of and asks for."""
-
-    def __init__(self, browser, file, width=1280, before=""):
-        self.complaints = []
-        self.requests = []
-        self.page = browser.new_page(viewport={"width": width, "height": 800})
-        self.page.on("console", lambda message: self.complaints.append(message.text))
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.on("request", lambda request: self.requests.append(request.url))
-        if before:
-            self.page.add_init_script(before)
-        self.page.goto(file.as_uri())
+class Opened(OpenedPage):
+    """The page of a review, whose sounds are on cards."""
 
     def card(self, title):
         return self.page.locator(".card", has=self.page.get_by_role("heading", name=title))
@@ -72,13 +44,6 @@ class Opened:
 
     def put(self, slot, title):
         self.card(title).get_by_role("button", name=f"into {slot}").click()
-
-    def state(self):
-        return self.page.evaluate(
-            "({ playing: engine.playing, at: engine.now(), active: engine.active, "
-            "a: engine.slots.a, b: engine.slots.b, looping: engine.looping, "
-            "title: engine.key === null ? null : about[engine.key].title, gains: engine.gains() })"
-        )
 
 
 @pytest.fixture

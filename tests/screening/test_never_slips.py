@@ -33,6 +33,9 @@ def test_in_a_swing_it_is_a_result():
         interference=(0.279e-3,),
         support_stiffness=(2214.0,),
     )
-    found = screen([HELD], swing)
-    assert found.standings[0].rank == 1
+    found = screen(["fluorocarbon-thesis", HELD], swing)
+    best, other = found.standings
+    assert (best.design, best.rank, best.risk) == ("held", 1, 1)
+    assert other.rank == 2
+    assert best.words.endswith("; quiet")
     assert "never slips" in summary_lines(found)[0]

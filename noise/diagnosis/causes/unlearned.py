@@ -49,25 +49,30 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
     ()
     """
     usual = Acquisition().noise
-    found = []
+    rough: list[str] = []
+    full: list[str] = []
+    filtered: dict[float, list[str]] = {}
     for kind in dict.fromkeys(c.kind for r in recordings for c in r.channels if c.kind in usual):
         sensor, most = sensors.of(kind), NOISE_DRAWN[1] * usual[kind]
-        noise = usual[kind] if sensor.noise is None else sensor.noise
-        rough = math.hypot(noise, sensor.step / math.sqrt(12.0))
-        rows = [r for r in recordings if r.first(kind) is not None]
-        if rough > most:
-            unit = CHANNEL_UNITS[kind]
-            found.append(f"{kind} with up to {most:.2g} {unit} of noise, here {rough:.2g}")
-        if sensor.full_scale is not None and any(
-            abs(r.samples[r.first(kind)]).max() >= sensor.full_scale - 1.5 * sensor.step
-            for r in rows
-        ):
-            found.append(f"{kind} within its range, here up to its end")
-        if sensor.antialias is not None and sensor.antialias < USABLE * rows[0].rate:
-            found.append(f"{kind} without a filter at {sensor.antialias:g} Hz")
+        level = math.hypot(
+            usual[kind] if sensor.noise is None else sensor.noise, sensor.step / math.sqrt(12.0)
+        )
+        rows = [(r, row) for r in recordings if (row := r.first(kind)) is not None]
+        if level > most:
+            rough.append(f"{kind} {level:.2g} {CHANNEL_UNITS[kind]} (at most {most:.2g})")
+        if sensor.full_scale is not None:
+            end = sensor.full_scale - 1.5 * sensor.step
+            if any(abs(r.samples[row]).max() >= end for r, row in rows):
+                full.append(kind)
+        if sensor.antialias is not None and sensor.antialias < USABLE * rows[0][0].rate:
+            filtered.setdefault(sensor.antialias, []).append(kind)
+    found = [f"noise and rounding of {', '.join(rough)}"] if rough else []
+    found += [f"a filter at {corner:g} Hz ({', '.join(on)})" for corner, on in filtered.items()]
+    found += [f"a range that is reached ({', '.join(full)})"] if full else []
     if not found:
         return ()
     return (
-        f"the causes were learned with better sensors: {'; '.join(found)}; their probabilities are "
-        "less sure here, and none is named within what repeats through the same sensors differ by",
+        f"the causes were learned with better sensors than these: {'; '.join(found)}; their "
+        "probabilities are less sure here, and none is named within what repeats through the same "
+        "sensors differ by",
     )

@@ -8,6 +8,7 @@ model can do; a score with as many scattered repeats as tell the floor.
 from __future__ import annotations
 
 import math
+from copy import copy
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -75,6 +76,8 @@ class CaseComparison:
         Their scatter without a cause [unit of the number].
     forms : dict of (str, str) to Form
         Further forms of effects, by the name of the effect and their own.
+    about : Model
+        Whose repeats tell the floor; by default those of the rig as its file has it.
     """
 
     rig: Rig
@@ -84,6 +87,7 @@ class CaseComparison:
     names: tuple[str, ...]
     scale: NDArray[np.float64]
     forms: dict[tuple[str, str], Form] = field(default_factory=dict)
+    about: Model = field(default_factory=Model)
     signatures: list[NDArray[np.float64]] = field(init=False)
     references: list[Reference] = field(init=False)
     runs: ModelRuns = field(init=False)
@@ -93,10 +97,29 @@ class CaseComparison:
     def __post_init__(self) -> None:
         self.runs = ModelRuns(self.rig, self.library, self.forms)
         self.signatures = [signature(recording) for recording in self.recordings]
+        self.references = self._references()
+
+    def _references(self) -> list[Reference]:
         repeats = {
-            condition_key(r): list(self._repeats(Model(), r)) for r in reversed(self.recordings)
+            condition_key(r): list(self._repeats(self.about, r)) for r in reversed(self.recordings)
         }
-        self.references = references_of(self.recordings, self.signatures, repeats)[0]
+        return references_of(self.recordings, self.signatures, repeats)[0]
+
+    def compared_about(self, model: Model) -> CaseComparison:
+        """Return the same comparison in floors that the repeats of a model tell.
+
+        Where the rig as its file has it is about to change its regime, its repeats differ by more
+        than those of a model that is not; its floors would hide what that model leaves.
+
+        Raises
+        ------
+        ParameterError
+            The model cannot be simulated.
+        """
+        other = copy(self)
+        other.about = model
+        other.references = other._references()
+        return other
 
     def simulated(self, model: Model, template: Recording, seed: int) -> Recording:
         """Simulate a repeat by a model, at the condition, rate and length of a recording."""
@@ -121,7 +144,7 @@ class CaseComparison:
         found = []
         for i in chosen:
             reference = self.references[i]
-            if model == Model():
+            if model == self.about:
                 found.append(reference.deviation(self.signatures[i]))
                 continue
             repeats = self._repeats(model, self.recordings[i])
@@ -204,7 +227,7 @@ class CaseComparison:
 
     def _away(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
         reference = self.references[place]
-        plain = self._middle(Model(), place, single_run=True)
+        plain = self._middle(self.about, place, single_run=True)
         middle = self._middle(model, place, single_run=single_run)
         off = np.clip(reference.mean - plain, -reference.scale, reference.scale)
         away: NDArray[np.float64] = (self.signatures[place] - middle - off) / reference.scale

@@ -2,14 +2,15 @@
 
 A fit may find that a form fits best which was estimated from the recordings, or drawn at random;
 no rig file knows those. Here the cause that the verdict names is fitted in forms of the simulator's
-own, and the rig is offered as improved only if recordings that no fit has seen agree with it.
+own, or put into the responses of the structure where it is there, and the rig is offered as
+improved only if recordings that no fit has seen agree with it, and nothing is left to explain.
 """
 
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
-from itertools import chain
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -19,12 +20,13 @@ from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.closing import rms
-from noise.diagnosis.fit.fit_effect import number_spreads
-from noise.diagnosis.fit.stated_fit import fit_stated
+from noise.diagnosis.fit.corrected_responses import corrected_responses, is_in_responses
+from noise.diagnosis.fit.fit_effect import is_stated, number_spreads
+from noise.diagnosis.fit.stated_fit import fit_again, fit_stated
 from noise.diagnosis.improvement import Improvement
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from models.rig import LawSpec, Rig
     from noise.diagnosis.case import Case
@@ -38,7 +40,10 @@ CLOSED = 1.75
 more one time in fifty."""
 
 _SIMPLER = 0.95
-"""With effects a rig must leave at most this share of what it leaves with parameters alone."""
+"""What is less simple must leave at most this share of what the simpler leaves."""
+
+_AGAIN = 2
+"""Candidates that are fitted again in floors of their own."""
 
 _UNDETERMINED = 1.4
 """Standard deviation of a logarithm from which on a number is not determined."""
@@ -74,52 +79,96 @@ def improved_rig(
         explain of all of them.
     """
     alone, *others = candidates
-    first = [alone, *(fit_stated(comparison, fitted_to, one, alone, seed) for one in others[:1])]
-    left = [rms(comparison.squared(one.model, held)) for one in first]
-    if len(first) > 1 and left[1] <= _SIMPLER * left[0]:
-        first = first[::-1]
-    further = (fit_stated(comparison, fitted_to, one, alone, seed) for one in others[1:])
-    for fitted in chain(first, further):
-        after = rms(comparison.squared(fitted.model, held))
-        if after > CLOSED:
-            continue
-        try:
-            factors, rig = _rig(case.rig, fitted.model)
-        except ParameterError:  # beyond what is possible of a rig
-            continue
-        again = first_answer(replace(case, rig=rig), comparison.library, posterior, seed)
-        if not again.verdict:
-            break
-    else:
-        return None
+
+    def offered(batch: Sequence[Fitted]) -> Iterator[tuple[float, Fitted]]:
+        """Forms that a file can say, and responses; what is simpler may leave a little more."""
+        for one in batch:
+            if one is alone:
+                yield 1.0, alone
+                continue
+            plain, recalibrated = fit_stated(comparison, fitted_to, one, alone, seed)
+            yield from ((1.0, each) for each in plain)
+            yield from ((_SIMPLER, each) for each in recalibrated)
+            stated = all(is_stated(comparison, spec) for spec in one.model.effects)
+            if not stated and all(_is_said(comparison, spec) for spec in one.model.effects):
+                yield _SIMPLER, one
+
+    for batch in ([alone, *others[:1]], *([one] for one in others[1:])):
+        tried = [(rms(comparison.squared(one.model, held)) / ease, one.model)
+                 for ease, one in offered(batch)]  # fmt: skip
+        tried.sort(key=lambda entry: entry[0])
+        again = []
+        for _, model in tried[:_AGAIN]:
+            with suppress(ParameterError):  # it breaks down in one of its repeats
+                own, fitted = fit_again(comparison, fitted_to, model)
+                again.append((rms(own.squared(fitted.model, held)), own, fitted))
+        for after, own, fitted in sorted(again, key=lambda entry: entry[0]):
+            made = _made(case, comparison, fitted.model) if after <= CLOSED else None
+            if made is None:
+                continue
+            found = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
+            if not found.verdict:
+                before = rms(comparison.squared(Model(), held))
+                return _improvement(case, own, fitted_to, held, fitted, *made, before, after)
+    return None
+
+
+def _improvement(
+    case: Case,
+    comparison: CaseComparison,
+    fitted_to: Sequence[int],
+    held: Sequence[int],
+    fitted: Fitted,
+    factors: dict[str, float],
+    rig: Rig,
+    before: float,
+    after: float,
+) -> Improvement:
     spread = dict(zip(OFFSETS, fitted.spread, strict=False))
     spread |= number_spreads(comparison, fitted_to, fitted.model)
     return Improvement(
         rig=rig,
         factors=factors,
         effects=rig.effects[len(case.rig.effects) :],
+        in_responses=tuple(
+            spec.name for spec in fitted.model.effects if not is_stated(comparison, spec)
+        ),
         spread={
             name: math.sqrt(math.expm1(s**2)) for name, s in spread.items() if s < _UNDETERMINED
         },
         undetermined=tuple(name for name, s in spread.items() if s >= _UNDETERMINED),
         fitted_to=tuple(case.names[i] for i in fitted_to),
         held_out=tuple(case.names[i] for i in held),
-        gap_before=rms(comparison.squared(Model(), held)),
+        gap_before=before,
         gap_after=after,
     )
 
 
-def _rig(rig: Rig, model: Model) -> tuple[dict[str, float], Rig]:
+def _is_said(comparison: CaseComparison, spec: LawSpec) -> bool:
+    """Tell whether a rig file can say an effect, itself or by responses."""
+    return is_stated(comparison, spec) or is_in_responses(comparison.runs.active(spec))
+
+
+def _made(
+    case: Case, comparison: CaseComparison, model: Model
+) -> tuple[dict[str, float], Rig] | None:
     """Return factors and the rig with them and with effects, to the digits of a rig file."""
     factors = {
         name: math.exp(x) for name, x in zip(OFFSETS, model.offsets, strict=True) if x != 0.0
     }
     kinetic, critical = (factors.get(name, 1.0) for name in ("kinetic_torque", "critical_torque"))
-    least = max(kinetic * fit.kinetic_torque / fit.critical_torque for fit in rig.fits)
+    least = max(kinetic * fit.kinetic_torque / fit.critical_torque for fit in case.rig.fits)
     if critical < least * (1.0 + _ROUNDING):  # a contact breaks at no less than it slides at
         factors["critical_torque"] = least * (1.0 + _ROUNDING)
-    changed = changed_rig(rig, multiplied(rig, {}, factors), "improved rig")
-    return factors, replace(changed, effects=(*rig.effects, *map(_in_file, model.effects)))
+    stated = [spec for spec in model.effects if is_stated(comparison, spec)]
+    further = [comparison.runs.active(spec) for spec in model.effects if spec not in stated]
+    try:
+        rig = changed_rig(case.rig, multiplied(case.rig, {}, factors), "improved rig")
+        if further:
+            rig = replace(rig, measured=corrected_responses(comparison, rig, further))
+    except ParameterError:  # beyond what is possible of a rig
+        return None
+    return factors, replace(rig, effects=(*rig.effects, *map(_in_file, stated)))
 
 
 _ROUNDING = 2e-6

@@ -169,17 +169,15 @@ class ModelRuns:
         return joined_signature(parts)
 
     def _active(self, model: Model) -> list[ActiveEffect]:
-        found = []
-        for spec in (*self.rig.effects, *model.effects):
-            form = self.forms.get((spec.name, str(spec.parameters.get("form"))))
-            active = (
-                form.active(spec.parameters)
-                if form is not None
-                else self.library[spec.name].active(spec.parameters)
-            )
-            if not active.is_off:
-                found.append(active)
-        return found
+        active = [self.active(spec) for spec in (*self.rig.effects, *model.effects)]
+        return [one for one in active if not one.is_off]
+
+    def active(self, spec: LawSpec) -> ActiveEffect:
+        """Return an effect, in a form of the simulator's own or a further one."""
+        form = self.forms.get((spec.name, str(spec.parameters.get("form"))))
+        if form is not None:
+            return form.active(spec.parameters)
+        return self.library[spec.name].active(spec.parameters)
 
     def _radiated(
         self,

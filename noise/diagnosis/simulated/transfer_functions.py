@@ -41,6 +41,7 @@ __all__ = [
     "predict",
     "shift_clamp_mode",
     "torque_transfer_functions",
+    "with_chain_effects",
 ]
 
 _LONGEST = 0.25
@@ -138,18 +139,35 @@ class TransferFunctionCache:
         if not effects:
             return self.at(*key)
         if key not in self._whole:
-            self._whole[key] = _with_effects(self._rig, *key, self.at(*key), effects)
+            self._whole[key] = with_chain_effects(self._rig, *key, self.at(*key), effects)
         return self._whole[key]
 
 
-def _with_effects(
+def with_chain_effects(
     rig: Rig,
     interference: float,
     support_stiffness: float,
     transfer_functions: Mapping[str, TransferFunction],
     effects: Sequence[ActiveEffect],
 ) -> dict[str, TransferFunction]:
-    """Add to transfer functions what effects change about them."""
+    """Add to transfer functions what effects change about them.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad] or `models.condition.FIXED`.
+    transfer_functions : mapping of str to TransferFunction
+        As `torque_transfer_functions` gives them.
+    effects : sequence of ActiveEffect
+        On the chain from torque to acceleration and sound.
+
+    Returns
+    -------
+    dict of str to TransferFunction
+    """
     paths = chain_of(
         rig, interference, support_stiffness, transfer_functions, _MODEL_RATE, impacts=True
     )

@@ -24,12 +24,14 @@ def improved_sentence(improvement: Improvement) -> str:
     --------
     >>> from models.rig_files.rig_file import load_material_rig
     >>> from noise.diagnosis.improvement import Improvement
-    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), {"damping": 0.02}, (),
+    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (),
+    ...                     {"damping": 0.02}, (),
     ...                     ("run01.wav",), ("run02.wav",), 2.4, 1.1)
     >>> improved_sentence(found)
     'With damping 3.0 % higher the gap falls from 2.4 to 1.1 floors on held-out recordings.'
     """
     parts = [cause_of(spec.name).name for spec in improvement.effects]
+    parts += [f"{cause_of(name).name} in its responses" for name in improvement.in_responses]
     parts += [
         f"{parameter_name(name)} {abs(100.0 * (factor - 1.0)):.1f} % "
         f"{'higher' if factor > 1.0 else 'lower'}"
@@ -62,7 +64,7 @@ def improved_commands(
     >>> from pathlib import Path
     >>> from models.rig_files.rig_file import load_material_rig
     >>> from noise.diagnosis.improvement import Improvement
-    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), {}, (), (), (),
+    >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (), {}, (), (), (),
     ...                     2.4, 1.1)
     >>> improved_commands(found, "out/improved.toml", [Path("recordings")], None)[0]
     'bushing-noise diagnose recordings --rig out/improved.toml'

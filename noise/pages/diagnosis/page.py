@@ -10,8 +10,9 @@ import json
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
+from models.transfer_functions.files import write_transfer_function
 from noise.base.atomic import atomic
-from noise.diagnosis.improved_file import NAME
+from noise.diagnosis.improved_file import NAME, RESPONSES, response_files
 from noise.diagnosis.outcome import ROLES, as_json
 from noise.diagnosis.text.improved_sentences import improved_sentence
 from noise.diagnosis.text.sentences import answer, headline
@@ -69,6 +70,8 @@ def write_diagnosis(
     """
     content = as_json(diagnosis, NAME if improved is not None else None)
     data = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    found = diagnosis.improvement if improved is not None else None
+    responses = {} if found is None else response_files(found)
     html = _html(diagnosis, commands if improved is not None else ())
     with atomic(folder / "diagnosis.json") as json_part, ExitStack() as files:
         # Names of files may hold what no UTF-8 can.
@@ -76,9 +79,14 @@ def write_diagnosis(
         if improved is not None:
             rig_part = files.enter_context(atomic(folder / NAME))
             rig_part.write_bytes(improved.encode("utf-8", "backslashreplace"))
+        for name, transfer in responses.items():
+            write_transfer_function(files.enter_context(atomic(folder / name)), transfer)
         write_page(folder / "report.html", html)
         if improved is None:
             (folder / NAME).unlink(missing_ok=True)
+        for older in folder.glob(f"{RESPONSES}torque_to_*.npz"):
+            if older.name not in responses:
+                older.unlink()
 
 
 def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:

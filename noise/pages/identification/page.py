@@ -100,7 +100,8 @@ def _title(found: Identification) -> str:
         )
         if n
     ]  # fmt: skip
-    return f"The rig, identified from {' and '.join(sources)}"
+    listed = " and ".join(filter(None, (", ".join(sources[:-1]), sources[-1])))
+    return f"The rig, identified from {listed}"
 
 
 def _measured(number: TableNumber, found: float) -> list[str]:
@@ -108,7 +109,7 @@ def _measured(number: TableNumber, found: float) -> list[str]:
     at = f"{number}".partition(" at ")[2]
     if QUANTITIES[number.item].at_a_speed:
         at += f", {number.speeds[0]:g} rad/s"
-    told = "nothing of the kind" if math.isnan(found) else f"{found:.4g} {unit}"
+    told = "does not tell" if math.isnan(found) else f"{found:.4g} {unit}"
     return [number.item.replace("_", " "), at, f"{number.value:.4g} {unit}", told]
 
 

@@ -30,7 +30,11 @@ def static_panels(test: StaticTest) -> tuple[Panel, ...]:
     """
     with styled():
         ring = test.ring_down
-        return (_slope(test), *(() if ring is None else (_decay(ring),)))
+        return (
+            _slope(test),
+            *(() if test.elastic else (_parting(test),)),
+            *(() if ring is None else (_decay(ring),)),
+        )
 
 
 def _slope(test: StaticTest) -> Panel:
@@ -52,6 +56,24 @@ def _slope(test: StaticTest) -> Panel:
     axes.legend(loc="upper left", fontsize=8)
     return Panel(
         as_svg(figure), f"Torque over angle: {slope} (+-{100 * test.error:.1f} %), {told}."
+    )
+
+
+def _parting(test: StaticTest) -> Panel:
+    beyond = test.torque / test.held_stiffness
+    figure, axes = new_panel(
+        "What yields beside elastomer and beams", "Torque [Nm]", "Angle beyond theirs [mrad]"
+    )
+    axes.plot(
+        test.torque, 1e3 * (test.angle - beyond), color=GREY, ls="none", marker=".", ms=2,
+        label="recorded",
+    )  # fmt: skip
+    axes.plot(test.torque, 1e3 * (test.fitted_angle - beyond), color=BLUE, lw=1.0, label="contact")
+    axes.legend(loc="upper left", fontsize=8)
+    return Panel(
+        as_svg(figure),
+        f"Angle beyond that of elastomer and beams; without what yields the slope is "
+        f"{test.held_stiffness:.4g} Nm/rad (+-{100.0 * test.held_error:.1f} %).",
     )
 
 

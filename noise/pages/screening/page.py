@@ -122,4 +122,4 @@ def _summary(found: Screening) -> str:
     quietest = " and ".join(sorted(names))
     if len({one.design for one in found.standings}) == 1:
         return ""
-    return f"Quietest: {quietest}."
+    return f"Least risk of noise: {quietest}."

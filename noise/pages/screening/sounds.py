@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from joblib import Parallel, delayed
 
+from features.kernels.levels import sound_levels
 from models.errors import BushingNoiseError
 from noise.audio.sound import audible
 from noise.base.label_names import LABELS
@@ -48,6 +49,9 @@ _SILENCE = 40.0
 
 _NEAR = 0.05
 """Points of the same labels no farther apart than that sound alike, as a share of the axes."""
+
+INTERPOLATED = "refined"
+"""How a point is known that lies between simulated ones."""
 
 _ITERATIONS = 8
 
@@ -110,7 +114,9 @@ def chosen_points(points: Sequence[SharedPoint], most: int) -> list[SharedPoint]
         new[neediest] += 1
     for of, number in new.items():
         own = np.array([i for i, found in enumerate(labels) if found == of])
-        chosen += [int(i) for i in own[_spread(at[own], number)] if apart(int(i), chosen)]
+        certain = np.array([_is_certain(points[i]) for i in own])
+        among = certain if certain.any() else ~certain
+        chosen += [int(i) for i in own[_spread(at[own], number, among)] if apart(int(i), chosen)]
     return sorted((points[i] for i in chosen), key=lambda point: (point.speed, point.interference))
 
 
@@ -131,8 +137,15 @@ def _telling(points: Sequence[SharedPoint]) -> list[int]:
         of_label.setdefault(label, number)
     levels_of = np.array([[_level(point) for point in shared.points] for shared in points])
     apart = np.nanmax(levels_of, axis=1) - np.nanmin(levels_of, axis=1)
+    certain = np.array([_is_certain(shared) for shared in points])
+    apart = np.where(certain, apart, 0.0) if certain.any() else apart
     differing = [int(apart.argmax())] if apart.max() > 0.0 else []
     return list(dict.fromkeys([*of_label.values(), *differing, *(one for _, one, _ in loudest)]))
+
+
+def _is_certain(shared: SharedPoint) -> bool:
+    """Whether label and level of all designs are known there, so that they are those heard."""
+    return all(point is None or point.how != INTERPOLATED for point in shared.points)
 
 
 def _level(point: ScreenPoint | None) -> float:
@@ -141,8 +154,8 @@ def _level(point: ScreenPoint | None) -> float:
     return _SILENCE if point.label == "none" or point.level is None else point.level
 
 
-def _spread(at: NDArray[np.float64], number: int) -> list[int]:
-    """Divide points into so many parts, and return the point in the middle of each.
+def _spread(at: NDArray[np.float64], number: int, among: NDArray[np.bool_]) -> list[int]:
+    """Divide points into so many parts, and return that of some which is nearest to each middle.
 
     Lloyd's iteration from points that lie as far apart as can be.
     """
@@ -155,7 +168,8 @@ def _spread(at: NDArray[np.float64], number: int) -> list[int]:
     for _ in range(_ITERATIONS):
         nearest = np.linalg.norm(at[:, None] - middles, axis=2).argmin(axis=1)
         middles = np.array([at[nearest == part].mean(axis=0) for part in np.unique(nearest)])
-    found = np.linalg.norm(at[:, None] - middles, axis=2).argmin(axis=0)
+    distance_to = np.linalg.norm(at[:, None] - middles, axis=2)
+    found = np.where(among[:, None], distance_to, np.inf).argmin(axis=0)
     return list(dict.fromkeys(found.tolist()))
 
 
@@ -183,6 +197,8 @@ def simulated_entries(
         except BushingNoiseError as error:
             return str(error)
 
+    if not jobs:
+        return []
     with one_thread():
         work = Parallel(n_jobs=workers, prefer="threads", return_as="generator")
         done = work(delayed(entry)(job) for job in jobs)
@@ -208,13 +224,17 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
         support_stiffness=_SUPPORT if support is None else support,
         temperature=_TEMPERATURE if screened.temperature is None else screened.temperature,
     )
-    level = "" if point.level is None else f"{point.level:.0f} dB(A), "
+    sound = audible(run.recording, RATE).astype(np.float32)
+    note = f"simulated, {sound_levels(sound, RATE).level_a:.0f} dB(A)"
+    if point.how == INTERPOLATED:
+        level = "" if point.level is None else f", {point.level:.0f} dB(A)"
+        note += f"; the screen interpolates {point.label}{level}"
     return Entry(
         title=f"{screened.design}: {point.speed:.3g} rad/s, {point.interference:.3g} mm, "
         f"{screened.where}",
         rows=({"label": point.label},),
         condition=replace(run.recording.condition, material=screened.design),
         duration=SECONDS,
-        sound=audible(run.recording, RATE).astype(np.float32),
-        note=f"{level}simulated; label and level are the screen's",
+        sound=sound,
+        note=note,
     )

@@ -88,8 +88,8 @@ class Grid:
         return used
 
     @property
-    def words(self) -> str:
-        """Say over which conditions, in a line."""
+    def words(self) -> tuple[str, ...]:
+        """Say over which conditions, axis by axis."""
         moving = "speed" if not self.frequency else "peak speed"
         axes = (
             (moving, self.speed, "rad/s"),
@@ -97,7 +97,7 @@ class Grid:
             ("support", self.support_stiffness, "Nm/rad"),
             ("temperature", self.temperature, "°C"),
         )
-        return "; ".join(
+        return tuple(
             f"{name} {axis_words(values, _MOST_SAID)} {unit}" for name, values, unit in axes
         )
 

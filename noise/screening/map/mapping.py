@@ -210,7 +210,7 @@ def growth_rates(
     Parameters
     ----------
     rig : Rig
-    axes : tuple of ndarray
+    axes : tuple of ndarray, shapes (n_temperatures,), (n_supports,) and (n_fits,)
         Temperatures [degree Celsius], supports [Nm/rad] and interferences [m].
     speed : ndarray, shape (n_speeds,)
         [rad/s]

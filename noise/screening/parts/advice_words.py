@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from noise.screening.design.tolerances import PARAMETERS
@@ -26,7 +27,10 @@ def advice_words(one: Statistics) -> str:
             said.append(f"no single change {_FAILS[aim]}")
         if best is not None:
             to = f"{one.nominal[best.name] * best.value:.3g} {PARAMETERS[best.name]}"
-            brings = f"{_DOES[aim]} by {best.gain:.2g} rad/s" if aim == "margin" else _DOES[aim]
+            brings = _DOES[aim]
+            if aim == "margin":
+                by = f"{brings} by {best.gain:.2g} rad/s"
+                brings = by if math.isfinite(best.gain) else "leaves no speed that vibrates"
             said.append(f"{best.name} {best.change:+.1%} to {to} {brings}")
     return "; ".join(said)
 

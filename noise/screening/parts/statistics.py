@@ -39,7 +39,7 @@ class Statistics:
     ----------
     design, environment : str
     risk : int, optional
-        From 1 to 10; None where it failed.
+        From 1 to 10; None where it failed, or the shaft turns and the contact never slips.
     robustness : Robustness, optional
         None where it was not asked for, or failed.
     nominal : mapping of str to float
@@ -90,6 +90,7 @@ def statistics_of(
     rng: np.random.Generator,
     *,
     tolerances: bool | None = None,
+    slips: bool = True,
     workers: int = -1,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Statistics:
@@ -104,6 +105,9 @@ def statistics_of(
         Of the parts.
     tolerances : bool, optional
         Whether to tell robustness; by default where the design states tolerances.
+    slips : bool
+        Whether the contact ever does; where it does not, there is nothing to tell but that a swing
+        is harmless.
     workers : int
         Threads; -1 is one a core.
     progress : callable
@@ -117,6 +121,8 @@ def statistics_of(
     wanted = bool(design.tolerances) if tolerances is None else tolerances
     used = as_mapped(design, mapped)
     found = Statistics(design.name, mapped.environment)
+    if not slips:
+        return replace(found, risk=_LEAST_RISK if mapped.grid.frequency else None)
     try:
         progress(f"grading {design.name}, {mapped.environment}")
         found = replace(found, risk=use_risk(used, workers=workers))
@@ -132,6 +138,8 @@ def statistics_of(
         return replace(found, failed=(*found.failed, f"tolerances: {error}"))
     return replace(found, robustness=stands, nominal=nominal)
 
+
+_LEAST_RISK = 1
 
 _FAILURES = (BushingNoiseError, ArithmeticError, ValueError)
 """Singular matrices are among these; anything else is a defect of the program."""

@@ -16,6 +16,7 @@ import numpy as np
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.map.mapping import growth_rates
 from noise.screening.ranking.plain_words import fit_words, supports_words
+from noise.screening.ranking.use_risk import ends_and_middle
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,8 +35,8 @@ _CHANGE = 0.2
 _NO_TORQUE = 1e-12
 """[N m]"""
 
-_SPEEDS = 25
-"""Of the use, at which stability is asked."""
+_SPEEDS = 17
+"""Of the use, at which stability is asked, at the ends and the middle of the other axes."""
 
 _BETTER = 0.8
 """Share of what is noisy, or unsteady, that must be left at most for a hint."""
@@ -92,7 +93,8 @@ def _by_stability(rig: Rig, grid: Grid) -> str:
 def _unsteady(rig: Rig, grid: Grid) -> float:
     """Share of the use at which steady sliding cannot last [-]."""
     axes = tuple(
-        np.array(axis) for axis in (grid.temperature, grid.support_stiffness, grid.interference)
+        np.array(ends_and_middle(axis))
+        for axis in (grid.temperature, grid.support_stiffness, grid.interference)
     )
     return float(np.mean(growth_rates(rig, axes, np.linspace(*grid.use, _SPEEDS)) > 0.0))
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from noise.screening.design.design import Design
 
-__all__ = ["use_grades", "use_risk"]
+__all__ = ["ends_and_middle", "use_grades", "use_risk"]
 
 _SPEEDS = 12
 
@@ -81,9 +81,9 @@ def use_grades(design: Design, *, workers: int = -1) -> NDArray[np.float64]:
     conditions = list(
         itertools.product(
             np.linspace(*grid.use, _SPEEDS).tolist(),
-            _few(np.clip(grid.interference, *design.rig.interference_range).tolist()),
-            _few(grid.support_stiffness),
-            _few(grid.temperature),
+            ends_and_middle(np.clip(grid.interference, *design.rig.interference_range).tolist()),
+            ends_and_middle(grid.support_stiffness),
+            ends_and_middle(grid.temperature),
         )
     )
     distinct = list(dict.fromkeys(conditions))  # beyond the fits that are given one is held
@@ -95,7 +95,14 @@ def use_grades(design: Design, *, workers: int = -1) -> NDArray[np.float64]:
     return risk_grades(*np.array([found[condition] for condition in conditions]).T)
 
 
-def _few(values: Sequence[float]) -> list[float]:
+def ends_and_middle(values: Sequence[float]) -> list[float]:
+    """First, middle and last value of an axis, each once, in its unit, such as [rad/s].
+
+    Examples
+    --------
+    >>> ends_and_middle([1.0, 2.0, 3.0, 4.0]), ends_and_middle([5.0])
+    ([1.0, 2.0, 4.0], [5.0])
+    """
     last = len(values) - 1
     return [values[i] for i in sorted({0, last // 2, last})]
 

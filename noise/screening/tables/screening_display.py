@@ -36,11 +36,13 @@ def screening_html(found: Screening) -> str:
                 "" if math.isnan(one.loudest_level) else f"{one.loudest_level:.0f} dB(A)",
                 "" if math.isnan(one.margin_v_crit2) else f"{one.margin_v_crit2:+.3g}",
                 "" if stands is None else probability_words(stands),
+                one.words,
             ]
         )
-    rows += [["", name, reason, *[""] * 5] for name, reason in found.refused]
+    rows += [["", name, reason, *[""] * 6] for name, reason in found.refused]
     header = (
         "rank", "design", "where", "risk", "noisy use", "loudest", "margin [rad/s]", "parts",
+        "in words",
     )  # fmt: skip
     caption = f"Screen of {found.points} points in {found.seconds:.1f} s"
     return html_table(caption, rows, header=header)

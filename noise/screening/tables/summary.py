@@ -75,14 +75,13 @@ def conditions_lines(screening: Screening) -> list[str]:
     each design at 2 points: speed 1 and 5 rad/s; interference 0.3 mm; support 2214 Nm/rad; ...
     not from a design's own data: 2 of PDMS; where a design has no data of its own, stiffness, ...
     """
-    grids = dict.fromkeys(screening.conditions)
+    said = dict.fromkeys(words for grid in screening.conditions for words in grid.words)
     n_points = sum(math.prod(grid.shape) for grid in screening.conditions)
-    where = ", and ".join(grid.words for grid in grids)
     same = "the same " if len(screening.designs) > 1 else ""
-    lines = [f"each design at {same}{n_points} points: {where}"]
+    lines = [f"each design at {same}{n_points} points: {'; '.join(said)}"]
     if screening.substituted:
-        said = ", ".join(f"{count} of {name}" for name, count in screening.substituted.items())
-        lines.append(f"not from a design's own data: {said}; {RULE}")
+        counts = ", ".join(f"{count} of {name}" for name, count in screening.substituted.items())
+        lines.append(f"not from a design's own data: {counts}; {RULE}")
         lines += [text for text in [_fair(screening)] if text]
     return lines
 

@@ -72,10 +72,10 @@ def threshold(force: NDArray[np.float64]) -> float:
     return float(max(0.02, 4.0 * noise))
 
 
-def _cycles(
+def turning_points(
     force: NDArray[np.float64], height: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the indices of bottoms and of the tops that follow each of them."""
+    """Return the indices of bottoms, and of the top that follows each of them."""
     points = _turning_points(force, height)
     if len(points) > 1 and force[points[0]] > force[points[1]]:
         points = points[1:]
@@ -106,7 +106,7 @@ def cycle_features(force: NDArray[np.float64], rate: float, height: float) -> ND
     >>> cycle_features(saw, 1000.0, 0.02).round(2)
     array([-2.3 , -2.31,  0.35,  0.99,  0.  ,  0.  ])
     """
-    bottoms, tops = _cycles(force, height)
+    bottoms, tops = turning_points(force, height)
     features = np.full(len(FEATURES), np.nan)
     features[2] = np.mean(force)
     if len(bottoms) <= _FEWEST:
@@ -132,7 +132,7 @@ def stick_slope(
     force: NDArray[np.float64], rate: float, height: float
 ) -> tuple[float, float, float]:
     """Median rate of rise [1/s], and mean force at tops and at bottoms."""
-    bottoms, tops = _cycles(force, height)
+    bottoms, tops = turning_points(force, height)
     rises = force[tops] - force[bottoms]
     slope = float(np.median(rises / (tops - bottoms)) * rate)
     return slope, float(np.mean(force[tops])), float(np.mean(force[bottoms]))
