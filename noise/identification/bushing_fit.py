@@ -68,12 +68,15 @@ class Known:
         Relative standard deviation of both [-]; large where nothing is known.
     damping_share : float
         Share of the damping that acts in the elastomer [-].
+    share_error : float
+        Its relative standard deviation [-].
     """
 
     elastomer_inertia: float
     clamp_inertia: float
     inertia_error: float
     damping_share: float = 0.5
+    share_error: float = 0.02
 
 
 @dataclass(frozen=True, eq=False)

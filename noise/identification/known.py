@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["Beforehand", "known_beforehand"]
 
 _STATED_ERROR = 0.02
-"""Relative standard error of an inertia that is stated: what bushings scatter by."""
+"""Relative standard error of what is stated: what bushings scatter by."""
 
 _GUESSED_ERROR = 0.5
 """And of one that is not."""
@@ -66,7 +66,18 @@ def known_beforehand(path: Path | None) -> Beforehand:
     content = {} if path is None else read_toml(path, where)
     rig = rig_from(content, Path() if path is None else path.parent, where)
     stated = frozenset(content)
-    share = rig.elastomer_damping_share if "elastomer_damping_share" in stated else 0.5
+    shared = "elastomer_damping_share" in stated
+    share = rig.elastomer_damping_share if shared else 0.5
     both = {"elastomer_inertia_kgm2", "clamp_inertia_kgm2"} <= stated
     error = _STATED_ERROR if both else _GUESSED_ERROR
-    return Beforehand(rig, Known(rig.elastomer_inertia, rig.clamp_inertia, error, share), stated)
+    return Beforehand(
+        rig,
+        Known(
+            rig.elastomer_inertia,
+            rig.clamp_inertia,
+            error,
+            share,
+            _STATED_ERROR if shared else _GUESSED_ERROR,
+        ),
+        stated,
+    )

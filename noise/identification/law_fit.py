@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.identification.law_misfit import Misfit
+from noise.identification.law_starts import starts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -101,22 +102,22 @@ def sketch_law(model: LawModel, earlier: Sequence[Sketch] = ()) -> Sketch:
     Sketch
     """
     few = replace(model, subjects=tuple(one.with_some(_FEW) for one in model.subjects))
-    starts = []
-    for law, choices in few.starts():
+    begun = []
+    for law, choices in starts(few):
         misfit = Misfit(few, few.vector(choices[0], law), loose=_LOOSE)
         # each recording takes what suits it best
         costs = [misfit.by_recording(misfit.away(few.vector(local, law))) for local in choices]
         best = np.argmin(costs, axis=0)
         local = np.stack([choices[c][r] for r, c in enumerate(best)])
-        starts.append((float(np.sum(np.min(costs, axis=0))), few.vector(local, law)))
+        begun.append((float(np.sum(np.min(costs, axis=0))), few.vector(local, law)))
     for other in earlier:
         theirs = other.vectors[0]
         start = few.vector(other.model.local(theirs), few.law_like(other.model, theirs))
         misfit = Misfit(few, start, loose=_LOOSE)
-        starts.append((float(np.sum(misfit.by_recording(misfit.away(start)))), start))
-    starts.sort(key=lambda start: start[0])
+        begun.append((float(np.sum(misfit.by_recording(misfit.away(start)))), start))
+    begun.sort(key=lambda start: start[0])
     tried = []
-    for _, start in starts[:_TRIED]:
+    for _, start in begun[:_TRIED]:
         misfit = Misfit(few, start, loose=_LOOSE)
         vector, away, _ = _searched(misfit, start, _ITERATIONS["sketch"])
         tried.append((float(np.mean(misfit.by_recording(away))), vector))

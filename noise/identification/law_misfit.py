@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.identification.law_model import LOCAL
+from noise.identification.law_priors import priors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,18 +45,40 @@ class Misfit:
     def __init__(self, model: LawModel, start: NDArray[np.float64], *, loose: float = 1.0) -> None:
         self._model = model
         self._low, self._high = model.limits(start)
-        self._matrix, self._target = model.priors(loose)
+        self._matrix, self._target = priors(model, loose)
         self._weights = [
             (_COUNT * one.excerpts.rate) ** -0.5 * np.ones(one.excerpts.torque.size)
             for one in model.subjects
         ]
 
     def within(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return a vector, shape (n,), within its limits [-]."""
+        """Return a vector within its limits.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Logarithms [-].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [-]
+        """
         return np.clip(x, self._low, self._high)
 
     def away(self, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-        """Deviations of each recording at a vector, in what a good model may miss it by [-]."""
+        """Tell how far each recording is from what a vector foretells.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Logarithms [-].
+
+        Returns
+        -------
+        list of ndarray, shape (n_samples,)
+            In what a good model may miss it by [-].
+        """
         found = []
         for one, torque in zip(self._model.subjects, self._model.foretell(x), strict=True):
             e = one.excerpts
@@ -67,11 +90,33 @@ class Misfit:
         return found
 
     def by_recording(self, away: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Mean size of each recording's deviations, shape (n_recordings,), large ones cut [-]."""
+        """Mean size of each recording's deviations, large ones cut.
+
+        Parameters
+        ----------
+        away : list of ndarray, shape (n_samples,)
+            As of `away` [-].
+
+        Returns
+        -------
+        ndarray, shape (n_recordings,)
+            [-]
+        """
         return np.array([np.mean(np.minimum(np.abs(one), _FAR)) for one in away])
 
     def missed(self, away: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Share of each recording's oscillation that is not foretold, shape (n_recordings,) [-]."""
+        """Share of each recording's oscillation that is not foretold.
+
+        Parameters
+        ----------
+        away : list of ndarray, shape (n_samples,)
+            As of `away` [-].
+
+        Returns
+        -------
+        ndarray, shape (n_recordings,)
+            Of the median excerpt [-].
+        """
         shares = []
         for one, deviations in zip(self._model.subjects, away, strict=True):
             e = one.excerpts
@@ -80,11 +125,27 @@ class Misfit:
         return np.array(shares)
 
     def usual(self, away: list[NDArray[np.float64]]) -> float:
-        """Usual size of deviations, 1 where the model is good [-]."""
+        """Return the usual size of deviations, 1 where the model is good.
+
+        Parameters
+        ----------
+        away : list of ndarray, shape (n_samples,)
+            As of `away` [-].
+        """
         return max(1.0, 1.4826 * float(np.median(np.abs(np.concatenate(away)))))
 
     def cost(self, x: NDArray[np.float64], away: list[NDArray[np.float64]], usual: float) -> float:
-        """Sum of squares, of Huber's kind [-]."""
+        """Sum of squares, of Huber's kind.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Logarithms [-].
+        away : list of ndarray, shape (n_samples,)
+            Deviations there [-].
+        usual : float
+            Their usual size [-].
+        """
         size = np.abs(np.concatenate(away)) / usual
         bent = np.where(size <= _BEND, size**2, _BEND * (2.0 * size - _BEND))
         prior = self._matrix @ x - self._target
@@ -97,7 +158,26 @@ class Misfit:
         usual: float,
         free: NDArray[np.bool_],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Curvature, shape (n, n), and slope, shape (n,), of the cost at a vector [-]."""
+        """Return curvature and slope of the cost.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Logarithms [-].
+        away : list of ndarray, shape (n_samples,)
+            Deviations there [-].
+        usual : float
+            Their usual size [-].
+        free : ndarray of bool, shape (n,)
+            Which numbers move.
+
+        Returns
+        -------
+        curvature : ndarray, shape (n, n)
+            [-]
+        slope : ndarray, shape (n,)
+            [-]
+        """
         normal = self._matrix.T @ self._matrix
         slope = self._matrix.T @ (self._matrix @ x - self._target)
         slopes = self._slopes(x, away, free)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.identification.law_model import LOCAL
-from noise.identification.outcome import Number
-from noise.identification.pooled import NORMAL
+from noise.identification.outcome import NORMAL, Number
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 

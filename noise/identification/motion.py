@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
+from scipy.ndimage import uniform_filter1d
 
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 
@@ -24,6 +25,12 @@ __all__ = ["LIMIT", "Contact", "TorqueSpectrum", "torque_spectrum"]
 
 LIMIT = 8000.0
 """Highest frequency kept [Hz], at most 0.3 of the rate; the flank ends a third above."""
+
+_NOISE_ALONE = 0.85
+"""Share of the highest frequency from which there is nothing but the cell's noise."""
+
+_SMOOTHED = 150.0
+"""Width over which a spectrum is smoothed to be told from noise [Hz]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,9 +150,24 @@ def torque_spectrum(measured: Measured, seconds: float | None = None) -> TorqueS
     frequency = rfftfreq(closed.size, 1.0 / rate)
     low = min(LIMIT, 0.3 * rate)
     x = np.clip((frequency - low) / (low / 3.0), 0.0, 1.0)
-    spectrum = rfft(closed) * (0.5 + 0.5 * np.cos(np.pi * x))
+    lines = rfft(closed)
+    spectrum = lines * _above_noise(lines, frequency) * (0.5 + 0.5 * np.cos(np.pi * x))
     kept = slice(round(LEAD * rate), n - round(TAIL * rate))
     return TorqueSpectrum(
         spectrum, 2j * np.pi * frequency, closed.size, kept, mean,
         np.asarray(irfft(spectrum, closed.size)[kept]) + mean, measured.shaft_speed[kept], rate,
     )  # fmt: skip
+
+
+def _above_noise(
+    lines: NDArray[np.complex128], frequency: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Share of each line that is no noise of the cell (Wiener 1949), which is taken for white.
+
+    What differentiation would make of it looks like sliding where the contact sticks.
+    """
+    power = np.abs(lines) ** 2
+    noise = float(np.mean(power[frequency > _NOISE_ALONE * frequency[-1]]))
+    width = max(3, round(_SMOOTHED / frequency[1]))
+    smooth = uniform_filter1d(power, width, mode="nearest")
+    return np.asarray(np.maximum(1.0 - noise / np.maximum(smooth, noise), 0.0))

@@ -34,7 +34,7 @@ class Subject:
     ----------
     measured : Measured
     excerpts : Excerpts
-    start : ndarray, shape (6,)
+    start : ndarray, shape (7,)
         Where a search begins: logarithms of `noise.identification.law_model.LOCAL` [-].
     """
 
@@ -85,7 +85,7 @@ def subjects_of(seen: Sequence[Seen], known: Known) -> list[Subject]:
         if excerpts is not None:
             start = np.log([
                 stiffness, kinetic, max(drop, _LEAST_DROP) * kinetic, damping,
-                known.elastomer_inertia, known.clamp_inertia,
+                known.elastomer_inertia, known.clamp_inertia, known.damping_share,
             ])  # fmt: skip
             subjects.append(Subject(one.measured, excerpts, start))
     return subjects

@@ -12,6 +12,7 @@ from noise.identification.bushing_fit import Known
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.law_choice import left_out
 from noise.identification.law_model import LawModel
+from noise.identification.law_starts import starts
 from noise.identification.rig_text import rig_text
 from noise.identification.run import identify
 from noise.identification.subjects import Subject
@@ -30,7 +31,7 @@ def test_the_second_rig_has_each_law_that_is_tried():
 
 
 def subject(speed, interference=0.279e-3, support=2214.0):
-    start = np.log([665.0, 8.0, 2.7, 0.09, 1.5e-5, 8.3e-4])
+    start = np.log([665.0, 8.0, 2.7, 0.09, 1.5e-5, 8.3e-4, 0.5])
     return Subject(at(speed, interference, support), None, start)
 
 
@@ -38,7 +39,7 @@ def subject(speed, interference=0.279e-3, support=2214.0):
 def test_every_start_is_a_rig_whose_file_loads(candidate, tmp_path):
     subjects = (subject(1.0), subject(2.0, 0.381e-3), subject(2.0, 0.381e-3, math.inf))
     model = LawModel(candidate, subjects, Known(1.5e-5, 8.3e-4, 0.02))
-    for law, choices in model.starts():
+    for law, choices in starts(model):
         vector = model.vector(choices[0], law)
         low, high = model.limits(vector)
         assert np.all(vector >= low - 1e-9)
@@ -71,7 +72,7 @@ def test_a_lone_interference_is_not_left_out():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("index", [0, 1, 3])
+@pytest.mark.parametrize("index", [0, 3, 4])
 def test_the_law_of_a_development_rig_is_found(index, tmp_path):
     made = make_rig(1, index)
     write_rig(made, tmp_path / "data")
