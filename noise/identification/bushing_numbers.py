@@ -13,7 +13,7 @@ from noise.identification.bushing_fit import phases_of
 from noise.identification.law_model import LOCAL
 from noise.identification.law_priors import fitted_evidence
 from noise.identification.levels import torque_levels
-from noise.identification.outcome import NORMAL, Number, values_of
+from noise.identification.outcome import NORMAL, Forecast, Number, values_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,18 +52,21 @@ def read_again(seen: Sequence[Seen], fit: LawFit) -> list[Seen]:
     list of Seen
         Those that the law was not fitted to are left as they are.
     """
-    own = {
-        id(one.measured): fit.model.bushing(numbers, one)
-        for one, numbers in zip(
-            fit.model.subjects, np.exp(fit.model.local(fit.vector)).tolist(), strict=True
-        )
-    }
+    model, own = fit.model, {}
+    for subject, numbers, torque in zip(
+        model.subjects, np.exp(model.local(fit.vector)).tolist(), model.foretell(fit.vector),
+        strict=True,
+    ):  # fmt: skip
+        e = subject.excerpts
+        middle = e.starts.size // 2
+        forecast = None if torque is None else Forecast(e.rate, e.torque[middle], torque[middle])
+        own[id(subject.measured)] = model.bushing(numbers, subject), forecast
     again = []
     for one in seen:
-        bushing = own.get(id(one.measured))
-        if bushing is None:
+        if id(one.measured) not in own:
             again.append(one)
             continue
+        bushing, forecast = own[id(one.measured)]
         spectrum = one.fit.spectrum
         contact = spectrum.contact(bushing)
         phases = phases_of(contact, spectrum.shaft_speed, spectrum.rate)
@@ -72,7 +75,8 @@ def read_again(seen: Sequence[Seen], fit: LawFit) -> list[Seen]:
             stuck_share=float(np.mean(phases.stuck)),
         )  # fmt: skip
         levels = torque_levels(read)
-        again.append(replace(one, fit=read, levels=levels, values=values_of(read, levels)))
+        values = values_of(read, levels)
+        again.append(replace(one, fit=read, levels=levels, values=values, forecast=forecast))
     return again
 
 

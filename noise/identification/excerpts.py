@@ -35,10 +35,13 @@ _SHORTEST, _LONGEST = 3e-3, 24e-3
 """An excerpt lasts so many cycles, but no less and no longer [s]."""
 
 _MOST = 10
-_RUN_IN = 3e-3
+_CLAMP_RINGS = 0.06
+"""What the clamp did before the recording is felt so long beyond what is left out of it [s]."""
+
+_RUN_IN = 9e-3
 """Angle by which a contact has slid before an excerpt, to forget what it was [rad]."""
 
-_LONGEST_RUN_IN = 5e-3
+_LONGEST_RUN_IN = 12e-3
 """[s]"""
 
 
@@ -118,15 +121,14 @@ def excerpts_of(measured: Measured, bushing: LumpedBushing) -> Excerpts | None:
     length = round(rate * min(max(_CYCLES * cycle, _SHORTEST), _LONGEST))
     speed = float(np.mean(spectrum.shaft_speed))
     run_in = round(rate * min(_RUN_IN / speed, _LONGEST_RUN_IN))
-    peaks = peaks[(peaks >= run_in) & (peaks + length <= n)]
+    first = max(run_in, 0 if bushing.clamp_is_fixed else round(_CLAMP_RINGS * rate))
+    peaks = peaks[(peaks >= first) & (peaks + length <= n)]
     if not peaks.size:
         return None
     wanted = min(_MOST, max(3, math.ceil(_FORETOLD * rate / length)))
     starts = np.unique(peaks[np.linspace(0, peaks.size - 1, wanted).round().astype(int)])
     inside = starts[:, None] + np.arange(length)
-    first = spectrum.kept.start
+    kept = spectrum.kept.start
     slope = np.abs(np.gradient(spectrum.torque) * rate)
     scale = np.hypot(_LEVEL * spectrum.mean, _JITTER * slope)
-    return Excerpts(
-        spectrum, starts, length, run_in, measured.torque[first:][inside], scale[inside]
-    )
+    return Excerpts(spectrum, starts, length, run_in, measured.torque[kept:][inside], scale[inside])

@@ -11,13 +11,25 @@ from models.condition import FIXED
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from noise.identification.bushing_fit import BushingFit
     from noise.identification.levels import Levels
     from noise.identification.measured import Measured
     from noise.identification.static_test import StaticTest
     from noise.identification.table_number import TableNumber
 
-__all__ = ["NORMAL", "Identification", "LawScore", "Number", "Seen", "as_json", "values_of"]
+__all__ = [
+    "NORMAL",
+    "Forecast",
+    "Identification",
+    "LawScore",
+    "Number",
+    "Seen",
+    "as_json",
+    "values_of",
+]
 
 NORMAL = 1.645
 """Of a normal distribution, so many standard deviations on either side hold 90 %."""
@@ -86,12 +98,32 @@ class Seen:
     levels : Levels
     values : mapping of str to float
         What counts of it in the end [SI units], by the names of the rig's numbers.
+    forecast : Forecast, optional
+        Where the law was fitted to it.
     """
 
     measured: Measured
     fit: BushingFit
     levels: Levels
     values: Mapping[str, float]
+    forecast: Forecast | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """What the law foretells of an excerpt of a recording.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    recorded, foretold : ndarray, shape (n,)
+        Torque of the cell [Nm].
+    """
+
+    rate: float
+    recorded: NDArray[np.float64]
+    foretold: NDArray[np.float64]
 
 
 def values_of(fit: BushingFit, levels: Levels) -> dict[str, float]:

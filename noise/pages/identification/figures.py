@@ -10,7 +10,7 @@ from models.drawing import BLUE, GREY, ORANGE, VERMILION, styled
 from noise.pages.engine.panels import Panel, as_svg, new_panel
 
 if TYPE_CHECKING:
-    from noise.identification.outcome import Identification, Number, Seen
+    from noise.identification.outcome import Forecast, Identification, Number, Seen
 
 __all__ = ["law_panel", "level_panels", "recording_panels"]
 
@@ -22,7 +22,7 @@ _MARKERS = "osD^v"
 
 
 def recording_panels(one: Seen) -> tuple[Panel, ...]:
-    """Draw what one recording said: the rise in stick, and the free motion after a slip.
+    """Draw what one recording said: the rise in stick, a slip, and what the law foretells.
 
     Parameters
     ----------
@@ -33,7 +33,8 @@ def recording_panels(one: Seen) -> tuple[Panel, ...]:
     tuple of Panel
     """
     with styled():
-        return (_static(one), _ringing(one))
+        panels = (_static(one), _ringing(one))
+        return panels if one.forecast is None else (*panels, _forecast(one.forecast))
 
 
 def _static(one: Seen) -> Panel:
@@ -82,6 +83,19 @@ def _ringing(one: Seen) -> Panel:
         f"Torques around a slip; modes while it slides at {modes}, damping "
         f"{one.values['damping']:.3g} Nm s/rad.",
     )
+
+
+def _forecast(forecast: Forecast) -> Panel:
+    """Torque of an excerpt, and what the law foretells of it from its first sample on."""
+    time = 1e3 * np.arange(forecast.recorded.size) / forecast.rate
+    missed = float(np.std(forecast.foretold - forecast.recorded) / np.std(forecast.recorded))
+    figure, axes = new_panel("What the law foretells of a cycle", "Time [ms]", "Torque [Nm]")
+    axes.plot(time, forecast.recorded, color=GREY, lw=2.5, label="recorded")
+    axes.plot(time, forecast.foretold, color=VERMILION, lw=1.0, label="foretold")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - 0.25 * (high - low), high)  # room for the legend
+    axes.legend(loc="lower right", fontsize=8, ncols=2)
+    return Panel(as_svg(figure), f"Recorded and foretold torque; {100.0 * missed:.1f} % is missed.")
 
 
 def _window(one: Seen, seconds: float) -> tuple[int, int]:
