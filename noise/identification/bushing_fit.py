@@ -48,6 +48,15 @@ _STIFFNESSES = tuple(np.geomspace(0.3, 3.0, 15).tolist())
 _INERTIAS = tuple(np.geomspace(0.4, 2.5, 15).tolist())
 """Factors that are tried on the stiffness read off the slope, and on inertias not known."""
 
+_DAMPINGS = (0.06, 0.09, 0.14)
+"""Tried with each stiffness [Nm s/rad] (Table 5.5 and about it)."""
+
+_RISES = (4e-4, 1e-3, 2e-3, 4e-3, 8e-3)
+"""Over which a rise of the torque is looked for [s]."""
+
+_WELL_KNOWN = 0.1
+"""Relative error of the inertias up to which no others are tried [-]."""
+
 _EXCERPT = 0.3
 """Looked at meanwhile [s]."""
 
@@ -174,9 +183,8 @@ def _bushing(values: NDArray[np.float64], support: float, known: Known) -> Lumpe
     )
 
 
-def _static_stiffness(spectrum: TorqueSpectrum, support: float) -> float:
-    """k_E from how steeply the torque rises: the most frequent slope, over the shaft's speed."""
-    step = max(1, round(4e-4 * spectrum.rate))
+def _static_stiffness(spectrum: TorqueSpectrum, support: float, step: int) -> float:
+    """k_E from how steeply the torque rises over so many samples, by the shaft's speed."""
     slope = (spectrum.torque[step:] - spectrum.torque[:-step]) * spectrum.rate / step
     slope = slope / spectrum.shaft_speed[step:]
     rising = slope[slope > 0.25 * np.quantile(slope, 0.9)]
@@ -186,18 +194,31 @@ def _static_stiffness(spectrum: TorqueSpectrum, support: float) -> float:
 
 
 def _start(measured: Measured, known: Known) -> NDArray[np.float64]:
-    """Try stiffness, and inertias where they are not known, on a coarse grid."""
+    """Try stiffness and damping, and inertias where they are not known, on a coarse grid."""
     support = measured.condition.support_stiffness
     spectrum = torque_spectrum(measured, _EXCERPT)
-    k = _static_stiffness(spectrum, support)
-    wide = known.inertia_error > 0.1
-    clamps = _INERTIAS if wide and not math.isinf(support) else (1.0,)
-    tried = [
-        np.log([f_k * k, 0.09, f_e * known.elastomer_inertia, f_c * known.clamp_inertia])
-        for f_k, f_e, f_c in itertools.product(
-            _STIFFNESSES, (0.7, 1.0, 1.4) if wide else (1.0,), clamps
-        )
-    ]
+    # over a short step the clamp's ringing in a long stick hides the rise, a long one holds slips
+    steps = {max(1, round(seconds * spectrum.rate)) for seconds in _RISES}
+    slopes = [_static_stiffness(spectrum, support, step) for step in steps]
+    low, high = _STIFFNESSES[0] * min(slopes), _STIFFNESSES[-1] * max(slopes)
+    n = math.ceil(math.log(high / low) / math.log(_STIFFNESSES[1] / _STIFFNESSES[0])) + 1
+    inertias = known.elastomer_inertia, known.clamp_inertia
+    start = _likeliest(spectrum, support, known, [
+        np.log([k, damping, *inertias])
+        for k, damping in itertools.product(np.geomspace(low, high, n), _DAMPINGS)
+    ])  # fmt: skip
+    if known.inertia_error <= _WELL_KNOWN:
+        return start
+    clamps = (1.0,) if math.isinf(support) else _INERTIAS
+    return _likeliest(spectrum, support, known, [
+        start + np.log([stiffer, 1.0, elastomer, clamp])
+        for stiffer, elastomer, clamp in itertools.product(_STIFFNESSES, (0.7, 1.0, 1.4), clamps)
+    ])  # fmt: skip
+
+
+def _likeliest(
+    spectrum: TorqueSpectrum, support: float, known: Known, tried: list[NDArray[np.float64]]
+) -> NDArray[np.float64]:
     costs = [_implausibility(spectrum, _bushing(values, support, known)) for values in tried]
     return tried[int(np.argmin(costs))]
 
