@@ -7,6 +7,13 @@ Numerov's weights (1, 10, 1)/12 straighten the band. Gain is matched at low freq
 a sixth of the sampling rate the result differs from the continuous mode by less than 0.2 dB, up
 to a quarter by less than 1 dB; sampling the continuous impulse response would alias, the more
 so as an acceleration does not fall off towards high frequencies.
+
+From zeta = 1 on a mode rings no more: s^2 + 2 zeta omega s + omega^2 = 0 has the two real roots
+
+    s = -omega (zeta -+ sqrt(zeta^2 - 1)),
+
+of which the slower, -omega / (zeta + sqrt(zeta^2 - 1)), decides how long the mode is followed. Up
+to a sixth of the sampling rate such a mode differs by less than 0.5 dB, however much it is damped.
 """
 
 from __future__ import annotations
@@ -223,11 +230,22 @@ def ringing_samples(frequency: float, damping_ratio: float, rate: float, n_sampl
     10696
     """
     decay = 2 * np.pi * frequency * damping_ratio / rate
+    if damping_ratio > 1:
+        decay = _real_decays(2 * np.pi * frequency / rate, damping_ratio)[0]
     return n_samples if decay * n_samples <= DECAY_EXPONENT else int(DECAY_EXPONENT / decay) + 1
 
 
 def _poles(frequency: float, damping_ratio: float, rate: float) -> NDArray[np.float64]:
     angle = 2 * np.pi * frequency / rate
+    if damping_ratio > 1:
+        slow, fast = np.exp([-decay for decay in _real_decays(angle, damping_ratio)])
+        return np.array([1.0, -(slow + fast), slow * fast])
     radius = np.exp(-damping_ratio * angle)
     turn = np.cos(angle * np.sqrt(1 - damping_ratio**2))
     return np.array([1.0, -2 * radius * turn, radius**2])
+
+
+def _real_decays(angle: float, damping_ratio: float) -> tuple[float, float]:
+    """Exponents per sample of an overdamped mode; the product of the two is `angle`**2."""
+    apart = damping_ratio + float(np.sqrt(damping_ratio**2 - 1))
+    return angle / apart, angle * apart

@@ -214,7 +214,7 @@ def _regression(
     parting = best[1][1] * best[4] / float(np.ptp(a)) if best else 0.0
     gained = n * math.log(left / max(least, 1e-300)) if left > least else 0.0
     if best is None or gained < _SURE or parting < _LEAST_PARTING:
-        error = math.sqrt(left / n * t.size * spread[0, 0] / t.size * (t.size / n)) / plain[0]
+        error = math.sqrt(left / n * spread[0, 0]) / plain[0]
         return True, max(parting, 0.0), plain[0], error, plain[0], error, line
     weight = np.array([math.exp(-0.5 * n * math.log(max(one[0], 1e-300) / max(least, 1e-300)))
                        for one in found])  # fmt: skip
@@ -222,9 +222,7 @@ def _regression(
 
     def averaged(direction: NDArray[np.float64]) -> tuple[float, float]:
         values = np.array([one[1][:2] @ direction for one in found])
-        own_error = np.array([
-            direction @ one[3][:2, :2] @ direction * one[0] / n * (t.size / n) for one in found
-        ])  # fmt: skip
+        own_error = np.array([direction @ one[3][:2, :2] @ direction * one[0] / n for one in found])
         mean = float(weight @ values)
         variance = float(weight @ (own_error + (values - mean) ** 2))
         return mean, math.sqrt(max(variance, 0.0)) / mean

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from scipy.signal import lfilter
 
 from models.condition import Condition
 from models.errors import ParameterError
@@ -150,6 +151,27 @@ def test_a_static_test_without_its_interference_is_named():
     angle = 5e-3 * np.sin(2 * np.pi * np.arange(4000) / 1000.0)
     with pytest.raises(ParameterError, match="states no interference_mm"):
         static_test(500.0 * angle, angle, 1000.0, Condition(None, None, SUPPORT), "slow")
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.9, 0.97])
+@pytest.mark.parametrize("yields", [False, True])
+def test_the_stated_error_is_the_scatter_of_tests_whose_noise_remembers(memory, yields):
+    torque = 4.0 * np.sin(2 * np.pi * 2.5 * np.arange(4000) / 4000)
+    step = np.diff(torque, prepend=torque[0])
+    contact = np.cumsum(step / (2000.0 * (1.0 - np.sign(step) * torque / 6.0)))
+    angle = torque / 500.0 + yields * contact
+    found = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        noise = lfilter([math.sqrt(1.0 - memory**2)], [1.0, -memory], rng.standard_normal(6000))
+        measured = angle + 4e-5 * noise[2000:]
+        found.append(static_test(torque, measured, 1e3, Condition(None, 0.279e-3, SUPPORT), "x"))
+    assert {one.elastic for one in found} == {not yields}
+    for value, error in (("effective_stiffness", "error"), ("held_stiffness", "held_error")):
+        values = np.array([getattr(one, value) for one in found])
+        # without what every encoder errs by
+        said = math.sqrt(np.median([getattr(one, error) for one in found]) ** 2 - 0.002**2)
+        assert 1 / 1.5 < said / (values.std() / values.mean()) < 1.5
 
 
 def test_static_tests_alone_give_a_rig(tmp_path):

@@ -2,7 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.signal import freqz
+from hypothesis import given, settings, strategies as st
+from scipy.integrate import solve_ivp
+from scipy.signal import freqz, lfilter
 
 from models.structure.modal import (
     ModalModel,
@@ -66,3 +68,65 @@ def test_mode_is_followed_until_it_is_inaudible():
     n = ringing_samples(500.0, 0.01, RATE, 10**9)
     assert np.exp(-2 * np.pi * 500.0 * 0.01 * n / RATE) < 1e-6
     assert ringing_samples(500.0, 0.0, RATE, 4800) == 4800
+
+
+@settings(max_examples=60, deadline=None)
+@given(natural=st.floats(20.0, 9e3), damping=st.floats(1.0, 1e3))
+def test_an_overdamped_mode_follows_the_continuous_one_up_to_a_sixth_of_the_rate(natural, damping):
+    omega, omega_r = 2 * np.pi * np.geomspace(10, 16e3, 100), 2 * np.pi * natural
+    q = 1 / (omega_r**2 - omega**2 + 2j * damping * omega_r * omega)
+    for section, continuous in (
+        (acceleration_section, -(omega**2) * q),
+        (displacement_section, q),
+    ):
+        sampled = freqz(*section(natural, damping, RATE), omega / RATE)[1]
+        assert np.max(np.abs(_decibels(sampled / continuous))) < 0.5
+
+
+@pytest.mark.parametrize("section", [acceleration_section, displacement_section])
+@pytest.mark.parametrize("natural", [20.0, 300.0, 5000.0])
+def test_response_goes_on_through_critical_damping(section, natural):
+    def response(damping):
+        b, a = section(natural, damping, RATE)
+        unit = np.zeros(2000)
+        unit[0] = 1.0
+        return lfilter(b, a, unit)
+
+    below, at, above = response(1 - 1e-7), response(1.0), response(1 + 1e-7)
+    assert np.isfinite(above).all()
+    scale = np.abs(at).max()
+    assert np.abs(below - at).max() < 1e-5 * scale
+    assert np.abs(above - at).max() < 1e-5 * scale
+    # what changes goes on changing at one rate, so there is no corner
+    assert above - at == pytest.approx(at - below, rel=0.0, abs=1e-8 * scale)
+
+
+@settings(max_examples=15, deadline=None)
+@given(natural=st.floats(50.0, 1000.0), damping=st.floats(0.6, 8.0))
+def test_a_mode_moves_as_integrated_in_time_whether_it_rings_or_not(natural, damping):
+    omega, seconds = 2 * np.pi * natural, 0.02
+    t = np.arange(int(seconds * RATE)) / RATE
+
+    def force(t):
+        return np.sin(2 * np.pi * 150.0 * t) ** 2
+
+    moved = solve_ivp(
+        lambda t, y: [y[1], force(t) - 2 * damping * omega * y[1] - omega**2 * y[0]],
+        (0.0, t[-1]), [0.0, 0.0], method="LSODA", t_eval=t, rtol=1e-9, atol=1e-18,
+    ).y  # fmt: skip
+    q, speed = moved
+    q_tt = force(t) - 2 * damping * omega * speed - omega**2 * q
+    for section, exact in ((displacement_section, q), (acceleration_section, q_tt)):
+        sampled = lfilter(*section(natural, damping, RATE), force(t))
+        assert np.abs(sampled - exact).max() < 0.02 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("damping", [1.0, 1.01, 3.0, 40.0])
+def test_an_overdamped_mode_is_followed_as_long_as_its_slower_root(damping):
+    n = ringing_samples(500.0, damping, RATE, 10**9)
+    b, a = displacement_section(500.0, damping, RATE)
+    unit = np.zeros(n + 1)
+    unit[0] = 1.0
+    response = np.abs(lfilter(b, a, unit))
+    assert 1e-8 < response[-1] / response.max() < 1e-4
+    assert ringing_samples(500.0, damping, RATE, 100) <= 100
