@@ -33,7 +33,6 @@ from .kernels.slip_drops import (
 )
 from .kernels.slip_pulses import (
     Pulses as Pulses,
-    acoustic_slips as acoustic_slips,
 )
 from .kernels.spectra import (
     SpectralShape as SpectralShape,

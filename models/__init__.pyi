@@ -40,9 +40,6 @@ from .sensors import (
     Sensors as Sensors,
 )
 from .structure.beams_exact import (
-    BeamResponse as BeamResponse,
-    forced_response as forced_response,
-    mode_shape as mode_shape,
     natural_frequencies as natural_frequencies,
 )
 from .structure.beams_fit import (

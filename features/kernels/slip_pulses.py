@@ -18,20 +18,13 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from features.kernels.conditioning import (
-    ACOUSTIC_FROM,
-    NOTHING,
     WORKING_LIMIT,
-    band_analytic,
-    checked_signal,
-    forward,
-    usable_limit,
 )
-from models.errors import ParameterError
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-__all__ = ["Pulses", "acoustic_slips"]
+__all__ = ["Pulses"]
 
 PULSE_BAND_FROM = 2_000.0
 """Lower limit of the band in which pulses are sought [Hz]; lower for a rate below 16 kHz."""
@@ -43,8 +36,6 @@ _PULSE_PROMINENCE_DB = 6.0
 """A pulse rises and falls by at least this much [dB]."""
 
 _LEAST_PULSES = 4
-
-_LEAST_RATE = 400.0
 
 _LEAST_HIGH_SHARE = 1e-6
 """Power of the high band, relative to the whole, below which it holds leakage only."""
@@ -93,49 +84,6 @@ class Pulses:
 _NO_PULSES = Pulses(np.empty(0), 0.0, *[math.nan] * 6)
 
 
-def acoustic_slips(signal: ArrayLike, rate: float) -> Pulses:
-    """Find the pulses in a sound pressure or an acceleration.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-        [Pa] or [m/s2] or any other unit.
-    rate : float
-        Sampling rate [Hz].
-
-    Returns
-    -------
-    Pulses
-        No pulses, and NaN for the rest, of a signal that is constant.
-
-    Raises
-    ------
-    ParameterError
-        A signal that can't be analysed, or a rate below 400 Hz.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> clicks = np.zeros(16000)
-    >>> clicks[100::200] = 1.0
-    >>> slips = acoustic_slips(clicks, 16e3)
-    >>> round(slips.rate), round(slips.irregularity, 2)
-    (79, 0.0)
-    """
-    x = checked_signal(signal, rate)
-    if rate < _LEAST_RATE:
-        raise ParameterError(f"rate is {rate:g} Hz; pulses need at least {_LEAST_RATE:g} Hz")
-    mean = float(x.mean())
-    x = x - mean
-    if float(np.abs(x).max()) <= NOTHING * abs(mean) or not x.any():
-        return _NO_PULSES
-    transform = forward(x, rate)
-    limit = min(WORKING_LIMIT, usable_limit(rate))
-    whole, _ = band_analytic(transform, ACOUSTIC_FROM, limit)
-    high, high_rate = band_analytic(transform, pulse_band_from(limit), limit)
-    return pulses_of(whole, high, high_rate, start=transform.lead / rate)
-
-
 def pulse_band_from(limit: float) -> float:
     """Lower limit of the band in which pulses are sought.
 
@@ -164,7 +112,7 @@ def pulses_of(
     *,
     start: float = 0.0,
 ) -> Pulses:
-    """`acoustic_slips` of analytic signals that are at hand.
+    """Find the pulses in a sound or an acceleration of which the analytic signals are at hand.
 
     Parameters
     ----------

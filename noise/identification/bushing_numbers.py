@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.base.interval import SURE_90
 from noise.identification.bushing_fit import phases_of
 from noise.identification.law_model import LOCAL
 from noise.identification.law_priors import fitted_evidence
 from noise.identification.levels import torque_levels
-from noise.identification.outcome import NORMAL, Forecast, Number, values_of
+from noise.identification.outcome import Forecast, Number, values_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,7 +113,7 @@ def _of_fit(fit: LawFit, name: str, unit: str) -> list[Number]:
             continue
         at = key if isinstance(key, tuple) else (key, None)
         value = math.exp(means[g])
-        away = math.exp(NORMAL * math.hypot(float(spread[model.n_local + g]), shared))
+        away = math.exp(SURE_90 * math.hypot(float(spread[model.n_local + g]), shared))
         n = int(np.sum(model.group_of[:, i] == g)) + said.count(g)
         numbers.append(Number(name, unit, value, value / away, value * away, n, *at))
     return sorted(numbers, key=lambda n: (n.interference or 0.0, n.support_stiffness or 0.0))
@@ -130,6 +131,6 @@ def _levels(seen: Sequence[Seen]) -> list[Number]:
             # levels that change with speed do so for a reason: their mean is no less sure
             value = float(np.exp(np.mean(np.log(values))))
             away = math.hypot(_TORQUE_SCATTER / math.sqrt(len(values)), _TORQUE_SHARED)
-            away = math.exp(NORMAL * away)
+            away = math.exp(SURE_90 * away)
             numbers.append(Number(name, "Nm", value, value / away, value * away, len(values), at))
     return numbers

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.identification.outcome import NORMAL, Number
+from noise.base.interval import SURE_90
+from noise.identification.outcome import Number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -161,15 +162,15 @@ def _alone(
 
 
 def _joined(one: Number, other: Number) -> Number:
-    weights = [(0.5 * math.log(n.high / n.low) / NORMAL) ** -2 for n in (one, other)]
+    weights = [(0.5 * math.log(n.high / n.low) / SURE_90) ** -2 for n in (one, other)]
     centre = sum(
         w * math.log(n.value) for w, n in zip(weights, (one, other), strict=True)
     ) / sum(weights)  # fmt: skip
     error = math.sqrt(1.0 / sum(weights))
     # two that contradict each other are less sure than either says
     apart = math.log(one.value / other.value)
-    error *= max(1.0, abs(apart) / (NORMAL * math.sqrt(1.0 / weights[0] + 1.0 / weights[1])))
-    low, high = (math.exp(centre + side * NORMAL * error) for side in (-1.0, 1.0))
+    error *= max(1.0, abs(apart) / (SURE_90 * math.sqrt(1.0 / weights[0] + 1.0 / weights[1])))
+    low, high = (math.exp(centre + side * SURE_90 * error) for side in (-1.0, 1.0))
     return replace(
         one, value=math.exp(centre), low=low, high=high,
         n_recordings=one.n_recordings + other.n_recordings,

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.base.interval import SURE_90
 from noise.identification.law_model import LOCAL
-from noise.identification.outcome import NORMAL, Number
+from noise.identification.outcome import Number
 from sim.effects import EFFECTS
 from sim.friction import friction_law
 
@@ -57,5 +58,5 @@ def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
 
 
 def _interval(value: float, error: float) -> tuple[float, float]:
-    away = math.exp(NORMAL * min(error, 2.0))
+    away = math.exp(SURE_90 * min(error, 2.0))
     return value / away, value * away

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from noise.identification.table_number import TableNumber
 
 __all__ = [
-    "NORMAL",
     "Forecast",
     "Identification",
     "LawScore",
@@ -30,9 +29,6 @@ __all__ = [
     "as_json",
     "values_of",
 ]
-
-NORMAL = 1.645
-"""Of a normal distribution, so many standard deviations on either side hold 90 %."""
 
 
 @dataclass(frozen=True)

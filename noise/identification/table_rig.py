@@ -16,8 +16,9 @@ import numpy as np
 from models.condition import FIXED
 from models.rig import LawSpec
 from models.rig_files.rig_text import rig_text
+from noise.base.interval import SURE_90
 from noise.identification.evidence import UNITS, table_evidence, with_evidence
-from noise.identification.outcome import NORMAL, Identification, Number
+from noise.identification.outcome import Identification, Number
 from noise.identification.static_test import static_evidence, static_notes
 from noise.identification.table_fit import fit_table, score_table
 from noise.identification.table_number import TableNumber
@@ -110,14 +111,14 @@ def identify_from_table(
             other = (
                 name == "damping" and bool(of) and support not in {n.support_stiffness for n in of}
             )
-            away = math.exp(NORMAL * (_WIDTH if other else spread[i]))
+            away = math.exp(SURE_90 * (_WIDTH if other else spread[i]))
             at = fit.rig.fit(place)
             value = at.damping[support] if support is not None else float(getattr(at, name))
             numbers.append(
                 Number(name, UNITS[name], value, value / away, value * away, 0, place, support)
             )
     for i, name in enumerate(own, start=len(names)):
-        value, away = float(fit.rig.friction.parameters[name]), math.exp(NORMAL * spread[i])
+        value, away = float(fit.rig.friction.parameters[name]), math.exp(SURE_90 * spread[i])
         numbers.append(Number(f"friction.{name}", "", value, value / away, value * away, 0))
     return Identification(
         rig_toml=rig_text(fit.rig, _HEAD), numbers=tuple(numbers), laws=(),
@@ -134,7 +135,7 @@ def identify_from_table(
 def _row(said: Number) -> TableNumber:
     assert said.interference is not None  # of the bushing, not of the clamp
     support = FIXED if said.support_stiffness is None else said.support_stiffness
-    error = 0.5 * math.log(said.high / said.low) / NORMAL
+    error = 0.5 * math.log(said.high / said.low) / SURE_90
     return TableNumber(said.name, said.value, said.interference, support, (), 1.0 / error, "table")
 
 

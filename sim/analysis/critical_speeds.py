@@ -14,8 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import groupby, pairwise
-from operator import itemgetter
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -25,7 +24,7 @@ from sim.shaft import ConstantSpeed
 from sim.timing import REGIME_RATE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from models.rig import Rig
     from sim.motion import Motion
@@ -37,8 +36,6 @@ __all__ = [
     "falls_below",
     "motion_from_rest",
     "regime_at",
-    "stick_slip_ranges",
-    "unbroken_ranges",
 ]
 
 SPEEDS = tuple(0.25 * i for i in range(1, 53))
@@ -178,76 +175,6 @@ def motion_from_rest(
         seconds=seconds,
         rate=REGIME_RATE,
     )
-
-
-def stick_slip_ranges(
-    rig: Rig,
-    interference: float,
-    support_stiffness: float,
-    speeds: Sequence[float] = SPEEDS,
-    *,
-    seconds: float = _SECONDS,
-) -> tuple[tuple[float, float], ...]:
-    """Return the first and last speed of every unbroken range of stick-slip [rad/s].
-
-    There may be islands: whether the first slip catches again depends on the phase of the clamp.
-
-    Parameters
-    ----------
-    rig : Rig
-    interference : float
-        [m]
-    support_stiffness : float
-        [Nm/rad]
-    speeds : sequence of float
-        To try [rad/s], positive and rising.
-    seconds : float
-        Length of each run [s].
-
-    Raises
-    ------
-    ParameterError
-        If the speeds do not rise from above zero, or a value cannot be used.
-
-    Examples
-    --------
-    >>> from models.rig_files.rig_file import load_material_rig
-    >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> stick_slip_ranges(rig, 0.279e-3, 2214.0, (3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0))
-    ((3.0, 3.5), (5.0, 5.5))
-    """
-    _check(speeds)
-
-    def sticks(speed: float) -> bool:
-        regime = regime_at(rig, speed, interference, support_stiffness, seconds=seconds)
-        return regime is Regime.STICK_SLIP
-
-    return unbroken_ranges(speeds, map(sticks, speeds))
-
-
-def unbroken_ranges(
-    speeds: Iterable[float], happens: Iterable[bool]
-) -> tuple[tuple[float, float], ...]:
-    """Return the first and last speed of every unbroken range in which something happens [rad/s].
-
-    Parameters
-    ----------
-    speeds : iterable of float
-        Rising [rad/s].
-    happens : iterable of bool
-        At each of them.
-
-    Examples
-    --------
-    >>> unbroken_ranges((1.0, 2.0, 3.0, 4.0), (True, True, False, True))
-    ((1.0, 2.0), (4.0, 4.0))
-    """
-    ranges = []
-    for it_happens, together in groupby(zip(happens, speeds, strict=True), itemgetter(0)):
-        if it_happens:
-            inside = [speed for _, speed in together]
-            ranges.append((inside[0], inside[-1]))
-    return tuple(ranges)
 
 
 def falls_below(

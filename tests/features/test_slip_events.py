@@ -8,9 +8,13 @@ from hypothesis import given, settings, strategies as st
 from scipy.signal import lfilter
 
 from features.kernels.slip_drops import torque_slips
-from features.kernels.slip_pulses import acoustic_slips
+from features.kernels.slip_pulses import pulses_of
 from features.kernels.slip_speeds import in_intervals, slip_intervals
-from models.errors import ParameterError
+from features.named.prepared import prepare
+
+
+def acoustic_slips(x, rate):
+    return prepare(x, rate, "pressure").pulses
 
 
 def noise(n, seed=0):
@@ -99,16 +103,10 @@ def test_a_low_tone_without_high_part_has_no_high_kurtosis():
     assert found.kurtosis == pytest.approx(1.5, abs=0.01)
 
 
-@pytest.mark.parametrize("x", [np.zeros(4800), np.full(4800, 0.1)])
-def test_silence_has_no_pulses(x):
-    found = acoustic_slips(x, 48e3)
+def test_silence_has_no_pulses():
+    found = pulses_of(np.zeros(4800, complex), np.zeros(4800, complex), 48e3)
     assert found.rate == 0.0
     assert math.isnan(found.kurtosis)
-
-
-def test_pulses_need_a_rate_of_400_hz():
-    with pytest.raises(ParameterError, match="pulses need at least 400 Hz"):
-        acoustic_slips(noise(100), 300.0)
 
 
 @settings(max_examples=60, deadline=None)

@@ -21,7 +21,8 @@ from noise.cli import main
 from noise.thesis import page, row, table
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import critical_damping, largest_sticking
-from sim.analysis.critical_speeds import critical_speeds, stick_slip_ranges
+from sim.analysis.critical_speeds import critical_speeds, regime_at
+from sim.analysis.regime import Regime
 from sim.analysis.slips import find_slips
 
 PAGE = Path(__file__).parents[1] / "thesis.md"
@@ -239,11 +240,10 @@ def test_an_ending_that_no_table_has_is_refused_before_the_work(name, tmp_path, 
 # Critical speeds and damping
 
 
-def test_a_stick_slip_island_is_a_range_of_its_own():
-    assert stick_slip_ranges(THESIS, 0.279e-3, 2214.0, np.arange(3.0, 6.1, 0.25).tolist()) == (
-        (3.0, 3.5),
-        (4.75, 5.5),
-    )
+def test_beyond_the_end_of_stick_slip_there_is_an_island_of_it():
+    speeds = np.arange(3.0, 6.1, 0.25).tolist()
+    sticks = [v for v in speeds if regime_at(THESIS, v, 0.279e-3, 2214.0) is Regime.STICK_SLIP]
+    assert sticks == [3.0, 3.25, 3.5, 4.75, 5.0, 5.25, 5.5]
 
 
 def test_a_constant_kinetic_torque_has_no_quasi_harmonic_regime():

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.base.interval import SURE_90
 from noise.diagnosis.evidence.channel_summary import shaft_speed
 from noise.diagnosis.evidence.contact_summary import slip_starts
 from noise.diagnosis.evidence.reconstruction import reconstruct
@@ -38,9 +39,6 @@ _FEWEST = 4
 
 _NEAR = 6e-4
 """Before a slip's start, in which its torque is looked for [s]."""
-
-_SURE = 1.645
-"""Standard errors of a 90 % interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,5 +156,5 @@ def _binned(x: NDArray[np.float64], torque: NDArray[np.float64]) -> TorqueCurve:
 def _curve(x: NDArray[np.float64], groups: list[NDArray[np.float64]]) -> TorqueCurve:
     mean = np.array([group.mean() for group in groups])
     error = np.array([group.std(ddof=1) / np.sqrt(group.size) for group in groups])
-    sure = _SURE * np.hypot(error, Scatter().gain * mean)
+    sure = SURE_90 * np.hypot(error, Scatter().gain * mean)
     return TorqueCurve(x, mean, mean - sure, mean + sure)

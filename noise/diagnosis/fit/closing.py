@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.base.interval import SURE_90
 from noise.diagnosis.gap.distance import closed_fraction
 
 if TYPE_CHECKING:
@@ -120,5 +121,5 @@ def closed_interval(scores: Scores, seed: int = 0) -> tuple[float, float] | None
         found.append(closed_fraction(gap, max(left, 1.0)))
     low = float(np.percentile(found, _LEVEL[0]))
     gap = rms(scores.before)
-    lowest = 1.0 - 1.645 * _FLOOR_SPREAD / float(np.sqrt(n))
+    lowest = 1.0 - SURE_90 * _FLOOR_SPREAD / float(np.sqrt(n))
     return min(low, 1.0), closed_fraction(gap, lowest)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.base.interval import SURE_90
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.causes.location import locate
 from noise.diagnosis.evidence.friction_curves import friction_curves
@@ -44,8 +45,6 @@ _LIKELY = 0.1
 
 _SHOWN = 3
 """Held-out recordings that are listened to."""
-
-_SURE = 1.645
 
 
 def add_fits(
@@ -216,14 +215,14 @@ def _strength(fitted: Fitted, comparison: CaseComparison) -> tuple[float, float]
     value = spec.parameters.get(strength_of(comparison, spec))
     if not isinstance(value, float) or len(fitted.spread) <= n:
         return None
-    factor = float(np.exp(_SURE * fitted.spread[n]))
+    factor = float(np.exp(SURE_90 * fitted.spread[n]))
     low, high = sorted((value / factor, value * factor))
     return low, high
 
 
 def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
     return {
-        name: (float(np.exp(x - _SURE * s)), float(np.exp(x + _SURE * s)))
+        name: (float(np.exp(x - SURE_90 * s)), float(np.exp(x + SURE_90 * s)))
         for name, x, s in zip(OFFSETS, fitted.model.offsets, fitted.spread, strict=False)
     }
 
