@@ -19,14 +19,16 @@ if TYPE_CHECKING:
 __all__ = ["base_name", "changed_rig_text", "rig_text", "support_name"]
 
 
-def rig_text(rig: Rig, notes: Sequence[str] = ()) -> str:
-    """Write a rig's bushing, friction and sensors; the rest is the shipped bench's.
+def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> str:
+    """Write a rig's bushing, friction and sensors; the rest is the base's, or the shipped bench's.
 
     Parameters
     ----------
     rig : Rig
     notes : sequence of str
         Lines of comment at the top.
+    base : str, optional
+        Rig file that structure, responses, sensors and material stay those of.
 
     Returns
     -------
@@ -39,20 +41,22 @@ def rig_text(rig: Rig, notes: Sequence[str] = ()) -> str:
     name = "bench"
     """
     lines = [f"# {note}" for note in notes]
+    fastest = rig.fastest_fitted
     lines += [
         f"name = {json.dumps(rig.name)}",
-        f"material = {json.dumps(rig.material)}",
+        f"material = {json.dumps(rig.material)}" if base is None else f"base = {json.dumps(base)}",
         f"elastomer_inertia_kgm2 = {rig.elastomer_inertia:.5g}",
         f"clamp_inertia_kgm2 = {rig.clamp_inertia:.5g}",
         f"elastomer_damping_share = {rig.elastomer_damping_share:.4g}",
         f"effects = {json.dumps([str(effect) for effect in rig.effects])}",
         f"assumed = {json.dumps(list(rig.assumed))}",
+        *([f"fastest_fitted_rad_s = {fastest:.5g}"] if fastest < math.inf else []),
         "",
         "[friction]",
         f"law = {json.dumps(rig.friction.name)}",
         *(f"{name} = {value:.5g}" for name, value in rig.friction.parameters.items()),
     ]
-    if sensors := sensors_text(rig.sensors):
+    if base is None and (sensors := sensors_text(rig.sensors)):
         lines += ["", *sensors]
     for fit in rig.fits:
         lines += [

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.atomic import check_target
-from noise.base.progress import say
+from noise.base.progress import note, say
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
@@ -78,6 +78,8 @@ def run(options: Namespace) -> int:
     found = identify_rig(
         measurements, beforehand, table=table, seed=options.seed or 0, progress=say
     )
+    for text in found.notes:
+        note(text)
     return _written(found, options.out) or (1 if measurements.refused else 0)
 
 

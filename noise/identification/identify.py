@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.plausible import rig_remarks
 from models.rig_files.rig_text import rig_text
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again
@@ -105,9 +107,10 @@ def identify_rig(
     fitted = fitted_evidence(model)
     rest = [one for one in model.evidence if one not in fitted]
     numbers = with_evidence(bushing_numbers(seen, choice.fit), rest)
+    rig = replace(rig, fastest_fitted=max(one.measured.condition.speed for one in seen))
     assumed, not_found = _assumed(beforehand, seen)
     return Identification(
-        rig_toml=rig_text(rig, _HEAD),
+        rig_toml=rig_text(rig, (_HEAD, f"{_structure(beforehand)}."), beforehand.structure),
         numbers=(*numbers, *law_numbers(choice.fit, rig)),
         laws=choice.scores,
         law=model.candidate.name,
@@ -115,6 +118,7 @@ def identify_rig(
         assumed=assumed,
         not_found=not_found,
         notes=(
+            *rig_remarks(rig),
             *_notes(choice),
             *static_notes(static),
             *structure_notes(rig, [one.measured for one in subjects]),
@@ -170,10 +174,12 @@ _MISSED = 0.2
 _FAR = 2.0
 """Held-out distance from which no law is said to describe the recordings [floors]."""
 
-_HEAD = (
-    "Identified from recordings; intervals and what is assumed are in identification.json.",
-    "Structure, plate and microphone are the shipped bench's.",
-)
+_HEAD = "Identified from recordings; intervals and what is assumed are in identification.json."
+
+
+def _structure(beforehand: Beforehand) -> str:
+    whose = beforehand.structure or "the shipped bench"
+    return f"structure, plate and microphone are those of {whose}"
 
 
 def _sentence(one: Seen) -> str:
@@ -196,7 +202,7 @@ def _assumed(beforehand: Beforehand, seen: list[Seen]) -> tuple[tuple[str, ...],
             "clamp bolted down only the elastomer's can be told"
         )
     assumed.append("supports are as stiff as the sidecars say")
-    assumed.append("structure, plate and microphone are those of the shipped bench")
+    assumed.append(_structure(beforehand))
     if not beforehand.inertias_stated:
         assumed.append(
             "no inertia is stated: a contact that gives way elastically counts as elastomer; state "

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from models.rig_files.rig_file import read_toml, rig_from
+from models.rig_files.shipped import shipped_name
 from noise.identification.bushing_fit import Known
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from models.rig import Rig
 
 __all__ = ["Beforehand", "known_beforehand"]
@@ -31,12 +34,15 @@ class Beforehand:
         Of the file, the shipped bench where it says nothing.
     known : Known
     stated : frozenset of str
-        Keys that the file has.
+        Keys that the file has, or one that it builds on.
+    structure : str, optional
+        The file, where it may have a structure of its own.
     """
 
     rig: Rig
     known: Known
     stated: frozenset[str]
+    structure: str | None = None
 
     @property
     def inertias_stated(self) -> bool:
@@ -65,7 +71,7 @@ def known_beforehand(path: Path | None) -> Beforehand:
     where = f"rig file {path}"
     content = {} if path is None else read_toml(path, where)
     rig = rig_from(content, Path() if path is None else path.parent, where)
-    stated = frozenset(content)
+    stated = frozenset(_stated(content, Path() if path is None else path.parent))
     shared = "elastomer_damping_share" in stated
     share = rig.elastomer_damping_share if shared else 0.5
     both = {"elastomer_inertia_kgm2", "clamp_inertia_kgm2"} <= stated
@@ -80,4 +86,20 @@ def known_beforehand(path: Path | None) -> Beforehand:
             _STATED_ERROR if shared else _GUESSED_ERROR,
         ),
         stated,
+        str(path.resolve().as_posix()) if path is not None and stated & _STRUCTURE else None,
     )
+
+
+_STRUCTURE = {"base", "beams", "plate", "microphone", "measured_response"}
+
+
+def _stated(content: Mapping[str, Any], folder: Path) -> set[str]:
+    """Keys of a file, of its changes, and of the files below it."""
+    changed = {
+        f"{key}_kgm2" if key.endswith("inertia") else key for key in content.get("change", {})
+    }
+    base = content.get("base")
+    if base is None or shipped_name(base) is not None:
+        return {*content, *changed}
+    path = folder / base
+    return {*content, *changed, *_stated(read_toml(path, f"rig file {path}"), path.parent)}
