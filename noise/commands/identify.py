@@ -59,7 +59,7 @@ def run(options: Namespace) -> int:
     if not options.data and options.numbers is None:
         raise ParameterError("identify: name recordings, or --numbers TABLE.csv")
     say("preparing")
-    from noise.identification.identify import identify_rig
+    from noise.identification.identify import NothingSlipsError, identify_rig
     from noise.identification.known import known_beforehand
     from noise.identification.measured import Measurements, read_measurements
     from noise.identification.table_number import read_numbers
@@ -75,9 +75,13 @@ def run(options: Namespace) -> int:
     if not (measurements.used or measurements.static or table):
         say("no recording that a rig can be identified from; nothing is written")
         return 1
-    found = identify_rig(
-        measurements, beforehand, table=table, seed=options.seed or 0, progress=say
-    )
+    try:
+        found = identify_rig(
+            measurements, beforehand, table=table, seed=options.seed or 0, progress=say
+        )
+    except NothingSlipsError as error:
+        say(f"{', '.join(one.name for one in measurements.used)}: {error}; nothing is written")
+        return 1
     for text in found.notes:
         note(text)
     return _written(found, options.out) or (1 if measurements.refused else 0)

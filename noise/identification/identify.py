@@ -31,7 +31,11 @@ if TYPE_CHECKING:
     from noise.identification.measured import Measurements
     from noise.identification.table_number import TableNumber
 
-__all__ = ["identify_rig"]
+__all__ = ["NothingSlipsError", "identify_rig"]
+
+
+class NothingSlipsError(ParameterError):
+    """The recordings are sound, but hold too few slips to identify a rig from."""
 
 
 def identify_rig(
@@ -82,7 +86,7 @@ def identify_rig(
     if not any(one.levels.slips for one in seen) and (measurements.static or table):
         return identify_from_table(table, beforehand, measurements, progress)
     if not any(one.levels.slips for one in seen):
-        raise ParameterError(
+        raise NothingSlipsError(
             "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
             "record slower rotation, or a larger interference"
         )
@@ -91,7 +95,7 @@ def identify_rig(
     static, known = measurements.static, beforehand.known
     subjects = subjects_of(seen, known)
     if not subjects:
-        raise ParameterError(
+        raise NothingSlipsError(
             "no recording shows enough slips one like the other to tell a law; record longer, at "
             "one steady speed"
         )

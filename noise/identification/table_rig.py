@@ -121,7 +121,8 @@ def identify_from_table(
         value, away = float(fit.rig.friction.parameters[name]), math.exp(SURE_90 * spread[i])
         numbers.append(Number(f"friction.{name}", "", value, value / away, value * away, 0))
     return Identification(
-        rig_toml=rig_text(fit.rig, _HEAD), numbers=tuple(numbers), laws=(),
+        assumed=("what the numbers do not tell, and the law of friction, are the known rig's",),
+        rig_toml=rig_text(fit.rig, _HEAD, beforehand.structure), numbers=tuple(numbers), laws=(),
         law=base.friction.name, seen=(), refused=measurements.refused, static=measurements.static,
         not_found=tuple(
             f"torques from {one.name}: nothing slips there" for one in measurements.used
