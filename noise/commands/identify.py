@@ -47,6 +47,7 @@ def configure(parser: ArgumentParser) -> None:
         help="folder for rig.toml, identification.json and report.html (default: the rig file on "
         "standard output)",
     )  # fmt: skip
+    opt.add_change(parser)
     opt.add_seed(parser, "of simulated repeats")
 
 
@@ -64,7 +65,7 @@ def run(options: Namespace) -> int:
     from noise.identification.measured import Measurements, read_measurements
     from noise.identification.table_number import read_numbers
 
-    beforehand = known_beforehand(options.rig)
+    beforehand = known_beforehand(options.rig, opt.change_table(options.change or ()))
     table = () if options.numbers is None else read_numbers(options.numbers)
     calibrations = beforehand.rig.sensors.calibrations
     measurements = (

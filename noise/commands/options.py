@@ -189,10 +189,21 @@ def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
         return rig
     from models.rig_files.change import changed_rig
 
+    return changed_rig(rig, change_table(changes), "--change")
+
+
+def change_table(changes: Sequence[tuple[str, str | float]]) -> dict[str, str | float]:
+    """Return what ``--change`` says as the table of ``[change]``.
+
+    Raises
+    ------
+    ParameterError
+        A change is given twice.
+    """
     table = dict(changes)
     if len(table) < len(changes):
         raise ParameterError("--change: one name is given twice; give one change")
-    return changed_rig(rig, table, "--change")
+    return table
 
 
 def _change(text: str) -> tuple[str, str | float]:

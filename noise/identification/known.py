@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from models.rig_files.change import changed_rig
 from models.rig_files.rig_file import read_toml, rig_from
 from models.rig_files.shipped import shipped_name
 from noise.identification.bushing_fit import Known
@@ -50,13 +51,17 @@ class Beforehand:
         return {"elastomer_inertia_kgm2", "clamp_inertia_kgm2"} <= self.stated
 
 
-def known_beforehand(path: Path | None) -> Beforehand:
+def known_beforehand(
+    path: Path | None, change: Mapping[str, str | float] | None = None
+) -> Beforehand:
     """Read a rig file for what it states.
 
     Parameters
     ----------
     path : Path, optional
         Without one, nothing is known but what the recordings' sidecars say.
+    change : mapping of str to str or float, optional
+        As ``[change]`` of the file.
 
     Raises
     ------
@@ -70,8 +75,9 @@ def known_beforehand(path: Path | None) -> Beforehand:
     """
     where = f"rig file {path}"
     content = {} if path is None else read_toml(path, where)
-    rig = rig_from(content, Path() if path is None else path.parent, where)
-    stated = frozenset(_stated(content, Path() if path is None else path.parent))
+    folder = Path() if path is None else path.parent
+    rig = changed_rig(rig_from(content, folder, where), change or {}, "--change")
+    stated = frozenset(_stated(content, folder) | _stated({"change": change or {}}, folder))
     shared = "elastomer_damping_share" in stated
     share = rig.elastomer_damping_share if shared else 0.5
     both = {"elastomer_inertia_kgm2", "clamp_inertia_kgm2"} <= stated

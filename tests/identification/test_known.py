@@ -32,3 +32,10 @@ def test_an_identified_rig_keeps_the_structure_of_the_known_one(tmp_path):
     assert again.fits == found.fits
     assert again.friction == found.friction
     assert again.fastest_fitted == 3.0
+
+
+def test_a_change_states_what_it_changes(tmp_path):
+    (tmp_path / "bench.toml").write_text(INERTIAS)
+    changed = known_beforehand(tmp_path / "bench.toml", {"clamp_inertia": "x2"})
+    assert changed.known.clamp_inertia == 1.6e-3
+    assert changed.inertias_stated
