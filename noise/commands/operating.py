@@ -149,7 +149,8 @@ def _remarks(
         nearest = low if interference_mm < low else high
         found.append(
             f"--interference {interference_mm:g} mm lies outside the fits given for "
-            f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used"
+            f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used "
+            f"(contact pressure by Lame, which is linear, would be {interference_mm / nearest:.3g} times theirs)"
         )
     found += use_remarks(
         rig,
