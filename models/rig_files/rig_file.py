@@ -150,6 +150,11 @@ def _laid(
     content: Mapping[str, Any], folder: Path, where: str, chain: tuple[Path, ...]
 ) -> tuple[Rig, dict[str, Any]]:
     """Rig of a file's content, and its tables of the structure; `chain` led to the file."""
+    if "suspension" in content:
+        raise ParameterError(
+            f"{where}: [suspension] is a car's bar in two bushings, which simulate --rig alone "
+            "takes; take the table out for the bushing on the rig"
+        )
     refuse_unknown(content, RIG_KEYS | _APART, where)
     given = {key: value for key, value in content.items() if key not in _APART}
     tables = {name: a_table(given.pop(name, {}), name, where) for name in _STRUCTURE}
