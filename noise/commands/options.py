@@ -172,8 +172,9 @@ def add_change(parser: ArgumentParser | _ArgumentGroup) -> None:
         action="append",
         metavar="NAME=AMOUNT",
         help="change the rig as [change] in its file does: damping=x2, critical_torque=-20%%, "
-        "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; may be given several "
-        "times (default: none)",
+        "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; wall_mm, length_mm, "
+        "youngs_modulus_MPa and hardness_shore_A of the rubber take torques and stiffness along, "
+        "wall_mm=6; may be given several times (default: none)",
     )
 
 

@@ -41,7 +41,10 @@ def configure(parser: ArgumentParser) -> None:
         "Simulate one run of the rig and record torque [N m], acceleration [m/s^2], pressure [Pa] "
         "and angle [rad], or draw it. The names of the files are printed; without --out, --plot "
         "and --sound-power a summary as one line of JSON: conditions, mean of the torque and its "
-        "rms about the mean, peak and level (dB re 20 uPa) of the sound pressure."
+        "rms about the mean, peak and level (dB re 20 uPa) of the sound pressure. With --rig "
+        "suspension, or a file of your own with a [suspension] table, a car's stabilizer bar in "
+        "two bushings is simulated: --oscillate or --speed then is the wheels' travel as the angle "
+        "that it asks of an arm, and each bushing has its own channels."
     )
     parser.epilog = (
         "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07; effects: "

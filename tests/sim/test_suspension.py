@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 from models.errors import ParameterError
 from models.rig import LawSpec
@@ -16,7 +16,10 @@ from models.rig_files.suspension_file import load_suspension
 from models.suspension import Bar, TorsionChain, torsion_chain
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
+from sim.contact import CRITICAL, KINETIC, N_CONTACT
+from sim.friction import friction_law
 from sim.motion import simulate_motion
+from sim.parameters import resolve
 from sim.shaft import ConstantSpeed, Oscillation
 from sim.suspension.kernel import torque_gain
 from sim.suspension.motion import preload, simulate_suspension, solve_chain
@@ -108,6 +111,60 @@ def test_links_carry_the_twist_of_the_bar_and_load_the_bushings_by_the_lever():
     load = torque / bar.arm_length * bar.length / CAR.spacing
     friction = np.abs(run.bushings[0].friction_torque).max() / bar.arm_length
     assert np.abs(run.load).max() == pytest.approx(load, abs=3 * friction)
+
+
+def test_an_integrator_of_its_own_finds_the_same_motion():
+    """The whole chain written down again as one state, at a load that lifts the bar off."""
+    n, rate, pressed, turns = 300, 30e3, 150.0, 8.0
+    chain = torsion_chain(CAR.bar, CAR.spacing, 1.5e6, 150.0, "left")
+    speed = np.full(n, turns)
+    made = solve_chain(
+        chain, CAR.rig, speed, **AT, preload=pressed, rate=rate, effects=(),
+        rng=np.random.default_rng(0), tolerance=1e-11,
+    )  # fmt: skip
+    law = friction_law(CAR.rig.friction.name)
+    values = resolve("law", law.parameters, CAR.rig.friction.parameters)
+    coefficients, fit = law.coefficients(values), CAR.rig.fit(0.279e-3)
+    bushing, size = lumped_bushing(CAR.rig, 0.279e-3, 2214.0), chain.inertia.size
+
+    def rates(t, state):
+        angle, turning, *parts = np.split(state, [size, 2 * size, 2 * size + 6])
+        link = chain.link_stiffness * (chain.travel * turns * t - angle)
+        link += chain.link_damping * (chain.travel * turns - turning)
+        springs = chain.stiffness * np.diff(angle) + chain.damping * np.diff(turning)
+        torque = link + np.append(springs, 0.0) - np.append(0.0, springs)
+        found = []
+        for node, load, part in zip(chain.bushings, chain.load @ link, parts, strict=True):
+            gain, inner = torque_gain(load / pressed), np.zeros(2)
+            contact = np.zeros(N_CONTACT)
+            contact[CRITICAL], contact[KINETIC] = (
+                gain * fit.critical_torque, gain * fit.kinetic_torque,
+            )  # fmt: skip
+            sliding = turning[node] - part[1]
+            friction = law.torque(sliding, coefficients, contact, part[4:].copy(), inner)
+            elastic = bushing.elastomer_stiffness * (part[0] - part[2])
+            elastic += bushing.elastomer_damping * (part[1] - part[3])
+            back = bushing.support_stiffness * part[2] + bushing.support_damping * part[3]
+            torque[node] -= friction
+            found += [
+                part[1], (friction - elastic) / bushing.elastomer_inertia,
+                part[3], (elastic - back) / bushing.clamp_inertia, *inner,
+            ]  # fmt: skip
+        return np.concatenate([turning, torque / chain.inertia, found])
+
+    rest = np.concatenate([np.zeros(4), law.state()])
+    start = np.concatenate([np.zeros(size), turns * chain.start, rest, rest])
+    times = np.arange(n) / rate
+    known = solve_ivp(
+        rates, (0.0, times[-1]), start, "DOP853", times, rtol=1e-9, atol=1e-12, max_step=1e-5
+    ).y
+    assert np.abs(made.load).max() > 2 * math.pi * pressed  # it lifts off, and slips
+    assert np.abs(made.bushings[0].sliding_speed).max() > turns
+    assert made.angle == pytest.approx(known[:size], abs=1e-6 * np.abs(known[:size]).max())
+    for own, first in zip(made.bushings, (2 * size, 2 * size + 6), strict=True):
+        for name, row in (("interface_angle", 0), ("interface_speed", 1), ("clamp_angle", 2)):
+            values = known[first + row]
+            assert getattr(own, name) == pytest.approx(values, abs=1e-5 * np.abs(values).max())
 
 
 @settings(deadline=None, max_examples=8)
