@@ -97,6 +97,9 @@ class Suspension:
         [N s/m]
     wheels : str
         Of `WHEELS`: how they go.
+    friction_coefficient : float, optional
+        By which the contact pressure follows from the kinetic torque [-]; by default the pressure
+        is Lame's, of the rig's sleeve.
 
     Raises
     ------
@@ -110,6 +113,7 @@ class Suspension:
     link_stiffness: float
     link_damping: float
     wheels: str
+    friction_coefficient: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.spacing < self.bar.length:
@@ -131,11 +135,41 @@ class Suspension:
                 f"suspension: spacing = {self.spacing:g} m does not lie on the plate, whose "
                 f"width is {self.rig.plate.width:g} m"
             )
+        if self.rig.sleeve is None:
+            raise ParameterError(
+                "suspension: the normal load needs the contact pressure, hence a [sleeve] table in "
+                "the rig file: inner_radius_mm, wall_mm, length_mm, and hardness_shore_A or "
+                "youngs_modulus_MPa"
+            )
 
     @property
     def positions(self) -> tuple[float, float]:
         """Of left and right bushing along the plate's y [m]."""
         return -0.5 * self.spacing, 0.5 * self.spacing
+
+    def contact_pressure(self, interference: float) -> float:
+        """Mean pressure in a bushing by its interference [m], before any load [Pa].
+
+        Examples
+        --------
+        >>> from models.rig_files.rig_file import load_material_rig
+        >>> rig, bar = load_material_rig("fluorocarbon-thesis"), Bar(0.03, 0.004, 0.9, 0.2, 0.02)
+        >>> dry = Suspension(rig, bar, 0.4, 2e6, 100.0, "opposite", friction_coefficient=0.5)
+        >>> round(dry.contact_pressure(0.279e-3) / 1e6, 3)
+        0.277
+        """
+        sleeve = self.rig.sleeve
+        assert sleeve is not None  # or it had been refused
+        if self.friction_coefficient is None:
+            return sleeve.pressure(interference)
+        of_unit = 2.0 * math.pi * sleeve.inner_radius**2 * sleeve.length
+        return self.rig.fit(interference).kinetic_torque / (self.friction_coefficient * of_unit)
+
+    def preload(self, interference: float) -> float:
+        """Return that pressure times radius and length of a bushing [N], by interference [m]."""
+        sleeve = self.rig.sleeve
+        assert sleeve is not None
+        return self.contact_pressure(interference) * sleeve.inner_radius * sleeve.length
 
 
 @dataclass(frozen=True, eq=False)

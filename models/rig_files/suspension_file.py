@@ -31,6 +31,7 @@ _LINKS = {
     "link_stiffness_N_m": ("link_stiffness", 1.0),
     "link_damping_Ns_m": ("link_damping", 1.0),
 }
+_COEFFICIENT = "friction_coefficient"
 _MAY_VANISH = {"bar_damping_ratio", "link_damping_Ns_m"}
 
 
@@ -84,7 +85,7 @@ def load_suspension(path: Path) -> Suspension:
     table = a_table(content.pop("suspension"), "suspension", where)
     rig = rig_from(content, path.parent, where)
     where = f"{where}, suspension"
-    refuse_unknown(table, {*_BAR, *_LINKS, "wheels"}, where)
+    refuse_unknown(table, {*_BAR, *_LINKS, "wheels", _COEFFICIENT}, where)
 
     def numbers(keys: dict[str, tuple[str, float]]) -> dict[str, Any]:
         return {
@@ -96,6 +97,9 @@ def load_suspension(path: Path) -> Suspension:
         return Suspension(
             rig, Bar(**numbers(_BAR)), **numbers(_LINKS),
             wheels=a_text(table.get("wheels"), "wheels", where),
+            friction_coefficient=a_number(table, _COEFFICIENT, where, high=10.0)
+            if _COEFFICIENT in table
+            else None,
         )  # fmt: skip
     except ParameterError as error:
         text = str(error)

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
-__all__ = ["SuspensionMotion", "preload", "simulate_suspension", "solve_chain"]
+__all__ = ["SuspensionMotion", "simulate_suspension", "solve_chain"]
 
 _STRONGEST = 1e9
 """Shear stress that no spring steel bears: 1.7 GPa in tension, over the root of 3 [Pa]."""
@@ -136,29 +136,12 @@ def simulate_suspension(
             f"a shear stress of {stress / 1e6:.0f} MPa where steel bears {_STRONGEST / 1e6:.0f}; "
             'let it swing less (--oscillate), or the wheels go together (wheels = "together")'
         )
-    pressed = preload(rig, interference)
     with blaming_the_unusual(rig):
         return solve_chain(
             chain, rig, speed, interference=interference, support_stiffness=support_stiffness,
-            preload=pressed, rate=rate, effects=effects, rng=rng, tolerance=tolerance,
+            preload=suspension.preload(interference), rate=rate, effects=effects, rng=rng,
+            tolerance=tolerance,
         )  # fmt: skip
-
-
-def preload(rig: Rig, interference: float) -> float:
-    """Contact pressure of a bushing by its interference [m], times radius and length [N].
-
-    Raises
-    ------
-    ParameterError
-        The rig does not say its sleeve.
-    """
-    if rig.sleeve is None:
-        raise ParameterError(
-            "suspension: the normal load needs the contact pressure, hence a [sleeve] table in the "
-            "rig file: inner_radius_mm, wall_mm, length_mm, and hardness_shore_A or "
-            "youngs_modulus_MPa"
-        )
-    return rig.sleeve.pressure(interference) * rig.sleeve.inner_radius * rig.sleeve.length
 
 
 def solve_chain(

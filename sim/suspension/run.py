@@ -21,7 +21,8 @@ from sim.analysis.regime import never_slips
 from sim.chain import changed_chain
 from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
 from sim.run import plan_run
-from sim.suspension.motion import preload, simulate_suspension
+from sim.suspension.kernel import torque_gain
+from sim.suspension.motion import simulate_suspension
 from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
@@ -52,11 +53,17 @@ class SuspensionRun:
         At the rate of the computation, from rest on.
     gain : float
         Largest torque of a bushing under its load over that without [-].
+    pressure : float
+        Contact pressure before any load [Pa].
+    friction_coefficient : float
+        That this and the kinetic torque make together [-].
     """
 
     recording: Recording
     motion: SuspensionMotion
     gain: float
+    pressure: float
+    friction_coefficient: float
 
     def remarks(self) -> tuple[str, ...]:
         """Say what a user should know of it, a line each."""
@@ -70,6 +77,9 @@ class SuspensionRun:
             "torque, acceleration and angle are of the left bushing, those with _2 of the right "
             "one; the pressure is of both",
             f"the links load a bushing with up to {load:.0f} N, which {lifted}",
+            f"the contact pressure is taken to be {self.pressure / 1e6:.3g} MPa, which with the "
+            f"kinetic torque is a friction coefficient of {self.friction_coefficient:.3g}; where "
+            "that is not believed, friction_coefficient under [suspension] gives the pressure",
             *(
                 f"{side} bushing: its contact holds from first to last"
                 for side, motion in zip(("left", "right"), self.motion.bushings, strict=True)
@@ -173,7 +183,9 @@ def run_suspension(
             ),
         ),
         motion,
-        _gain(motion, suspension, interference),
+        gain=torque_gain(float(np.abs(motion.load).max()) / suspension.preload(interference)),
+        pressure=suspension.contact_pressure(interference),
+        friction_coefficient=_coefficient(suspension, interference),
     )  # fmt: skip
 
 
@@ -184,9 +196,9 @@ def _placed(rig: Rig, along: float) -> Rig:
     )
 
 
-def _gain(motion: SuspensionMotion, suspension: Suspension, interference: float) -> float:
-    from sim.suspension.kernel import torque_gain
-
-    return float(
-        torque_gain(float(np.abs(motion.load).max()) / preload(suspension.rig, interference))
-    )
+def _coefficient(suspension: Suspension, interference: float) -> float:
+    """Friction coefficient that contact pressure and kinetic torque make together [-]."""
+    sleeve = suspension.rig.sleeve
+    assert sleeve is not None  # a suspension has one
+    torque = 2.0 * np.pi * sleeve.inner_radius * suspension.preload(interference)
+    return float(suspension.rig.fit(interference).kinetic_torque / torque)
