@@ -126,7 +126,8 @@ class Beams:
     anchor_rotation : float, optional
         Stiffness of an anchor against the slope of its beam [Nm/rad]; rigid as in 3.1.1.
     anchor_translation : float, optional
-        Stiffness of an anchor against the deflection of its beam [N/m]; rigid as in 3.1.1.
+        Stiffness of an anchor against the deflection of its beam [N/m]; rigid as in 3.1.1. Neither
+        alters the support stiffness, only the modes above the first torsional one.
     strike : float, optional
         Where the reaction of a blow in the anchor's joint strikes the beam, as a fraction of the
         length from the anchor.
@@ -237,7 +238,7 @@ class Rig:
         0.09
         >>> calibrated = load_material_rig("fluorocarbon")
         >>> calibrated.changed(slip_pulse={"amplitude": "x0.5"}).effects[0].parameters["amplitude"]
-        30.0
+        45.0
         """
         from models.rig_files.change import changed_rig
 
