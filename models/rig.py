@@ -17,6 +17,7 @@ from models.sensors import Sensors
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from models.temperature import TemperatureDependence
     from models.transfer_functions.measured import MeasuredResponse
 
 __all__ = [
@@ -180,6 +181,8 @@ class Rig:
         What its signals are recorded through.
     fastest_fitted : float
         Fastest speed that the bushing was fitted at [rad/s]; infinite if none is stated.
+    temperature : TemperatureDependence, optional
+        How stiffness, damping and friction follow the temperature; without one they stay.
     """
 
     name: str
@@ -197,6 +200,7 @@ class Rig:
     measured: tuple[MeasuredResponse, ...] = ()
     sensors: Sensors = field(default_factory=Sensors)
     fastest_fitted: float = math.inf
+    temperature: TemperatureDependence | None = None
 
     def __post_init__(self) -> None:
         for name in ("elastomer_inertia", "clamp_inertia"):
