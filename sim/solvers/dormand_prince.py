@@ -19,7 +19,7 @@ from models.compilation import PART
 from sim.solvers.contact_state import N_MOTION, N_STAGES
 
 __all__ = [
-    "NODES", "fill_dense", "fill_stage", "step_error", "vertex",
+    "ERROR", "NODES", "fill_dense", "fill_stage", "step_error", "vertex",
 ]  # fmt: skip
 
 NODES = np.append(RK45.C, 1.0)
@@ -28,7 +28,9 @@ NODES = np.append(RK45.C, 1.0)
 _STAGES = np.zeros((N_STAGES, N_STAGES))
 _STAGES[:6, :5] = RK45.A
 _STAGES[6, :6] = RK45.B
-_ERROR = np.array(RK45.E)
+ERROR = np.array(RK45.E)
+"""Of a step by the rates at its stages, over its length."""
+
 _DENSE = np.array(RK45.P)
 
 _inlined = njit(forceinline=True, **PART)
@@ -68,7 +70,7 @@ def step_error(k, h, start, end, angle_scale, speed_scale) -> float:
     for j in range(end.size):
         error = 0.0
         for b in range(N_STAGES):
-            error += _ERROR[b] * k[b, j]
+            error += ERROR[b] * k[b, j]
         if not math.isfinite(error):
             return math.inf
         if j >= N_MOTION:
