@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from models.sleeve import Sleeve
+    from models.temperature import TemperatureDependence
     from models.transfer_functions.measured import MeasuredResponse
 
 __all__ = [
@@ -127,7 +128,8 @@ class Beams:
     anchor_rotation : float, optional
         Stiffness of an anchor against the slope of its beam [Nm/rad]; rigid as in 3.1.1.
     anchor_translation : float, optional
-        Stiffness of an anchor against the deflection of its beam [N/m]; rigid as in 3.1.1.
+        Stiffness of an anchor against the deflection of its beam [N/m]; rigid as in 3.1.1. Neither
+        alters the support stiffness, only the modes above the first torsional one.
     strike : float, optional
         Where the reaction of a blow in the anchor's joint strikes the beam, as a fraction of the
         length from the anchor.
@@ -183,6 +185,8 @@ class Rig:
         Fastest speed that the bushing was fitted at [rad/s]; infinite if none is stated.
     sleeve : Sleeve, optional
         The rubber that the fits were measured on, by which they change with its size and modulus.
+    temperature : TemperatureDependence, optional
+        How stiffness, damping and friction follow the temperature; without one they stay.
     """
 
     name: str
@@ -201,6 +205,7 @@ class Rig:
     sensors: Sensors = field(default_factory=Sensors)
     fastest_fitted: float = math.inf
     sleeve: Sleeve | None = None
+    temperature: TemperatureDependence | None = None
 
     def __post_init__(self) -> None:
         for name in ("elastomer_inertia", "clamp_inertia"):
@@ -241,7 +246,7 @@ class Rig:
         0.09
         >>> calibrated = load_material_rig("fluorocarbon")
         >>> calibrated.changed(slip_pulse={"amplitude": "x0.5"}).effects[0].parameters["amplitude"]
-        30.0
+        45.0
         """
         from models.rig_files.change import changed_rig
 

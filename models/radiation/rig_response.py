@@ -5,7 +5,7 @@ torque to their anchors (`models.structure.beams`), the anchors drive the plate,
 radiates (`models.structure.plate`). A second input is the pulse of a micro-impact in the joint of
 beam and anchor, as slips may excite it: the torque itself has next to nothing above 2 kHz, but a
 creak sounds to 15 kHz. It pushes the plate under the anchors, up on one side and down on the other,
-and its reaction strikes the beams there, which the accelerometer picks up; while the joint gives,
+and its reaction bends the beams there, which the accelerometer picks up; while it shuts the joint,
 the beams are taken to pass nothing else on to the plate. With the clamp bolted to the plate there
 is neither beam nor joint: the torque is a moment on the plate, the pulse is without effect, and the
 acceleration is that of the plate at the clamp's edge.

@@ -12,6 +12,13 @@ torsional mode of beams and clamp has exactly the lumped model's sqrt(k_B / J_C)
 with the damping passed in, the lumped model's damping: the two agree where both apply, and the
 beams add what the lumped model lacks, their bending modes from about 1 kHz upwards.
 
+Anchors that yield put the bending modes where they were measured, but leave the beams less than
+k_B, which (4.11) computes for rigid ones. k_B and J_C are what the motion is computed with and
+the thesis's damping and torques go with, so they are kept: all stiffness and inertia of the
+structure, anchors included, is taken as many times as k_B is of what the beams have on their
+anchors. That alters no frequency, no shape and no share of the torque that an anchor gets, only by
+how much all of it moves, and makes that agree with the lumped clamp.
+
 Translations of the clamp, which a torque does not drive on a symmetric rig, are not here but in
 `models.structure.beams_exact`; the sound of the beams themselves is in
 `models.structure.beams_sound`.
@@ -58,14 +65,14 @@ ACCELERATION, ANCHOR_FORCE, ANCHOR_MOMENT = 0, 1, 2
 """First outputs of `beam_structure`."""
 
 
-def rigid_clamp_inertia(beams: Beams, length: float, clamp_inertia: float) -> float:
+def rigid_clamp_inertia(beams: Beams, support_stiffness: float, clamp_inertia: float) -> float:
     """Inertia of the clamp alone, the lumped one less the beams' share.
 
     Parameters
     ----------
     beams : Beams
-    length : float
-        [m]
+    support_stiffness : float
+        k_B [Nm/rad]
     clamp_inertia : float
         J_C of the lumped model, beams included [kg m2].
 
@@ -84,20 +91,20 @@ def rigid_clamp_inertia(beams: Beams, length: float, clamp_inertia: float) -> fl
     --------
     >>> from models.rig import Beams
     >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3)
-    >>> round(1 / rigid_clamp_inertia(steel, 0.123, 1 / 1200))
-    1692
+    >>> round(1 / rigid_clamp_inertia(steel, 2214.0, 1 / 1200))
+    1688
     """
-    omega2 = torsional_stiffness(beams, length) / clamp_inertia
-    half = _half_structure(beams, length)
+    omega2 = support_stiffness / clamp_inertia
+    half = _half_structure(beams, support_stiffness)
     dynamic = 2 * (half.stiffness - omega2 * half.mass)
     condensed = dynamic[0, 0] - dynamic[0, 1:] @ np.linalg.solve(dynamic[1:, 1:], dynamic[1:, 0])
     inertia = float(condensed / omega2)
     inner = eigh(half.stiffness[1:, 1:], half.mass[1:, 1:], eigvals_only=True)
     if inertia <= 0 or inner[0] <= omega2:
         raise ParameterError(
-            f"beams of {length:.3g} m, for {torsional_stiffness(beams, length):.4g} Nm/rad, have "
-            f"more inertia than the clamp's {clamp_inertia:.4g} kg m2 that is to include them; "
-            f"use a larger support stiffness or clamp inertia"
+            f"beams of {beam_length(beams, support_stiffness):.3g} m, for {support_stiffness:.4g} "
+            f"Nm/rad, have more inertia than the clamp's {clamp_inertia:.4g} kg m2 that is to "
+            f"include them; use a larger support stiffness or clamp inertia, or stiffer anchors"
         )
     return inertia
 
@@ -116,7 +123,7 @@ def beam_structure(
     ----------
     beams : Beams
     support_stiffness : float
-        k_B [Nm/rad]; it sets the beams' length.
+        k_B [Nm/rad]; it sets the beams' length by (4.11), and the clamp feels it at rest.
     clamp_inertia : float
         J_C of the lumped model [kg m2].
     damping_ratio : float
@@ -158,15 +165,17 @@ def beam_structure(
     [259, 1197, 3085]
     """
     length = beam_length(beams, support_stiffness)
-    half = _half_structure(beams, length)
+    half = _half_structure(beams, support_stiffness)
     stiffness, mass = 2 * half.stiffness, 2 * half.mass
-    mass[0, 0] += rigid_clamp_inertia(beams, length, clamp_inertia)
+    mass[0, 0] += rigid_clamp_inertia(beams, support_stiffness, clamp_inertia)
     omega2, shapes = eigh(stiffness, mass)
 
     inputs = np.zeros((mass.shape[0], 2))
     inputs[0, TORQUE] = 1.0
-    # Both beams, each working on its own deflection.
-    inputs[:, PULSE] = -2.0 * deflection_row(1.0 - beams.strike, length) @ half.expansion
+    # Both beams, each working on its own deflection. The blow closes the joint: where the anchor
+    # yields it is the beam's end that holds against it, so that a couple is left.
+    struck = deflection_row(1.0 - beams.strike, length) - deflection_row(1.0, length)
+    inputs[:, PULSE] = -2.0 * struck @ half.expansion
     reaction_stiffness, reaction_mass = -half.anchor_stiffness, -half.anchor_mass
     static = np.zeros((3 + len(stations), 2))
     static[1:3] = reaction_stiffness @ np.linalg.solve(stiffness, inputs)
@@ -191,14 +200,17 @@ def beam_structure(
     )
 
 
-def _half_structure(beams: Beams, length: float) -> HalfStructure:
+def _half_structure(beams: Beams, support_stiffness: float) -> HalfStructure:
+    """One beam on its anchor, at the level of stiffness and mass that meets k_B at rest."""
+    length = beam_length(beams, support_stiffness)
+    level = support_stiffness / torsional_stiffness(beams, length)
     return half_structure(
-        bending_stiffness=bending_stiffness(beams),
-        mass_per_length=mass_per_length(beams),
+        bending_stiffness=level * bending_stiffness(beams),
+        mass_per_length=level * mass_per_length(beams),
         length=length,
         lever=beams.lever,
-        anchor_translation=beams.anchor_translation,
-        anchor_rotation=beams.anchor_rotation,
+        anchor_translation=level * beams.anchor_translation,
+        anchor_rotation=level * beams.anchor_rotation,
     )
 
 

@@ -21,11 +21,11 @@ The clamp is a square bar along the beams' line as far as their roots, its width
 so its halves and the two beams oppose each other; the sum over elements has that. Left out: sound
 that the plate reflects or hides, and the interface.
 
-On the shipped rig beams add 3 dB to a squeal, where they are within 2 dB of the plate, and less
-than 0.3 to a squawk. In a creak their sound comes from the reaction of the blows in the anchors'
-joints, and goes with the square of where it strikes: within half a thickness, as shipped, the plate
-is 18 dB ahead above 2 kHz at 2214 Nm/rad and 2.5 rad/s, 11 dB at 3745 (8 dB at 5 rad/s), as 6.2 has
-it; at a 24th of the length from the anchor the beams would be nearly as loud as the plate.
+On the shipped rig beams add 3 dB to a squeal, where they are within 4 dB of the plate, and less
+than 1 to a squawk. In a creak their sound comes from the reaction of the blows in the anchors'
+joints, and goes with the square of where it strikes: a fifth of a thickness from the end, as
+shipped, the plate is 15 dB ahead above 2 kHz at 2214 Nm/rad and 17 dB at 3745, as 6.2 has it; at a
+24th of the length from the anchor the beams would be the louder.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Torsional stiffness of clamp and beams, and the length of beams that have a given one.
+"""Torsional stiffness of clamp and beams, and the length of beams that (4.11) gives one.
 
-The support stiffness k_B is what an experiment states, the length follows. Anchors that yield are
-part of k_B, so that it stays the stiffness which the clamp feels at rest.
+The support stiffness k_B names the beams, as in Table 3.2: their length is that which has it
+between rigid anchors, by equation (4.11). Anchors that yield leave less of it.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import numpy as np
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from models.rig import Beams
 
 __all__ = ["beam_length", "bending_stiffness", "mass_per_length", "torsional_stiffness"]
 
 
 def torsional_stiffness(beams: Beams, length: float) -> float:
-    """Torsional stiffness k_B of clamp and two beams, equation (4.11), anchors included.
+    """Torsional stiffness of clamp and two beams, anchors included.
+
+    From the flexibility C of a cantilever on its anchor's springs, for force and moment at its
+    root: k = 2 r' inv(C) r with r = (lever, 1). Between rigid anchors that is equation (4.11).
 
     Parameters
     ----------
@@ -47,17 +48,18 @@ def torsional_stiffness(beams: Beams, length: float) -> float:
     >>> round(torsional_stiffness(replace(steel, anchor_rotation=500.0), 0.123), 1)
     1745.6
     """
-    numerator, denominator = _stiffness_polynomials(beams)
-    return float(np.polyval(numerator, length) / np.polyval(denominator, length))
+    bending, turn = bending_stiffness(beams), 1.0 / beams.anchor_rotation
+    coupling = -(length**2) / (2.0 * bending) - turn * length
+    deflection = length**3 / (3.0 * bending) + turn * length**2 + 1.0 / beams.anchor_translation
+    flexibility = np.array([[deflection, coupling], [coupling, length / bending + turn]])
+    root = np.array([beams.lever, 1.0])
+    return float(2.0 * root @ np.linalg.solve(flexibility, root))
 
 
 def beam_length(beams: Beams, stiffness: float) -> float:
-    """Beam length at which the beams have a given torsional stiffness.
+    """Beam length that has a torsional stiffness between rigid anchors, by equation (4.11).
 
-    With rigid anchors equation (4.11) is a cubic in the length with exactly one positive root, by
-    Descartes' rule of signs. Anchors that yield make it a quartic and bound the stiffness; where
-    two lengths have it, the longer one is meant, as beams much shorter than their anchors are
-    stiff turn as one rigid body.
+    It is a cubic in the length with exactly one positive root, by Descartes' rule of signs.
 
     Parameters
     ----------
@@ -73,7 +75,7 @@ def beam_length(beams: Beams, stiffness: float) -> float:
     Raises
     ------
     ParameterError
-        If the stiffness is not positive and finite, or larger than the anchors allow.
+        If the stiffness is not positive and finite.
 
     Examples
     --------
@@ -87,16 +89,10 @@ def beam_length(beams: Beams, stiffness: float) -> float:
             f"support stiffness {stiffness:g} Nm/rad belongs to no beam; "
             f"give a positive, finite one"
         )
-    numerator, denominator = _stiffness_polynomials(beams)
-    roots = np.roots(np.polysub(denominator, numerator / stiffness))
-    lengths = roots.real[(np.abs(roots.imag) <= 1e-9 * np.abs(roots)) & (roots.real > 0.0)]
-    if lengths.size == 0:
-        raise ParameterError(
-            f"support stiffness {stiffness:g} Nm/rad is more than the anchors allow "
-            f"({beams.anchor_rotation:g} Nm/rad, {beams.anchor_translation:g} N/m); "
-            f"use a smaller one or stiffer anchors"
-        )
-    return float(lengths.max())
+    bending, lever = bending_stiffness(beams), beams.lever
+    cubic = [stiffness, -8.0 * bending, -24.0 * bending * lever, -24.0 * bending * lever**2]
+    roots = np.roots(cubic)
+    return float(roots.real[np.abs(roots.imag) <= 1e-9 * np.abs(roots)].max())
 
 
 def bending_stiffness(beams: Beams) -> float:
@@ -121,23 +117,3 @@ def mass_per_length(beams: Beams) -> float:
     0.6452
     """
     return beams.density * beams.width * beams.thickness
-
-
-def _stiffness_polynomials(beams: Beams) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """k_B as a quotient of polynomials in the length, highest power first.
-
-    From the flexibility C of a cantilever on its anchor's springs, for force and moment at its
-    root: k_B = 2 r' inv(C) r with r = (lever, 1). A rigid anchor leaves out a common factor.
-    """
-    stiffness, lever = bending_stiffness(beams), beams.lever
-    push, turn = 1.0 / beams.anchor_translation, 1.0 / beams.anchor_rotation
-    deflection = np.array([1.0 / (3.0 * stiffness), turn, 0.0, push])
-    coupling = np.array([1.0 / (2.0 * stiffness), turn, 0.0])
-    slope = np.array([1.0 / stiffness, turn])
-    numerator = 2.0 * np.polyadd(np.polyadd(lever**2 * slope, 2.0 * lever * coupling), deflection)
-    denominator: NDArray[np.float64] = np.polysub(
-        np.polymul(deflection, slope), np.polymul(coupling, coupling)
-    )
-    if push == turn == 0.0:
-        return numerator[:-1], denominator[:-1]
-    return numerator, denominator

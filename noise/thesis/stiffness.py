@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from models.structure.beams_stiffness import torsional_stiffness
 from models.structure.shaft import fixed_free_frequencies, free_free_frequencies
+from noise.thesis.modes import rigidly_anchored
 from noise.thesis.row import Row, number
 from noise.thesis.runs import LONG, SHORT, THESIS, rig_of
 
@@ -32,7 +33,7 @@ _TRANSIT_TIME, _INERTIA_RATIO = 1 / 16262, 0.4201
 
 def beams() -> Iterator[Row]:
     """Equations (4.11) and (4.12)."""
-    beam = rig_of(THESIS).beams
+    beam = rigidly_anchored()
     yield Row(
         "second_moment_of_area", "beam of 25.4 x 3.175 mm", "m4", number(6.7746e-11),
         exact=beam.width * beam.thickness**3 / 12, tolerance=1e-4, digits=5,

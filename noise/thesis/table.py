@@ -41,6 +41,7 @@ GROUPS: tuple[Callable[[], Iterable[Row]], ...] = (
     modes.torsional_modes,
     modes.beam_modes,
     *(partial(anchors.fitted, kind) for kind in anchors.KINDS),
+    anchors.shipped,
     heat.heating,
     misprints.misprints,
     modes.squeal,

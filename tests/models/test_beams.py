@@ -86,7 +86,7 @@ def test_below_the_bending_modes_the_clamp_moves_as_the_lumped_one(stiffness):
 @pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
 def test_higher_modes_satisfy_the_exact_frequency_equation(stiffness):
     length = beam_length(STEEL, stiffness)
-    inertia = rigid_clamp_inertia(STEEL, length, J_C)
+    inertia = rigid_clamp_inertia(STEEL, stiffness, J_C)
     model = beam_structure(STEEL, stiffness, J_C, 0.02, 25e3)
     assert model.frequencies.size >= 5
     for frequency in model.frequencies:
@@ -98,7 +98,7 @@ def test_higher_modes_satisfy_the_exact_frequency_equation(stiffness):
 @pytest.mark.parametrize("frequency", [150.0, 700.0, 2000.0, 4500.0, 8000.0, 12000.0])
 def test_anchors_receive_what_the_exact_beam_passes_on(frequency):
     length = beam_length(STEEL, 2214.0)
-    theta = 1 / _clamp_stiffness(length, rigid_clamp_inertia(STEEL, length, J_C), frequency)
+    theta = 1 / _clamp_stiffness(length, rigid_clamp_inertia(STEEL, 2214.0, J_C), frequency)
     _, across = _exact(length, frequency)
     exact = across @ np.array([STEEL.lever, 1.0]) * theta
     undamped = dataclasses.replace(STEEL, damping_ratio=0.0)

@@ -15,6 +15,7 @@ from models.structure.beams import (
     ACCELERATION,
     ANCHOR_FORCE,
     ANCHOR_MOMENT,
+    PULSE,
     TORQUE,
     beam_structure,
     rigid_clamp_inertia,
@@ -155,11 +156,18 @@ def test_the_modal_path_to_sensor_and_anchors_is_the_exact_one(beams, stiffness)
     inertia = 1 / 1200
     modal = beam_structure(damped, stiffness, inertia, 0.005, 40e3)
     length = beam_length(beams, stiffness)
-    clamp = rigid_clamp_inertia(beams, length, inertia)
-    frequency = np.geomspace(30.0, 15e3, 400)
-    exact = forced_response(
-        ClampOnBeams(beams, length, 1.0, clamp), frequency, [beams.accelerometer], loss_factor=0.01
+    level = stiffness / torsional_stiffness(beams, length)
+    scaled = replace(
+        beams,
+        youngs_modulus=level * beams.youngs_modulus,
+        density=level * beams.density,
+        anchor_rotation=level * beams.anchor_rotation,
+        anchor_translation=level * beams.anchor_translation,
     )
+    clamp = rigid_clamp_inertia(beams, stiffness, inertia)
+    frequency = np.geomspace(30.0, 15e3, 400)
+    structure = ClampOnBeams(scaled, length, 1.0, clamp)
+    exact = forced_response(structure, frequency, [beams.accelerometer], loss_factor=0.01)
     found = modal.frequency_response(frequency)[:, TORQUE]
     for output, expected in (
         (ACCELERATION, exact.acceleration[0]),
@@ -186,13 +194,35 @@ def test_stations_are_points_of_clamp_and_beam():
 # Anchors
 
 
-@given(st.floats(500.0, 4000.0), st.floats(20.0, 1e6), st.floats(2e6, 1e12))
+@given(st.floats(0.05, 0.2), st.floats(20.0, 1e6), st.floats(2e6, 1e12))
 @settings(max_examples=50, deadline=None)
-def test_length_and_stiffness_belong_together_with_soft_anchors(stiffness, rotation, translation):
+def test_anchors_that_yield_leave_less_stiffness_and_no_anchor_any(length, rotation, translation):
     beams = replace(STEEL, anchor_rotation=rotation, anchor_translation=translation)
-    length = beam_length(beams, stiffness)
-    assert torsional_stiffness(beams, length) == pytest.approx(stiffness, rel=1e-8)
-    assert torsional_stiffness(beams, 1.01 * length) < stiffness
+    stiffness = torsional_stiffness(beams, length)
+    assert 0.0 < stiffness < torsional_stiffness(STEEL, length)
+    softer = replace(beams, anchor_rotation=0.9 * rotation, anchor_translation=0.9 * translation)
+    assert torsional_stiffness(softer, length) < stiffness
+    assert beam_length(beams, 2214.0) == beam_length(STEEL, 2214.0)
+
+
+@pytest.mark.parametrize("stiffness", [2214.0, 3745.0])
+def test_the_clamp_moves_as_the_lumped_one_however_the_anchors_yield(stiffness):
+    frequency = np.array([20.0, 100.0, 200.0, 240.0])
+    omega = 2 * np.pi * frequency
+    lumped = -(omega**2) * STEEL.lever / (stiffness - omega**2 / 1200)
+    at_the_clamp = replace(SOFT, accelerometer=0.0)
+    model = beam_structure(at_the_clamp, stiffness, 1 / 1200, 1e-4, 40e3)
+    found = model.frequency_response(frequency)[ACCELERATION, TORQUE]
+    assert np.abs(found / lumped) == pytest.approx(1, abs=0.05)
+
+
+def test_a_blow_in_a_joint_that_yields_leaves_the_beams_a_couple():
+    """Its arm is where it strikes: the anchor is not there to hold against a push."""
+    found = []
+    for strike in (0.001, 0.002):
+        model = beam_structure(replace(SOFT, strike=strike), 2214.0, 1 / 1200, 0.01, 40e3)
+        found.append(abs(model.frequency_response([3e3])[ACCELERATION, PULSE, 0]))
+    assert found[1] / found[0] == pytest.approx(2.0, rel=0.05)
 
 
 def test_very_stiff_anchors_are_rigid_ones():
@@ -213,12 +243,6 @@ def test_soft_anchors_still_balance_the_torque_at_rest_and_keep_the_lumped_mode(
     arm = STEEL.lever + beam_length(SOFT, 1500.0)
     assert 2 * (force * arm + moment) == pytest.approx(1.0, rel=1e-6)
     assert model.frequencies[0] == pytest.approx(np.sqrt(1500.0 * 1200) / (2 * np.pi), rel=1e-6)
-
-
-def test_a_stiffness_beyond_what_the_anchors_allow_is_refused():
-    weak = replace(STEEL, anchor_translation=1e4, anchor_rotation=10.0)
-    with pytest.raises(ParameterError, match="more than the anchors allow"):
-        beam_length(weak, 3745.0)
 
 
 @pytest.fixture(scope="module")

@@ -158,12 +158,10 @@ def test_a_bolted_clamp_has_no_beams_to_radiate():
 
 
 @pytest.mark.parametrize(
-    ("support", "speed", "least"),
-    # At 3745 Nm/rad and 5 rad/s it falls short of the 10 dB.
-    [(2214.0, 1.0, 10.0), (2214.0, 5.0, 10.0), (3745.0, 1.0, 10.0), (3745.0, 5.0, 7.5)],
+    ("support", "speed"), [(2214.0, 1.0), (2214.0, 5.0), (3745.0, 1.0), (3745.0, 5.0)]
 )
-def test_without_the_plate_a_creak_loses_10_db_above_2_khz(support, speed, least):
-    """A blow in the joint meets the beam within half its thickness of the anchor."""
+def test_without_the_plate_a_creak_loses_10_db_above_2_khz(support, speed):
+    """A blow in the joint meets the beam within a fifth of its thickness of the end."""
     interference = 0.381e-3
     whole, no_beams = (
         impulse_responses(rig(radiating=each), interference, support, RATE)
@@ -189,19 +187,20 @@ def test_without_the_plate_a_creak_loses_10_db_above_2_khz(support, speed, least
         whole.torque_to_pressure - no_beams.torque_to_pressure,
         whole.pulse_to_pressure - no_beams.pulse_to_pressure,
     )
-    assert both - beams > least
+    assert both - beams > 10.0
 
 
 def test_a_rig_file_says_how_the_beams_stand_and_whether_they_sound(tmp_path):
     path = tmp_path / "rig.toml"
     path.write_text(
-        "[beams]\nradiate = true\nanchor_rotation_Nm_rad = 500\nstrike = 0.01\nheight_m = 0.05\n"
+        "[beams]\nradiate = true\nanchor_rotation_Nm_rad = 500\n"
+        "anchor_translation_N_m = 'rigid'\nstrike = 0.01\nheight_m = 0.05\n"
     )
     beams = load_rig(path).beams
     assert (beams.radiating, beams.anchor_rotation, beams.strike) == (True, 500.0, 0.01)
     assert beams.anchor_translation == np.inf
     shipped = load_material_rig("fluorocarbon").beams
-    assert (shipped.anchor_rotation, shipped.strike) == (np.inf, 0.0125)
+    assert (shipped.anchor_rotation, shipped.strike) == (250.0, 0.005)
 
 
 @pytest.mark.parametrize(

@@ -183,7 +183,7 @@ def test_anchors_off_the_plate_are_refused():
         impulse_responses(narrow, SQUEAKY, 2214.0, RATE)
 
 
-def test_at_the_same_support_stiffness_yielding_anchors_mean_shorter_beams_that_ring_higher():
+def test_beams_on_yielding_anchors_ring_lower_but_for_the_lumped_mode():
     soft = dataclasses.replace(BENCH, beams=dataclasses.replace(BENCH.beams, anchor_rotation=155.0))
     frequency = np.arange(100.0, 5000.0, 4.0)
     found = []
@@ -195,4 +195,4 @@ def test_at_the_same_support_stiffness_yielding_anchors_mean_shorter_beams_that_
         found.append(frequency[1 + peaks])
     rigid, yielding = found
     assert yielding[0] == rigid[0] == pytest.approx(259.4, abs=4.0)
-    assert np.all(yielding[1:3] > 1.15 * rigid[1:3])
+    assert np.all(yielding[1:3] < 0.95 * rigid[1:3])
