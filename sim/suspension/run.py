@@ -135,16 +135,17 @@ def run_suspension(
             f"suspension: --seconds {seconds:g} is too long, since the whole run is held in "
             f"memory; give {LONGEST_SUSPENSION_RUN:g} or less"
         )
-    rig = suspension.rig
-    acquisition = acquisition.over(rig.sensors)
+    acquisition = acquisition.over(suspension.rig.sensors)
     noise_rng, effect_rng = (rng or np.random.default_rng(0)).spawn(2)
     plan = plan_run(
-        rig, shaft, interference=interference, support_stiffness=support_stiffness,
+        suspension.rig, shaft, interference=interference, support_stiffness=support_stiffness,
         temperature=temperature, seconds=seconds, rate=acquisition.rate, settling=None,
         library=library,
     )  # fmt: skip
+    rig = plan.rig  # at the temperature
+    suspension = replace(suspension, rig=rig)
     motion = simulate_suspension(
-        replace(suspension, rig=plan.rig), plan.shaft, interference=interference,
+        suspension, plan.shaft, interference=interference,
         support_stiffness=support_stiffness, seconds=(plan.n_settling + plan.n_kept) / plan.rate,
         rate=plan.rate, effects=plan.effects, rng=effect_rng,
     )  # fmt: skip
@@ -153,9 +154,7 @@ def run_suspension(
     pressure = np.zeros(plan.n_kept)
     seen = []
     for each, place in zip(motion.bushings, suspension.positions, strict=True):
-        paths = impulse_responses(
-            _placed(plan.rig, place), interference, support_stiffness, plan.rate
-        )
+        paths = impulse_responses(_placed(rig, place), interference, support_stiffness, plan.rate)
         paths = changed_chain(paths, plan.effects, effect_rng.spawn(1)[0])
         sound = radiate_motion(each, paths, plan.effects)
         seen.append(sensor_signals(each, sound, plan.n_settling))
