@@ -32,9 +32,8 @@ def torque_lines(found):
 @pytest.mark.parametrize(("stiffness", "mode"), [(2214.0, 250.0), (3745.0, 310.0)])
 @pytest.mark.parametrize("speed", [7.5, 10.0])
 def test_it_vibrates_at_the_first_torsional_mode(material, stiffness, mode, speed):
-    # The rig's stick-slip shows in the torque on the stiffer support alone: tests/thesis.md.
     found = run(material, speed, stiffness)
-    assert friction_regime(found.motion) is not Regime.STEADY_SLIDING
+    assert friction_regime(found.motion) is Regime.STICK_SLIP
     assert found.motion.stuck.mean() > 0.05
     assert torque_lines(found).frequency[0] == pytest.approx(mode, rel=0.05)
 
@@ -45,9 +44,10 @@ def test_its_chatter_is_heard_as_squawk(material, stiffness):
     assert label_by_physics(run(material, 10.0, stiffness)) == "squawk"
 
 
-def test_without_film_it_slides_steadily_at_1_rad_s_on_the_softer_support_alone():
+def test_without_film_it_sticks_and_slips_at_1_rad_s_on_the_stiffer_support_alone():
+    # On the softer one the rig slid steadily; here the torque swings by 1.3 %: tests/thesis.md.
     soft, stiff = (run("natural-rubber-film-removed", 1.0, k) for k in (2214.0, 3745.0))
-    assert friction_regime(soft.motion) is Regime.STEADY_SLIDING
+    assert friction_regime(soft.motion) is not Regime.STICK_SLIP
     assert friction_regime(stiff.motion) is Regime.STICK_SLIP
 
 
