@@ -49,7 +49,7 @@ class FrictionLaw:
     torque: Any = None
     pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     rest: tuple[float, ...] = ()
-    tolerance: float = 2e-9
+    tolerance: float = 1e-8
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
         """Numbers that `torque` reads, from resolved parameters, shape (n,), units by the law."""

@@ -124,5 +124,5 @@ LAW = FrictionLaw(
     torque=_torque,
     pack=_pack,
     rest=(0.0,),
-    tolerance=3e-9,
+    tolerance=3e-8,
 )

@@ -1,6 +1,6 @@
 """The lumped model with any friction law and any effects: Runge-Kutta with event location.
 
-Dormand and Prince's pair of fifth order, with steps as long as the error of each allows, which
+Tsitouras's pair of fifth order, with steps as long as the error of each allows, which
 follows stick with few and the fastest parts of a slip with as many as they need. Outputs lie
 anywhere in a step. Where the contact breaks and catches again, the right-hand side changes, and
 where a law's sliding turns it has the kink of |v|: a step ends there, found by repeating it with
@@ -25,6 +25,7 @@ from sim.solvers.contact_state import (
     MODE,
     MOST_HOOKS,
     N_CARRIED,
+    N_LAG,
     N_MOTION,
     NEXT_MODE,
     SHORTEST_STEP,
@@ -131,7 +132,7 @@ class ContactRun:
         values = np.zeros((MOST_HOOKS, max((hook.values.size for hook in hooks), default=1)))
         for row, hook in zip(values, hooks, strict=False):
             row[: hook.values.size] = hook.values
-        self._rows = empty_rows(int(ends[-1]))
+        self._rows = empty_rows(int(ends[-1]) + (N_LAG if hooks else 0))
         j_e, j_c, _, k_b, _, _ = system
         mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
         self._constants = (
