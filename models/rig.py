@@ -17,6 +17,8 @@ from models.sensors import Sensors
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from models.sleeve import Sleeve
+    from models.temperature import TemperatureDependence
     from models.transfer_functions.measured import MeasuredResponse
 
 __all__ = [
@@ -180,6 +182,10 @@ class Rig:
         What its signals are recorded through.
     fastest_fitted : float
         Fastest speed that the bushing was fitted at [rad/s]; infinite if none is stated.
+    sleeve : Sleeve, optional
+        The rubber that the fits were measured on, by which they change with its size and modulus.
+    temperature : TemperatureDependence, optional
+        How stiffness, damping and friction follow the temperature; without one they stay.
     """
 
     name: str
@@ -197,6 +203,8 @@ class Rig:
     measured: tuple[MeasuredResponse, ...] = ()
     sensors: Sensors = field(default_factory=Sensors)
     fastest_fitted: float = math.inf
+    sleeve: Sleeve | None = None
+    temperature: TemperatureDependence | None = None
 
     def __post_init__(self) -> None:
         for name in ("elastomer_inertia", "clamp_inertia"):

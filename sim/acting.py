@@ -1,4 +1,4 @@
-"""Whether an effect can change anything, with a friction law; temperatures likewise.
+"""Whether an effect can change anything, with a friction law.
 
 A law with an inner state solves the contact itself: what an effect does to the creep of true stick
 alone it never reads, nor torques that it does not ask for. Which entries of the contact an effect
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.contact import CREEP, CRITICAL, KINETIC, N_CONTACT, N_CONTEXT, STICK_TIME, STICKS, TIME
-from sim.friction import at_temperature, friction_law
+from sim.friction import friction_law
 from sim.parameters import resolve
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sim.effects.effect import ActiveEffect
     from sim.friction.law import FrictionLaw
 
-__all__ = ["can_act", "knows_temperature"]
+__all__ = ["can_act"]
 
 _PROBES = 64
 """States of the contact that are tried."""
@@ -85,15 +85,3 @@ def _reads(law: FrictionLaw, friction: LawSpec, entry: int, rng: np.random.Gener
         if found[0] != found[1]:
             return True
     return False
-
-
-def knows_temperature(friction: LawSpec) -> bool:
-    """Whether the ambient temperature changes a friction law.
-
-    Examples
-    --------
-    >>> from models.rig import LawSpec
-    >>> knows_temperature(LawSpec("coulomb")), knows_temperature(LawSpec("master_curve"))
-    (False, True)
-    """
-    return at_temperature(friction, 23.0) != at_temperature(friction, 24.0)

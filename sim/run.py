@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,6 @@ from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.friction import at_temperature
 from sim.pipeline import (
     Plan,
     apply_sensor_effects,
@@ -24,6 +23,7 @@ from sim.pipeline import (
     sensor_signals,
 )
 from sim.shaft import ConstantSpeed, ShaftMotion
+from sim.temperature import at_temperature
 from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def simulate(
     support_stiffness : float
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
     temperature : float
-        Ambient [degree Celsius]; recorded, and taken by friction laws that have a temperature.
+        Ambient [degree Celsius]; recorded, and acts where the rig's material says how.
     seconds : float
         Length of the recording [s].
     acquisition : Acquisition, optional
@@ -260,8 +260,9 @@ def plan_run(
         settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
     held = min(seconds, 1.0) if in_blocks else seconds
     _check(held, settling, rate, interference, temperature)
+    rig = at_temperature(rig, temperature)
     return Plan(
-        rig=replace(rig, friction=at_temperature(rig.friction, temperature)),
+        rig=rig,
         shaft=shaft,
         interference=interference,
         support_stiffness=support_stiffness,

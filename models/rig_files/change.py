@@ -4,6 +4,11 @@ A quantity of the bushing has a short name, ``damping``, and a long one with its
 ``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` go with both, a bare number with the long one alone,
 and is then the value at every fit and support. Parameters of the friction law and of effects go by
 their own names, ``ageing_time`` or ``slip_pulse.amplitude``.
+
+Size and modulus of the rubber, ``wall_mm``, ``length_mm``, ``youngs_modulus_MPa`` or
+``hardness_shore_A``, take the bushing along: its torques go with contact pressure, area and
+radius, as `models.sleeve` has them, its stiffness and inertia with those of the sleeve. Damping
+and friction law stay.
 """
 
 from __future__ import annotations
@@ -17,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 from models.checks import a_number, meant
 from models.errors import ParameterError
 from models.plausible import refuse_impossible
+from models.rig_files.sleeve_file import modulus_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,7 +41,12 @@ _LONG = _FIT | {
     "elastomer_inertia": "elastomer_inertia_kgm2",
     "clamp_inertia": "clamp_inertia_kgm2",
     "elastomer_damping_share": "elastomer_damping_share",
+    "wall": "wall_mm",
+    "length": "length_mm",
+    "youngs_modulus": "youngs_modulus_MPa",
 }
+_SLEEVE = {"wall": 1e-3, "length": 1e-3, "youngs_modulus": 1e6}
+"""Units of those of the sleeve, in SI units."""
 _FRICTION = "friction"
 
 _FACTOR = re.compile(r"x\s*(?P<number>[^\s%]+)")
@@ -94,13 +105,14 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
     (10.608, 0.001368)
     """
     amounts: dict[_Target, _Amount] = {}
-    for name, given in _flat(changes):
+    for name, given in _flat(changes, where):
         target = _target(rig, name, where)
         if target in amounts:
             raise ParameterError(f"{where}: {target} is changed twice; give one change")
         amounts[target] = _amount(given, name, target, where)
     bushing = {t.name: amount for t, amount in amounts.items() if not t.owner}
     try:
+        rig = _resized(rig, bushing, where)
         made = replace(
             rig,
             fits=tuple(_changed_fit(fit, bushing) for fit in rig.fits),
@@ -141,7 +153,7 @@ def multiplied(
     {'damping': 'x2.02', 'kinetic_torque_Nm': 4.0, 'critical_torque': 'x0.9'}
     """
     rest, found = dict(factors), dict[str, str | float]()
-    for name, given in _flat(changes):
+    for name, given in _flat(changes, "change"):
         target = _target(rig, name, "change")
         if target.owner not in ("", _FRICTION):
             continue
@@ -157,8 +169,11 @@ def _factor(number: float) -> str:
     return f"x{number:.6g}"
 
 
-def _flat(changes: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+def _flat(changes: Mapping[str, Any], where: str) -> Iterator[tuple[str, Any]]:
     for name, given in changes.items():
+        if name == "hardness_shore_A":
+            yield _LONG["youngs_modulus"], modulus_of(given, where) / 1e6
+            continue
         if isinstance(given, Mapping):
             yield from ((f"{name}.{key}", value) for key, value in given.items())
         else:
@@ -233,6 +248,43 @@ def _float(text: str) -> float:
 def _changed(amounts: Mapping[str, _Amount], name: str, rig: Rig) -> float:
     old: float = getattr(rig, name)
     return amounts[name].of(old) if name in amounts else old
+
+
+def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
+    """Return the rig with another sleeve, and what follows from that."""
+    named = [name for name in _SLEEVE if name in amounts]
+    if not named:
+        return rig
+    old = rig.sleeve
+    if old is None:
+        raise ParameterError(
+            f"{where}: {named[0]} needs a [sleeve] table in the rig file, of what its fits were "
+            "measured on: inner_radius_mm, wall_mm, length_mm, and hardness_shore_A or "
+            "youngs_modulus_MPa"
+        )
+    units = {name: _SLEEVE[name] for name in named}
+    new = replace(
+        old,
+        **{
+            name: amounts[name].of(getattr(old, name) / unit) * unit for name, unit in units.items()
+        },
+    )
+    torque = new.friction_torque(1.0, 1.0) / old.friction_torque(1.0, 1.0)
+    stiffness = new.torsional_stiffness / old.torsional_stiffness
+    return replace(
+        rig,
+        sleeve=new,
+        elastomer_inertia=rig.elastomer_inertia * new.polar_area / old.polar_area,
+        fits=tuple(
+            replace(
+                fit,
+                elastomer_stiffness=stiffness * fit.elastomer_stiffness,
+                critical_torque=torque * fit.critical_torque,
+                kinetic_torque=torque * fit.kinetic_torque,
+            )
+            for fit in rig.fits
+        ),
+    )
 
 
 def _changed_fit(fit: Fit, amounts: Mapping[str, _Amount]) -> Fit:

@@ -31,6 +31,7 @@ from models.rig_files.shipped import (
     material_names,
     shipped_name,
 )
+from models.rig_files.sleeve_file import read_sleeve
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,7 +45,7 @@ __all__ = [
     "rig_from",
 ]
 
-_APART = {"base", "change", "measured_response", "design", "tolerances", "sensors"}
+_APART = {"base", "change", "measured_response", "design", "tolerances", "sensors", "sleeve"}
 """Keys that are not laid over those of a base."""
 
 _STRUCTURE = ("beams", "plate", "microphone")
@@ -149,6 +150,11 @@ def _laid(
     content: Mapping[str, Any], folder: Path, where: str, chain: tuple[Path, ...]
 ) -> tuple[Rig, dict[str, Any]]:
     """Rig of a file's content, and its tables of the structure; `chain` led to the file."""
+    if "suspension" in content:
+        raise ParameterError(
+            f"{where}: [suspension] is a car's bar in two bushings, which simulate --rig alone "
+            "takes; take the table out for the bushing on the rig"
+        )
     refuse_unknown(content, RIG_KEYS | _APART, where)
     given = {key: value for key, value in content.items() if key not in _APART}
     tables = {name: a_table(given.pop(name, {}), name, where) for name in _STRUCTURE}
@@ -159,6 +165,8 @@ def _laid(
         rig = replace(base, **rig_parts(given | tables, where, base.friction))
     else:
         bench = bench_content()
+        if "fit" in given:
+            del bench["sleeve"]  # the fits are of a bushing of its own
         bushing = _bushing(given, bench["material"], where)
         tables = {name: bench[name] | tables[name] for name in _STRUCTURE}
         law = friction_law(bushing["friction"], "the bushing", None)
@@ -168,6 +176,9 @@ def _laid(
     if "sensors" in content:
         table = content["sensors"]
         rig = replace(rig, sensors=read_sensors(table, rig.sensors, folder, f"{where}, sensors"))
+    if "sleeve" in content:
+        table = content["sleeve"]
+        rig = replace(rig, sleeve=read_sleeve(table, rig.sleeve, f"{where}, sleeve"))
     refuse_impossible(rig, where)
     if "change" in content:
         rig = changed_rig(rig, a_table(content["change"], "change", where), f"{where}, change")

@@ -11,6 +11,8 @@ from models.errors import ParameterError
 from models.rig import Fit, LawSpec
 from models.rig_files.beams_file import read_beams
 from models.rig_files.plate_file import a_microphone, a_plate
+from models.rig_files.sleeve_file import read_sleeve
+from models.rig_files.temperature_file import read_temperature
 
 __all__ = ["RIG_KEYS", "friction_law", "parse_spec", "rig_parts"]
 
@@ -24,10 +26,12 @@ RIG_KEYS = {
     "effects",
     "friction",
     "fit",
+    "sleeve",
     "beams",
     "plate",
     "microphone",
     "assumed",
+    "temperature",
 }
 """Keys that `rig_parts` reads."""
 
@@ -90,6 +94,10 @@ def rig_parts(given: Mapping[str, Any], where: str, law: LawSpec) -> dict[str, A
         parts["effects"] = tuple(
             parse_spec(a_text(e, "effects", where), f"{where}, effect") for e in effects
         )
+    if "sleeve" in given:
+        parts["sleeve"] = read_sleeve(given["sleeve"], None, f"{where}, sleeve")
+    if "temperature" in given:
+        parts["temperature"] = read_temperature(given["temperature"], where)
     if "assumed" in given:
         parts["assumed"] = _texts(given["assumed"], "assumed", where)
     parts["beams"] = read_beams(given["beams"], f"{where}, beams")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from models.rig_files.sensors_file import sensors_text
 from models.rig_files.shipped import material_names
+from models.rig_files.temperature_file import temperature_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -56,6 +57,8 @@ def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> st
         f"law = {json.dumps(rig.friction.name)}",
         *(f"{name} = {value:.5g}" for name, value in rig.friction.parameters.items()),
     ]
+    if rig.temperature is not None:
+        lines += ["", *temperature_text(rig.temperature)]
     if base is None and (sensors := sensors_text(rig.sensors)):
         lines += ["", *sensors]
     for fit in rig.fits:

@@ -10,7 +10,9 @@ from typing import Any
 from models.checks import meant
 from models.errors import ParameterError
 
-__all__ = ["bench_content", "material_content", "material_names", "shipped_name"]
+__all__ = [
+    "bench_content", "material_content", "material_names", "shipped_name", "suspension_file",
+]  # fmt: skip
 
 _DATA = resources.files("models") / "data"
 
@@ -52,6 +54,17 @@ def bench_content() -> dict[str, Any]:
     0.01
     """
     return tomllib.loads((_DATA / "rigs" / "bench.toml").read_text(encoding="utf-8"))
+
+
+def suspension_file() -> Path:
+    """Return the file of the shipped suspension, an example.
+
+    Examples
+    --------
+    >>> suspension_file().name
+    'suspension.toml'
+    """
+    return Path(str(_DATA / "rigs" / "suspension.toml"))
 
 
 def material_content(name: str) -> dict[str, Any]:

@@ -100,22 +100,40 @@ def _stiffness(value: float) -> str:
     return "fixed" if math.isinf(value) else f"{value:g}"
 
 
-def temperature_remark(rig: Rig, asked: float | None) -> str:
-    """Say that a temperature that was asked for changes nothing; empty where it does.
+def temperature_remark(rig: Rig, *asked: float | None) -> str:
+    """Say what temperatures that were asked for do to a rig; empty for that of its numbers.
 
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
-    >>> temperature_remark(load_material_rig("PDMS"), 80.0)
-    'temperature 80 degree Celsius is recorded and changes nothing: friction law lugre knows none'
+    >>> temperature_remark(load_material_rig("fluorocarbon-thesis"), 80.0)
+    'temperature 80 degree Celsius is recorded and changes nothing: fluorocarbon-thesis states no \
+[temperature]'
+    >>> temperature_remark(load_material_rig("fluorocarbon"), 23.0)
+    ''
+    >>> temperature_remark(load_material_rig("fluorocarbon"), 5.0)
+    'temperature 5 degree Celsius: friction, stiffness and damping of fluorocarbon are those given \
+at 23, shifted by WLF; that is assumed, not measured'
     """
-    from sim.acting import knows_temperature
-
-    if asked is None or knows_temperature(rig.friction):
+    depends = rig.temperature
+    reference = depends.reference if depends else math.nan
+    given = sorted({value for value in asked if value is not None and value != reference})
+    if not given:
         return ""
+    said = f"temperature {' to '.join(f'{t:g}' for t in dict.fromkeys((given[0], given[-1])))}"
+    if depends is None:
+        return (
+            f"{said} degree Celsius is recorded and changes nothing: {rig.material} states no "
+            "[temperature]"
+        )
+    (low, high), trust = depends.range, "that is assumed, not measured"
+    if given[0] < low:
+        trust = f"held at {low:g}, its glass transition, below which it is no elastomer"
+    elif given[-1] > high:
+        trust = f"WLF holds up to {high:g}, 100 K above its glass transition, and is extrapolated"
     return (
-        f"temperature {asked:g} degree Celsius is recorded and changes nothing: friction law "
-        f"{rig.friction.name} knows none"
+        f"{said} degree Celsius: friction, stiffness and damping of {rig.material} are those given "
+        f"at {reference:g}, shifted by WLF; {trust}"
     )
 
 

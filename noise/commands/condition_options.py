@@ -110,8 +110,9 @@ def add_condition(parser: ArgumentParser) -> None:
         "--temperature",
         type=number(least=_ABSOLUTE_ZERO),
         metavar="C",
-        help="ambient temperature in degree Celsius; recorded, but the shipped materials do not "
-        f"depend on it (default: {DEFAULT_TEMPERATURE:g})",
+        help="ambient temperature in degree Celsius; friction, stiffness and damping follow "
+        "it where the material's file says how, under [temperature]; else it is only recorded "
+        f"(default: {DEFAULT_TEMPERATURE:g})",
     )
     group.add_argument(
         "--seconds",

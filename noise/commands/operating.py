@@ -50,7 +50,9 @@ _LONG = 60.0
 """Longer runs are written in blocks, unless an effect needs them whole [s]."""
 
 
-def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tuple[str, ...]]:
+def run_arguments(
+    options: Namespace, rate: float, *, rig: Rig | None = None
+) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Arguments of `sim.run.simulate` for the run that the options of a condition describe.
 
     What the user should know of it is returned beside them.
@@ -61,6 +63,8 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
         With the attributes of `CONDITION_OPTIONS` and ``seed``.
     rate : float
         Sampling rate of the recording [Hz].
+    rig : Rig, optional
+        That of ``--rig`` where it has been read already.
 
     Raises
     ------
@@ -79,7 +83,7 @@ def run_arguments(options: Namespace, rate: float) -> tuple[dict[str, Any], tupl
             f"{_LEAST_SAMPLES} samples or more"
         )
     library = effect_library(options.effects)
-    rig = _rig(options, library)
+    rig = _rig(options, library, rig)
     _note_idle(options.effects, rig, library)
     shaft, turning = _shaft(options, seconds)
     notes = _remarks(options, rig, shaft, library, interference_mm, stiffness)
@@ -149,7 +153,9 @@ def _remarks(
         nearest = low if interference_mm < low else high
         found.append(
             f"--interference {interference_mm:g} mm lies outside the fits given for "
-            f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used"
+            f"{rig.material} ({low:g} to {high:g} mm); those of {nearest:g} mm are used "
+            f"(contact pressure by Lame, which is linear, would be "
+            f"{interference_mm / nearest:.3g} times theirs)"
         )
     found += use_remarks(
         rig,
@@ -178,7 +184,7 @@ def _or(given: float | None, default: float) -> float:
     return default if given is None else given
 
 
-def _rig(options: Namespace, library: Mapping[str, Effect]) -> Rig:
+def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) -> Rig:
     from models.rig_files.rig_file import load_material_rig, load_rig
 
     if options.rig is None:
@@ -188,7 +194,7 @@ def _rig(options: Namespace, library: Mapping[str, Effect]) -> Rig:
             raise ParameterError(f"--material: {error}") from None
     else:
         try:
-            rig = load_rig(options.rig)
+            rig = read or load_rig(options.rig)
         except ParameterError as error:
             raise ParameterError(f"--rig: {error}") from None
         named = options.material

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -93,6 +94,12 @@ def run(options: Namespace) -> int:
     for option in ("plot", "sound_power"):
         if getattr(options, option) is not None:
             _check_seconds(option, options.seconds)
+    if options.rig is not None:
+        from models.rig_files.suspension_file import find_suspension
+
+        held = find_suspension(options.rig)
+        if held is not None:
+            return _run_suspension(options, held)
     arguments, notes = run_arguments(options, options.rate)
     for text in notes:
         note(text)
@@ -102,12 +109,8 @@ def run(options: Namespace) -> int:
 
     simulated = simulate(**arguments)
     recording = with_notes(simulated, notes, arguments)
-    if options.out is options.plot is options.sound_power is None:
-        print(json.dumps(_summary(recording)))
-    if options.out is not None:
-        from noise.recordings import write_recording
-
-        _print_names(write_recording(options.out, recording))
+    if options.plot is options.sound_power is None or options.out is not None:
+        _write_or_tell(options.out, recording)
     if options.plot is not None:
         from noise.pictures.files import write_picture
         from noise.pictures.run import plot_run
@@ -118,6 +121,43 @@ def run(options: Namespace) -> int:
         _write_sound_power(options.sound_power, simulated, arguments)
         print(options.sound_power)
     return 0
+
+
+def _run_suspension(options: Namespace, path: Path) -> int:
+    """Simulate a car's bar in two bushings."""
+    for option in ("plot", "sound_power"):
+        if getattr(options, option) is not None:
+            raise ParameterError(
+                f"--{option.replace('_', '-')} is of the rig; --rig {options.rig} is a suspension"
+            )
+    from models.rig_files.suspension_file import load_suspension
+
+    try:
+        car = load_suspension(path)
+    except ParameterError as error:
+        raise ParameterError(f"--rig: {error}") from None
+    arguments, notes = run_arguments(options, options.rate, rig=car.rig)
+    from noise.base.remarks import clipping_remarks
+    from sim.suspension.run import run_suspension
+
+    car = replace(car, rig=arguments.pop("rig"))
+    made = run_suspension(car, **arguments)
+    through = arguments["acquisition"].over(car.rig.sensors).sensors
+    notes += (*made.remarks(), *clipping_remarks(made.recording, through))
+    for text in notes:
+        note(text)
+    _write_or_tell(options.out, replace(made.recording, notes=notes))
+    return 0
+
+
+def _write_or_tell(path: Path | None, recording: Recording) -> None:
+    """Write a recording, or without a path print its summary."""
+    if path is None:
+        print(json.dumps(_summary(recording)))
+        return
+    from noise.recordings import write_recording
+
+    _print_names(write_recording(path, recording))
 
 
 def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str, ...]) -> int:
@@ -192,18 +232,24 @@ def _rate(text: str) -> int:
 
 
 def _summary(recording: Recording) -> dict[str, object]:
+    import numpy as np
+
     from models.recording import REFERENCE_PRESSURE
     from noise.recordings.sidecar import sidecar_text
 
-    torque, pressure = recording["torque"], recording["pressure"]
+    pressure = recording["pressure"]
     rms = float(pressure.std())
     level = 20.0 * math.log10(rms / REFERENCE_PRESSURE) if rms > 0.0 else None
     found: dict[str, object] = {
         "conditions": json.loads(sidecar_text(recording))["conditions"],
         "seconds": recording.duration,
         "rate_hz": recording.rate,
-        "torque_mean_Nm": _short(float(torque.mean())),
-        "torque_rms_about_mean_Nm": _short(float(torque.std())),
+        **{
+            f"{name}_{found}": _short(float(of(recording[name])))
+            for name in recording.channel_names
+            if name.partition("_")[0] == "torque"
+            for found, of in (("mean_Nm", np.mean), ("rms_about_mean_Nm", np.std))
+        },
         "peak_pressure_Pa": _short(float(abs(pressure).max())),
         "level_db": None if level is None else round(level, 2),
     }

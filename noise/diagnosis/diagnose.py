@@ -148,7 +148,7 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
             temperature=heat,
         ),
         *effect_remarks(case.rig, library),
-        temperature_remark(case.rig, heat[-1]) if len(heat) > 1 else "",
+        temperature_remark(case.rig, *heat) if case.rig.temperature or len(heat) > 1 else "",
     ]
     return [text for text in dict.fromkeys(found) if text]
 

@@ -26,6 +26,8 @@ from noise.identification.table_rig import identify_from_table
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from models.rig import Rig
+    from models.temperature import TemperatureDependence
     from noise.identification.known import Beforehand
     from noise.identification.law_choice import Choice
     from noise.identification.measured import Measurements
@@ -112,6 +114,7 @@ def identify_rig(
     rest = [one for one in model.evidence if one not in fitted]
     numbers = with_evidence(bushing_numbers(seen, choice.fit), rest)
     rig = replace(rig, fastest_fitted=max(one.measured.condition.speed for one in seen))
+    rig = replace(rig, temperature=_dependence(beforehand.rig, seen, material))
     assumed, not_found = _assumed(beforehand, seen)
     return Identification(
         rig_toml=rig_text(rig, (_HEAD, f"{_structure(beforehand)}."), beforehand.structure),
@@ -179,6 +182,15 @@ _FAR = 2.0
 """Held-out distance from which no law is said to describe the recordings [floors]."""
 
 _HEAD = "Identified from recordings; intervals and what is assumed are in identification.json."
+
+
+def _dependence(rig: Rig, seen: Sequence[Seen], material: str) -> TemperatureDependence | None:
+    """How the known rig depends on temperature, for numbers found at that of the runs."""
+    found = [one.measured.condition.temperature for one in seen]
+    known = [value for value in found if value is not None]
+    if rig.temperature is None or rig.material != material:
+        return None
+    return rig.temperature.given_at(sum(known) / len(known)) if known else rig.temperature
 
 
 def _structure(beforehand: Beforehand) -> str:

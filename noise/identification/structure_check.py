@@ -7,6 +7,7 @@ shipped bench's where nothing is. How far off these are, levels tell.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.signal import welch
 
 from models.errors import ParameterError
 from sim.run import simulate
+from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,9 +58,10 @@ def level_offsets(rig: Rig, recordings: Sequence[Measured]) -> dict[str, float]:
         having = [one for one in recordings if one.recording.first(kind) is not None][:_MOST]
         for one in having:
             row, at = one.recording.first(kind), one.condition
+            ambient = replace(at_temperature(rig, at.temperature), temperature=None)
             try:
                 run = simulate(
-                    rig, at.speed, interference=at.interference,
+                    ambient, at.speed, interference=at.interference,
                     support_stiffness=at.support_stiffness, seconds=_SECONDS,
                 )  # fmt: skip
             except ParameterError:

@@ -230,8 +230,8 @@ def _remarks(
         temperature=temperature,
     )
     found.append(fits_remark(rig, grid.interference))
-    if (given is not None and given.temperature) or len(temperature) > 1:
-        found.append(temperature_remark(rig, temperature[-1]))
+    if rig.temperature or (given is not None and given.temperature) or len(temperature) > 1:
+        found.append(temperature_remark(rig, *temperature))
     for where in dict.fromkeys(where for where, _ in grids):
         found += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
     return list(dict.fromkeys(filter(None, found)))

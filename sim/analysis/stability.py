@@ -16,7 +16,8 @@ slope: with it steady sliding is stable at any speed, and stick-slip is wholly o
 
 Slopes are central differences of the compiled law itself, so that a new law needs nothing here.
 Effects on the contact count as they are at each speed where they have no state, and else by their
-mean along steady sliding; a shaft that yields and an elastomer with a memory do not count.
+mean along steady sliding; what a temperature does, as if the contact followed its speed at once. A
+shaft that yields and an elastomer with a memory do not count.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from sim.friction import friction_law
 from sim.motion import contact_hooks
 from sim.parameters import resolve
 from sim.solvers.stand_ins import no_law
+from sim.temperature import FRICTION_SHIFT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -152,12 +154,13 @@ def _contacts(
     if hooks:  # else it needs not be compiled
         from sim.analysis.mean_contacts import average_contacts
     for hook in hooks:
-        if hook.n_states:
+        follows = hook.function is FRICTION_SHIFT.contact  # its state is that of the speed
+        if hook.n_states and not follows:
             before = contacts[0, :, :SHAFT_INERTIA].copy()
             average_contacts(hook, _MOMENTS, speed, contacts[0])
             contacts[1:, :, :SHAFT_INERTIA] += contacts[0, :, :SHAFT_INERTIA] - before
             continue
         for i, factor in enumerate((1.0, 1.0 + STEP, 1.0 - STEP)):
-            average_contacts(hook, 1, factor * speed, contacts[i])
+            average_contacts(hook, _MOMENTS if follows else 1, factor * speed, contacts[i])
     contacts[:, :, CRITICAL] = np.maximum(contacts[:, :, CRITICAL], contacts[:, :, KINETIC])
     return contacts

@@ -146,13 +146,21 @@ def activated(specs: tuple[LawSpec, ...], effects: Mapping[str, Effect]) -> list
     found: list[ActiveEffect] = []
     names = [spec.name for spec in specs]
     for spec in specs:
-        if spec.name not in effects:
+        effect = effects.get(spec.name) or _condition_effect(spec.name)
+        if effect is None:
             raise ParameterError(
                 f"effect {spec.name!r} is unknown; there are {', '.join(sorted(effects))}"
             )
         if names.count(spec.name) > 1:
             raise ParameterError(f"effect {spec.name!r} is named {names.count(spec.name)} times")
-        active = effects[spec.name].active(spec.parameters)
+        active = effect.active(spec.parameters)
         if not active.is_off:
             found.append(active)
     return found
+
+
+def _condition_effect(name: str) -> Effect | None:
+    """Return what a condition adds to a rig's effects, which no library has."""
+    from sim.temperature import FRICTION_SHIFT  # itself an effect
+
+    return FRICTION_SHIFT if name == FRICTION_SHIFT.name else None

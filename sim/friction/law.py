@@ -42,6 +42,9 @@ class FrictionLaw:
     tolerance : float
         Error of a step of the solver, over twist, speed and inner state [-]. The default serves the
         most chaotic; where neighbouring motions part slowly, a larger one is as good and faster.
+    master_speeds : tuple of str
+        Parameters that are speeds of a master curve, which a temperature shifts; by default none,
+        and it acts on the torques.
     """
 
     name: str
@@ -50,6 +53,7 @@ class FrictionLaw:
     pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     rest: tuple[float, ...] = ()
     tolerance: float = 1e-8
+    master_speeds: tuple[str, ...] = ()
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:
         """Numbers that `torque` reads, from resolved parameters, shape (n,), units by the law."""

@@ -1,22 +1,19 @@
-r"""Master curve of rubber friction: a bell over the speed reduced by temperature.
+r"""Master curve of rubber friction: a bell over the speed.
 
 .. math::
-    g &= p_0 T_{kin} + (p_1 T_{crit} - p_0 T_{kin})
-         \exp\left[-\tfrac12 (\log_{10}(a_T |v| / v_p) / w)^2\right] \\
-    \log_{10} a_T &= -\frac{8.86 (\theta - \theta_s)}{101.6 + \theta - \theta_s},
-        \qquad \theta_s = \theta_g + 50\ \mathrm{K}
+    g = p_0 T_{kin} + (p_1 T_{crit} - p_0 T_{kin})
+         \exp\left[-\tfrac12 (\log_{10}(|v| / v_p) / w)^2\right]
 
 Grosch (1963) found friction of rubber at all temperatures on one bell over log(a_T v); Persson
-(2001) derives the bell from the losses in the rubber. The shift is that of Williams, Landel and
-Ferry (1955), whose constants the thesis misprints (2.1) as 8.88 and 101.5. The peak is p_1 T_crit,
-the floor on both sides p_0 T_kin; the contact is that of `sim.friction.shared.bristle`, its
-stiffness going with the floor. Below its speed friction rises with speed and sliding is stable,
-above it falls: a low glass temperature moves the peak beyond the rig's speeds, and that is why
-silicone is silent there.
+(2001) derives the bell from the losses in the rubber. v_p is the speed of most friction at the
+temperature that the material is given at; at another `sim.temperature` moves it to v_p / a_T. The
+peak is p_1 T_crit, the floor on both sides p_0 T_kin; the contact is that of
+`sim.friction.shared.bristle`, its stiffness going with the floor. Below its speed friction rises
+with speed and sliding is stable, above it falls: a low glass temperature moves the peak beyond the
+rig's speeds, and that is why silicone is silent there.
 
-Limits: steady sliding gives T = g(v); at the peak's speed v_p / a_T that is p_1 T_crit; equal
-torques and shares, or w -> infinity with the peak in place of T_kin, give a constant friction; at
-the reference temperature theta_s the shift is one.
+Limits: steady sliding gives T = g(v); at the peak's speed that is p_1 T_crit; equal torques and
+shares, or w -> infinity with the peak in place of T_kin, give a constant friction.
 """
 
 from __future__ import annotations
@@ -27,7 +24,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from models.errors import ParameterError
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.friction.shared.bristle import BRISTLE_PARAMETERS, shear_speed
@@ -38,67 +34,26 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["LAW", "log_shift"]
-
-_WLF_SLOPE = 8.86
-_WLF_RANGE = 101.6
-"""[K]"""
-
-_REFERENCE_ABOVE_GLASS = 50.0
-"""Of the temperature to which these constants belong [K]."""
+__all__ = ["LAW"]
 
 _LEAST_SPEED = 1e-30
 """Whose logarithm stands in for that of rest [rad/s]."""
 
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,
-    "glass_temperature": Parameter(
-        -20.0, "degree Celsius", -150.0, 50.0, "theta_g: of the elastomer; natural rubber -70"
-    ),
-    "temperature": Parameter(23.0, "degree Celsius", -100.0, 250.0, "theta: of the interface"),
-    "peak_speed": Parameter(
-        0.1, "rad/s", 1e-8, 1e8, "v_p: of most friction, at 50 K above the glass temperature"
-    ),
+    "peak_speed": Parameter(0.02, "rad/s", 1e-12, 1e12, "v_p: of most friction"),
     "width": Parameter(1.5, "", 0.2, 20.0, "w: decades from the peak to 0.61 of its height"),
     "peak_share": Parameter(1.0, "", 1.0, 10.0, "p_1: torque at the peak over T_crit"),
     "floor_share": Parameter(1.0, "", 0.1, 1.0, "p_0: torque far from the peak over T_kin"),
 }
 
 
-def log_shift(temperature: float, glass_temperature: float) -> float:
-    """Return log10 of the shift factor a_T (Williams, Landel and Ferry 1955).
-
-    Parameters
-    ----------
-    temperature, glass_temperature : float
-        [degree Celsius]
-
-    Raises
-    ------
-    ParameterError
-        Below the glass temperature, where the shift does not hold and the elastomer is none.
-
-    Examples
-    --------
-    >>> log_shift(30.0, -20.0) == 0.0, round(log_shift(23.0, -123.0), 2)
-    (True, -4.3)
-    """
-    if temperature < glass_temperature:
-        raise ParameterError(
-            f"friction law 'master_curve': temperature = {temperature:g} C is below "
-            f"glass_temperature = {glass_temperature:g} C; it must be above"
-        )
-    above = temperature - (glass_temperature + _REFERENCE_ABOVE_GLASS)
-    return -_WLF_SLOPE * above / (_WLF_RANGE + above)
-
-
 def _pack(values: Mapping[str, float]) -> NDArray[np.float64]:
-    shift = log_shift(values["temperature"], values["glass_temperature"])
     return np.array(
         [
             values["contact_stiffness_per_torque"],
             values["contact_damping_per_torque"],
-            math.log10(values["peak_speed"]) - shift,
+            math.log10(values["peak_speed"]),
             values["width"],
             values["peak_share"],
             values["floor_share"],
@@ -125,4 +80,5 @@ LAW = FrictionLaw(
     pack=_pack,
     rest=(0.0,),
     tolerance=3e-8,
+    master_speeds=("peak_speed",),
 )

@@ -35,13 +35,17 @@ from sim.solvers.contact_state import (
     Drive,
     Hooks,
     Limits,
+    Rows,
     empty_rows,
 )
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["LONGEST_STEP", "ContactRun", "Hook", "solve_contact"]
+__all__ = [
+    "LONGEST_STEP", "ContactRun", "Hook", "contact_record", "hooks_record", "n_variables",
+    "solve_contact",
+]  # fmt: skip
 
 LONGEST_STEP = 1e-4
 """Whatever the error says: an effect may act at any time [s]."""
@@ -125,35 +129,15 @@ class ContactRun:
         if len(hooks) > MOST_HOOKS:
             raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
         law_state = np.zeros(0) if law_state is None else law_state
-        # The inner states: the law's, then those of the effects one after the other.
-        lengths = [hook.n_states for hook in hooks] + [0] * (MOST_HOOKS - len(hooks))
-        ends = N_MOTION + law_state.size + np.cumsum(lengths)
-        parts = [slice(end - length, end) for end, length in zip(ends, lengths, strict=True)]
-        values = np.zeros((MOST_HOOKS, max((hook.values.size for hook in hooks), default=1)))
-        for row, hook in zip(values, hooks, strict=False):
-            row[: hook.values.size] = hook.values
-        self._rows = empty_rows(int(ends[-1]) + (N_LAG if hooks else 0))
-        j_e, j_c, _, k_b, _, _ = system
-        mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
+        self._rows = empty_rows(n_variables(law_state, hooks))
         self._constants = (
-            Bushing(
-                np.array([*system, *mobilities, critical_torque, kinetic_torque]),
-                law is not None,
-                np.zeros(1) if coefficients is None else coefficients,
-                np.zeros(N_CONTEXT),
-                np.zeros(N_CONTACT),
+            contact_record(
+                system, critical_torque, kinetic_torque, coefficients, has_law=law is not None
             ),
             law or no_law,
             *[hook.function for hook in hooks],
             *[no_hook if hooks else None] * (MOST_HOOKS - len(hooks)),
-            Hooks(
-                len(hooks),
-                tuple(values),
-                tuple(self._rows.state[part] for part in parts),
-                tuple(self._rows.rates[part] for part in parts),
-            )
-            if hooks
-            else None,
+            hooks_record(hooks, self._rows, law_state.size),
         )
         self._loop = contact_loop(with_effects=bool(hooks))
         # The error of a step goes with the fifth power of its length.
@@ -215,6 +199,59 @@ class ContactRun:
         angle[1:known] = 0.5 * self._step * (speed[:-1] + speed[1:])
         np.cumsum(angle[:known], out=angle[:known])
         return Drive(self._step, np.ascontiguousarray(speed), slope, angle)
+
+
+def n_variables(law_state: NDArray[np.float64], hooks: tuple[Hook, ...]) -> int:
+    """Count motion, the law's inner states (`law_state`, shape (n,)), the effects', and the lag."""
+    lag = N_LAG if hooks else 0
+    return N_MOTION + law_state.size + sum(hook.n_states for hook in hooks) + lag
+
+
+def contact_record(
+    system: NDArray[np.float64],
+    critical_torque: float,
+    kinetic_torque: float,
+    coefficients: NDArray[np.float64] | None,
+    *,
+    has_law: bool,
+) -> Bushing:
+    """Return the lumped model and its friction as compiled code reads them; as of `ContactRun`."""
+    j_e, j_c, _, k_b, _, _ = system
+    mobilities = [1.0 / j_e, 0.0 if k_b < 0.0 else 1.0 / j_c]  # a fixed clamp does not move
+    return Bushing(
+        np.array([*system, *mobilities, critical_torque, kinetic_torque]),
+        has_law,
+        np.zeros(1) if coefficients is None else coefficients,
+        np.zeros(N_CONTEXT),
+        np.zeros(N_CONTACT),
+    )
+
+
+def hooks_record(hooks: tuple[Hook, ...], rows: Rows, n_law: int) -> Hooks | None:
+    """Return what the effects' functions are called with, None without any.
+
+    Parameters
+    ----------
+    hooks : tuple of Hook
+    rows : Rows
+        Whose inner states are the law's, then theirs.
+    n_law : int
+        Inner states of the law.
+    """
+    if not hooks:
+        return None
+    lengths = [hook.n_states for hook in hooks] + [0] * (MOST_HOOKS - len(hooks))
+    ends = N_MOTION + n_law + np.cumsum(lengths)
+    parts = [slice(end - length, end) for end, length in zip(ends, lengths, strict=True)]
+    values = np.zeros((MOST_HOOKS, max(hook.values.size for hook in hooks)))
+    for row, hook in zip(values, hooks, strict=False):
+        row[: hook.values.size] = hook.values
+    return Hooks(
+        len(hooks),
+        tuple(values),
+        tuple(rows.state[part] for part in parts),
+        tuple(rows.rates[part] for part in parts),
+    )
 
 
 def solve_contact(

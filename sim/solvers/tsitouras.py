@@ -21,6 +21,7 @@ from models.compilation import PART
 from sim.solvers.contact_state import N_MOTION, N_STAGES
 
 __all__ = [
+    "ERROR",
     "NODES",
     "factor_of_step",
     "fill_between",
@@ -53,12 +54,13 @@ for _stage, _weights in enumerate(
 ):  # fmt: skip
     _STAGES[_stage, :_stage] = _weights
 
-_ERROR = np.array(
+ERROR = np.array(
     [
         0.00178001105222577714, 0.0008164344596567469, -0.007880878010261995, 0.1447110071732629,
         -0.5823571654525552, 0.45808210592918697, -1.0 / 66.0,
     ]
 )  # fmt: skip
+"""Of a step by the rates at its stages, over its length."""
 
 _BETWEEN = np.array(
     [
@@ -126,7 +128,7 @@ def step_error(k, h, start, end, first_lag, per_angle, per_speed) -> float:
     for j in range(end.size):
         error = 0.0
         for b in range(N_STAGES):
-            error += _ERROR[b] * k[j, b]
+            error += ERROR[b] * k[j, b]
         total += error
         error = abs(h * error)
         if N_MOTION <= j < first_lag:

@@ -46,8 +46,11 @@ def refusal(capsys, *given):
     ("given", "cause"),
     [
         (("--effect", "partial_slip"), "effect partial_slip cannot act on friction law contact"),
-        (("--temperature", "5"), "temperature 5 degree Celsius is recorded and changes nothing"),
-        (("--temperature", "80"), "temperature 80 degree Celsius is recorded and changes nothing"),
+        (("--temperature", "5"), "at 23, shifted by WLF; that is assumed, not measured"),
+        (("--temperature", "-40"), "held at -20, its glass transition, below which it is no"),
+        (("--temperature", "95"), "WLF holds up to 80, 100 K above its glass transition"),
+        (("--temperature", "80", "--material", "fluorocarbon-thesis"),
+         "temperature 80 degree Celsius is recorded and changes nothing"),
         (("--support-stiffness", "3000"), "for 3000 Nm/rad it is interpolated between these"),
         (("--support-stiffness", "2e6"), "support_stiffness_Nm_rad = 2e+06 is outside the usual"),
         (("--interference", "0.000279"), "interference_mm = 0.000279 is outside the usual 0.02 to "

@@ -173,7 +173,7 @@ def test_a_factor_that_cannot_be_used_is_refused(factors):
 @pytest.mark.parametrize("name", [n for n in environment_names() if n != "dry"])
 def test_every_environment_but_dry_is_marked_as_assumed_number_by_number(name):
     where = environment(name)
-    rig = load_design("fluorocarbon").rig
+    rig = load_design("fluorocarbon-thesis").rig
     changed = in_environment(rig, where)
     assert len(changed.assumed) == len(rig.assumed) + len(where.why)
     assert all(entry.startswith(f"{name}: ") for entry in changed.assumed[len(rig.assumed) :])
@@ -184,6 +184,13 @@ def test_every_environment_but_dry_is_marked_as_assumed_number_by_number(name):
 def test_dry_changes_nothing():
     rig = load_design("fluorocarbon").rig
     assert in_environment(rig, environment("dry")) is rig
+
+
+@pytest.mark.parametrize("name", ["cold", "hot"])
+def test_what_a_material_says_of_temperature_stands_in_for_the_factors_of_cold_and_hot(name):
+    rig = load_design("fluorocarbon").rig
+    assert in_environment(rig, environment(name)) is rig
+    assert in_environment(rig, environment("wet")) is not rig
 
 
 def test_an_unknown_environment_is_named_with_those_there_are():

@@ -193,7 +193,8 @@ class ModelRuns:
         on_motion = [
             a for a in effects if a.effect.contact is not None or a.effect.drive is not None
         ]
-        of_motion = (condition_key(template), seed, scatter, model.offsets, _key(on_motion))
+        at_rest = (condition_key(template), template.condition.temperature)
+        of_motion = (at_rest, seed, scatter, model.offsets, _key(on_motion))
         key = (*of_motion, _key(on_paths))
 
         def radiated() -> Signals:

@@ -18,8 +18,10 @@ from models.recording import Channel, Recording
 from models.sensors import Sensors
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
+from sim.effects.effect import activated
 from sim.pipeline import Plan, apply_sensor_effects, radiate_motion, run_motion, sensor_signals
 from sim.shaft import ConstantSpeed
+from sim.temperature import at_temperature
 from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
@@ -187,12 +189,13 @@ def plan_repeat(
     >>> plan.rate, plan.n_settling, plan.n_kept
     (90000.0, 31500, 90000)
     """
+    ambient = at_temperature(rig, condition.temperature)
     return Plan(
-        rig=rig,
+        rig=ambient,
         shaft=ConstantSpeed(condition.speed),
         interference=condition.interference,
         support_stiffness=condition.support_stiffness,
-        effects=effects,
+        effects=(*effects, *activated(ambient.effects[len(rig.effects) :], {})),
         rate=rate,
         n_settling=round(DIAGNOSIS.settling * rate),
         n_kept=round(seconds * rate),

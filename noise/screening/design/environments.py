@@ -46,6 +46,9 @@ class Environment:
         On parameters of each fit, by `FIT_PARAMETERS` [-].
     effects : tuple of LawSpec
         What the contact does beyond its friction law.
+    by_temperature : bool
+        Whether the factors stand for the temperature: a rig whose material says how it depends on
+        that has no need of them.
     why : tuple of str
         Where the numbers come from; all are assumed.
     """
@@ -54,6 +57,7 @@ class Environment:
     temperature: float
     factors: dict[str, float]
     effects: tuple[LawSpec, ...] = ()
+    by_temperature: bool = False
     why: tuple[str, ...] = ()
 
 
@@ -67,6 +71,7 @@ def _environments() -> dict[str, Environment]:
             name=name,
             temperature=table["temperature_C"],
             effects=tuple(parse_spec(effect) for effect in table.get("effects", ())),
+            by_temperature=table.get("by_temperature", False),
             why=tuple(table["why"]),
             factors={key: table[key] for key in FIT_PARAMETERS if key in table},
         )
@@ -116,7 +121,7 @@ def in_environment(rig: Rig, where: Environment) -> Rig:
     >>> wet.fit(0.279e-3).kinetic_torque, wet.effects[0].name
     (4.8, 'velocity_weakening')
     """
-    if where.name == DRY:
+    if where.name == DRY or (where.by_temperature and rig.temperature is not None):
         return rig
     has = {effect.name for effect in rig.effects}
     return replace(

@@ -1,6 +1,6 @@
 """Map of one design in one environment: regime, noise and level at each condition of a grid.
 
-Where the friction law does not know the temperature the map of one temperature is that of all, and
+Where the material does not say how temperature acts the map of one temperature is that of all, and
 where the properties of the nearest fit are held so is the row of that fit; the copies say so.
 Stability is asked at every point of constant speed; a swinging shaft has no
 steady sliding, and its map is refined without.
@@ -20,7 +20,7 @@ from noise.screening.map.provenance import is_substituted, point_notes, rows_of
 from noise.screening.map.refine import HOW, STRIDE, refined_map
 from sim.analysis.regime import Regime
 from sim.analysis.stability import steady_sliding
-from sim.friction import at_temperature, friction_law
+from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -130,10 +130,8 @@ def map_design(
     ParameterError
         If a condition cannot be simulated.
     """
-    law = friction_law(rig.friction.name)
-    warm = "temperature" in law.parameters and "temperature" not in rig.friction.parameters
     known_by = (
-        np.arange(grid.shape[0]) if warm else np.zeros(grid.shape[0], dtype=int),
+        np.arange(grid.shape[0]) if rig.temperature else np.zeros(grid.shape[0], dtype=int),
         np.array(rows_of(rig, grid.interference)),
     )
     temperature, interference = (
@@ -224,7 +222,7 @@ def growth_rates(
     return np.stack(
         [
             steady_sliding(
-                replace(rig, friction=at_temperature(rig.friction, float(t))),
+                at_temperature(rig, float(t)),
                 speed,
                 fit[:, None],
                 support[:, None, None],

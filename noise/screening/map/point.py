@@ -31,9 +31,9 @@ from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.analysis.slips import motion_slips
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.friction import at_temperature
 from sim.pipeline import Plan, radiate_motion, run_motion
 from sim.shaft import ConstantSpeed, Oscillation
+from sim.temperature import at_temperature
 from sim.timing import SCREENING, SCREENING_SLOW
 
 if TYPE_CHECKING:
@@ -225,8 +225,9 @@ def _plan(
     if isinstance(shaft, Oscillation):
         n_settling = round(0.25 / shaft.frequency * rate)
         n_kept = round(1.25 / shaft.frequency * rate) - n_settling
+    rig = at_temperature(rig, temperature)
     return Plan(
-        rig=replace(rig, friction=at_temperature(rig.friction, temperature)),
+        rig=rig,
         shaft=shaft if isinstance(shaft, Oscillation) else ConstantSpeed(float(shaft)),
         interference=interference,
         support_stiffness=support_stiffness,

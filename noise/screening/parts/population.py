@@ -9,7 +9,7 @@ stability tells nothing.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
@@ -25,7 +25,8 @@ from noise.screening.ranking.margins import margin_of, range_of
 from sim.analysis.critical_speeds import regime_at
 from sim.analysis.regime import Regime
 from sim.analysis.stability import steady_sliding
-from sim.friction import at_temperature, friction_law
+from sim.friction import friction_law
+from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -152,7 +153,7 @@ def _outcome(
         ).label
     if critical == "none":
         return label, math.nan, math.nan, math.nan
-    rig = replace(rig, friction=at_temperature(rig.friction, point.temperature))
+    rig = at_temperature(rig, point.temperature)
     fastest = max(DEFAULT_SPEEDS[1], _BEYOND * point.use[1])
     speed = np.arange(1, math.ceil(fastest / _STEP) + 1, dtype=np.float64) * _STEP
     if critical == "stability" and friction_law(rig.friction.name).torque is not None:

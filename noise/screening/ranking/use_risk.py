@@ -9,7 +9,6 @@ sticks the periods of the vibration. Static over kinetic friction is that of the
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +20,7 @@ from noise.screening.ranking.risk import design_risk, risk_grades
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import Regime, friction_regime
 from sim.analysis.sweep_features import FEATURES, motion_features
-from sim.friction import at_temperature
+from sim.temperature import at_temperature
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -111,7 +110,7 @@ def _measured(
     rig: Rig, speed: float, interference: float, support_stiffness: float, temperature: float
 ) -> tuple[float, float, float]:
     """Acceleration [m/s2], impulses on the way [1/rad] and friction's ratio of one condition."""
-    rig = replace(rig, friction=at_temperature(rig.friction, temperature))
+    rig = at_temperature(rig, temperature)
     fit = rig.fit(interference)
     ratio = fit.critical_torque / fit.kinetic_torque if fit.kinetic_torque > 0.0 else np.inf
     motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=_SECONDS)

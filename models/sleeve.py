@@ -1,0 +1,194 @@
+r"""The rubber sleeve between shaft and housing: how hard its interference presses it on the shaft.
+
+Lame's solution of a thick-walled cylinder (Timoshenko and Goodier, Theory of Elasticity, section
+28), as Recommendation 2 of the thesis asks for. A sleeve of inner radius a and outer radius b is
+widened by the interference delta at the shaft and held by a rigid housing, u(a) = delta and
+u(b) = 0, with strain 2 a delta / (b^2 - a^2) of its volume were it closed in:
+
+.. math::
+    p = \frac{2 G a \delta}{b^2 - a^2} \left[\frac{\Lambda}{G} + \frac{b^2}{a^2}\right], \qquad
+    \frac{\Lambda}{G} = \frac{1}{1 - 2 \nu} \;\text{(plane strain)}, \quad
+    \frac{1 + \nu}{1 - \nu} \;\text{(plane stress)}
+
+Rubber hardly changes its volume: in plane strain it has nowhere to go, and bears as its bulk
+modulus does. A real sleeve bulges at its ends. As the pressure of a bonded rubber layer (Gent and
+Lindley, 1959; Chalhoub and Kelly, 1991) the hydrostatic part then follows a balance of volume along
+the axis z, with shear that holds the rubber at the housing, to which it is glued, and none at the
+shaft, where sliding turns all friction along the circumference:
+
+.. math::
+    \ell^2 p'' = p - \bar p, \qquad
+    \ell^2 = \frac{\pi}{2 A} \frac{\Delta}{G}
+    \left[\frac{b^4}{4} - a^2 b^2 + \frac{3 a^4}{4} + a^4 \ln\frac{b}{a}\right],
+    \qquad A = \pi (b^2 - a^2)
+
+Delta is by how much plane strain exceeds plane stress, so that the mean over the length, with
+the share 1 - tanh(x) / x, x = L / (2 l), of Delta, joins both of Lame's cases.
+
+Limits: no interference, no pressure; thin wall, the constrained modulus times delta / wall; thick
+wall, 2 G delta / a in plane strain; nu -> 1/2 in plane strain, the bulk modulus times the strain of
+the volume. The theory is linear: pressure, and with constant coefficient friction, goes with delta.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from models.errors import ParameterError
+
+__all__ = ["Sleeve", "shore_modulus"]
+
+_SHORT = 1e-3
+"""Below this L / (2 l) the share of the bulk is its leading term."""
+
+
+@dataclass(frozen=True)
+class Sleeve:
+    """A rubber sleeve glued into a rigid housing, pressed on a rigid shaft.
+
+    Parameters
+    ----------
+    inner_radius : float
+        Of the shaft [m].
+    wall : float
+        Thickness [m].
+    length : float
+        Along the shaft [m]; ``math.inf`` is plane strain.
+    youngs_modulus : float
+        [Pa]
+    poisson_ratio : float, optional
+        Up to 0.5, which is incompressible [-].
+
+    Raises
+    ------
+    ParameterError
+        A value that cannot be.
+
+    Examples
+    --------
+    >>> sleeve = Sleeve(0.015, 0.0045, 0.0408, shore_modulus(75.0))
+    >>> round(sleeve.pressure(0.279e-3) / 1e6, 2), round(sleeve.torsional_stiffness)
+    (3.48, 664)
+    """
+
+    inner_radius: float
+    wall: float
+    length: float
+    youngs_modulus: float
+    poisson_ratio: float = 0.4995
+
+    def __post_init__(self) -> None:
+        for name in ("inner_radius", "wall", "youngs_modulus"):
+            value = getattr(self, name)
+            if not 0.0 < value < math.inf:
+                raise ParameterError(f"sleeve: {name} = {value:g} must be above 0 and finite")
+        if not self.length > 0.0:
+            raise ParameterError(f"sleeve: length = {self.length:g} m must be above 0")
+        if not 0.0 <= self.poisson_ratio <= 0.5:
+            raise ParameterError(
+                f"sleeve: poisson_ratio = {self.poisson_ratio:g} must lie between 0 and 0.5"
+            )
+        if math.isinf(self.length) and self.poisson_ratio == 0.5:
+            raise ParameterError(
+                "sleeve: without ends an incompressible one cannot give way; give a length, or a "
+                "poisson_ratio below 0.5"
+            )
+
+    @property
+    def outer_radius(self) -> float:
+        """Of the housing [m]."""
+        return self.inner_radius + self.wall
+
+    @property
+    def shear_modulus(self) -> float:
+        """[Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+    def pressure(self, interference: float) -> float:
+        """Mean contact pressure on the shaft [Pa].
+
+        Parameters
+        ----------
+        interference : float
+            Widening of the inner radius [m].
+        """
+        a, b, nu = self.inner_radius, self.outer_radius, self.poisson_ratio
+        stiffness = (1.0 + nu) / (1.0 - nu) + self._confinement() + (b / a) ** 2
+        return 2.0 * self.shear_modulus * a * interference / (b * b - a * a) * stiffness
+
+    def friction_torque(self, interference: float, friction_coefficient: float) -> float:
+        """Torque of friction under the mean pressure, mu p A r [Nm].
+
+        Parameters
+        ----------
+        interference : float
+            [m]
+        friction_coefficient : float
+            [-]
+
+        Examples
+        --------
+        >>> sleeve = Sleeve(0.015, 0.0045, 0.0408, 7.05e6)
+        >>> round(sleeve.friction_torque(0.279e-3, 0.05), 2)
+        10.02
+        """
+        area = 2.0 * math.pi * self.inner_radius * self.length
+        return friction_coefficient * self.pressure(interference) * area * self.inner_radius
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """Of the sleeve held at both faces, 4 pi G L / (1/a^2 - 1/b^2) [Nm/rad]."""
+        a, b = self.inner_radius, self.outer_radius
+        return 4.0 * math.pi * self.shear_modulus * self.length / (a**-2 - b**-2)
+
+    @property
+    def polar_area(self) -> float:
+        """Length times polar moment of the section, to which the inertia is proportional [m5]."""
+        return self.length * (self.outer_radius**4 - self.inner_radius**4)
+
+    def _confinement(self) -> float:
+        """By how much more than in plane stress the sleeve is confined, over G [-]."""
+        a, b, nu = self.inner_radius, self.outer_radius, self.poisson_ratio
+        area = math.pi * (b * b - a * a)
+        flow = 0.25 * b**4 - (a * b) ** 2 + 0.75 * a**4 + a**4 * math.log(b / a)
+        compliance = (1.0 - 2.0 * nu) * (1.0 - nu)
+        most = 2.0 * nu * nu / compliance if compliance > 0.0 else math.inf  # Delta / G
+        if most == 0.0:
+            return 0.0
+        shear = area * self.length**2 / (2.0 * math.pi * flow)  # x^2 Delta / G
+        x = math.sqrt(shear / most)
+        if x < _SHORT:
+            return shear / 3.0
+        return most * (1.0 - math.tanh(x) / x)
+
+
+def shore_modulus(shore_a: float) -> float:
+    """Young's modulus of a rubber by its hardness [Pa].
+
+    Parameters
+    ----------
+    shore_a : float
+        Shore A hardness [degree]; the relation holds from 20 to 80.
+
+    Raises
+    ------
+    ParameterError
+        A hardness outside that.
+
+    Notes
+    -----
+    Gent (1958), On the relation between indentation hardness and Young's modulus: the durometer's
+    indenter as a rigid punch in a linear half-space.
+
+    Examples
+    --------
+    >>> [round(shore_modulus(hardness) / 1e6, 2) for hardness in (40.0, 60.0, 75.0)]
+    [1.69, 3.61, 7.05]
+    """
+    if not 20.0 <= shore_a <= 80.0:
+        raise ParameterError(
+            f"hardness of {shore_a:g} Shore A: the relation to the modulus holds from 20 to 80; "
+            "give youngs_modulus_MPa"
+        )
+    return 1e6 * 0.0981 * (56.0 + 7.62336 * shore_a) / (0.137505 * (254.0 - 2.54 * shore_a))

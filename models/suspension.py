@@ -1,0 +1,237 @@
+r"""A stabilizer bar in its two bushings, on its links: the car's model of Recommendation 7.
+
+The bar turns in two bushings on the body; an arm at each end hangs on a link to its wheel. In
+torsion it is a chain of inertias and springs,
+
+.. math::
+    k = G J / l, \qquad J_i = \rho J l, \qquad J = \pi (d^4 - d_i^4) / 32
+
+for each piece of length l, with an arm's inertia at either end, where the link pulls with
+k_L (s - r theta) at the arm r, s being the travel of the wheel. The travel is given as the angle
+s / r that it asks of the arm.
+
+Links load the bar in bending too, and its two supports carry that. Statics of a beam on two
+supports, of the spacing w, with forces at its ends, the length B apart: the left bushing bears
+F_l (1/2 + B / 2w) + F_r (1/2 - B / 2w), so that wheels which go opposite ways load a bushing by
+B / w times the force in a link.
+
+Limits: a bar without twist, wheels that go together, is the rig, twice.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Rig
+
+__all__ = ["WHEELS", "Bar", "Suspension", "TorsionChain", "torsion_chain"]
+
+WHEELS = {"together": (1.0, 1.0), "opposite": (1.0, -1.0), "left": (1.0, 0.0)}
+"""Travel of the left and the right wheel, over the angle that is asked for."""
+
+_PIECES = 6
+"""Of the bar, about; between arms that hold it its first mode, c / 2 L, comes out 1 % low."""
+
+
+@dataclass(frozen=True)
+class Bar:
+    """The stabilizer bar.
+
+    Parameters
+    ----------
+    diameter, wall : float
+        Of its tube [m]; a wall of half the diameter is a solid bar.
+    length : float
+        Between its arms [m].
+    arm_length : float
+        From its axis to a link [m].
+    arm_inertia : float
+        Of one arm about that axis [kg m2].
+    shear_modulus : float
+        [Pa]
+    density : float
+        [kg/m3]
+    damping_ratio : float
+        Of the first torsional mode of the bar alone [-]; higher ones more, in proportion.
+    """
+
+    diameter: float
+    wall: float
+    length: float
+    arm_length: float
+    arm_inertia: float
+    shear_modulus: float = 7.9e10
+    density: float = 7850.0
+    damping_ratio: float = 0.005
+
+    @property
+    def polar_moment(self) -> float:
+        """Of the section [m4]."""
+        inner = self.diameter - 2.0 * self.wall
+        return math.pi / 32.0 * (self.diameter**4 - inner**4)
+
+
+@dataclass(frozen=True)
+class Suspension:
+    """Bar, links and bushings; both bushings and their brackets are the rig's.
+
+    Parameters
+    ----------
+    rig : Rig
+        Bushing, clamp and what carries and radiates; the bar lies along the plate's y.
+    bar : Bar
+    spacing : float
+        Between the bushings, which lie symmetrically [m].
+    link_stiffness : float
+        Of a link with its joints [N/m].
+    link_damping : float
+        [N s/m]
+    wheels : str
+        Of `WHEELS`: how they go.
+
+    Raises
+    ------
+    ParameterError
+        The bushings do not lie between the arms, or on the plate.
+    """
+
+    rig: Rig
+    bar: Bar
+    spacing: float
+    link_stiffness: float
+    link_damping: float
+    wheels: str
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.spacing < self.bar.length:
+            raise ParameterError(
+                f"suspension: spacing = {self.spacing:g} m must be above 0 and below the bar's "
+                f"length = {self.bar.length:g} m"
+            )
+        if not 0.0 < 2.0 * self.bar.wall <= self.bar.diameter:
+            raise ParameterError(
+                f"suspension: the bar's wall = {self.bar.wall:g} m must be above 0 and at most "
+                f"half of its diameter = {self.bar.diameter:g} m"
+            )
+        if self.wheels not in WHEELS:
+            raise ParameterError(
+                f"suspension: wheels = {self.wheels!r}; there are {', '.join(WHEELS)}"
+            )
+        if self.spacing >= self.rig.plate.width:
+            raise ParameterError(
+                f"suspension: spacing = {self.spacing:g} m does not lie on the plate, whose "
+                f"width is {self.rig.plate.width:g} m"
+            )
+
+    @property
+    def positions(self) -> tuple[float, float]:
+        """Of left and right bushing along the plate's y [m]."""
+        return -0.5 * self.spacing, 0.5 * self.spacing
+
+
+@dataclass(frozen=True, eq=False)
+class TorsionChain:
+    """A bar in torsion as inertias in a row, with springs between them and links to the travel.
+
+    Parameters
+    ----------
+    inertia : ndarray, shape (n,)
+        [kg m2]; what is infinite keeps its speed.
+    stiffness, damping : ndarray, shape (n - 1,)
+        Between neighbours [Nm/rad], [Nm s/rad].
+    link_stiffness, link_damping : ndarray, shape (n,)
+        From the travel to each [Nm/rad], [Nm s/rad].
+    travel : ndarray, shape (n,)
+        Angle asked of each over the angle of the travel [-].
+    start : ndarray, shape (n,)
+        Speed at the start over that of the travel [-].
+    bushings : ndarray of int, shape (n_bushings,)
+        Where the bushings sit.
+    load : ndarray, shape (n_bushings, n)
+        Normal force on each bushing by the torque of each link [N/Nm].
+
+    Examples
+    --------
+    >>> bar = Bar(0.03, 0.004, 0.9, 0.2, 0.02)
+    >>> chain = torsion_chain(bar, 0.4, 2e6, 100.0, "opposite")
+    >>> chain.bushings, chain.load[:, [0, -1]].round(3)
+    (array([2, 5]), array([[ 8.125, -3.125],
+           [-3.125,  8.125]]))
+    """
+
+    inertia: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    link_stiffness: NDArray[np.float64]
+    link_damping: NDArray[np.float64]
+    travel: NDArray[np.float64]
+    start: NDArray[np.float64]
+    bushings: NDArray[np.int64]
+    load: NDArray[np.float64]
+
+    def frequencies(self) -> NDArray[np.float64]:
+        """Undamped natural frequencies without bushings [Hz], rising, shape (n,)."""
+        matrix = np.diag(self.link_stiffness)
+        for i, k in enumerate(self.stiffness):
+            matrix[i : i + 2, i : i + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        root = np.sqrt(self.inertia)
+        squares = np.linalg.eigvalsh(matrix / np.outer(root, root))
+        return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * math.pi))
+
+
+def torsion_chain(
+    bar: Bar, spacing: float, link_stiffness: float, link_damping: float, wheels: str
+) -> TorsionChain:
+    """Return the chain of a bar with two bushings.
+
+    Parameters
+    ----------
+    bar, spacing, link_stiffness, link_damping, wheels
+        As of `Suspension`.
+
+    Returns
+    -------
+    TorsionChain
+        From the left arm to the right one.
+    """
+    overhang = 0.5 * (bar.length - spacing)
+    spans = (overhang, spacing, overhang)
+    counts = [max(1, round(_PIECES * span / bar.length)) for span in spans]
+    lengths = np.repeat([s / n for s, n in zip(spans, counts, strict=True)], counts)
+    stiffness = bar.shear_modulus * bar.polar_moment / lengths
+    inertia = np.zeros(lengths.size + 1)
+    inertia[:-1] += 0.5 * bar.density * bar.polar_moment * lengths
+    inertia[1:] += 0.5 * bar.density * bar.polar_moment * lengths
+    inertia[[0, -1]] += bar.arm_inertia
+    # Stiffness-proportional: 2 zeta / omega of the bar's own first mode, sqrt(G / rho) pi / length.
+    first = math.pi / bar.length * math.sqrt(bar.shear_modulus / bar.density)
+    ends = np.zeros(inertia.size)
+    ends[[0, -1]] = bar.arm_length**2
+    left, right = WHEELS[wheels]
+    place = np.concatenate([[0.0], np.cumsum(lengths)]) / bar.length
+    travel = np.zeros(inertia.size)
+    travel[[0, -1]] = left, right
+    lever = 0.5 * bar.length / spacing
+    load = np.zeros((2, inertia.size))
+    load[:, 0] = 0.5 + lever, 0.5 - lever
+    load[:, -1] = 0.5 - lever, 0.5 + lever
+    return TorsionChain(
+        inertia=inertia,
+        stiffness=stiffness,
+        damping=2.0 * bar.damping_ratio / first * stiffness,
+        link_stiffness=link_stiffness * ends,
+        link_damping=link_damping * ends,
+        travel=travel,
+        start=left + (right - left) * place,
+        bushings=np.array([counts[0], counts[0] + counts[1]]),
+        load=load / bar.arm_length,
+    )

@@ -1,0 +1,1 @@
+"""A stabilizer bar in two bushings: motion, normal load, recording."""

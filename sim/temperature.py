@@ -1,0 +1,163 @@
+# mypy: allow-untyped-defs, allow-untyped-decorators, allow-untyped-calls
+# ruff: noqa: ANN001, ANN202
+"""A rig at an ambient temperature: its stiffness, damping and friction by `models.temperature`.
+
+A simulated condition calls `at_temperature` once. Friction acts through the contact, as effects do,
+so that it holds with any law; a law that is a master curve itself has its speeds shifted instead.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import njit
+
+from models.rig import LawSpec
+from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED
+from sim.effects.effect import Effect, Stage
+from sim.friction import friction_law
+from sim.friction.shared.bristle import FASTEST
+from sim.parameters import Parameter, resolve
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from models.rig import Fit, Rig
+    from models.temperature import TemperatureDependence
+    from sim.effects.effect import Values
+
+__all__ = ["FRICTION_SHIFT", "at_temperature"]
+
+_SLOWEST = 0.25
+"""Speed below which the bell's factor is held, the slowest the rig turned at (5.1.2) [rad/s]; it is
+that of a contact at rest too, whose creep has no bell that was measured."""
+
+_MEMORY = 3e-4
+"""Sliding within which a contact follows its speed, 4.5 um on the shaft [rad]: the distance over
+which the fluorocarbon's contact is renewed, as fitted."""
+
+
+def _pack(_form: str, values: Values, _rng: np.random.Generator) -> NDArray[np.float64]:
+    peak = math.log10(values["peak"])
+    packed = np.array([peak, peak - values["log_shift"], values["width"], values["floor"], 0.0])
+    packed[4] = _log_factor(0.0, packed)
+    return packed
+
+
+@njit(cache=True, error_model="numpy")
+def _log_factor(v, values):
+    """Logarithm of the bell's height at a sliding speed over that at the reference temperature."""
+    speed = 0.5 * math.log10(v * v + _SLOWEST * _SLOWEST)
+    before = (speed - values[0]) / values[2]
+    now = (speed - values[1]) / values[2]
+    floor, bell = values[3], 1.0 - values[3]
+    return math.log(
+        (floor + bell * math.exp(-0.5 * now * now))
+        / (floor + bell * math.exp(-0.5 * before * before))
+    )
+
+
+@njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
+def _contact(context, values, state, state_rates, contact):
+    v = context[SLIDING_SPEED]
+    factor = math.exp(values[4] + state[0])
+    contact[KINETIC] *= factor
+    contact[CRITICAL] *= factor
+    renewal = min(abs(v) / _MEMORY, FASTEST)
+    state_rates[0] = renewal * (_log_factor(v, values) - values[4] - state[0])
+
+
+FRICTION_SHIFT = Effect(
+    name="friction_at_temperature",
+    stage=Stage.FRICTION,
+    forms=("bell",),
+    parameters={
+        "log_shift": Parameter(0.0, "", -30.0, 30.0, "log10 a_T from the reference temperature"),
+        "peak": Parameter(1.0, "rad/s", 1e-12, 1e12, "v_p: of most friction at the reference"),
+        "width": Parameter(2.24, "", 1e-3, 20.0, "w: decades from the peak to 0.61 of its height"),
+        "floor": Parameter(0.3, "", 0.0, 1.0, "p_0: share of friction far from the peak"),
+    },
+    strength="log_shift",
+    contact=_contact,
+    pack=_pack,
+    n_states=1,
+)
+"""The condition's temperature on the torques; not one of `sim.effects`, which rigs may list."""
+
+
+def at_temperature(rig: Rig, temperature: float | None) -> Rig:
+    """Return a rig as it is at an ambient temperature.
+
+    Parameters
+    ----------
+    rig : Rig
+    temperature : float, optional
+        [degree Celsius]; unknown, it is the reference temperature.
+
+    Returns
+    -------
+    Rig
+        The same where its material states no dependence, or at the reference temperature; what it
+        then is at another temperature no longer follows from it.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon")
+    >>> at_temperature(rig, 23.0) is rig
+    True
+    >>> cold = at_temperature(rig, 5.0)
+    >>> cold.fit(0.279e-3).elastomer_stiffness > rig.fit(0.279e-3).elastomer_stiffness
+    True
+    """
+    depends = rig.temperature
+    if depends is None or temperature is None or temperature == depends.reference:
+        return rig
+    share, softer = rig.elastomer_damping_share, depends.damping_factor(temperature)
+    damping = share * softer + 1.0 - share
+    stiffness = depends.stiffness_factor(temperature)
+    friction, shifts = _friction(rig, depends, temperature)
+    return replace(
+        rig,
+        fits=tuple(_scaled(fit, stiffness, damping) for fit in rig.fits),
+        elastomer_damping_share=share * softer / damping,
+        friction=friction,
+        effects=(*rig.effects, *shifts),
+        temperature=None,
+    )
+
+
+def _scaled(fit: Fit, stiffness: float, damping: float) -> Fit:
+    return replace(
+        fit,
+        elastomer_stiffness=stiffness * fit.elastomer_stiffness,
+        damping={support: damping * value for support, value in fit.damping.items()},
+    )
+
+
+def _friction(
+    rig: Rig, depends: TemperatureDependence, temperature: float
+) -> tuple[LawSpec, tuple[LawSpec, ...]]:
+    """Friction law at a temperature, and the shift of its torques where it has no speeds of one."""
+    shift, law = depends.log_shift(temperature), friction_law(rig.friction.name)
+    if law.master_speeds:
+        values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
+        moved = {name: _held(values[name] * 10.0**-shift, law.parameters[name])
+                 for name in law.master_speeds}  # fmt: skip
+        return LawSpec(law.name, {**rig.friction.parameters, **moved}), ()
+    if depends.friction_peak is None or shift == 0.0:
+        return rig.friction, ()
+    values = {
+        "log_shift": shift,
+        "peak": depends.friction_peak,
+        "width": depends.friction_width,
+        "floor": depends.friction_floor,
+    }
+    return rig.friction, (LawSpec(FRICTION_SHIFT.name, values),)
+
+
+def _held(value: float, parameter: Parameter) -> float:
+    return min(max(value, parameter.low), parameter.high)

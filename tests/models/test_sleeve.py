@@ -1,0 +1,211 @@
+"""Contact pressure of a rubber sleeve by Lame, its ends, and what follows for a rig."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import spsolve
+
+from models.errors import ParameterError
+from models.rig_files.rig_file import load_material_rig, load_rig
+from models.sleeve import Sleeve, shore_modulus
+
+RIG = load_material_rig("fluorocarbon")
+FIT = """
+[[fit]]
+interference_mm = 0.279
+elastomer_stiffness_Nm_rad = 665.0
+critical_torque_Nm = 10.7
+kinetic_torque_Nm = 8.0
+damping_Nms_rad = 0.09
+"""
+BUSHING = Sleeve(0.015, 0.0045, 0.0408, 7.05e6)
+sleeves = st.builds(
+    Sleeve,
+    st.floats(0.005, 0.05), st.floats(0.002, 0.02), st.floats(0.01, 0.1), st.floats(1e6, 1e7),
+    st.floats(0.3, 0.5),
+)  # fmt: skip
+
+
+def constants(sleeve):
+    """Shear modulus, constrained modulus, bulk modulus."""
+    e, nu = sleeve.youngs_modulus, sleeve.poisson_ratio
+    return (
+        e / (2 * (1 + nu)),
+        e * (1 - nu) / ((1 + nu) * (1 - 2 * nu)),
+        e / (3 * (1 - 2 * nu)),
+    )
+
+
+@given(sleeves, st.floats(1e-5, 1e-3), st.floats(0.1, 10.0))
+def test_pressure_is_linear_in_interference_and_modulus(sleeve, interference, factor):
+    pressure = sleeve.pressure(interference)
+    stiffer = replace(sleeve, youngs_modulus=factor * sleeve.youngs_modulus)
+    assert sleeve.pressure(0.0) == 0.0 < pressure
+    assert sleeve.pressure(factor * interference) == pytest.approx(factor * pressure)
+    assert stiffer.pressure(interference) == pytest.approx(factor * pressure)
+
+
+@given(sleeves)
+def test_a_longer_or_thinner_sleeve_is_pressed_harder(sleeve):
+    pressure = sleeve.pressure(1e-4)
+    assert replace(sleeve, length=1.1 * sleeve.length).pressure(1e-4) > pressure
+    assert replace(sleeve, wall=0.9 * sleeve.wall).pressure(1e-4) > pressure
+
+
+@given(st.floats(0.0, 0.499))
+def test_a_long_sleeve_obeys_lame_in_plane_strain(nu):
+    """u = A r + B / r solved for its two ends, radial stress by Hooke."""
+    sleeve = Sleeve(0.015, 0.006, math.inf, 5e6, nu)
+    a, b, delta = 0.015, 0.021, 1e-4
+    coefficients = np.linalg.solve([[a, 1 / a], [b, 1 / b]], [delta, 0.0])
+    g = 5e6 / (2 * (1 + nu))
+    stress = 2 * g * (coefficients[0] / (1 - 2 * nu) - coefficients[1] / a**2)
+    assert sleeve.pressure(delta) == pytest.approx(-stress)
+
+
+def test_a_thin_wall_is_pressed_as_a_layer_that_cannot_widen():
+    thin = Sleeve(0.015, 1e-7, math.inf, 5e6, 0.45)
+    assert thin.pressure(1e-9) == pytest.approx(constants(thin)[1] * 1e-9 / 1e-7, rel=1e-4)
+
+
+def test_a_thick_wall_is_pressed_as_a_hole_in_rubber():
+    thick = Sleeve(0.015, 15.0, math.inf, 5e6, 0.45)
+    assert thick.pressure(1e-4) == pytest.approx(2 * constants(thick)[0] * 1e-4 / 0.015, rel=1e-4)
+
+
+def test_long_nearly_incompressible_rubber_in_a_rigid_housing_bears_as_its_bulk():
+    sleeve = Sleeve(0.015, 0.006, math.inf, 5e6, 0.499999)
+    strain = 2 * 0.015 * 1e-4 / (0.021**2 - 0.015**2)
+    assert sleeve.pressure(1e-4) == pytest.approx(constants(sleeve)[2] * strain, rel=1e-4)
+
+
+def test_an_incompressible_sleeve_is_the_limit_of_nearly_incompressible_ones():
+    last = replace(BUSHING, poisson_ratio=0.5 - 1e-9).pressure(1e-4)
+    assert replace(BUSHING, poisson_ratio=0.5).pressure(1e-4) == pytest.approx(last, rel=1e-6)
+    with pytest.raises(ParameterError, match="give a length"):
+        Sleeve(0.015, 0.006, math.inf, 5e6, 0.5)
+
+
+def test_a_disc_obeys_lame_in_plane_stress():
+    disc = replace(BUSHING, length=1e-6)
+    a, b, nu = 0.015, 0.0195, disc.poisson_ratio
+    by_lame = 2 * constants(disc)[0] * a * 1e-4 / (b * b - a * a)
+    by_lame *= (1 + nu) / (1 - nu) + (b / a) ** 2
+    assert disc.pressure(1e-4) == pytest.approx(by_lame, rel=1e-6)
+
+
+@pytest.mark.parametrize("nu", [0.45, 0.499, 0.4995])
+@pytest.mark.parametrize(("wall", "length"), [(0.0045, 0.0408), (0.006, 0.03), (0.003, 0.02)])
+def test_finite_elements_find_the_pressure_of_a_sleeve_with_ends(wall, length, nu):
+    sleeve = Sleeve(0.015, wall, length, 7.05e6, nu)
+    assert sleeve.pressure(1e-4) == pytest.approx(by_elements(sleeve, 1e-4), rel=0.1)
+
+
+def by_elements(sleeve, interference, n_r=8, n_z=32):
+    """Mean pressure by axisymmetric elements of nine nodes, volume integrated at four points."""
+    e, nu = sleeve.youngs_modulus, sleeve.poisson_ratio
+    g, lame = e / (2 * (1 + nu)), e * nu / ((1 + nu) * (1 - 2 * nu))
+    r = np.linspace(sleeve.inner_radius, sleeve.outer_radius, 2 * n_r + 1)
+    z = np.linspace(0.0, sleeve.length, 2 * n_z + 1)
+    deviatoric, volume = np.diag([2.0, 2.0, 2.0, 1.0]) * g, np.zeros((4, 4))
+    volume[:3, :3] = lame
+    rows, columns, values = [], [], []
+    for i in range(0, 2 * n_r, 2):
+        for j in range(0, 2 * n_z, 2):
+            nodes = [(i + p) * z.size + j + q for p in range(3) for q in range(3)]
+            stiffness = np.zeros((18, 18))
+            for order, law in ((3, deviatoric), (2, volume)):
+                points, weights = np.polynomial.legendre.leggauss(order)
+                for s, ws in zip(points, weights, strict=True):
+                    for t, wt in zip(points, weights, strict=True):
+                        b, radius = strain(s, t, r[i : i + 3], z[j : j + 3])
+                        area = 0.25 * (r[i + 2] - r[i]) * (z[j + 2] - z[j])
+                        stiffness += ws * wt * area * 2 * math.pi * radius * b.T @ law @ b
+            dofs = [2 * node + k for node in nodes for k in range(2)]
+            rows += np.repeat(dofs, 18).tolist()
+            columns += dofs * 18
+            values += stiffness.ravel().tolist()
+    n = 2 * r.size * z.size
+    matrix = coo_matrix((values, (rows, columns)), shape=(n, n)).tocsr()
+    inner = 2 * np.arange(z.size)
+    outer = np.arange(n - 2 * z.size, n)
+    known = np.concatenate([inner, outer])
+    u = np.zeros(n)
+    u[inner] = interference
+    free = np.setdiff1d(np.arange(n), known)
+    u[free] = spsolve(matrix[free][:, free].tocsc(), -matrix[free] @ u)
+    return float((matrix @ u)[inner].sum() / (2 * math.pi * sleeve.inner_radius * sleeve.length))
+
+
+def strain(s, t, r, z):
+    """Strains of the displacements of nine nodes at a point: radial, axial, hoop, shear."""
+    shape = [[0.5 * x * (x - 1), 1 - x * x, 0.5 * x * (x + 1)] for x in (s, t)]
+    slope = [[x - 0.5, -2 * x, x + 0.5] for x in (s, t)]
+    n = np.outer(*shape).ravel()
+    by_r = np.outer(slope[0], shape[1]).ravel() * 2 / (r[2] - r[0])
+    by_z = np.outer(shape[0], slope[1]).ravel() * 2 / (z[2] - z[0])
+    radius = float(np.dot(shape[0], r))
+    b = np.zeros((4, 18))
+    b[0, 0::2], b[1, 1::2], b[2, 0::2] = by_r, by_z, n / radius
+    b[3, 0::2], b[3, 1::2] = by_z, by_r
+    return b, radius
+
+
+def test_gents_relation_rises_with_hardness_and_ends_where_it_was_measured():
+    moduli = [shore_modulus(hardness) for hardness in range(20, 81, 5)]
+    assert all(np.diff(moduli) > 0)
+    for hardness in (19, 81):
+        with pytest.raises(ParameterError, match="from 20 to 80"):
+            shore_modulus(hardness)
+
+
+@given(st.floats(0.5, 2.0))
+def test_a_longer_bushing_bears_more_torque_than_its_length_says(factor):
+    """Its ends, where the rubber gives way, are a smaller part of it."""
+    changed = RIG.changed(length=f"x{factor}")
+    for before, after in zip(RIG.fits, changed.fits, strict=True):
+        ratio = after.kinetic_torque / before.kinetic_torque
+        assert (ratio >= factor) == (factor >= 1.0)
+        assert after.critical_torque / before.critical_torque == pytest.approx(ratio)
+        assert after.elastomer_stiffness == pytest.approx(factor * before.elastomer_stiffness)
+    assert changed.elastomer_inertia == pytest.approx(factor * RIG.elastomer_inertia)
+
+
+def test_there_and_back_is_the_same_bushing():
+    there = RIG.changed(wall_mm=6.0, hardness_shore_A=60.0)
+    back = there.changed(wall_mm=4.5, hardness_shore_A=75.0)
+    assert there.sleeve.wall == pytest.approx(0.006)
+    assert back.fits[1].kinetic_torque == pytest.approx(RIG.fits[1].kinetic_torque)
+    assert back.fits[1].elastomer_stiffness == pytest.approx(RIG.fits[1].elastomer_stiffness)
+
+
+def test_a_rig_says_the_sleeve_that_its_fits_are_of(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text('base = "PDMS"\n[sleeve]\nhardness_shore_A = 50\n', encoding="utf-8")
+    sleeve = load_rig(path).sleeve
+    assert sleeve == replace(RIG.sleeve, youngs_modulus=shore_modulus(50.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (f"{FIT}\n[change]\nwall_mm = 6", r"wall needs a \[sleeve\] table"),
+        ('base = "PDMS"\n[change]\nwall = 6', "has no unit; write wall_mm = 6"),
+        ('base = "PDMS"\n[change]\nhardness_shore_A = 90', "hardness of 90 Shore A"),
+        ('base = "PDMS"\n[sleeve]\nwall_mm = 0', "wall_mm = 0 must be"),
+        (
+            'base = "PDMS"\n[sleeve]\nhardness_shore_A = 60\nyoungs_modulus_MPa = 5',
+            "one of youngs_modulus_MPa and hardness_shore_A",
+        ),
+        (f"{FIT}\n[sleeve]\nwall_mm = 4", "sleeve: inner_radius_mm is missing"),
+    ],
+)
+def test_what_cannot_be_is_named(tmp_path, text, says):
+    path = tmp_path / "rig.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ParameterError, match=says):
+        load_rig(path)

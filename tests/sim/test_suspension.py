@@ -1,0 +1,248 @@
+"""A stabilizer bar in two bushings: its limits, balance of energy, loads and recordings."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from scipy.integrate import quad
+
+from models.errors import ParameterError
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from models.rig_files.shipped import suspension_file
+from models.rig_files.suspension_file import load_suspension
+from models.suspension import Bar, TorsionChain, torsion_chain
+from sim.acquisition import Acquisition
+from sim.bushing import lumped_bushing
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed, Oscillation
+from sim.suspension.kernel import torque_gain
+from sim.suspension.motion import preload, simulate_suspension, solve_chain
+from sim.suspension.run import run_suspension
+
+CAR = load_suspension(suspension_file())
+AT = {"interference": 0.279e-3, "support_stiffness": 2214.0}
+ROAD = Oscillation(math.radians(6.0), 2.0)
+
+
+def rigid(n=2):
+    """A bar that keeps its speed, with bushings that nothing loads."""
+    none, one = np.zeros(n), np.ones(n)
+    return TorsionChain(
+        inertia=np.full(n, math.inf), stiffness=none[1:], damping=none[1:], link_stiffness=none,
+        link_damping=none, travel=none, start=one, bushings=np.arange(n), load=np.zeros((n, n)),
+    )  # fmt: skip
+
+
+def solved(chain, rig, speed, rate, tolerance=None, **given):
+    return solve_chain(
+        chain, rig, speed, **AT | given, preload=1000.0, rate=rate, effects=(),
+        rng=np.random.default_rng(0), tolerance=tolerance,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("material", ["fluorocarbon", "PDMS", "natural-rubber"])
+@pytest.mark.parametrize("support", [2214.0, math.inf])
+def test_a_bushing_on_a_rigid_bar_is_the_rig(material, support):
+    rig, n = load_material_rig(material), 3000
+    chain = solved(rigid(), rig, np.full(n, 2.5), 30e3, 1e-11, support_stiffness=support)
+    known = simulate_motion(
+        rig, ConstantSpeed(2.5), interference=0.279e-3, support_stiffness=support, seconds=0.1,
+        rate=30e3, effects=(), tolerance=1e-11,
+    )  # fmt: skip
+    own = chain.bushings[0]
+    for name in ("torque", "friction_torque", "interface_angle", "clamp_speed", "shaft_angle"):
+        scale = np.abs(getattr(known, name)).max()
+        assert getattr(own, name) == pytest.approx(getattr(known, name), abs=1e-5 * scale), name
+
+
+def test_bushings_of_one_rigid_bar_move_alike():
+    chain = solved(rigid(), CAR.rig, np.full(3000, 1.0), 30e3)
+    left, right = chain.bushings
+    assert np.array_equal(left.torque, right.torque)
+
+
+def test_a_stiff_bar_on_stiff_links_whose_wheels_go_together_is_the_rig():
+    n = 6000
+    bar = replace(CAR.bar, shear_modulus=1e14, arm_inertia=50.0, damping_ratio=0.0)
+    stiff = torsion_chain(bar, CAR.spacing, 1e8, 0.0, "together")
+    stiff = replace(stiff, load=0.0 * stiff.load)
+    made = solved(stiff, CAR.rig, np.full(n, 2.5), 60e3)
+    known = simulate_motion(
+        CAR.rig, ConstantSpeed(2.5), **AT, seconds=0.1, rate=60e3, effects=()
+    )  # fmt: skip
+    for own in made.bushings:
+        off = own.torque - known.torque
+        assert np.sqrt(np.mean(off**2)) < 0.01 * known.torque.max()
+
+
+def test_wheels_that_go_together_move_both_bushings_alike_and_load_neither():
+    run = simulate_suspension(
+        replace(CAR, wheels="together"), ROAD, **AT, seconds=0.3, rate=30e3, effects=()
+    )
+    left, right = run.bushings
+    assert np.array_equal(left.torque, right.torque)
+    bar_torque = 2 * np.abs(left.friction_torque).max()
+    assert np.abs(run.load).max() < 2.0 * bar_torque / CAR.bar.arm_length
+
+
+def test_wheels_that_go_opposite_ways_move_the_bushings_as_mirror_images():
+    run = simulate_suspension(CAR, ROAD, **AT, seconds=0.1, rate=30e3, effects=())
+    left, right = run.bushings
+    assert left.torque == pytest.approx(-right.torque, abs=1e-2 * np.abs(left.torque).max())
+    assert run.load[0] == pytest.approx(-run.load[1], abs=1e-3 * np.abs(run.load).max())
+    # The bar's middle stands, and its parts turn as far as they are from it.
+    share = CAR.spacing / CAR.bar.length
+    turned = np.abs(left.shaft_angle).max() / np.abs(run.angle[0]).max()
+    assert turned == pytest.approx(share, rel=0.05)
+
+
+def test_links_carry_the_twist_of_the_bar_and_load_the_bushings_by_the_lever():
+    slow = Oscillation(math.radians(6.0), 0.5)
+    run = simulate_suspension(CAR, slow, **AT, seconds=0.5, rate=20e3, effects=())
+    twist = np.abs(run.angle[0] - run.angle[-1]).max()
+    bar = CAR.bar
+    torque = bar.shear_modulus * bar.polar_moment / bar.length * twist
+    load = torque / bar.arm_length * bar.length / CAR.spacing
+    friction = np.abs(run.bushings[0].friction_torque).max() / bar.arm_length
+    assert np.abs(run.load).max() == pytest.approx(load, abs=3 * friction)
+
+
+@settings(deadline=None, max_examples=8)
+@given(
+    st.sampled_from(["opposite", "together", "left"]), st.floats(0.5, 6.0), st.floats(1.0, 4.0),
+    st.sampled_from([2214.0, 3745.0, math.inf]), st.floats(2e5, 3e6), st.floats(0.0, 500.0),
+)  # fmt: skip
+def test_what_the_wheels_do_is_stored_or_lost(wheels, degrees, hertz, support, stiffness, damping):
+    car = replace(CAR, wheels=wheels, link_stiffness=stiffness, link_damping=damping)
+    travel, rate = Oscillation(math.radians(degrees), hertz), 120e3
+    at = AT | {"support_stiffness": support}
+    run = simulate_suspension(car, travel, **at, seconds=0.15, rate=rate, effects=())
+    chain = torsion_chain(car.bar, car.spacing, stiffness, damping, wheels)
+    bushing = lumped_bushing(car.rig, 0.279e-3, support)
+    stored = 0.5 * chain.inertia @ run.speed**2
+    stored += 0.5 * chain.stiffness @ np.diff(run.angle, axis=0) ** 2
+    lost = chain.damping @ np.diff(run.speed, axis=0) ** 2
+    asked = chain.travel[:, None] * run.travel
+    wanted = chain.travel[:, None] * travel.speed(np.arange(run.travel.size) / rate)
+    link = chain.link_stiffness[:, None] * (asked - run.angle)
+    link += chain.link_damping[:, None] * (wanted - run.speed)
+    given = (link * run.speed).sum(axis=0)
+    for each in run.bushings:
+        twist = each.interface_angle - each.clamp_angle
+        stored += 0.5 * bushing.elastomer_inertia * each.interface_speed**2
+        stored += 0.5 * bushing.clamp_inertia * each.clamp_speed**2
+        stored += 0.5 * bushing.elastomer_stiffness * twist**2
+        if math.isfinite(support):
+            stored += 0.5 * support * each.clamp_angle**2
+        twisting = each.interface_speed - each.clamp_speed
+        lost = lost + bushing.elastomer_damping * twisting**2
+        lost = lost + bushing.support_damping * each.clamp_speed**2
+        lost = lost + each.friction_torque * each.sliding_speed
+    power = given - lost
+    work = np.concatenate([[0.0], np.cumsum(0.5 * (power[1:] + power[:-1]) / rate)])
+    assert stored - stored[0] == pytest.approx(work, abs=2e-3 * max(stored.max(), work.max()))
+
+
+def test_a_bar_held_by_its_arms_rings_as_a_rod():
+    bar = replace(CAR.bar, arm_inertia=1e6)
+    chain = torsion_chain(bar, CAR.spacing, 0.0, 0.0, "opposite")
+    rod = math.sqrt(bar.shear_modulus / bar.density) / (2 * bar.length)
+    assert chain.frequencies()[2] == pytest.approx(rod, rel=0.02)
+
+
+@given(st.floats(0.2, 1.5), st.floats(0.1, 0.9), st.floats(-1e3, 1e3), st.floats(-1e3, 1e3))
+def test_the_bushings_bear_what_the_links_pull(length, share, left, right):
+    """Forces and moments about the bar's middle."""
+    bar = Bar(0.03, 0.002, length, 0.25, 0.01)
+    chain = torsion_chain(bar, share * length, 1e6, 0.0, "opposite")
+    loads = 0.25 * (chain.load[:, 0] * left + chain.load[:, -1] * right)
+    assert loads.sum() == pytest.approx(left + right, abs=1e-9)
+    moment = 0.5 * share * length * (loads[0] - loads[1])
+    assert moment == pytest.approx(0.5 * length * (left - right), abs=1e-9)
+
+
+@given(st.floats(0.0, math.pi))
+def test_a_load_that_the_pressure_carries_leaves_the_torque(load):
+    assert torque_gain(load) == torque_gain(-load) == 1.0
+
+
+@given(st.floats(math.pi * 1.001, 300.0))
+def test_a_load_beyond_presses_what_touches_with_the_load_itself(load):
+    """Where p0 (1 + rho cos) presses, its forces are the load, and the torque goes with its sum."""
+    gain = torque_gain(load)
+
+    def pressed(rho, weight):
+        end = math.acos(max(-1.0 / rho, -1.0))
+        return 2 * quad(lambda x: (1 + rho * math.cos(x)) * weight(x), 0.0, end)[0]
+
+    # The rho that this gain belongs to.
+    low, high = 1.0, load
+    for _ in range(80):
+        rho = 0.5 * (low + high)
+        low, high = (rho, high) if pressed(rho, math.cos) < load else (low, rho)
+    assert gain == pytest.approx(pressed(rho, lambda _: 1.0) / (2 * math.pi), rel=1e-6)
+    assert gain > 1.0
+
+
+def test_without_interference_a_bushing_is_a_journal():
+    """Cosine pressure: T = 4 / pi mu R a, where T0 = 2 pi mu p0 a^2 L."""
+    load = 1e6
+    assert torque_gain(load) * 2 * math.pi / load == pytest.approx(4 / math.pi, rel=1e-4)
+
+
+def test_a_bar_that_lifts_off_slides_under_more_torque():
+    loose = replace(CAR, rig=CAR.rig.changed(youngs_modulus="x0.3").changed(
+        critical_torque=f"x{1 / 0.3}", kinetic_torque=f"x{1 / 0.3}"))  # fmt: skip
+    stiff = replace(CAR, rig=CAR.rig.changed(elastomer_stiffness="x0.3"))
+    runs = [
+        simulate_suspension(car, Oscillation(math.radians(8.0), 1.0), **AT, seconds=0.3,
+                            rate=30e3, effects=())
+        for car in (loose, stiff)
+    ]  # fmt: skip
+    gains = [
+        torque_gain(float(np.abs(run.load).max()) / preload(car.rig, 0.279e-3))
+        for run, car in zip(runs, (loose, stiff), strict=True)
+    ]
+    assert gains[1] == 1.0 < 1.1 < gains[0]
+    late = slice(6000, 7500)  # the swing is near its end, where the load is largest
+    torque = [np.abs(run.bushings[0].friction_torque[late]).mean() for run in runs]
+    assert torque[0] > 1.05 * torque[1]
+
+
+def test_a_recording_has_the_channels_of_both_bushings_and_one_microphone():
+    run = run_suspension(
+        CAR, ROAD, **AT, temperature=23.0, seconds=0.1, acquisition=Acquisition(30e3, noise={})
+    )
+    recording = run.recording
+    assert recording.samples.shape == (7, 3000)
+    assert np.isfinite(recording.samples).all()
+    assert recording["torque_2"].std() > 0.1 < recording["torque"].std()
+    assert recording["acceleration_2"].std() > 0.0 < recording["pressure"].std()
+    assert "left bushing" in run.remarks()[0]
+
+
+def test_effects_on_the_contact_scatter_each_bushing_for_itself():
+    scatter = LawSpec("critical_torque_scatter", {"scatter": 0.3})
+    scattered = replace(CAR.rig, effects=(scatter,))
+    run = simulate_suspension(
+        replace(CAR, rig=scattered, wheels="together"), ROAD, **AT, seconds=0.2, rate=30e3
+    )
+    left, right = run.bushings
+    assert not np.array_equal(left.torque, right.torque)
+
+
+def test_what_cannot_be_simulated_is_named():
+    coulomb = replace(CAR, rig=replace(CAR.rig, friction=LawSpec("coulomb")))
+    with pytest.raises(ParameterError, match="constant torques"):
+        simulate_suspension(coulomb, ROAD, **AT, seconds=0.1, rate=30e3)
+    with pytest.raises(ParameterError, match=r"needs the contact pressure, hence a \[sleeve\]"):
+        simulate_suspension(
+            replace(CAR, rig=replace(CAR.rig, sleeve=None)), ROAD, **AT, seconds=0.1, rate=30e3
+        )
+    with pytest.raises(ParameterError, match=r"twists the bar by .* degrees"):
+        simulate_suspension(CAR, ConstantSpeed(5.0), **AT, seconds=0.5, rate=30e3)
+    with pytest.raises(ParameterError, match="spacing = 1 m must be above 0 and below"):
+        replace(CAR, spacing=1.0)

@@ -1,0 +1,104 @@
+"""A rig in the cold and in the heat: its friction, its vibration, what a law of any kind makes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.rig import LawSpec
+from models.rig_files.rig_file import load_material_rig
+from models.temperature import TemperatureDependence
+from sim.analysis.critical_speeds import critical_speeds, motion_from_rest
+from sim.analysis.stability import steady_sliding
+from sim.friction import LAWS
+from sim.run import simulate
+from sim.temperature import at_temperature
+
+RIG = load_material_rig("fluorocarbon")
+AT = (0.279e-3, 2214.0)
+
+
+def with_law(name, temperature):
+    rig = replace(RIG, friction=LawSpec(name), effects=())
+    return at_temperature(rig, temperature)
+
+
+def mean_torque(rig, speed=5.0, seconds=0.3):
+    motion = motion_from_rest(rig, speed, *AT, seconds=seconds)
+    return motion.torque[motion.torque.size // 2 :].mean()
+
+
+def test_at_the_reference_temperature_a_run_is_to_the_bit_as_without():
+    plain = simulate(replace(RIG, temperature=None), 5.0, seconds=0.1)
+    run = simulate(RIG, 5.0, temperature=23.0, seconds=0.1)
+    assert np.array_equal(run.recording.samples, plain.recording.samples)
+
+
+def test_a_material_that_does_not_say_how_stays_as_it_is():
+    thesis = load_material_rig("fluorocarbon-thesis")
+    assert at_temperature(thesis, 80.0) is thesis
+
+
+def test_what_is_at_a_temperature_stays_there():
+    cold = at_temperature(RIG, 5.0)
+    assert at_temperature(cold, 80.0) is cold
+
+
+def test_the_elastomers_damping_follows_and_that_of_the_beams_stays():
+    cold, share = at_temperature(RIG, 5.0), RIG.elastomer_damping_share
+    before, after = (rig.fit(AT[0]).damping[2214.0] for rig in (RIG, cold))
+    assert (1.0 - cold.elastomer_damping_share) * after == pytest.approx((1.0 - share) * before)
+    assert cold.elastomer_damping_share * after > 2.0 * share * before
+
+
+def test_the_cold_is_noisier_than_the_heat():
+    cold, warm = (critical_speeds(at_temperature(RIG, t), *AT, (1.0, 5.0, 13.0)) for t in (15, 80))
+    assert cold.v_crit2 >= 5.0
+    assert warm.v_crit2 == 0.0
+
+
+def test_by_stability_too():
+    cold, warm = (steady_sliding(at_temperature(RIG, t), [1.0, 2.5, 5.0], *AT) for t in (15, 80))
+    assert not cold.stable.any()
+    assert warm.stable.all()
+
+
+def test_silicone_is_silent_from_5_to_80_degrees_and_rubs_less_when_warm():
+    silicone = load_material_rig("PDMS")
+    torques = []
+    for t in (5.0, 23.0, 80.0):
+        rig = at_temperature(silicone, t)
+        assert steady_sliding(rig, np.arange(0.25, 17.0, 1.0), *AT).stable.all()
+        torques.append(mean_torque(rig))
+    assert torques == sorted(torques, reverse=True)
+
+
+def test_a_master_curve_is_moved_by_its_own_speed_and_not_twice():
+    cold = with_law("master_curve", 5.0)
+    assert cold.friction.parameters["peak_speed"] == pytest.approx(
+        0.02 / 10.0 ** RIG.temperature.log_shift(5.0)
+    )
+    assert cold.effects == ()
+
+
+@pytest.mark.parametrize("name", [name for name in LAWS if name != "master_curve"])
+def test_any_law_rubs_less_far_from_the_peak_of_friction(name):
+    usual = mean_torque(with_law(name, 23.0))
+    for t in (-5.0, 80.0):
+        found = mean_torque(with_law(name, t))
+        assert np.isfinite(found)
+        assert found < 0.97 * usual
+
+
+def test_the_torque_of_a_smooth_law_is_on_the_bell():
+    rubber = TemperatureDependence(23.0, -20.0, friction_peak=1.0)
+    rig = replace(RIG, friction=LawSpec("viscous", {"doubling_speed": 1e9}), effects=(),
+                  temperature=rubber)  # fmt: skip
+    floor, shift = rubber.friction_floor, rubber.log_shift(60.0)
+
+    def bell(decades):
+        return floor + (1.0 - floor) * np.exp(-0.5 * (decades / rubber.friction_width) ** 2)
+
+    v = np.log10(8.0)
+    ratio = mean_torque(at_temperature(rig, 60.0), 8.0) / mean_torque(rig, 8.0)
+    assert ratio == pytest.approx(bell(v + shift) / bell(v), rel=2e-3)
