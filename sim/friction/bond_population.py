@@ -69,5 +69,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     rest=(1.0, 0.0, 0.0),
-    tolerance=1e-7,
+    tolerance=1e-6,
 )

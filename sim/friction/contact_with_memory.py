@@ -57,7 +57,8 @@ def _torque(v, c, contact, state, state_rates):
     stiffness, damping = c[0] * kinetic, c[1] * kinetic
     z, age = state[0], state[1]
     speed = abs(v)
-    power = speed / c[5]
+    inverse = 1.0 / c[5]  # before the speed is known
+    power = speed * inverse
     if c[6] == 2.0:  # a general power takes as long as all the rest
         power *= power
     elif c[6] != 1.0:
@@ -77,5 +78,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     rest=(0.0, _LONG_REST),
-    tolerance=1e-7,
+    tolerance=5e-7,
 )

@@ -52,7 +52,7 @@ class FrictionLaw:
     torque: Any = None
     pack: Callable[[Mapping[str, float]], NDArray[np.float64]] | None = None
     rest: tuple[float, ...] = ()
-    tolerance: float = 2e-9
+    tolerance: float = 1e-8
     master_speeds: tuple[str, ...] = ()
 
     def coefficients(self, values: Mapping[str, float]) -> NDArray[np.float64]:

@@ -49,5 +49,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     rest=(0.0,),
-    tolerance=5e-9,
+    tolerance=5e-8,
 )

@@ -79,6 +79,6 @@ LAW = FrictionLaw(
     torque=_torque,
     pack=_pack,
     rest=(0.0,),
-    tolerance=3e-9,
+    tolerance=3e-8,
     master_speeds=("peak_speed",),
 )

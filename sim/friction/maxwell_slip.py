@@ -67,5 +67,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     rest=(0.0,) * N_ELEMENTS,
-    tolerance=2e-8,
+    tolerance=2e-7,
 )

@@ -64,5 +64,5 @@ LAW = FrictionLaw(
     parameters=_PARAMETERS,
     torque=_torque,
     rest=(0.0, _LONG_REST),
-    tolerance=3e-8,
+    tolerance=3e-7,
 )

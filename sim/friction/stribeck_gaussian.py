@@ -37,5 +37,5 @@ LAW = FrictionLaw(
     parameters=STRIBECK_PARAMETERS,
     torque=_torque,
     rest=(0.0,),
-    tolerance=5e-9,
+    tolerance=5e-8,
 )

@@ -20,8 +20,25 @@ from models.compilation import COMPILED, PART
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE, STICKS
 from sim.solvers import contact_state as at
 from sim.solvers.contact_rates import contact_rates
-from sim.solvers.contact_state import MOST_HOOKS, N_STAGES, Bushing, Drive, Hooks, Limits, Rows
-from sim.solvers.dormand_prince import NODES, fill_dense, fill_stage, step_error, vertex
+from sim.solvers.contact_state import (
+    MOST_HOOKS,
+    N_LAG,
+    N_STAGES,
+    Bushing,
+    Drive,
+    Hooks,
+    Limits,
+    Rows,
+)
+from sim.solvers.tsitouras import (
+    NODES,
+    factor_of_step,
+    fill_between,
+    fill_stage,
+    step_error,
+    value_between,
+    vertex,
+)
 
 __all__ = ["contact_loop"]
 
@@ -40,13 +57,17 @@ _EVENT_TOLERANCE = 1e-11
 _TURN_TOLERANCE = 1e-7
 """Of the speed at which a law's sliding turns, over its scale."""
 
+_SECANTS = 4
+"""To where the sliding turns, of the dense output."""
+
 _GRAZE = 2e-3
 """How near an end may come within a step that is not looked at more closely, over its scale."""
 
 _KINK = 1e-7
 """Of the torque that the drive's acceleration takes, over the kinetic one: a step ends there."""
 
-_SAFETY, _LEAST_FACTOR, _MOST_FACTOR = 0.9, 0.2, 4.0
+_LEAST_FACTOR = 0.2
+"""By which a step is shortened that is too long to tell what ends it."""
 
 _HOOK = types.FunctionType(HOOK_SIGNATURE)
 _LAW = types.FunctionType(LAW_SIGNATURE)
@@ -57,7 +78,7 @@ _RECORD = types.BaseTuple.from_types
 _BUSHING = _RECORD([_VECTOR, boolean, _VECTOR, _VECTOR, _VECTOR], Bushing)
 _HOOKS = _RECORD([int64, _VECTORS, _VECTORS, _VECTORS], Hooks)
 _DRIVE = _RECORD([float64, _VECTOR, _VECTOR, _VECTOR], Drive)
-_ROWS = _RECORD([_MATRIX, _VECTOR, _VECTOR, _MATRIX, _VECTOR, _VECTOR, _VECTOR, _VECTOR], Rows)
+_ROWS = _RECORD([_MATRIX, *[_VECTOR] * 7], Rows)
 _LIMITS = _RECORD([float64, float64], Limits)
 
 
@@ -101,6 +122,25 @@ def _bracketed(h, far, low, high, far_low, far_high, side):
     return h, low, high, far_low, far_high, side
 
 
+@njit(**PART)
+def _turn_within(start, end_speed, k, h, slide, far_start, far_end):
+    """Return the share of a step at which its dense output has the sliding turn, by secants.
+
+    The shaft is taken to go from where it was at the start to where it is at the end.
+    """
+    x_before, far_before = 0.0, far_start
+    x = far_start / (far_start - far_end)
+    for _ in range(_SECANTS):
+        bend = start[1] + x * (end_speed - start[1]) - value_between(start, k, 1, x, h)
+        far = far_start + x * (far_end - far_start) + slide * bend
+        if far == far_before:
+            break
+        x_next = x - far * (x - x_before) / (far - far_before)
+        x_before, far_before = x, far
+        x = min(max(x_next, 0.0), 1.0)
+    return x
+
+
 @lru_cache
 def contact_loop(*, with_effects: bool) -> Any:
     """Return the compiled loop, with effects or for runs without any, which compiles faster.
@@ -139,9 +179,10 @@ def _run_contact(
     """
     functions = (h0, h1, h2, h3, h4, h5, h6, h7)
     s, has_law, context = bushing.system, bushing.has_law, bushing.context
-    k, start, end, q, u, p = rows.stages, rows.start, rows.end, rows.dense, rows.state, rows.rates
+    k, start, end, u = rows.stages, rows.start, rows.end, rows.state
     slope, step, tolerance = drive.slope, drive.step, limits.tolerance
     n, d = direction_out.size, u.size
+    lag = d if hooks is None else d - N_LAG
     last = max(drive.speed.size - 2, 0)  # segment of the drive
     t_crit, t_kin = s[8], s[9]
     bushing.contact[CRITICAL], bushing.contact[KINETIC] = t_crit, t_kin
@@ -149,6 +190,7 @@ def _run_contact(
     # The twist at the critical torque, and the speed that it becomes when released.
     twist_scale = max(t_crit, t_kin) / s[2]
     speed_scale = twist_scale * math.sqrt(s[2] * s[6])
+    per_angle, per_speed = 1.0 / twist_scale, 1.0 / speed_scale
     # How near the end of stick or slip counts as there, by whether it slides.
     if has_law:
         near_stick, near_slip = _TURN_TOLERANCE * speed_scale, _TURN_TOLERANCE * speed_scale
@@ -159,7 +201,7 @@ def _run_contact(
     stick_start, stick_length = carried[at.STICK_START], carried[at.STICK_LENGTH]
     t0, t1 = carried[at.STEP_START], carried[at.STEP_END]
     step_of_stick, step_of_slip = carried[at.STEP_OF_STICK], carried[at.STEP_OF_SLIP]
-    fresh, n_done = carried[at.FRESH] != 0.0, carried[at.DONE]
+    fresh, n_done, error_before = carried[at.FRESH] != 0.0, carried[at.DONE], carried[at.ERROR]
     sample, i0 = 0, 0
     friction, e, holding, critical, caught, shaft = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     far_start, far, far_early, far_late = carried[at.FAR], 0.0, 0.0, 0.0
@@ -167,24 +209,18 @@ def _run_contact(
         fresh = True
     while True:
         # The outputs that lie in the step just made.
-        dense = False
         while sample < n and sample * step < t1:
             length = t1 - t0
-            if not dense:
-                dense = True
-                fill_dense(q, k, length)
-            x = (sample * step - t0) / length
-            for j in range(d):
-                u[j] = start[j] + x * (q[0, j] + x * (q[1, j] + x * (q[2, j] + x * q[3, j])))
+            fill_between(u, start, k, rows.weights, (sample * step - t0) / length, length)
             time = (first + sample) * step
             i = min(sample, last)
             stick_time = time - stick_start if mode == 0 else stick_length
             friction, e, holding, critical, caught, shaft = contact_rates(
-                (sample - i) * step, i, time, stick_time, mode, bushing, law, functions, hooks,
-                drive, rows,
+                N_STAGES, (sample - i) * step, i, time, stick_time, mode, bushing, law, functions,
+                hooks, drive, rows,
             )  # fmt: skip
             out[0, sample], out[1, sample] = friction, e
-            out[2, sample], out[3, sample], out[4, sample] = u[0], p[0], u[2]
+            out[2, sample], out[3, sample], out[4, sample] = u[0], k[0, N_STAGES], u[2]
             out[5, sample], out[6, sample] = u[3], shaft
             direction_out[sample] = mode
             sample += 1
@@ -201,10 +237,10 @@ def _run_contact(
             else:  # it has caught
                 stick_start = first * step + t0
                 context[STICKS] += 1.0
-            mode, fresh = next_mode, True
+            mode, fresh, error_before = next_mode, True, 1.0
         for j in range(d):
             start[j] = end[j]
-            k[0, j] = k[N_STAGES - 1, j]
+            k[j, 0] = k[j, N_STAGES - 1]
         while i0 < last and (i0 + 1) * step <= t0 + _TIME_TOLERANCE:
             i0 += 1
             if abs(slope[i0] - slope[i0 - 1]) > kink:
@@ -225,11 +261,9 @@ def _run_contact(
                 time = first * step + t
                 stick_time = time - stick_start if mode == 0 else stick_length
                 friction, e, holding, critical, caught, shaft = contact_rates(
-                    t - i * step, i, time, stick_time, mode, bushing, law, functions, hooks,
+                    stage, t - i * step, i, time, stick_time, mode, bushing, law, functions, hooks,
                     drive, rows,
                 )  # fmt: skip
-                for j in range(d):
-                    k[stage, j] = p[j]
                 # How far it is from the end of stick or slip, or from the turn of the sliding.
                 if has_law:
                     far = slide * (shaft - u[1])
@@ -251,10 +285,8 @@ def _run_contact(
                 stick_length = first * step + t0 - stick_start
                 continue
             begin = 1
-            error = step_error(k, h, start, u, twist_scale, speed_scale) / tolerance
-            factor = _MOST_FACTOR
-            if error > 0.0:
-                factor = min(max(_SAFETY * error**-0.2, _LEAST_FACTOR), _MOST_FACTOR)
+            error = step_error(k, h, start, u, lag, per_angle, per_speed) / tolerance
+            factor = factor_of_step(error, error_before)
             if far < 0.0 and high < 0.0 and far_low <= 0.0 and error < math.inf:
                 # The end lies before the step: a sliding that has turned already, or a step that
                 # is too long to tell.
@@ -266,7 +298,7 @@ def _run_contact(
             if high < 0.0 and not (far < 0.0 and error < math.inf):
                 # No end so far. Is the step good enough?
                 if error > 1.0 and h > _LEAST_STEP:
-                    h *= min(factor, _SAFETY)
+                    h *= factor
                     aim = h
                     continue
                 # Nor may it end within the step and begin again: the vertex of a parabola tells.
@@ -280,15 +312,17 @@ def _run_contact(
                 h *= x
                 continue
             # It ends within the step, which is repeated until it ends just there.
-            tried = h
+            tried, whole = h, high < 0.0
             h, low, high, far_low, far_high, side = _bracketed(
                 h, far, low, high, far_low, far_high, side
             )
+            if has_law and whole:
+                h = tried * _turn_within(start, u[1], k, tried, slide, far_start, far)
             near = abs(far) <= (near_stick if mode == 0 else near_slip)
             if near or high - low <= _TIME_TOLERANCE:
                 h = tried
                 if error > 1.0 and h > _LEAST_STEP:  # found, but by a step that was too long
-                    h *= min(factor, _SAFETY)
+                    h *= factor
                     aim = h
                     low, high, far_low, side = 0.0, -1.0, far_start, 0.0
                     continue
@@ -304,13 +338,16 @@ def _run_contact(
         t1 = t0 + h
         for j in range(d):
             end[j] = u[j]
-        follows = h * factor if h == aim else max(aim, h * factor)
+        if h == aim:
+            follows, error_before = h * factor, error
+        else:
+            follows = max(aim, h * factor)
         far_start, fresh = far, False
         if has_law or mode != 0:
             step_of_slip = min(follows, limits.longest)
         else:
             step_of_stick = min(follows, limits.longest)
-            end[1] = p[0]  # the surface goes with the shaft
+            end[1] = k[0, N_STAGES - 1]  # the surface goes with the shaft
         if has_law:
             if ends:  # the sliding turns
                 slide, far_start = -slide, -far
@@ -327,4 +364,4 @@ def _run_contact(
     carried[at.ANGLE], carried[at.DONE], carried[at.FAR] = drive.angle[n], n_done, far_start
     carried[at.STEP_START], carried[at.STEP_END] = t0 - n * step, t1 - n * step
     carried[at.STEP_OF_STICK], carried[at.STEP_OF_SLIP] = step_of_stick, step_of_slip
-    carried[at.FRESH] = 1.0 if fresh else 0.0
+    carried[at.FRESH], carried[at.ERROR] = (1.0 if fresh else 0.0), error_before

@@ -34,6 +34,7 @@ from sim.contact import (
     TWIST,
     TWIST_RATE,
 )
+from sim.solvers.contact_state import N_LAG, N_MOTION
 
 __all__ = ["contact_rates"]
 
@@ -45,9 +46,9 @@ _MOST_CREEP_PASSES = 30
 
 @njit(forceinline=True, **PART)
 def contact_rates(
-    since, i, time, stick_time, mode, bushing, law, functions, hooks, drive, rows
+    stage, since, i, time, stick_time, mode, bushing, law, functions, hooks, drive, rows
 ) -> tuple[float, float, float, float, float, float]:
-    """Fill the rates of the state, `since` sample `i` of the drive [s].
+    """Fill the rates of the state at a stage, `since` sample `i` of the drive [s].
 
     Returns friction torque, elastomer torque, what holds the surfaces together, what they can
     bear [Nm], the speed of the surface in stick, and that of the shaft [rad/s].
@@ -55,21 +56,25 @@ def contact_rates(
     s, has_law, contact, context = bushing.system, bushing.has_law, bushing.contact, bushing.context
     j_e, k_e, k_b, c_e, c_b, j_e_inverse, j_c_inverse = s[0], s[2], s[3], s[4], s[5], s[6], s[7]
     t_crit, t_kin = s[8], s[9]
-    u, p = rows.state, rows.rates
+    u, k = rows.state, rows.stages
     acceleration = drive.slope[i]
-    shaft = drive.speed[i] + acceleration * since - u[5]
+    shaft = drive.speed[i] + acceleration * since
+    lag = u.size
+    if hooks is not None:  # known when it is compiled
+        lag -= N_LAG
+        shaft -= u[lag + 1]
     sticks = mode == 0 and not has_law
     surface = shaft if sticks else u[1]
     twist = u[0] - u[2]
     e = k_e * twist + c_e * (surface - u[3])
     critical, kinetic, creep = t_crit, t_kin, 0.0
     mobility, shaft_torque = 0.0, 0.0
-    if hooks is not None:  # known when it is compiled
+    if hooks is not None:
         context[TIME], context[STICK_TIME] = time, stick_time
         turned = since * (drive.speed[i] + 0.5 * acceleration * since)
         context[SHAFT_ANGLE] = drive.angle[i] + turned
         context[SHAFT_SPEED], context[TWIST] = shaft, twist
-        context[SHAFT_LAG], context[SHAFT_LAG_RATE] = u[4], u[5]
+        context[SHAFT_LAG], context[SHAFT_LAG_RATE] = u[lag], u[lag + 1]
         # A creeping contact relieves the elastomer's damper, on whose torque its creep depends:
         # a share is sought that makes itself, by secants from rest.
         share, share_before, gap_before = 0.0, 0.0, 0.0
@@ -130,13 +135,16 @@ def contact_rates(
         friction = holding
     else:
         friction = mode * kinetic
-    p[0] = surface
-    p[1] = 0.0 if sticks else (friction - e) * j_e_inverse
-    p[2] = u[3]
-    p[3] = (e - k_b * u[2] - c_b * u[3]) * j_c_inverse
-    # The lag is that of the shaft's end behind its drive.
-    p[4] = u[5]
-    p[5] = 0.0 if mobility == 0.0 else acceleration - (shaft_torque - friction) * mobility
+    k[0, stage] = surface
+    k[1, stage] = 0.0 if sticks else (friction - e) * j_e_inverse
+    k[2, stage] = u[3]
+    k[3, stage] = (e - k_b * u[2] - c_b * u[3]) * j_c_inverse
+    for j in range(N_MOTION, lag):
+        k[j, stage] = rows.rates[j]
+    if hooks is not None:  # the lag of the shaft's end behind its drive
+        k[lag, stage] = u[lag + 1]
+        turns = acceleration - (shaft_torque - friction) * mobility
+        k[lag + 1, stage] = 0.0 if mobility == 0.0 else turns
     # A slip ends where it is as slow as the creep in which it would stick.
     caught = surface if sticks else shaft * (1.0 - creep)
     return friction, e, holding, critical, caught, shaft

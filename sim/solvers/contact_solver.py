@@ -1,6 +1,6 @@
 """The lumped model with any friction law and any effects: Runge-Kutta with event location.
 
-Dormand and Prince's pair of fifth order, with steps as long as the error of each allows, which
+Tsitouras's pair of fifth order, with steps as long as the error of each allows, which
 follows stick with few and the fastest parts of a slip with as many as they need. Outputs lie
 anywhere in a step. Where the contact breaks and catches again, the right-hand side changes, and
 where a law's sliding turns it has the kink of |v|: a step ends there, found by repeating it with
@@ -25,6 +25,7 @@ from sim.solvers.contact_state import (
     MODE,
     MOST_HOOKS,
     N_CARRIED,
+    N_LAG,
     N_MOTION,
     NEXT_MODE,
     SHORTEST_STEP,
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "LONGEST_STEP", "ContactRun", "Hook", "contact_record", "hooks_record", "inner_states",
+    "LONGEST_STEP", "ContactRun", "Hook", "contact_record", "hooks_record", "n_variables",
     "solve_contact",
 ]  # fmt: skip
 
@@ -128,7 +129,7 @@ class ContactRun:
         if len(hooks) > MOST_HOOKS:
             raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
         law_state = np.zeros(0) if law_state is None else law_state
-        self._rows = empty_rows(N_MOTION + inner_states(law_state, hooks))
+        self._rows = empty_rows(n_variables(law_state, hooks))
         self._constants = (
             contact_record(
                 system, critical_torque, kinetic_torque, coefficients, has_law=law is not None
@@ -200,9 +201,10 @@ class ContactRun:
         return Drive(self._step, np.ascontiguousarray(speed), slope, angle)
 
 
-def inner_states(law_state: NDArray[np.float64], hooks: tuple[Hook, ...]) -> int:
-    """Count the inner states: the law's, `law_state` of shape (n,), then those of the effects."""
-    return law_state.size + sum(hook.n_states for hook in hooks)
+def n_variables(law_state: NDArray[np.float64], hooks: tuple[Hook, ...]) -> int:
+    """Count motion, the law's inner states (`law_state`, shape (n,)), the effects', and the lag."""
+    lag = N_LAG if hooks else 0
+    return N_MOTION + law_state.size + sum(hook.n_states for hook in hooks) + lag
 
 
 def contact_record(

@@ -10,10 +10,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "ANGLE", "DONE", "FAR", "FIRST", "FRESH", "MODE", "MOST_HOOKS", "NEXT_MODE", "N_CARRIED",
-    "N_MOTION", "N_STAGES", "SHORTEST_STEP", "SLIDE", "STEP_END", "STEP_OF_SLIP", "STEP_OF_STICK",
-    "STEP_START", "STICK_LENGTH", "STICK_START", "Bushing", "Drive", "Hooks", "Limits", "Rows",
-    "empty_rows",
+    "ANGLE", "DONE", "ERROR", "FAR", "FIRST", "FRESH", "MODE", "MOST_HOOKS", "NEXT_MODE",
+    "N_CARRIED", "N_LAG", "N_MOTION", "N_STAGES", "SHORTEST_STEP", "SLIDE", "STEP_END",
+    "STEP_OF_SLIP", "STEP_OF_STICK", "STEP_START", "STICK_LENGTH", "STICK_START", "Bushing",
+    "Drive", "Hooks", "Limits", "Rows", "empty_rows",
 ]  # fmt: skip
 
 MOST_HOOKS = 8
@@ -50,13 +50,18 @@ FAR = 12
 """From the end of stick or slip, at the end of the last step."""
 NEXT_MODE = 13
 """After the last step."""
-N_CARRIED = 14
+ERROR = 14
+"""Of the last step, over the tolerance."""
+N_CARRIED = 15
 
 N_STAGES = 7
-"""Of a step of `sim.solvers.dormand_prince`."""
+"""Of a step of `sim.solvers.tsitouras`."""
 
-N_MOTION = 6
-"""First of the variables, whose errors have scales of their own."""
+N_MOTION = 4
+"""First of the variables, theta1, theta1', theta2, theta2'."""
+
+N_LAG = 2
+"""Last of the variables where effects act: angle and speed by which the shaft's end lags."""
 
 
 class Bushing(NamedTuple):
@@ -103,19 +108,19 @@ class Rows(NamedTuple):
     """States of all variables, or their rates, and room for them."""
 
     stages: NDArray[np.float64]
-    """Rates at the stages of the last step."""
+    """Rates of each variable at the stages of the last step, then those at an output."""
+    weights: NDArray[np.float64]
+    """Of the stages."""
     start: NDArray[np.float64]
     """State where the last step began."""
     end: NDArray[np.float64]
     """State where it ended."""
-    dense: NDArray[np.float64]
-    """Coefficients of the state between start and end."""
     state: NDArray[np.float64]
     """At one instant."""
     rates: NDArray[np.float64]
-    """At that instant."""
+    """At that instant, of what laws and effects fill."""
     inner: NDArray[np.float64]
-    """Those of the state that are neither angles nor speeds: the law's, then the effects'."""
+    """Those of the state after the motion: the law's, then the effects', then the lag."""
     inner_rates: NDArray[np.float64]
 
 
@@ -134,8 +139,10 @@ def empty_rows(n: int) -> Rows:
     Examples
     --------
     >>> empty_rows(7).inner.shape
-    (1,)
+    (3,)
     """
-    stages, dense = np.zeros((N_STAGES, n)), np.zeros((4, n))
     start, end, state, rates = np.zeros((4, n))
-    return Rows(stages, start, end, dense, state, rates, state[N_MOTION:], rates[N_MOTION:])
+    return Rows(
+        np.zeros((n, N_STAGES + 1)), np.zeros(N_STAGES), start, end, state, rates,
+        state[N_MOTION:], rates[N_MOTION:],
+    )  # fmt: skip

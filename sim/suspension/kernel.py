@@ -6,7 +6,7 @@
 Each bushing is the lumped model as `sim.solvers.contact_rates` has it, with the bar at its place
 for a shaft; what its surface takes is taken from the bar. Links load the bushings, and where that
 lifts the bar off a part of one, its torques rise (`torque_gain`). Steps are those of
-`sim.solvers.dormand_prince`, as long as their error allows.
+`sim.solvers.tsitouras`, as long as their error allows.
 
 The state holds angle and speed of each inertia, then for each bushing what `contact_rates` works
 on.
@@ -25,7 +25,7 @@ from models.compilation import COMPILED, PART
 from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, LAW_SIGNATURE
 from sim.solvers.contact_rates import contact_rates
 from sim.solvers.contact_state import MOST_HOOKS, N_STAGES, SHORTEST_STEP
-from sim.solvers.dormand_prince import ERROR, NODES, fill_dense, fill_stage
+from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fill_stage
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,8 +40,6 @@ _LEAST_STEP = 1e-10
 
 _GRACE = 2e-3
 """Time that is granted before steps are counted [s]."""
-
-_SAFETY, _LEAST_FACTOR, _MOST_FACTOR = 0.9, 0.2, 4.0
 
 _NEWTON_STEPS = 12
 
@@ -109,15 +107,15 @@ def torque_gain(load) -> float:
 
 @njit(**PART)
 def _fill_rates(
-    since, i, time, u, rates, chain, bushings, law, functions, hooks, rows, drive, place, out
+    stage, since, i, time, u, k, chain, bushings, law, functions, hooks, rows, drive, place, out
 ) -> None:
-    """Fill the rates of the state `u`; `out` gets friction, elastomer torque and load of each."""
+    """Fill the rates `k` of the state `u` at a stage; `out` gets friction, elastomer, load."""
     n = chain.mobility.size
     wheel = drive.speed[i] + drive.slope[i] * since
     angle = drive.angle[i] + since * (drive.speed[i] + 0.5 * drive.slope[i] * since)
     for j in range(n):
-        rates[2 * j] = u[2 * j + 1]
-        rates[2 * j + 1] = 0.0
+        k[2 * j, stage] = u[2 * j + 1]
+        k[2 * j + 1, stage] = 0.0
     for b in range(chain.bushings.size):
         out[b, 2] = 0.0
     for j in range(n):
@@ -125,14 +123,14 @@ def _fill_rates(
             continue
         link = chain.link_stiffness[j] * (chain.travel[j] * angle - u[2 * j])
         link += chain.link_damping[j] * (chain.travel[j] * wheel - u[2 * j + 1])
-        rates[2 * j + 1] += link
+        k[2 * j + 1, stage] += link
         for b in range(chain.bushings.size):
             out[b, 2] += chain.load[b, j] * link
     for j in range(n - 1):
         torque = chain.stiffness[j] * (u[2 * j + 2] - u[2 * j])
         torque += chain.damping[j] * (u[2 * j + 3] - u[2 * j + 1])
-        rates[2 * j + 1] += torque
-        rates[2 * j + 3] -= torque
+        k[2 * j + 1, stage] += torque
+        k[2 * j + 3, stage] -= torque
     first = 2 * n
     for b in range(chain.bushings.size):
         node, row, bushing = chain.bushings[b], rows[b], bushings[b]
@@ -146,15 +144,15 @@ def _fill_rates(
         bushing.contact[CRITICAL], bushing.contact[KINETIC] = bushing.system[8], bushing.system[9]
         place.speed[0], place.angle[0] = u[2 * node + 1], u[2 * node]
         friction, elastomer, _, _, _, _ = contact_rates(
-            0.0, 0, time, time, 0, bushing, law, functions, hooks[b], place, row
+            stage, 0.0, 0, time, time, 0, bushing, law, functions, hooks[b], place, row
         )
-        rates[2 * node + 1] -= friction
+        k[2 * node + 1, stage] -= friction
         out[b, 0], out[b, 1] = friction, elastomer
         for j in range(row.state.size):
-            rates[first + j] = row.rates[j]
+            k[first + j, stage] = row.stages[j, stage]
         first += row.state.size
     for j in range(n):
-        rates[2 * j + 1] *= chain.mobility[j]
+        k[2 * j + 1, stage] *= chain.mobility[j]
 
 
 @njit(**PART)
@@ -164,10 +162,10 @@ def _step_error(k, h, start, end, scale) -> float:
     for j in range(end.size):
         error = 0.0
         for b in range(N_STAGES):
-            error += ERROR[b] * k[b, j]
+            error += ERROR[b] * k[j, b]
         if not math.isfinite(error):
             return math.inf
-        own = max(abs(start[j]), abs(end[j])) + h * abs(k[0, j]) + 1e-300
+        own = max(abs(start[j]), abs(end[j])) + h * abs(k[j, 0]) + 1e-300
         largest = max(largest, abs(h * error) / (scale[j] if scale[j] > 0.0 else own))
     return largest
 
@@ -207,17 +205,16 @@ _HOOKS = slice(3, 3 + MOST_HOOKS)
 
 def _run_suspension(
     chain, bushings, law, h0, h1, h2, h3, h4, h5, h6, h7, hooks, rows, drive, place, limits, start,
-    scale, work, states, torques_now, torques,
+    scale, k, work, states, torques_now, torques,
 ) -> None:  # fmt: skip
     """Write states and torques at the samples of the drive; not a number where it is given up."""
     functions = (h0, h1, h2, h3, h4, h5, h6, h7)
     d, n, step = start.size, states.shape[0], drive.step
-    k, q = work[:N_STAGES], work[N_STAGES : N_STAGES + 4]
-    u, following, unused = work[N_STAGES + 4], work[N_STAGES + 5], work[N_STAGES + 6]
+    u, following = work[0], work[1]
     last = n - 2
-    t, h, sample, n_done = 0.0, _FIRST_STEP, 0, 0.0
+    t, h, sample, n_done, error_before = 0.0, _FIRST_STEP, 0, 0.0, 0.0
     _fill_rates(
-        0.0, 0, 0.0, start, k[0], chain, bushings, law, functions, hooks, rows, drive, place,
+        0, 0.0, 0, 0.0, start, k, chain, bushings, law, functions, hooks, rows, drive, place,
         torques_now,
     )  # fmt: skip
     while sample < n:
@@ -230,36 +227,32 @@ def _run_suspension(
             time = t + NODES[stage] * h
             i = min(int(time / step), last)
             _fill_rates(
-                time - i * step, i, time, u, k[stage], chain, bushings, law, functions, hooks,
+                stage, time - i * step, i, time, u, k, chain, bushings, law, functions, hooks,
                 rows, drive, place, torques_now,
             )  # fmt: skip
         error = _step_error(k, h, start, u, scale) / limits.tolerance
-        factor = _MOST_FACTOR
-        if error > 0.0:
-            factor = min(max(_SAFETY * error**-0.2, _LEAST_FACTOR), _MOST_FACTOR)
+        factor = factor_of_step(error, error_before)
         if error > 1.0 and h > _LEAST_STEP:
-            h *= min(factor, _SAFETY)
+            h *= factor
             continue
         if not math.isfinite(error):
             states[sample:] = math.nan
             return
-        fill_dense(q, k, h)
         end = t + h
         for j in range(d):
             following[j] = u[j]
         while sample < n and sample * step <= end:
-            x = (sample * step - t) / h
+            fill_between(u, start, k, rows[0].weights, (sample * step - t) / h, h)
             for j in range(d):
-                u[j] = start[j] + x * (q[0, j] + x * (q[1, j] + x * (q[2, j] + x * q[3, j])))
                 states[sample, j] = u[j]
             i = min(sample, last)
             _fill_rates(
-                (sample - i) * step, i, sample * step, u, unused, chain, bushings, law,
+                N_STAGES, (sample - i) * step, i, sample * step, u, k, chain, bushings, law,
                 functions, hooks, rows, drive, place, torques[sample],
             )  # fmt: skip
             sample += 1
         for j in range(d):
             start[j] = following[j]
-            k[0, j] = k[N_STAGES - 1, j]
-        t = end
+            k[j, 0] = k[j, N_STAGES - 1]
+        t, error_before = end, error
         h = min(h * factor, limits.longest)

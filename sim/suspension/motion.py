@@ -27,9 +27,17 @@ from sim.solvers.contact_solver import (
     LONGEST_STEP,
     contact_record,
     hooks_record,
-    inner_states,
+    n_variables,
 )
-from sim.solvers.contact_state import MOST_HOOKS, N_MOTION, N_STAGES, Drive, Limits, empty_rows
+from sim.solvers.contact_state import (
+    MOST_HOOKS,
+    N_LAG,
+    N_MOTION,
+    N_STAGES,
+    Drive,
+    Limits,
+    empty_rows,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,6 +53,9 @@ __all__ = ["SuspensionMotion", "simulate_suspension", "solve_chain"]
 
 _STRONGEST = 1e9
 """Shear stress that no spring steel bears: 1.7 GPa in tension, over the root of 3 [Pa]."""
+
+_TURN_SHARE = 0.1
+"""Of the law's tolerance: where the sliding turns is left to the error, not sought."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,7 +203,7 @@ def solve_chain(
     rest, torque_limits = law.state(), (fit.critical_torque, fit.kinetic_torque)
     places = range(chain.bushings.size)
     hooks = [contact_hooks(effects, stream) for stream in rng.spawn(len(places))]
-    first, block = 2 * chain.inertia.size, N_MOTION + inner_states(rest, hooks[0])
+    first, block = 2 * chain.inertia.size, n_variables(rest, hooks[0])
     rows = tuple(empty_rows(block) for _ in places)
     bushings = tuple(
         contact_record(system.packed(), *torque_limits, law.coefficients(values), has_law=True)
@@ -210,6 +221,8 @@ def solve_chain(
         start[begin + N_MOTION :][: rest.size] = rest
         scale[begin : begin + N_MOTION : 2] = scales[0]
         scale[begin + 1 : begin + N_MOTION : 2] = scales[1]
+        if hooks[b]:
+            scale[begin + block - N_LAG : begin + block] = scales
     states, torques = np.empty((n, start.size)), np.empty((n, len(places), 3))
     functions = [hook.function for hook in hooks[0]]
     idle = no_hook if functions else None
@@ -227,8 +240,8 @@ def solve_chain(
         rows,
         Drive(1.0 / rate, speed, _slope(speed, rate), _integral(speed, rate)),
         Drive(1.0, np.zeros(1), np.zeros(1), np.zeros(1)),
-        Limits(LONGEST_STEP, tolerance or law.tolerance),
-        start, scale, np.empty((N_STAGES + 7, start.size)), states,
+        Limits(LONGEST_STEP, tolerance or _TURN_SHARE * law.tolerance),
+        start, scale, np.zeros((start.size, N_STAGES + 1)), np.empty((2, start.size)), states,
         np.empty((len(places), 3)), torques,
     )  # fmt: skip
     suspension_loop(*arguments)(*arguments)
