@@ -64,7 +64,7 @@ def test_a_chain_of_files_changes_what_each_names(tmp_path):
     text = 'base = "deep/b.toml"\n[change]\nslip_pulse.amplitude = "x0.5"\n[design]\nname = "c"'
     rig = load_rig(written(tmp_path, text))
     assert rig.fits == RIG.fits
-    assert rig.effects[0].parameters == {"amplitude": 30.0, "threshold": 5.2}
+    assert rig.effects[0].parameters == {"amplitude": 45.0, "threshold": 5.2}
 
 
 def test_friction_without_a_law_changes_parameters_of_the_law_that_stays(tmp_path):
