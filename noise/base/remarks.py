@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from models.plausible import remark, rig_remarks
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from models.recording import Recording
     from models.rig import Rig
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from sim.effects.effect import Effect
 
 __all__ = [
-    "NEVER_SLIPS", "clipping_remarks", "effect_remarks", "sensor_remarks", "temperature_remark",
-    "use_remarks",
+    "NEVER_SLIPS", "clipping_remarks", "constant_remark", "effect_remarks", "sensor_remarks",
+    "temperature_remark", "use_remarks",
 ]  # fmt: skip
 
 NEVER_SLIPS = (
@@ -156,6 +156,35 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
         for active in activated(rig.effects, library)
         if not can_act(active, rig.friction)
     ]
+
+
+def constant_remark(rigs: Iterable[Rig], what: str) -> str:
+    """Say what is told of rigs without the irregularity that they state; empty where none does.
+
+    Parameters
+    ----------
+    rigs : iterable of Rig
+    what : str
+        Is told of the constant version: the subject of the sentence, in the plural.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> constant_remark([load_material_rig("natural-rubber")], "critical speeds")
+    'critical speeds are of the constant version, without critical_torque_scatter, which ...'
+    >>> constant_remark([load_material_rig("PDMS")], "critical speeds")
+    ''
+    """
+    from sim.constant_version import irregular_effects
+
+    left_out = dict.fromkeys(spec.name for rig in rigs for spec in irregular_effects(rig))
+    if not left_out:
+        return ""
+    verb = "makes" if len(left_out) == 1 else "make"
+    return (
+        f"{what} are of the constant version, without {' and '.join(left_out)}, which {verb} one "
+        "slip differ from the next by chance"
+    )
 
 
 def sensor_remarks(sensors: Sensors, rate: float) -> list[str]:

@@ -63,6 +63,7 @@ def _write_table(out: Path | None) -> None:
     say("preparing")
     from noise.thesis.page import thesis_page, verdict_counts
     from noise.thesis.row import COLUMNS
+    from noise.thesis.runs import constant_note
     from noise.thesis.table import GROUPS, thesis_rows
 
     rows = thesis_rows(track(GROUPS, "computing", unit="row group"))
@@ -73,6 +74,7 @@ def _write_table(out: Path | None) -> None:
         write_table(out, COLUMNS, (row.cells() for row in rows))
     counts = ", ".join(f"{word} {count}" for word, count in verdict_counts(rows).items())
     say(f"{len(rows)} rows: {counts}")
+    say(constant_note())
     if out is not None:
         print(out)
 

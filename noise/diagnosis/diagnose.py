@@ -16,7 +16,7 @@ from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
 from noise.diagnosis.evidence.sensor_noise import noise_remarks
-from noise.diagnosis.first_answer import first_answer
+from noise.diagnosis.first_answer import first_answer, known_effects
 from noise.diagnosis.outcome import Diagnosis, EffectFinding
 from sim.effects import EFFECTS
 
@@ -67,7 +67,7 @@ def diagnose_case(
     posterior = posterior or load_posterior()
     first = first_answer(case, library, posterior, seed, tell)
     table, gap, probabilities, verdict = first.table, first.gap, first.probabilities, first.verdict
-    known = {spec.name for spec in case.rig.effects}
+    known = known_effects(case.rig, library)
     findings = stage_findings(table, posterior)
     ranked = [name for name in _ranked(probabilities) if name in EFFECTS]
     stage = EFFECTS[verdict[0]].stage.value if verdict and verdict[0] in EFFECTS else None

@@ -9,17 +9,19 @@ from noise.diagnosis.causes.unlearned import unlearned_sensors
 from noise.diagnosis.causes.verdict import NAMED, verdict_of
 from noise.diagnosis.evidence.summary import case_table
 from noise.diagnosis.gap.floor import case_gap
+from sim.constant_version import constant_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from models.rig import Rig
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
     from noise.diagnosis.evidence.summary import CaseTable
     from noise.diagnosis.gap.distance import Gap
     from sim.effects.effect import Effect
 
-__all__ = ["FirstAnswer", "first_answer"]
+__all__ = ["FirstAnswer", "first_answer", "known_effects"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +33,8 @@ class FirstAnswer:
     table : CaseTable
     gap : Gap
     probabilities : mapping of str to float
-        Of each cause [-]; 0 of the effects that the rig file lists.
+        Of each cause [-]; 0 of the effects that the rig file lists, but those of which there can
+        be more (`known_effects`).
     verdict : tuple of str
         As of `noise.diagnosis.outcome.Diagnosis`.
     suspected : tuple of str
@@ -48,6 +51,25 @@ class FirstAnswer:
     unlearned: tuple[str, ...]
 
 
+def known_effects(rig: Rig, library: Mapping[str, Effect]) -> set[str]:
+    """Name the effects of a rig file that are not proposed again.
+
+    Parameters
+    ----------
+    rig : Rig
+    library : mapping of str to Effect
+        Effects that the rig's can be found among.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.effects import EFFECTS
+    >>> known_effects(load_material_rig("fluorocarbon"), EFFECTS)
+    {'slip_pulse'}
+    """
+    return {spec.name for spec in constant_version(rig, library).effects}
+
+
 def first_answer(
     case: Case,
     library: Mapping[str, Effect],
@@ -58,7 +80,7 @@ def first_answer(
     """Compare a case with its rig file.
 
     What looks like an effect that the rig file lists is not proposed again: its numbers are off,
-    which is a matter of the rig's parameters.
+    which is a matter of the rig's parameters. Of an irregularity that it lists there can be more.
 
     Parameters
     ----------
@@ -75,7 +97,7 @@ def first_answer(
     table = case_table(case.recordings, case.rig, library=library, seed=seed)
     tell("measuring the gap against simulated repeats")
     gap = case_gap(case.recordings, case.rig, library=library, seed=seed)
-    known = {spec.name for spec in case.rig.effects}
+    known = known_effects(case.rig, library)
     probabilities = dict(posterior.probabilities(table))
     again = {name: p for name, p in probabilities.items() if name in known}
     probabilities |= dict.fromkeys(again, 0.0)

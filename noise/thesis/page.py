@@ -6,6 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from noise.thesis.row import COLUMNS
+from noise.thesis.runs import constant_note
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -95,8 +96,11 @@ def thesis_page(rows: Sequence[Row]) -> str:
     <BLANKLINE>
     """
     counts = ", ".join(f"{word} {count}" for word, count in verdict_counts(rows).items())
+    constant = constant_note()
     lines = [
         _TEXT,
+        f"{constant[0].upper()}{constant[1:]}.",
+        "",
         f"{len(rows)} rows: {counts}.",
         "",
         measured_counts(rows),

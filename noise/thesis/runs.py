@@ -17,11 +17,14 @@ from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
 from models.rig_files.rig_file import load_material_rig
+from models.rig_files.shipped import material_names
+from noise.base.remarks import constant_remark
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.analysis.slips import find_slips, motion_slips
 from sim.analysis.thesis_listing import STEP, run_listing
+from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
@@ -36,10 +39,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CALIBRATED", "LONG", "RATE", "SHORT", "THESIS", "Case", "acceleration", "both",
-    "cycle_frequency", "listing_peak_speed", "listing_run", "listing_slip_frequency",
-    "listing_sudden_share", "mean_torque", "motion", "oscillation", "peak_pressure", "peak_speed",
-    "rig_of", "slip_frequency", "slip_pattern", "strongest_line", "strongest_share", "sudden_share",
-    "third_over_second", "torque_swing",
+    "constant_note", "cycle_frequency", "listing_peak_speed", "listing_run",
+    "listing_slip_frequency", "listing_sudden_share", "mean_torque", "motion", "oscillation",
+    "peak_pressure", "peak_speed", "rig_of", "slip_frequency", "slip_pattern", "strongest_line",
+    "strongest_share", "sudden_share", "third_over_second", "torque_swing",
 ]  # fmt: skip
 
 THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
@@ -134,8 +137,20 @@ def both(found: Callable[[str, Case], float], case: Case) -> Both:
 
 @cache
 def rig_of(material: str) -> Rig:
-    """Return the bench with a bushing of a material."""
-    return load_material_rig(material)
+    """Return the bench with a bushing of a material, its constant version."""
+    return constant_version(load_material_rig(material))
+
+
+def constant_note() -> str:
+    """Say of what version of the shipped materials the numbers are.
+
+    Examples
+    --------
+    >>> constant_note()
+    'numbers of the calibrated materials are of the constant version, without ...'
+    """
+    materials = map(load_material_rig, material_names())
+    return constant_remark(materials, "numbers of the calibrated materials")
 
 
 @lru_cache(maxsize=4)

@@ -7,7 +7,8 @@ stick-slip occurs", 5.1.1), V_crit2 the last at which the torque oscillates, isl
 measured and of simulated rigs alike: a design is free of either only beyond. The first torsional
 mode dies slowly: in 0.2 s an oscillation
 that is about to die out still looks alive. Speeds are tried from the fastest down, so that what
-lies below both critical speeds costs nothing.
+lies below both critical speeds costs nothing. All runs are those of the rig's constant version
+(`sim.constant_version`).
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from sim.analysis.regime import Regime, friction_regime
+from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 from sim.timing import REGIME_RATE
@@ -152,7 +154,7 @@ def motion_from_rest(
     *,
     seconds: float = _SECONDS,
 ) -> Motion:
-    """Run a rig from rest at constant speed, as regimes are judged by.
+    """Run the constant version of a rig from rest at constant speed, as regimes are judged by.
 
     Parameters, with their units, and errors are as for `regime_at`.
 
@@ -168,7 +170,7 @@ def motion_from_rest(
     (15000,)
     """
     return simulate_motion(
-        rig,
+        constant_version(rig),
         ConstantSpeed(speed),
         interference=interference,
         support_stiffness=support_stiffness,

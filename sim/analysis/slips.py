@@ -171,8 +171,10 @@ def motion_slips(motion: Motion) -> Slips:
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.constant_version import constant_version
     >>> from sim.run import simulate
-    >>> found = motion_slips(simulate(load_material_rig("fluorocarbon"), 2.5).motion)
+    >>> rig = constant_version(load_material_rig("fluorocarbon"))
+    >>> found = motion_slips(simulate(rig, 2.5).motion)
     >>> round(found.rate), found.pattern
     (244, 1)
     """

@@ -30,6 +30,7 @@ import numpy as np
 
 from sim.analysis.stability_kernel import STEP, linearised
 from sim.analysis.sweep_systems import packed_systems
+from sim.constant_version import constant_version
 from sim.contact import CRITICAL, KINETIC, N_CONTACT, SHAFT_INERTIA, STIFFNESS
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -125,7 +126,7 @@ def steady_sliding(
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
     coefficients = law.coefficients(values)
     systems = packed_systems(rig, fit, support)
-    acting = activated(rig.effects, library)
+    acting = activated(constant_version(rig, library).effects, library)
     contacts = _contacts(contact_hooks(acting, np.random.default_rng(0)), systems, v)
     state = law.state()
     matrices = np.zeros((v.size, 4 + state.size, 4 + state.size))

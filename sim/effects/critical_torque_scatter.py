@@ -1,16 +1,27 @@
 r"""Scatter of the critical torque: no two sticks break at the same torque.
 
 .. math::
-    T_{crit} = T_{kin} + (T_{crit,0} - T_{kin}) \max(0, 1 + s z_i)
+    T_{crit} = T_{kin} + (T_{crit,0} - T_{kin}) \max(0, 1 + s g z)
 
 z has mean 0 and variance 1: of stick number i, drawn as normal, uniform, or correlated,
-z_i = rho z_(i-1) + sqrt(1 - rho^2) times a normal draw. The critical torque "varies slightly
-throughout the experiment", as the area of contact changes (Section 6.3). The scatter is a share
-of the drop, on which alone the vibration depends.
+z_i = rho z_(i-1) + sqrt(1 - rho^2) times a normal draw. "The contact area must change since T_crit
+varies slightly throughout the experiment" (6.3). The scatter is a share of the drop, on which
+alone the vibration depends.
 
-Where a law has an inner state no sticks can be counted. There z follows the sliding: it passes
-from one draw to the next within `patch_angle` of sliding, as over a surface that is not even; in
-between the variance is somewhat smaller. Draws repeat after 4096.
+Where a law counts its sticks, g = 1. Where it has an inner state there are none to count: what has
+slipped in a burst forms anew, elsewhere; what slides evenly renews itself bit by bit, and evens
+out. A burst is sliding faster than twice the shaft's speed, as an oscillation about that speed
+never does without a stop. With p how many patches of `patch_angle` lambda the bursts have passed,
+between whose draws z passes smoothly, and g how much of the contact has formed at once,
+
+.. math::
+    \lambda \dot p = \max(v - 2 \Omega, 0), \qquad
+    \lambda \dot g = (1 - g) \max(v - 2 \Omega, 0) - g \min(v, 2 \Omega) / 15
+
+so that the critical torque holds through a stick and its creep, differs after a slip, and scatters
+neither in steady sliding nor in harmonic vibration. The 15 patches after which even sliding has
+forgotten a slip are assumed; with 40 the scatter ends vibrations near the critical speeds, with 1
+it is forgotten in the creep before the next slip. Draws repeat after 4096.
 Limits: s = 0 is the plain model, and so is a contact with T_crit = T_kin.
 """
 
@@ -22,7 +33,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
-from sim.contact import CRITICAL, HOOK_SIGNATURE, KINETIC, SLIDING_SPEED, STICKS, slipless
+from sim.contact import (
+    CRITICAL,
+    HOOK_SIGNATURE,
+    KINETIC,
+    SHAFT_SPEED,
+    SLIDING_SPEED,
+    STICKS,
+    slipless,
+)
 from sim.effects.effect import Effect, Stage
 from sim.parameters import Parameter
 
@@ -36,6 +55,8 @@ __all__ = ["EFFECT"]
 _FORMS = ("normal", "uniform", "correlated")
 _N_DRAWS = 4096
 _HEADER = 1
+_FORGOTTEN = 15.0
+"""Patches of even sliding after which a slip is forgotten."""
 
 
 def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -48,21 +69,23 @@ def _pack(form: str, values: Values, rng: np.random.Generator) -> NDArray[np.flo
         fresh = math.sqrt(1.0 - rho * rho)
         for i in range(1, _N_DRAWS):
             z[i] = rho * z[i - 1] + fresh * z[i]
-    share = np.maximum(0.0, 1.0 + values["scatter"] * z)
-    return np.concatenate([[values["patch_angle"]], share])
+    return np.concatenate([[values["patch_angle"]], values["scatter"] * z])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def _contact(context, values, state, state_rates, contact):
-    sticks, patches = context[STICKS], state[0] / values[0]
-    speed = abs(context[SLIDING_SPEED])
-    unslipped = slipless(context)
-    state_rates[0] = speed if unslipped else 0.0
-    place = patches if unslipped else sticks
+    counted = not slipless(context)
+    sliding, even = abs(context[SLIDING_SPEED]), 2.0 * abs(context[SHAFT_SPEED])
+    burst = max(sliding - even, 0.0) / values[0]
+    fading = min(sliding, even) / (_FORGOTTEN * values[0])
+    state_rates[0] = 0.0 if counted else burst
+    state_rates[1] = 0.0 if counted else burst * (1.0 - state[1]) - fading * state[1]
+    place = context[STICKS] if counted else state[0]
     i = int(place)
     x = place - i
     x = x * x * (3.0 - 2.0 * x)
-    share = (1.0 - x) * values[_HEADER + i % _N_DRAWS] + x * values[_HEADER + (i + 1) % _N_DRAWS]
+    z = (1.0 - x) * values[_HEADER + i % _N_DRAWS] + x * values[_HEADER + (i + 1) % _N_DRAWS]
+    share = max(0.0, 1.0 + (z if counted else state[1] * z))
     contact[CRITICAL] = contact[KINETIC] + share * (contact[CRITICAL] - contact[KINETIC])
 
 
@@ -78,12 +101,13 @@ EFFECT = Effect(
             0.7, "", 0.0, 0.999, "rho: of one stick with the next; of correlated alone"
         ),
         "patch_angle": Parameter(
-            5e-3, "rad", 1e-4, 10.0, "sliding from one draw to the next, for laws with inner state"
+            0.01, "rad", 1e-4, 10.0, "slipped from one draw to the next, for laws with inner state"
         ),
     },
     strength="scatter",
     contact=_contact,
     pack=_pack,
-    n_states=1,
+    n_states=2,
+    irregular=True,
 )
 """Critical torque that differs from stick to stick."""

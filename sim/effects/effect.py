@@ -80,6 +80,9 @@ class Effect:
         acceleration and pressure; they may be longer.
     sensors : callable, optional
         ``sensors(signals, rate, form, values, rng)``: other signals, by name of the channel.
+    irregular : bool
+        Whether it does nothing but make one slip differ from the next by chance, so that the rig
+        has a version without (`sim.constant_version.constant_version`).
     """
 
     name: str
@@ -94,6 +97,7 @@ class Effect:
     force: ForceFunction | None = None
     chain: ChainFunction | None = None
     sensors: SensorFunction | None = None
+    irregular: bool = False
 
     def active(self, given: Mapping[str, float | str]) -> ActiveEffect:
         """Return the effect with these parameters, the others at their defaults.

@@ -98,4 +98,5 @@ EFFECT = Effect(
     },
     strength="depth",
     drive=_drive,
+    irregular=True,
 )

@@ -15,7 +15,9 @@ from noise.screening.map.grid import grid_of
 from noise.screening.map.mapping import map_design
 from noise.screening.map.point import evaluate_point
 from noise.screening.screen import screen
+from noise.screening.tables.summary import summary_lines
 from sim.analysis.critical_speeds import critical_speeds
+from sim.constant_version import constant_version
 from sim.run import simulate
 from sim.shaft import Oscillation
 
@@ -214,3 +216,14 @@ def test_loudness_is_that_of_the_loudest_point_of_a_region():
     assert np.all((heard > 1.0) & (heard < 60.0))
     difference = found.level_max[0, 0, 0, 1] - found.level_max[0, 0, 0, 0]
     assert heard[1] / heard[0] == pytest.approx(2.0 ** (difference / 10.0))
+
+
+def test_a_map_is_of_the_constant_version_and_says_so():
+    rig = load_material_rig("fluorocarbon")
+    at = {"interference": 0.381e-3, "support_stiffness": 2214.0}
+    assert evaluate_point(rig, 2.5, **at) == evaluate_point(constant_version(rig), 2.5, **at)
+    use = Use(speed=(1.0, 5.0), interference=(0.381e-3,), support_stiffness=(2214.0,))
+    said = " ".join(summary_lines(screen(["fluorocarbon"], use)))
+    assert said.count("are of the constant version, without critical_torque_scatter") == 1
+    use = replace(use, interference=(0.279e-3,))
+    assert "constant version" not in " ".join(summary_lines(screen(["PDMS"], use)))

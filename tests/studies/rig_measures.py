@@ -34,6 +34,7 @@ from noise.noise_definition import label_by_physics
 from noise.training.calibrate.report import measured_speeds, speeds_page
 from noise.training.calibrate.thesis_table import CELLS, THIN_CELLS
 from sim.analysis.slips import motion_slips
+from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
@@ -74,8 +75,8 @@ NOISE_CELLS = (
 
 
 def slip_rates(rig: Rig) -> list[float]:
-    """Slips a second at `SPEEDS`, 0.381 mm and 2214 Nm/rad [Hz], over two seconds."""
-    rates = []
+    """Slips a second of the constant version at `SPEEDS`, 0.381 mm and 2214 Nm/rad [Hz]."""
+    rig, rates = constant_version(rig), []
     for speed in SPEEDS:
         motion = simulate_motion(
             rig, ConstantSpeed(speed), interference=TIGHT, support_stiffness=LONG, seconds=2.5,

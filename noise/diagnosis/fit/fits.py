@@ -16,14 +16,15 @@ from noise.base.interval import SURE_90
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.causes.location import locate
 from noise.diagnosis.evidence.friction_curves import friction_curves
+from noise.diagnosis.fit.by_fits import prefer_by_fits
 from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit_effect import fit_effect, strength_of
 from noise.diagnosis.fit.fit_parameters import Fitted, fit_parameters, split
 from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
-from noise.diagnosis.fit.user_effects import prefer_user_effects
 from noise.diagnosis.outcome import EffectFinding, Illustration
+from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -85,7 +86,11 @@ def add_fits(
     alone = fit_parameters(comparison, fitted_to)
     named = [name for name in diagnosis.verdict if name in library]
     groups = [named] if len(named) > 1 else []
-    single = [*_candidates(diagnosis), *user_effects] if diagnosis.verdict else user_effects
+    decided = user_effects
+    if diagnosis.verdict:
+        decided = [*user_effects, *(spec.name for spec in irregular_effects(case.rig, library))]
+    single = [*_candidates(diagnosis), *decided] if diagnosis.verdict else decided
+    single = list(dict.fromkeys(single))
     groups += [[name] for name in single if name not in named or len(named) == 1]
     fits = fitted_causes(comparison, fitted_to, held, groups, alone, seed, tell)
     findings = {
@@ -93,18 +98,22 @@ def add_fits(
         for name, (fitted, scores) in fits.items()
     }
     was = diagnosis.verdict
-    diagnosis = prefer_user_effects(diagnosis, findings, user_effects)
+    diagnosis = prefer_by_fits(diagnosis, findings, decided)
     if diagnosis.verdict != was:
         stage = library[diagnosis.verdict[0]].stage.value
         diagnosis = replace(diagnosis, location=locate(table, posterior, stage))
     if not diagnosis.verdict:
         return replace(diagnosis, illustrations=_illustrations(case, comparison, held, None))
+    listed = {effect.name for effect in diagnosis.effects}
     effects = [
         replace(
             findings.get(effect.name, effect),
             probability=diagnosis.probabilities.get(effect.name, 0.0),
         )
-        for effect in (*diagnosis.effects, *(findings[name] for name in user_effects))
+        for effect in (
+            *diagnosis.effects,
+            *(findings[name] for name in decided if name not in listed),
+        )
     ]
     fitted = fits[diagnosis.verdict[0]][0] if diagnosis.verdict[0] in fits else None
     best = alone

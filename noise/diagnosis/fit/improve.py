@@ -24,6 +24,7 @@ from noise.diagnosis.fit.corrected_responses import corrected_responses, is_in_r
 from noise.diagnosis.fit.fit_effect import is_stated, number_spreads
 from noise.diagnosis.fit.stated_fit import fit_again, fit_stated
 from noise.diagnosis.improvement import Improvement
+from noise.diagnosis.simulated.model_runs import with_effects
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -129,7 +130,7 @@ def _improvement(
     return Improvement(
         rig=rig,
         factors=factors,
-        effects=rig.effects[len(case.rig.effects) :],
+        effects=tuple(spec for spec in rig.effects if spec not in case.rig.effects),
         in_responses=tuple(
             spec.name for spec in fitted.model.effects if not is_stated(comparison, spec)
         ),
@@ -168,7 +169,7 @@ def _made(
             rig = replace(rig, measured=corrected_responses(comparison, rig, further))
     except ParameterError:  # beyond what is possible of a rig
         return None
-    return factors, replace(rig, effects=(*rig.effects, *map(_in_file, stated)))
+    return factors, with_effects(rig, [_in_file(spec) for spec in stated])
 
 
 _ROUNDING = 2e-6

@@ -8,7 +8,7 @@ structure leaves the motion.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.pipeline import Plan
 
-__all__ = ["Model", "ModelRuns"]
+__all__ = ["Model", "ModelRuns", "with_effects"]
 
 T = TypeVar("T")
 
@@ -63,11 +63,27 @@ class Model:
     offsets : tuple of float
         Logarithms of the factors on `OFFSETS`.
     effects : tuple of LawSpec
-        Beyond those that the rig file lists.
+        Beyond those that the rig file lists; one that it lists as well takes its place.
     """
 
     offsets: tuple[float, ...] = (0.0,) * len(OFFSETS)
     effects: tuple[LawSpec, ...] = ()
+
+
+def with_effects(rig: Rig, effects: Sequence[LawSpec]) -> Rig:
+    """Return a rig with further effects; one that it lists already is replaced.
+
+    Examples
+    --------
+    >>> from models.rig import LawSpec
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> more = LawSpec("critical_torque_scatter", {"scatter": 0.6})
+    >>> list(map(str, with_effects(load_material_rig("natural-rubber"), [more]).effects))
+    ['critical_torque_scatter:scatter=0.6']
+    """
+    named = {spec.name for spec in effects}
+    kept = tuple(spec for spec in rig.effects if spec.name not in named)
+    return replace(rig, effects=(*kept, *effects))
 
 
 @dataclass(eq=False)
@@ -169,7 +185,7 @@ class ModelRuns:
         return joined_signature(parts)
 
     def _active(self, model: Model) -> list[ActiveEffect]:
-        active = [self.active(spec) for spec in (*self.rig.effects, *model.effects)]
+        active = [self.active(spec) for spec in with_effects(self.rig, model.effects).effects]
         return [one for one in active if not one.is_off]
 
     def active(self, spec: LawSpec) -> ActiveEffect:

@@ -5,7 +5,9 @@ learns: it looks at motion and sound without room and microphone, and costs no m
 a screen judges designs by the same names as recordings are labelled with, and does not inherit the
 classifier's errors. The rig runs from rest, and is judged once it has settled: after 0.6 s if the
 vibration then neither grows nor dies, else after 1.5 s; some creaks set in that late. The solver's
-steps are as long as regimes and spectra allow, rather than single events.
+steps are as long as regimes and spectra allow, rather than single events. It is the rig's constant
+version (`sim.constant_version`), whose boundaries are sharp; what a listener hears of a point has
+the irregularity that the rig states.
 
 A bar on the road swings: it runs from one turning on, a whole cycle is heard, and names and regimes
 are those of the two intervals in which it moves at half its peak speed or more, whichever is
@@ -29,6 +31,7 @@ from noise.noise_definition import NoiseCriteria, noise_criteria
 from noise.screening.map.fast_intervals import fast_intervals
 from sim.analysis.regime import LEAST_OSCILLATION, Regime
 from sim.analysis.slips import motion_slips
+from sim.constant_version import constant_version
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.pipeline import Plan, radiate_motion, run_motion
@@ -138,7 +141,7 @@ def evaluate_point(
     library: Mapping[str, Effect] = EFFECTS,
     structure: tuple[Rig, float] | None = None,
 ) -> PointResult:
-    """Simulate a point, and say its regime, its noise and its level.
+    """Simulate a point of a rig's constant version, and say its regime, its noise and its level.
 
     Parameters
     ----------
@@ -173,6 +176,7 @@ def evaluate_point(
     >>> evaluate_point(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0).label
     'squeal'
     """
+    rig = constant_version(rig, library)
     plan = _plan(rig, shaft, interference, support_stiffness, temperature, library, SCREENING)
     plan, motion = _settled(plan)
     swings = isinstance(shaft, Oscillation)
@@ -201,7 +205,7 @@ def point_sound(
     rate: float = 48e3,
     library: Mapping[str, Effect] = EFFECTS,
 ) -> Sound:
-    """Return motion and sound of a point as `evaluate_point` has them, at another rate [Hz]."""
+    """Return motion and sound of a point at another rate [Hz], as irregular as the rig states."""
     plan = _plan(
         rig, shaft, interference, support_stiffness, temperature, library, SCREENING_SLOW, rate
     )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from noise.base.remarks import constant_remark
+from noise.screening.design.environments import environment, in_environment
 from noise.screening.map.provenance import RULE, within_fits
 from noise.screening.ranking.risk import risk_band
 
@@ -83,7 +85,13 @@ def conditions_lines(screening: Screening) -> list[str]:
         counts = ", ".join(f"{count} of {name}" for name, count in screening.substituted.items())
         lines.append(f"not from a design's own data: {counts}; {RULE}")
         lines += [text for text in [_fair(screening)] if text]
-    return lines
+    rigs = [
+        in_environment(one.rig, environment(where))
+        for one in screening.designs
+        for where in dict.fromkeys(found.environment for found in screening.maps)
+    ]
+    constant = constant_remark(rigs, "labels, levels, risks and critical speeds")
+    return [*lines, f"{constant}; sounds have it"] if constant else lines
 
 
 def _fair(screening: Screening) -> str:

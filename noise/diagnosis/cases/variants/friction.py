@@ -96,11 +96,12 @@ def _creep_lagging(a: float, rng: Rng) -> Effect:
 def _scatters(form: str, a: float, time_series: Callable[[Rng], Array]) -> Effect:
     def numbers(rng: Rng) -> Array:
         z = time_series(rng)
-        share = np.maximum(0.0, 1.0 + 0.5 * a * (z - z.mean()) / z.std())
-        return np.concatenate([[5e-3], share])
+        return np.concatenate([[5e-3], 0.5 * a * (z - z.mean()) / z.std()])
 
     plain = EFFECTS["critical_torque_scatter"]
-    return on_contact("critical_torque_scatter", form, a, plain.contact, numbers, n_states=1)
+    return on_contact(
+        "critical_torque_scatter", form, a, plain.contact, numbers, n_states=plain.n_states
+    )
 
 
 def _scatter_heavy(a: float, rng: Rng) -> Effect:

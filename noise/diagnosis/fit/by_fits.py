@@ -1,8 +1,9 @@
-"""Effects of the user's own in the verdict.
+"""Effects that the fits decide about: the user's own, and an irregularity that the rig file states.
 
-The posterior has never seen them, so the fits decide: an effect that leaves less of the gap on
-recordings that no fit has seen than parameters alone and than every effect of the library takes
-the verdict over, with as much probability as the share of the gap that it closes.
+The posterior has seen neither, the one at all, the other beside itself. So an effect that leaves
+less of the gap on recordings that no fit has seen than parameters alone and than every other effect
+of the library takes the verdict over, with as much probability as the share of the gap that it
+closes.
 """
 
 from __future__ import annotations
@@ -17,35 +18,35 @@ if TYPE_CHECKING:
 
     from noise.diagnosis.outcome import Diagnosis, EffectFinding
 
-__all__ = ["prefer_user_effects"]
+__all__ = ["prefer_by_fits"]
 
 _CLEARLY = 0.8
 """Of two gaps the smaller one counts as smaller if it is at most this share of the other."""
 
 
-def prefer_user_effects(
-    diagnosis: Diagnosis, findings: Mapping[str, EffectFinding], user_effects: Sequence[str]
+def prefer_by_fits(
+    diagnosis: Diagnosis, findings: Mapping[str, EffectFinding], names: Sequence[str]
 ) -> Diagnosis:
-    """Let a fitted effect of the user's own take over the verdict, if it closes the gap best.
+    """Let a fitted effect take over the verdict, if it closes the gap best.
 
     Parameters
     ----------
     diagnosis : Diagnosis
     findings : mapping of str to EffectFinding
         All effects that were fitted.
-    user_effects : sequence of str
-        Those of the user.
+    names : sequence of str
+        Those that the fits decide about.
     """
     gaps = {name: found.gap_after for name, found in findings.items()}
     fitted = {name: max(gap, 1.0) for name, gap in gaps.items() if gap is not None}
-    mine = [name for name in user_effects if name in fitted]
+    mine = [name for name in names if name in fitted]
     if not mine:
         return diagnosis
     best = min(mine, key=lambda name: fitted[name])
     recalibrated = findings[best].gap_recalibrated or 0.0
     if not diagnosis.verdict and findings[best].closed is None:
         return diagnosis  # nothing is the matter, and there is no gap that says otherwise
-    others = [gap for name, gap in fitted.items() if name not in user_effects]
+    others = [gap for name, gap in fitted.items() if name not in names]
     if fitted[best] > _CLEARLY * min([recalibrated, *others]):
         return diagnosis
     closed = findings[best].closed
@@ -54,4 +55,4 @@ def prefer_user_effects(
     closed = min(max(closed, 0.0), 1.0)
     rest = 1.0 - closed
     probabilities = {name: rest * p for name, p in diagnosis.probabilities.items()}
-    return replace(diagnosis, verdict=(best,), probabilities={best: closed, **probabilities})
+    return replace(diagnosis, verdict=(best,), probabilities={**probabilities, best: closed})
