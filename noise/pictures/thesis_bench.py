@@ -182,11 +182,10 @@ def torque_cell_line() -> list[list[Panel]]:
         _fitted(torque[side].tolist(), voltage[side].tolist(), "mV", "Nm", colour)
         for side, colour in ((torque <= 0.0, VERMILION), (torque >= 0.0, BLUE))
     ]
-    printed = np.where(torque > 0.0, 0.4222, 0.0) + 12.19 * torque
-    curves += [
-        Curve.published(torque, printed, "(C3) and (C5), slope 12.19 mV/Nm", "--"),
-        Curve.published(torque, voltage, "Table C1"),
-    ]
+    for name, side, offset in (("(C5)", torque <= 0.0, 0.0), ("(C3)", torque >= 0.0, 0.4222)):
+        label = f"{name}, V = {offset:.4f} + 12.19 T"
+        curves.append(Curve.published(torque[side], offset + 12.19 * torque[side], label, "--"))
+    curves.append(Curve.published(torque, voltage, "Table C1"))
     return [[Panel("Torque cell", "Torque [Nm]", "Voltage [mV]", curves)]]
 
 
