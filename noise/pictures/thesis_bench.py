@@ -57,6 +57,9 @@ _PRINTED_MODES = {(LONG, 0): 140.0, (SHORT, 3): 2100.0}
 _STATIC_SPEED, _STATIC_SECONDS = 0.05, 2.0
 """Of the shaft in a static test [rad/s], [s]."""
 
+_SLIDES = 0.99
+"""Share of the highest torque at which a contact that creeps is taken to slide [-]."""
+
 _POWER, _RUN, _RISE = 30.0 * 10.0, 0.23, 26.0
 """Of the friction [W], length of the experiment [s], published rise at the surface [K]."""
 
@@ -147,7 +150,10 @@ def static_tests(interference_mm: float) -> list[list[Panel]]:
         case = Case(_STATIC_SPEED, interference_mm, support)
         curves = []
         for trace in model_traces(case, _STATIC_SECONDS):
-            end = float(trace.time[trace.torque.argmax()])  # where a contact creeps and never slips
+            slides = (
+                trace.torque >= _SLIDES * trace.torque.max()
+            )  # where it creeps, and never slips
+            end = float(trace.time[slides.argmax()])
             held = trace.during(0.0, min([end, *trace.slips[:1]]))
             angle = 1e3 * case.speed * held.time
             curves.append(Curve(angle, held.torque, trace.name, MODEL_COLOURS[trace.name]))

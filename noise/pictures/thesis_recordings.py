@@ -61,9 +61,17 @@ def _recording(material: str, case: Case) -> Recording:
     return run.recording
 
 
+def _loudest(recording: Recording) -> slice:
+    """Return the part that is shown: about the largest acceleration, as slips may be far apart."""
+    size = round(SHOWN * recording.rate)
+    peak = int(np.abs(recording["acceleration"]).argmax())
+    first = min(max(0, peak - size // 4), recording.samples.shape[1] - size)
+    return slice(first, first + size)
+
+
 def _history(material: str, case: Case, name: str, title: str, colour: str = "") -> Panel:
     recording, kind = _recording(material, case), KINDS[name]
-    shown = recording[name][: round(SHOWN * recording.rate)]
+    shown = recording[name][_loudest(recording)]
     curve = Curve(
         1e3 * np.arange(shown.size, dtype=np.float64) / recording.rate,
         shown,
