@@ -131,7 +131,8 @@ def _by_band(
 ) -> Numbers:
     numbers: Numbers = {}
     coherent = np.abs(pm) ** 2 / (pp * mm + 1e-30) * mm
-    for i, inside in band_bins(rate):
+    for i, first, last in zip(*band_bins(rate), strict=True):
+        inside = slice(int(first), int(last))
         a, c = float(pp[inside].sum()) + 1e-30, float(mm[inside].sum()) + 1e-30
         share = min(float(coherent[inside].sum()) / c, 0.99999)
         numbers[f"gain_{i}"] = 0.5 * math.log(c / a)

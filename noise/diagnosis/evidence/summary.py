@@ -15,14 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.segments import segment_spectra
 from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
-    band_bins,
+    band_levels,
     channel_summary,
     hum_summary,
-    segment_frequency,
     shaft_speed,
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
@@ -112,7 +110,7 @@ def summary(
         if kind in signal:
             numbers |= _named(kind, channel_summary(signal[kind], rate))
             numbers |= _named(f"{kind}_raw", hum_summary(signal[kind], rate))
-            numbers |= _named(kind, _levels(signal[kind], rate))
+            numbers |= _named(kind, band_levels(signal[kind], rate))
     if "torque" not in signal:
         return numbers
     torque = signal["torque"]
@@ -231,14 +229,6 @@ def same_channels(repeat: Recording, recording: Recording) -> Recording:
     return replace(
         repeat, samples=repeat.samples[rows], channels=tuple(repeat.channels[i] for i in rows)
     )
-
-
-def _levels(x: NDArray[np.float64], rate: float) -> Numbers:
-    power = (np.abs(segment_spectra(x, segment_frequency(rate)[0])) ** 2).mean(axis=0)
-    return {
-        f"band_{i}": 0.5 * math.log(float(power[inside].mean()) + 1e-14)
-        for i, inside in band_bins(rate)
-    }
 
 
 def _moments(repeats: list[Numbers]) -> tuple[Numbers, Numbers]:
