@@ -1,3 +1,4 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 """Compiled loops over one signal: its distribution, its lines and its bands.
 
 Each goes over the samples once or twice where numpy would make an array for every step; what is
@@ -12,7 +13,7 @@ from models.compilation import COMPILED, PART
 
 __all__ = [
     "band_power_sums", "describe_distribution", "detrend_and_window", "line_ratios",
-    "median_in_place",
+    "power_quantiles", "quantile_in_place",
 ]  # fmt: skip
 
 _FAST = {"reassoc", "contract", "nsz"}
@@ -88,11 +89,11 @@ def detrend_and_window(x, window, windowed) -> None:
 
 
 @njit(**PART)
-def median_in_place(values, n):
-    """Median of the first `n` values, which are put in another order; by Hoare's selection."""
-    middle, low, high = n // 2, 0, n - 1
+def _select(values, n, place) -> None:
+    """Reorder the first `n` values about the one that belongs to a place; Hoare's selection."""
+    low, high = 0, n - 1
     while low < high:
-        pivot, i, j = values[(low + high) // 2], low, high
+        pivot, i, j = values[place], low, high
         while i <= j:
             while values[i] < pivot:
                 i += 1
@@ -102,18 +103,48 @@ def median_in_place(values, n):
                 values[i], values[j] = values[j], values[i]
                 i += 1
                 j -= 1
-        if middle <= j:
-            high = j
-        elif middle >= i:
+        if j < place:
             low = i
-        else:
-            break
-    if n % 2 == 1:
-        return values[middle]
-    below = values[0]
-    for i in range(1, middle):
-        below = max(below, values[i])
-    return 0.5 * (below + values[middle])
+        if i > place:
+            high = j
+
+
+@njit(**PART)
+def quantile_in_place(values, n, share):
+    """Quantile of the first `n` values, linear between them, which are put in another order."""
+    place = int(share * (n - 1))
+    _select(values, n, place)
+    below = values[place]
+    if place + 1 >= n:
+        return below
+    above = values[place + 1]
+    for i in range(place + 2, n):
+        above = min(above, values[i])
+    return below + (share * (n - 1) - place) * (above - below)
+
+
+@njit(cache=True, **COMPILED)
+def power_quantiles(spectra, first, share, scratch, found) -> None:
+    """Quantile over the spectra of the power in each bin.
+
+    Parameters
+    ----------
+    spectra : ndarray of complex, shape (n_spectra, n_bins)
+        [any unit]
+    first : int
+        Bin to begin with.
+    share : float
+        From 0 to 1 [-].
+    scratch : ndarray, shape (n_spectra,)
+    found : ndarray, shape (n_asked,), filled in
+        Of as many bins [unit^2].
+    """
+    n = spectra.shape[0]
+    for k in range(found.size):
+        for i in range(n):
+            value = spectra[i, first + k]
+            scratch[i] = value.real * value.real + value.imag * value.imag
+        found[k] = quantile_in_place(scratch, n, share)
 
 
 @njit(cache=True, **COMPILED)
@@ -144,7 +175,7 @@ def line_ratios(power, lines, ratios, beside) -> None:
         for i in range(k + 5, k + 13):
             beside[n] = power[i]
             n += 1
-        ratios[j] = (most + 1e-30) / (median_in_place(beside, n) + 1e-30)
+        ratios[j] = (most + 1e-30) / (quantile_in_place(beside, n, 0.5) + 1e-30)
 
 
 @njit(fastmath=_FAST, cache=True, **COMPILED)

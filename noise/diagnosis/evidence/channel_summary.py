@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -18,6 +18,7 @@ from noise.diagnosis.evidence.channel_kernel import (
     describe_distribution,
     detrend_and_window,
     line_ratios,
+    power_quantiles,
 )
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ __all__ = [
     "angle_summary",
     "band_bins",
     "band_levels",
+    "bins_between",
     "channel_summary",
     "hum_summary",
     "quantile",
@@ -53,6 +55,9 @@ _FLOOR_BANDS = ((100.0, 700.0), (700.0, 2500.0), (2500.0, 6000.0), (6000.0, 1000
 
 _FLOOR_LENGTH = 1024
 """Of the segments whose quietest tenth is the floor [samples]."""
+
+_QUIET = 0.1
+"""Of the segments."""
 
 _MAINS = (50, 60)
 """[Hz]"""
@@ -99,18 +104,20 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
         "offset": mean / spread,
     }
     spectra = segment_spectra(x, _FLOOR_LENGTH)
-    for i, inside in _floor_bins(rate):
-        power = spectra[:, inside].real ** 2 + spectra[:, inside].imag ** 2
-        quiet = quantile(np.ascontiguousarray(power.T), 0.1)
-        numbers[f"floor_{i}"] = 0.5 * math.log(float(quiet.mean()) + 1e-16)
+    inside, *bands = _floor_bins(rate)
+    quiet = np.empty(inside.stop - inside.start)
+    power_quantiles(spectra, inside.start, _QUIET, np.empty(len(spectra)), quiet)
+    for i, band in enumerate(bands):
+        numbers[f"floor_{i}"] = 0.5 * math.log(float(quiet[band].mean()) + 1e-16)
     return numbers
 
 
 @lru_cache(maxsize=8)
-def _floor_bins(rate: float) -> tuple[tuple[int, slice], ...]:
-    frequency = np.fft.rfftfreq(_FLOOR_LENGTH, 1.0 / rate)
-    inside = [(frequency > first) & (frequency < last) for first, last in _FLOOR_BANDS]
-    return tuple((i, _run(bins)) for i, bins in enumerate(inside))
+def _floor_bins(rate: float) -> tuple[slice, ...]:
+    """Bins from the lowest to the highest floor, and which of them lie in each."""
+    frequency = np.asarray(np.fft.rfftfreq(_FLOOR_LENGTH, 1.0 / rate), np.float64)
+    whole = bins_between(frequency, (_FLOOR_BANDS[0][0], _FLOOR_BANDS[-1][1]))
+    return whole, *(bins_between(frequency[whole], band) for band in _FLOOR_BANDS)
 
 
 def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
@@ -321,31 +328,31 @@ def _dwell(samples: float, stays: float) -> float:
     return math.log(max(samples, 1.0) / max(stays, 1.0))
 
 
-def quantile(x: NDArray[np.float64], share: float) -> Any:
-    """Quantile along the last axis, linear between values, as of `numpy.quantile`.
+def quantile(x: NDArray[np.float64], share: float) -> float:
+    """Quantile, linear between values, as of `numpy.quantile` without its checks.
 
     Parameters
     ----------
-    x : ndarray, shape (..., n)
+    x : ndarray, shape (n,)
         [any unit], no NaN.
     share : float
         From 0 to 1 [-].
 
     Returns
     -------
-    float or ndarray, shape (...)
+    float
         [unit of the values]
 
     Examples
     --------
-    >>> float(quantile(np.array([3.0, 1.0, 2.0, 9.0]), 0.5))
+    >>> quantile(np.array([3.0, 1.0, 2.0, 9.0]), 0.5)
     2.5
     """
-    place = share * (x.shape[-1] - 1)
+    place = share * (x.size - 1)
     low = int(place)
-    high = min(low + 1, x.shape[-1] - 1)
-    parted = np.partition(x, (low, high), axis=-1)
-    below, above = parted[..., low], parted[..., high]
+    high = min(low + 1, x.size - 1)
+    parted = np.partition(x, (low, high))
+    below, above = float(parted[low]), float(parted[high])
     return below + (place - low) * (above - below)
 
 
@@ -414,7 +421,24 @@ def band_bins(rate: float) -> Bands:
     return Bands(numbers, edges[:-1][reached], edges[1:][reached])
 
 
-def _run(chosen: NDArray[np.bool_]) -> slice:
-    """Slice of what is chosen in one run."""
-    places = np.flatnonzero(chosen)
-    return slice(int(places[0]), int(places[-1]) + 1) if places.size else slice(0, 0)
+def bins_between(frequency: NDArray[np.float64], band: tuple[float, float]) -> slice:
+    """Find the bins between two frequencies.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (n_bins,)
+        Rising [Hz].
+    band : tuple of float
+        The two, which are not in it [Hz].
+
+    Returns
+    -------
+    slice
+
+    Examples
+    --------
+    >>> bins_between(np.array([0.0, 10.0, 20.0, 30.0]), (5.0, 30.0))
+    slice(1, 3, None)
+    """
+    first = int(np.searchsorted(frequency, band[0], "right"))
+    return slice(first, max(first, int(np.searchsorted(frequency, band[1]))))

@@ -1,4 +1,5 @@
-"""Compiled loops over a reconstructed contact: what it does in stick, in slip and from slip to slip.
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
+"""Compiled loops over a reconstructed contact: what it does in stick, in slip and by cycle.
 
 Each gathers sums, or the rows of a least-squares problem, in one pass over the samples; what is
 made of them stands in `noise.diagnosis.evidence.contact_summary` and `slip_summary`.
@@ -9,7 +10,7 @@ from __future__ import annotations
 from numba import njit
 
 from models.compilation import COMPILED, PART
-from noise.diagnosis.evidence.channel_kernel import median_in_place
+from noise.diagnosis.evidence.channel_kernel import quantile_in_place
 
 __all__ = [
     "describe_slips", "gather_rings", "gather_slipping", "gather_sticking", "mean_cycle",
@@ -175,23 +176,23 @@ def describe_slips(torque, friction, sliding, starts, ends, near, scratch, found
             fastest = max(fastest, sliding[i])
             scratch[i - a] = friction[i]
         found[0, k], found[1, k], found[2, k] = peak, trough, fastest
-        found[3, k] = median_in_place(scratch, b - a)
+        found[3, k] = quantile_in_place(scratch, b - a, 0.5)
 
 
 @njit(cache=True, **COMPILED)
-def mean_cycle(torque, creep, starts, ends, before, after, found) -> None:
+def mean_cycle(torque, sliding, shaft, starts, ends, before, after, found) -> None:
     """Average over cycles at fixed times before slips and after them.
 
     Parameters
     ----------
-    torque, creep : ndarray, shape (n,)
-        What is averaged.
+    torque, sliding, shaft : ndarray, shape (n,)
+        Torque [Nm], sliding speed and that of the shaft [rad/s].
     starts, ends : ndarray of int, shape (n_slips,)
         First sample of each slip, and first after it.
     before, after : ndarray of int, shape (n_times,)
         Samples before its start, and after its end; where another slip is, it does not count.
     found : ndarray, shape (n_before + n_after, 3), filled in
-        Cycles that reach it, and sums of torque and creep.
+        Cycles that reach it, sums of the torque [Nm] and of the sliding speed over the shaft's [-].
     """
     found[:] = 0.0
     n_slips, n_before = starts.size, before.size
@@ -203,7 +204,7 @@ def mean_cycle(torque, creep, starts, ends, before, after, found) -> None:
             if (j < n_before and at > earlier) or (j >= n_before and at < later):
                 found[j, 0] += 1.0
                 found[j, 1] += torque[at]
-                found[j, 2] += creep[at]
+                found[j, 2] += sliding[at] / max(abs(shaft[at]), 0.05)
 
 
 @njit(cache=True, **COMPILED)
@@ -216,7 +217,7 @@ def gather_rings(signals, first, last, rows, sums):
         [one unit]
     first, last : ndarray of int, shape (n_sticks,)
         First sample of each stick, and first after it.
-    rows : ndarray, shape (n, 4), filled in stick after stick
+    rows : ndarray, shape (4, n), filled in stick after stick
         Signals less their mean in the stick.
     sums : ndarray, shape (4,), filled in
         Of each signal over all sticks.
@@ -236,6 +237,6 @@ def gather_rings(signals, first, last, rows, sums):
                 total += signal[i]
             sums[j] += total
             for i in range(m):
-                rows[begin + i, j] = signal[first[k] + i] - total / m
+                rows[j, begin + i] = signal[first[k] + i] - total / m
         n += m
     return n

@@ -37,7 +37,7 @@ Numbers = dict[str, float]
 _TORQUE_EDGES = np.array([0.0, 0.5, 0.65, 0.8, 0.92, 1.1])
 """Of classes of the friction torque over the critical one."""
 
-_EXPLANATIONS = ("speed", "stiffness", "softening", "damping", "clamp", "release")
+_EXPLANATIONS: tuple[str, ...] = ("speed", "stiffness", "softening", "damping", "clamp", "release")
 """Of what sliding there seems to be in stick: another speed, stiffness, damping or inertia, a
 stiffness that changes with torque, or a contact that gives before it breaks."""
 
@@ -161,9 +161,7 @@ def _stick(
     left = b - a @ x
     numbers["stick_left"] = float(left.std()) / speed
     numbers["stick_explained"] = 1.0 - float(left.var()) / max(float(b.var()), 1e-12)
-    for name, (count, work, square) in zip(
-        ("all", "late", "early"), winding.tolist(), strict=True
-    ):
+    for name, (count, work, square) in zip(("all", "late", "early"), winding.tolist(), strict=True):
         if count > 60:
             numbers[f"stiffness_{name}"] = work / (square * fit.elastomer_stiffness)
     return m, numbers
@@ -201,21 +199,21 @@ def _cycles(
     interval, duration = np.diff(time), (ends - starts) / rate
     stuck = np.maximum(starts[1:] - ends[:-1], 1) / rate
     numbers = {
-        "peak": float(quantile(peak, 0.5)),
+        "peak": quantile(peak, 0.5),
         "peak_spread": float(peak.std()),
-        "peak_range": float(quantile(peak, 0.9) - quantile(peak, 0.1)),
+        "peak_range": quantile(peak, 0.9) - quantile(peak, 0.1),
         "peak_least": float(peak.min()),
-        "trough": float(quantile(trough, 0.5)),
+        "trough": quantile(trough, 0.5),
         "trough_spread": float(trough.std()),
-        "fastest": float(quantile(fastest, 0.5)),
+        "fastest": quantile(fastest, 0.5),
         "fastest_spread": float(fastest.std()),
-        "kinetic": float(quantile(sliding, 0.5)),
+        "kinetic": quantile(sliding, 0.5),
         "kinetic_spread": float(sliding.std()),
-        "interval": math.log(float(quantile(interval, 0.5))),
+        "interval": math.log(quantile(interval, 0.5)),
         "interval_spread": float(interval.std() / interval.mean()),
-        "duration": math.log(float(quantile(duration, 0.5))),
+        "duration": math.log(quantile(duration, 0.5)),
         "duration_spread": float(duration.std() / duration.mean()),
-        "time_stuck": math.log(float(quantile(stuck, 0.5))),
+        "time_stuck": math.log(quantile(stuck, 0.5)),
         "fastest_drift": _slope(time, fastest) * float(time.std()),
     }
     if n_slips >= 8:

@@ -66,10 +66,11 @@ def cycle_shape(
     if starts.size < _FEWEST:
         return {}
     rate = found.rate
-    creep = found.sliding_speed / np.maximum(np.abs(found.shaft_speed), 0.05)
     before, after = (np.array([round(t * rate) for t in times]) for times in (_BEFORE, _AFTER))
     sums = np.empty((before.size + after.size, 3))
-    mean_cycle(found.torque, creep, starts, ends, before, after, sums)
+    mean_cycle(
+        found.torque, found.sliding_speed, found.shaft_speed, starts, ends, before, after, sums
+    )
     names = [f"before_{i}" for i in range(before.size)] + [f"after_{i}" for i in range(after.size)]
     numbers: dict[str, float] = {}
     for name, (count, torque, crept) in zip(names, sums.tolist(), strict=True):
@@ -93,22 +94,23 @@ def _ringing(
     first, last = first[long], last[long]
     if first.size < _FEWEST:
         return {}
-    rows, sums = np.empty((found.torque.size, 4)), np.empty(4)
+    rows, sums = np.empty((4, found.torque.size)), np.empty(4)
     signals = (found.sliding_speed, found.by_stiffness, found.by_damping, found.by_clamp)
-    rings = rows[: gather_rings(signals, first, last, rows, sums)]
-    spreads = rings.std(axis=0)
+    n = gather_rings(signals, first, last, rows, sums)
+    rings = rows[:, :n]
+    products = rings @ rings.T
+    spreads = np.sqrt(np.diag(products) / n)  # their means are 0
     numbers = {
         "slow_stiffness": float(sums[0] / (sums[1] + 1e-9)),
         "ring": math.log(float(spreads[1]) + 1e-3),
     }
-    known = [k for k in (1, 2, 3) if float(spreads[k]) > 1e-6]
-    a = rings[:, known]
-    gram = a.T @ a
+    known = [k for k in (1, 2, 3) if spreads[k] > 1e-6]
+    gram = products[np.ix_(known, known)]
     gram += 1e-4 * np.diag(np.diag(gram))
-    x = np.linalg.solve(gram, a.T @ rings[:, 0])
+    x = np.linalg.solve(gram, products[known, 0])
     names = {1: "ring_stiffness", 2: "ring_damping", 3: "ring_clamp"}
     numbers |= {names[k]: float(value) for k, value in zip(known, x, strict=True)}
-    left = float(np.var(rings[:, 0] - a @ x))
+    left = float(np.var(rings[0] - x @ rings[known]))
     numbers["ring_left"] = 0.5 * math.log(left / (float(spreads[0]) ** 2 + 1e-12) + 1e-6)
     numbers["ring_unlike"] = numbers["ring_stiffness"] - numbers["slow_stiffness"]
     return numbers
@@ -162,6 +164,6 @@ def torque_by_speed(
         a, b = rows[:m], target[:m]
         x = np.linalg.solve(a.T @ a + 1e-6 * m * np.eye(4), a.T @ b)
         names = ("law_level", "law_slope", "law_bend", "law_loop")
-        numbers |= {name: value for name, value in zip(names, x.tolist(), strict=True)}
+        numbers |= dict(zip(names, x.tolist(), strict=True))
         numbers["law_left"] = float(np.std(b - a @ x))
     return numbers

@@ -25,9 +25,9 @@ from noise.diagnosis.evidence.channel_summary import (
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
-from noise.diagnosis.evidence.reconstruction import reconstruct
+from noise.diagnosis.evidence.reconstruction import closed_spectrum, reconstruct
 from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict_outputs
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
@@ -115,16 +115,16 @@ def summary(
         return numbers
     torque = signal["torque"]
     bushing = lumped_bushing(rig, condition.interference, condition.support_stiffness)
-    found = reconstruct(turn * torque, speed, rate, bushing)
+    spectrum = closed_spectrum(torque, rate)
+    found = reconstruct(turn * torque, speed, rate, bushing, turn * spectrum)
     fit = rig.fit(condition.interference)
     numbers |= _named("contact", contact_summary(found, fit, wanted))
     slips = slip_starts(found, wanted)[0] / rate + found.start
     residuals = {}
-    for kind in _OUTPUTS:
-        if kind in signal:
-            expected = predict(torque, rate, transfer_functions[kind])
-            more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
-            numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
+    paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
+    for kind, expected in predict_outputs(spectrum, torque.size, rate, paths).items():
+        more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
+        numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
     if len(residuals) == len(_OUTPUTS):
         numbers |= common_residual(residuals["acceleration"], residuals["pressure"], rate)
     return numbers
