@@ -95,7 +95,7 @@ def summary(
     """
     condition, rate = known_condition(recording.condition), recording.rate
     signal = {
-        kind: recording.samples[row]
+        kind: np.require(recording.samples[row], np.float64, "CW")  # as loops are compiled for
         for kind in ("torque", *_OUTPUTS, "angle")
         if (row := recording.first(kind)) is not None
     }
