@@ -6,19 +6,22 @@ parameters alone, and each likely cause with them, close it on recordings that n
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
+from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
 from noise.diagnosis.evidence.sensor_noise import noise_remarks
 from noise.diagnosis.first_answer import first_answer, known_effects
-from noise.diagnosis.outcome import Diagnosis, EffectFinding
+from noise.diagnosis.outcome import Diagnosis, EffectFinding, StageFinding
 from sim.effects import EFFECTS
+from sim.effects.effect import Stage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -64,6 +67,10 @@ def diagnose_case(
     started = time.perf_counter()
     tell = progress or (lambda _text: None)
     library = library or EFFECTS
+    tell("checking that it is this rig")
+    found = bench_findings(case, library)
+    if found:
+        return _unlike(case, found, library, time.perf_counter() - started)
     posterior = posterior or load_posterior()
     first = first_answer(case, library, posterior, seed, tell)
     table, gap, probabilities, verdict = first.table, first.gap, first.probabilities, first.verdict
@@ -100,6 +107,30 @@ def diagnose_case(
 
         diagnosis = add_fits(case, diagnosis, table, posterior, library, known, seed, tell)
     return replace(diagnosis, seconds=time.perf_counter() - started)
+
+
+def _unlike(
+    case: Case, found: tuple[str, ...], library: Mapping[str, Effect], seconds: float
+) -> Diagnosis:
+    """Say why the recordings cannot be of their rig; nothing that follows would mean anything."""
+    unknown = math.nan
+    return Diagnosis(
+        verdict=("unknown",),
+        equivalent=(),
+        location=None,
+        stages={stage.value: StageFinding(unknown, unknown, unknown) for stage in Stage},
+        effects=(),
+        probabilities=dict.fromkeys(("none", "parameters", *EFFECTS), 0.0) | {"unknown": 1.0},
+        parameters={},
+        next_measurement="put the recordings or their sidecars right, and diagnose them again",
+        held_out=(),
+        gap=unknown,
+        floor=1.0,
+        p_value=unknown,
+        seconds=seconds,
+        notes=(*found, *_notes(case), *case_remarks(case, library)),
+        bench=found,
+    )
 
 
 def _ranked(probabilities: Mapping[str, float]) -> list[str]:

@@ -184,6 +184,9 @@ class Diagnosis:
         the surest first.
     improvement : Improvement, optional
         What closes the gap; None where nothing does, and where it was not looked for.
+    bench : tuple of str
+        Why the recordings cannot be of the rig as it is described, one line each; nothing else was
+        then looked for, and the verdict is ``("unknown",)``.
 
     Examples
     --------
@@ -211,6 +214,7 @@ class Diagnosis:
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
     improvement: Improvement | None = None
+    bench: tuple[str, ...] = ()
 
     @property
     def improved(self) -> Rig | None:
@@ -285,6 +289,7 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
             }
             for heard in diagnosis.labels_and_levels
         ],
+        "bench": list(diagnosis.bench),
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
     }  # fmt: skip
@@ -343,6 +348,7 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
             for one in data.get("heard") or ()
         ),
         differences=tuple(map(_location_from, data.get("map") or ())),
+        bench=tuple(map(str, data.get("bench") or ())),
     )
 
 

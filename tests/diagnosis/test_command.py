@@ -7,13 +7,13 @@ import math
 from dataclasses import replace
 
 import pytest
+from noise.diagnosis.fit.user_effects import prefer_user_effects
 
 from models.condition import FIXED
 from models.errors import ParameterError
 from noise.base.user_effects import effect_library
 from noise.cli import main
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.fit.user_effects import prefer_user_effects
 from noise.diagnosis.outcome import EffectFinding, as_json
 from noise.diagnosis.run import diagnose
 from sim.effects import EFFECTS

@@ -41,7 +41,8 @@ def test_development_cases_are_written_answers_apart_and_scored(tmp_path, capsys
     module.diagnose = diagnose
     monkeypatch.setitem(sys.modules, "a_diagnosis", module)
     where = tmp_path / "cases"
-    main(["generate", "--out", str(where), "--seed", "167", "--cases", "2", "--workers", "1"])
+    main(["generate", "--out", str(where), "--seed", "167", "--cases", "2", "--workers", "1",
+          "--bench", "quiet", "--block", "shares"])  # fmt: skip
     assert {p.name for p in where.iterdir()} == {"data", "answers"}
     answer = json.loads((where / "answers" / "case-0001.json").read_text())
     assert answer["set"] == DEVELOPMENT

@@ -48,7 +48,7 @@ def diagnosis_html(diagnosis: Diagnosis) -> str:
         for name, stage in diagnosis.stages.items()
     ]  # fmt: skip
     answer = html_table(headline(diagnosis), [row for row in facts if row[1]])
-    if not stages:
+    if not stages or diagnosis.bench:
         return answer
     header = ["stage", "gap", "share of the gap", "chance between repeats"]
     return answer + html_table("Gap by stage", stages, header=header)

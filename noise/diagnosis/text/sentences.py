@@ -60,6 +60,8 @@ def headline(diagnosis: Diagnosis) -> str:
     >>> headline(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0))
     'No gap'
     """
+    if diagnosis.bench:
+        return "Not this rig as it is described"
     match diagnosis.verdict:
         case ():
             return "No gap"
@@ -73,6 +75,8 @@ def headline(diagnosis: Diagnosis) -> str:
 def answer(diagnosis: Diagnosis) -> list[str]:
     """Return all sentences of the answer: verdict, location, what cannot be told apart.
 
+    Of recordings that cannot be of their rig, why not.
+
     Examples
     --------
     >>> from noise.diagnosis.outcome import Diagnosis
@@ -80,6 +84,9 @@ def answer(diagnosis: Diagnosis) -> list[str]:
     ['Recordings and simulation differ no more than repeats do: there is nothing to explain (gap
       0.9, floor 1, p = 0.60).']
     """
+    if diagnosis.bench:
+        found = [f"{text[0].upper()}{text[1:]}." for text in diagnosis.bench]
+        return [*found, "No cause is looked for before that is put right."]
     sentences = [verdict_sentence(diagnosis), location_sentence(diagnosis)]
     return [*filter(None, sentences), *equivalence_sentences(diagnosis)]
 

@@ -124,6 +124,7 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
         seconds=number(diagnosis.seconds, ".1f"),
         not_determined=NOT_DETERMINED,
         judged=bool(diagnosis.verdict),
+        bench=diagnosis.bench,
         **contents,
     )
 

@@ -18,7 +18,7 @@ from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.floor import case_gap
 
 from ..cases import Case, run_case, write_case
-from ..design import draw_design
+from ..design import design_of
 from ..generate import each
 from .truth import LEAST_GAP
 
@@ -36,7 +36,7 @@ def _distance(case: Case) -> float:
 
 def floors_of(answer: dict) -> dict:
     """Return distances with and without what is the matter, and what its absence closes."""
-    design = draw_design(answer["seed"], answer["index"], answer["set"], answer["block"])
+    design = design_of(answer)
     with_it = _distance(run_case(design))
     if design.kind == "none":
         return {"floors": with_it, "floors_off": with_it}
@@ -57,4 +57,4 @@ def _add(path: Path) -> None:
 def add_floors(answers: Path, workers: int) -> None:
     """Add to each answer how many floors the case is off, where it lacks them."""
     with each(workers) as mapped:
-        list(mapped(_add, sorted(answers.glob("case-*.json"))))
+        list(mapped(_add, sorted(answers.glob("*.json"))))

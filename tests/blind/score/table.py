@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .answers import Answer
     from .truth import Truth
 
-__all__ = ["Scores", "as_json", "as_text", "loss", "score"]
+__all__ = ["Scores", "as_json", "as_text", "loss", "score", "score_pairs"]
 
 COMPARED = (
     "detection", "stage", "parameters told from physics", "right cause first",
@@ -50,12 +50,23 @@ def score(
 ) -> Scores:
     """Score diagnoses (None where one failed) of cases; `same` gives equivalent names one name."""
     pairs = [merged(t, read_answer(d, t.case), same or {}) for t, d in scored]
+    return Scores(score_pairs(pairs, least_closed=least_closed, seed=seed, draws=draws), pairs)
+
+
+def score_pairs(
+    pairs: list[tuple[Truth, Answer]],
+    *,
+    least_closed: float = LEAST_CLOSED,
+    seed: int = 0,
+    draws: int = DRAWS,
+) -> dict[str, Figure]:
+    """Return figures by name of pairs of truth and answer."""
     quantities = [
         *detection(pairs), *causes(pairs), *unknowns(pairs), *probabilities(pairs),
         *closing(pairs, least_closed), *power(pairs),
     ]  # fmt: skip
     rng = np.random.default_rng(seed)
-    return Scores({q.name: figure(q, rng, draws) for q in quantities}, pairs)
+    return {q.name: figure(q, rng, draws) for q in quantities}
 
 
 def loss(own: Scores, others: Scores) -> dict[str, Figure]:

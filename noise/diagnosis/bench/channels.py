@@ -1,0 +1,172 @@
+"""Channels that are dead, swapped, in another unit, turned, or run backwards.
+
+Every threshold lies between what effects do and what a wrong bench does. A torque keeps between a
+sixth and six times its size whatever is missing in the contact, a path's gain between a thirtieth
+and thirty (impacts at slips make it seventeen); a unit is named where the factor is that of a usual
+one, is the same in all recordings, and the channel follows from the torque in all else.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.bench.units import factor_words, unit_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from models.recording import Recording
+    from models.rig import Rig
+    from noise.diagnosis.bench.levels import Levels
+
+__all__ = ["backwards", "dead_channels", "swapped_channels", "turned_channels", "wrong_units"]
+
+_UNITS = {"torque": "N m", "acceleration": "m/s^2", "pressure": "Pa", "angle": "rad"}
+
+_TORQUE = (1.0 / 6.0, 6.0)
+"""Mean torque over the kinetic torque of the fit, whatever is missing [-]."""
+
+_GAIN = (1.0 / 30.0, 30.0)
+"""Gain of a path over the rig's, whatever is missing [-]."""
+
+SWINGING = 0.02
+"""Standard deviation of a torque that slips, over the kinetic torque [-]; below, nothing that a
+path could be told from."""
+
+_ALIKE = 0.7
+"""Correlation from which a channel follows from the torque [-]."""
+
+_STEADY = 0.35
+"""Range of logarithms of a factor over the recordings, where it is a unit's [-]."""
+
+_AGAINST = 0.9
+"""Correlation from which a channel is the torque's with its sign turned [-]."""
+
+_RISING = 0.5
+"""Skewness of the torque's rate from which it rises fast and falls slowly [-]."""
+
+
+def dead_channels(names: Sequence[str], recordings: Sequence[Recording]) -> Iterator[str]:
+    """Say which channels never change."""
+    found: dict[str, list[tuple[str, float]]] = {}
+    for name, recording in zip(names, recordings, strict=True):
+        for channel, x in zip(recording.channels, recording.samples, strict=True):
+            if channel.kind in _UNITS and float(np.ptp(x)) == 0.0:
+                found.setdefault(channel.name, []).append((name, float(x[0])))
+    for dead, where in found.items():
+        values = {value for _, value in where}
+        value = f"at {values.pop():g}" if len(values) == 1 else "at some value"
+        yield f"channel {dead} is dead: it stays {value} in {_among(where, recordings)}"
+
+
+def _among(where: Sequence[tuple[str, float]], recordings: Sequence[Recording]) -> str:
+    if len(where) == len(recordings):
+        return "all recordings"
+    return ", ".join(name for name, _ in where)
+
+
+def swapped_channels(recordings: Sequence[Recording], rig: Rig, levels: Sequence[Levels]) -> str:
+    """Say which two channels are each other's; empty if none."""
+    found = [_stands_for_torque(r, rig) for r in recordings]
+    other = max(set(found), key=found.count) if found else ""
+    if other and found.count(other) >= 0.8 * len(found):
+        return f"channels torque and {other} look swapped"
+    crossed, straight = [], []
+    for one in _slipping(levels):
+        if ("acceleration", "pressure") not in one.paths:
+            continue
+        crossed.append([one.paths[k] for k in _CROSSED])
+        straight.append([one.paths[k] for k in _STRAIGHT])
+    if not crossed:
+        return ""
+    log = np.abs(np.log([[fit.gain + 1e-12 for fit in pair] for pair in (*crossed, *straight)]))
+    gains = np.median(log.max(axis=1).reshape(2, -1), axis=1)
+    follows = np.median([min(abs(fit.alike) for fit in pair) for pair in crossed])
+    if follows > _ALIKE and gains[0] < math.log(3.0) and gains[1] > math.log(6.0):
+        return "channels acceleration and pressure look swapped"
+    return ""
+
+
+_CROSSED = (("acceleration", "pressure"), ("pressure", "acceleration"))
+_STRAIGHT = (("acceleration", "acceleration"), ("pressure", "pressure"))
+
+
+def _stands_for_torque(recording: Recording, rig: Rig) -> str:
+    """Return the channel that has the mean and the steadiness of a torque that another lacks."""
+    condition = recording.condition
+    assert condition.interference is not None  # `usable` made it so
+    kinetic = rig.fit(condition.interference).kinetic_torque
+    found = []
+    for kind in _UNITS:
+        row = recording.first(kind)
+        if row is not None:
+            x = np.asarray(recording.samples[row], dtype=np.float64)
+            mean, spread = abs(float(x.mean())), float(x.std())
+            ramp = abs(float(x[-1] - x[0])) > 2.5 * spread
+            if kinetic / 2.0 < mean < 3.0 * kinetic and spread < 0.5 * mean and not ramp:
+                found.append(kind)
+    return found[0] if found and "torque" not in found else ""
+
+
+def wrong_units(levels: Sequence[Levels]) -> Iterator[str]:
+    """Say which channels read a factor too much or too little."""
+    torque = [abs(one.torque) for one in levels if one.torque is not None]
+    scale = 1.0
+    if torque:
+        factor = float(np.median(torque))
+        unit = unit_of("torque", factor)
+        if not _TORQUE[0] < factor < _TORQUE[1]:
+            yield _unit_words("torque", unit, factor, "the kinetic torque of the rig file")
+            scale = factor if unit else 1.0
+    for kind in ("acceleration", "pressure"):
+        fits = [p for one in _slipping(levels, scale) if (p := one.paths.get((kind, kind)))]
+        if not fits:
+            continue
+        gains = scale * np.array([max(fit.gain, 1e-12) for fit in fits])
+        factor, alike = float(np.median(gains)), float(np.median([abs(f.alike) for f in fits]))
+        steady = float(np.ptp(np.log(gains))) < _STEADY
+        unit = unit_of(kind, factor) if alike > _ALIKE and steady else ""
+        follows = float(np.median([fit.explained for fit in fits])) > 0.5
+        if unit or (follows and not _GAIN[0] < factor < _GAIN[1]):
+            yield _unit_words(kind, unit, factor, "what the torque makes of it on this rig")
+
+
+def _unit_words(kind: str, unit: str, factor: float, against: str) -> str:
+    if unit:
+        times = factor if factor > 1.0 else 1.0 / factor
+        return f"channel {kind} looks like {unit}, not {_UNITS[kind]} (factor {times:.2g})"
+    return f"channel {kind} is {factor_words(factor)} against {against}"
+
+
+def turned_channels(levels: Sequence[Levels]) -> Iterator[str]:
+    """Say which channels have their sign turned."""
+    torque = [one.torque for one in levels if one.torque is not None]
+    if torque and np.median(torque) < -_TORQUE[0]:
+        yield "channel torque has its sign turned: it drives the rotation that it should brake"
+        return
+    for kind in ("acceleration", "pressure"):
+        alike = [p.alike for one in _slipping(levels) if (p := one.paths.get((kind, kind)))]
+        if len(alike) > 2 and max(alike) < -_AGAINST:
+            yield f"channel {kind} has its sign turned against what the torque makes of it"
+
+
+def backwards(levels: Sequence[Levels]) -> str:
+    """Say whether time runs backwards: a contact loads slowly and lets go at once."""
+    looked = [one for one in _slipping(levels) if one.torque is not None]
+    if not looked:
+        return ""
+    rises = [one.falls * math.copysign(1.0, one.torque or 1.0) for one in looked]
+    if float(np.median(rises)) < _RISING:
+        return ""
+    forth = [abs(one.paths[k, k].alike) for one in looked for k in one.backwards]
+    back = [abs(fit.alike) for one in looked for fit in one.backwards.values()]
+    if forth and float(np.median(back)) < float(np.median(forth)):
+        return ""
+    return "time runs backwards: the torque rises at once and falls slowly"
+
+
+def _slipping(levels: Sequence[Levels], scale: float = 1.0) -> list[Levels]:
+    return [one for one in levels if one.swing > SWINGING * scale]

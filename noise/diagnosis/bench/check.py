@@ -1,0 +1,56 @@
+"""Is it this rig at all? What is wrong with a bench's units, signs, channels or conditions.
+
+Asked before anything else: the posterior of causes has learned with right benches, and names a
+cause for whatever else it is shown. What is found is told, and no cause is named.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from noise.diagnosis.bench.channels import (
+    backwards,
+    dead_channels,
+    swapped_channels,
+    turned_channels,
+    wrong_units,
+)
+from noise.diagnosis.bench.conditions import shuffled_conditions, wrong_speed
+from noise.diagnosis.bench.levels import levels_of
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from noise.diagnosis.case import Case
+    from sim.effects.effect import Effect
+
+__all__ = ["bench_findings"]
+
+
+def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> tuple[str, ...]:
+    """Say what of a case cannot be of its rig.
+
+    Parameters
+    ----------
+    case : Case
+    library : mapping of str to Effect, optional
+        Effects that the rig's can be found among.
+
+    Returns
+    -------
+    tuple of str
+        One line each; empty where nothing is.
+    """
+    if dead := tuple(dead_channels(case.names, case.recordings)):
+        return dead
+    cache = TransferFunctionCache(case.rig, library)
+    levels = [levels_of(recording, case.rig, cache) for recording in case.recordings]
+    if swapped := swapped_channels(case.recordings, case.rig, levels):
+        return (swapped,)
+    if reversed_ := backwards(levels):
+        return (reversed_,)
+    if shuffled := shuffled_conditions(case, levels):
+        return (shuffled,)
+    found = [*turned_channels(levels), *wrong_units(levels), wrong_speed(levels)]
+    return tuple(filter(None, found))

@@ -1,0 +1,76 @@
+"""Recordings that cannot be of their rig as it is described are told so, and right ones are not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from noise.diagnosis.bench.check import bench_findings
+from noise.diagnosis.case import Case
+from noise.diagnosis.diagnose import diagnose_case
+from noise.diagnosis.outcome import as_json, from_json
+from noise.diagnosis.text.sentences import answer, headline
+from tests.helpers.small_rigs import RIG, at, only, run
+from tests.helpers.wrong_benches import WRONG_BENCHES
+
+SPEEDS = (1.0, 1.6, 1.6, 2.5, 3.5)
+
+RIGHT = {
+    "nothing": (),
+    "a gain": (("gain_error", {"error": 0.2, "torque": -1.0, "acceleration": 1.0}),),
+    "heavy clipping": (("clipping", {"amount": 0.8}),),
+    "a late channel": (("channel_delay", {"delay": 1e-3}),),
+    "noise": (("background_noise", {"amount": 5.0}),),
+    "an uneven drive": (("speed_fluctuation", {"depth": 0.2}),),
+    "impacts": (("slip_pulse", {"amplitude": 500.0}),),
+    "a film": (("transfer_film", {"torque_ratio": 2.5}),),
+    "heat": (("frictional_heating", {"softening": 0.02}),),
+}
+
+
+def _case(recordings):
+    return Case(RIG, tuple(f"run{i}.wav" for i in range(len(recordings))), tuple(recordings))
+
+
+@pytest.fixture(scope="module")
+def right():
+    return [run(at(speed), seed=i) for i, speed in enumerate(SPEEDS)]
+
+
+@pytest.mark.parametrize("name", WRONG_BENCHES)
+def test_a_wrong_bench_is_told_and_no_cause_named(right, name):
+    change, words = WRONG_BENCHES[name]
+    case = _case(change(right, np.random.default_rng(0)))
+    told = diagnose_case(case)
+    assert told.verdict == ("unknown",)
+    assert told.bench
+    assert told.notes[: len(told.bench)] == told.bench
+    assert any(words in text for text in told.bench)
+    assert not any(p for cause, p in told.probabilities.items() if cause != "unknown")
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_an_effect_is_no_wrong_bench(name):
+    recordings = [run(at(speed), *RIGHT[name], seed=i) for i, speed in enumerate(SPEEDS[1:4])]
+    assert bench_findings(_case(recordings)) == ()
+
+
+@pytest.mark.parametrize(
+    "kinds", [("torque",), ("pressure",), ("torque", "pressure"), ("torque", "angle")]
+)
+def test_fewer_channels_are_no_wrong_bench(right, kinds):
+    assert bench_findings(_case([only(one, *kinds) for one in right])) == ()
+
+
+def test_a_shaft_that_turns_backwards_is_no_wrong_bench():
+    recordings = [run(at(-speed), seed=i) for i, speed in enumerate(SPEEDS[:3])]
+    assert bench_findings(_case(recordings)) == ()
+
+
+def test_what_is_wrong_comes_first_and_is_kept(right):
+    change, _ = WRONG_BENCHES["acceleration in g"]
+    told = diagnose_case(_case(change(right, np.random.default_rng(0))))
+    words = "channel acceleration looks like g, not m/s^2 (factor 9.8)"
+    assert as_json(told)["notes"][0] == words
+    assert answer(told)[0] == f"C{words[1:]}."
+    assert headline(from_json(as_json(told))) == "Not this rig as it is described"
