@@ -36,9 +36,6 @@ MEAN_TORQUE = 8.0
 _THIN = 0.5
 """Torques at 0.178 mm over those at 0.279 mm."""
 
-_TIGHT_SHORT_DAMPING = 0.08
-"""Of c_E at 0.381 mm, 3745 Nm/rad [Nm s/rad], Table 5.5."""
-
 _SPEED = 5.0
 
 _EXPONENT = 2.0
@@ -66,23 +63,24 @@ class Unknown:
 
 
 UNKNOWNS: Mapping[str, Unknown] = {
-    "contact_stiffness": Unknown(10040.0, 1e4, 1e3, 6e4, "Nm/rad", "K at 0.279 mm"),
-    "contact_damping": Unknown(0.0005577, 8e-4, 1e-5, 1e-2, "Nm s/rad", "sigma at 0.279 mm"),
-    "renewal_angle": Unknown(0.0001405, 2e-4, 2e-5, 1e-2, "rad", "D at 0.279 mm"),
-    "ageing_time": Unknown(0.000273, 5e-4, 2e-5, 1e-1, "s", "tau"),
-    "torque_drop": Unknown(4.322, 4.0, 0.1, 40.0, "Nm", "T_crit - T_kin at 0.279 mm"),
-    "weakening": Unknown(0.1816, 0.2, 1e-3, 6.0, "Nm", "torque that fades with speed"),
-    "weakening_speed": Unknown(19.39, 20.0, 2.0, 200.0, "rad/s", "v_w"),
-    "elastomer_damping_share": Unknown(0.3581, 0.3, 0.02, 0.9, "1", "of c_E"),
-    "long_damping": Unknown(0.0727, 0.08, 0.06, 0.105, "Nm s/rad", "c_E at 0.279 mm, 2214"),
-    "short_damping": Unknown(0.05, 0.06, 0.04, 0.1, "Nm s/rad", "c_E at 0.279 mm, 3745"),
-    "fixed_damping": Unknown(0.06907, 0.08, 0.02, 0.3, "Nm s/rad", "c_E with the clamp fixed"),
-    "thin_damping_ratio": Unknown(0.6995, 0.7, 0.4, 1.6, "1", "c_E at 0.178 mm over 0.279 mm"),
-    "thin_fixed_ratio": Unknown(0.8449, 0.8, 0.4, 3.0, "1", "the same with the clamp fixed"),
-    "tight_kinetic": Unknown(33.0, 30.0, 15.0, 36.0, "Nm", "T_kin at 0.381 mm"),
-    "tight_drop": Unknown(9.9, 9.0, 2.0, 60.0, "Nm", "T_crit - T_kin at 0.381 mm"),
-    "tight_damping": Unknown(0.285, 0.25, 0.05, 0.4, "Nm s/rad", "c_E at 0.381 mm, 2214"),
-    "tight_fixed_damping": Unknown(0.04, 0.06, 0.02, 0.3, "Nm s/rad", "the same, clamp fixed"),
+    "contact_stiffness": Unknown(10240.0, 1e4, 1e3, 6e4, "Nm/rad", "K at 0.279 mm"),
+    "contact_damping": Unknown(0.0005596, 8e-4, 1e-5, 1e-2, "Nm s/rad", "sigma at 0.279 mm"),
+    "renewal_angle": Unknown(0.0001389, 2e-4, 2e-5, 1e-2, "rad", "D at 0.279 mm"),
+    "ageing_time": Unknown(0.000276, 5e-4, 2e-5, 1e-1, "s", "tau"),
+    "torque_drop": Unknown(4.358, 4.0, 0.1, 40.0, "Nm", "T_crit - T_kin at 0.279 mm"),
+    "weakening": Unknown(0.1875, 0.2, 1e-3, 6.0, "Nm", "torque that fades with speed"),
+    "weakening_speed": Unknown(18.79, 20.0, 2.0, 200.0, "rad/s", "v_w"),
+    "elastomer_damping_share": Unknown(0.3648, 0.3, 0.02, 0.9, "1", "of c_E"),
+    "long_damping": Unknown(0.07212, 0.08, 0.06, 0.105, "Nm s/rad", "c_E at 0.279 mm, 2214"),
+    "short_damping": Unknown(0.04957, 0.06, 0.04, 0.1, "Nm s/rad", "c_E at 0.279 mm, 3745"),
+    "fixed_damping": Unknown(0.0699, 0.08, 0.02, 0.3, "Nm s/rad", "c_E with the clamp fixed"),
+    "thin_damping_ratio": Unknown(0.7314, 0.7, 0.4, 1.6, "1", "c_E at 0.178 mm over 0.279 mm"),
+    "thin_fixed_ratio": Unknown(0.8287, 0.8, 0.4, 3.0, "1", "the same with the clamp fixed"),
+    "tight_kinetic": Unknown(34.0, 30.0, 15.0, 36.0, "Nm", "T_kin at 0.381 mm"),
+    "tight_drop": Unknown(9.7, 9.0, 2.0, 60.0, "Nm", "T_crit - T_kin at 0.381 mm"),
+    "tight_damping": Unknown(0.28, 0.25, 0.05, 0.4, "Nm s/rad", "c_E at 0.381 mm, 2214"),
+    "tight_short_damping": Unknown(0.15, 0.12, 0.05, 0.3, "Nm s/rad", "c_E at 0.381 mm, 3745"),
+    "tight_fixed_damping": Unknown(0.04095, 0.06, 0.02, 0.3, "Nm s/rad", "the same, clamp fixed"),
 }
 """They begin where rougher searches of the same kind ended; those knew all cells."""
 
@@ -140,7 +138,7 @@ def rig_of(values: Mapping[str, float]) -> Rig | None:
         0.279e-3: (kinetic, values["torque_drop"], (long, short, fixed)),
         0.381e-3: (
             values["tight_kinetic"], values["tight_drop"],
-            (values["tight_damping"], _TIGHT_SHORT_DAMPING, values["tight_fixed_damping"]),
+            (values["tight_damping"], values["tight_short_damping"], values["tight_fixed_damping"]),
         ),
     }  # fmt: skip
 
