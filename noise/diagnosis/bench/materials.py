@@ -89,7 +89,7 @@ def another_material(
         return ""
     for name in material_names():
         other = load_material_rig(name)
-        if other.friction.law == case.rig.friction.law:  # other numbers are a matter of parameters
+        if other.friction.name == case.rig.friction.name:  # other numbers are a matter of parameters
             continue
         there = away(replace(other, sensors=case.rig.sensors, measured=case.rig.measured))
         if there < _LIKE and own > _UNLIKE * there:
