@@ -89,8 +89,8 @@ def another_material(
         return ""
     for name in material_names():
         other = load_material_rig(name)
-        if other.friction.name == case.rig.friction.name:  # other numbers are a matter of parameters
-            continue
+        if other.friction.name == case.rig.friction.name:
+            continue  # other numbers of one law are a matter of parameters
         there = away(replace(other, sensors=case.rig.sensors, measured=case.rig.measured))
         if there < _LIKE and own > _UNLIKE * there:
             return f"the friction is that of {name}, not of the rig file: another material"
