@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -36,7 +37,22 @@ N %**: beyond it, up to 25 %. **fails**: further. **misprint**: wrong as printed
 have been meant. **refuted**: the thesis's equations contradict its own measurement by more than
 25 %. **not checkable**: nothing to compare with. What was measured is judged on the calibrated
 material too; what follows a semicolon is that, where it does not hold. **(in sample)**: parameters
-of what is judged were chosen for this number, so that it says nothing of what the model predicts.
+of what is judged, of the calibrated material where it has a value, were chosen for this number, so
+that it says nothing of what the model predicts.
+
+What was measured counts once, by the row that judges what the program ships, its calibrated
+column. So rows do not count that judge a formula against a measurement which another row counts
+(modes and stiffness on rigid, turning and yielding anchors or of the lumped model, Lame's pressure
+and stiffness), nor those that read a counted number again (harmonics of one slip frequency, V_crit2
+less V_crit1, the regime of Table 5.1 where its V_crit1 has a row).
+"""
+
+_WHY = """\
+## What is missed, and why
+
+All rows of something measured whose calibrated value is more than 25 % off, or that of a formula
+where there is none. Factors without a source are trials with the shipped material, by which all
+values of that parameter were multiplied.
 """
 
 
@@ -65,21 +81,24 @@ def _counted(part: str) -> str:
 
 
 def measured_counts(rows: Sequence[Row]) -> str:
-    """Count what was measured, what of it the program misses, and what of that is out of sample.
+    """Count what was measured, what of it the shipped program misses, and what is out of sample.
+
+    A fact counts once, by the row that judges what ships; see `Row.counted`.
 
     Examples
     --------
     >>> from noise.thesis.row import Row, number
     >>> measured_counts([Row("x", "y", "Hz", number(1.0), calibrated=2.0, measured=True)])
-    'Measured: 1 row, of which 1 out of sample; more than 25 % off 1, of which 1 out of sample.'
+    'Measured: 1 fact, of which 1 out of sample; more than 25 % off 1, of which 1 out of sample...'
     """
-    measured = [row for row in rows if row.measured]
-    missed = [row for row in measured if row.misses]
-    one, other = (sum(not row.in_sample for row in of) for of in (measured, missed))
-    plural = "" if len(measured) == 1 else "s"
+    facts = [row for row in rows if row.measured and row.counted]
+    checked = [row for row in facts if not math.isnan(row.best)]
+    missed = [row for row in checked if row.misses]
+    one, other = (sum(not row.in_sample for row in of) for of in (checked, missed))
+    plural = "" if len(checked) == 1 else "s"
     return (
-        f"Measured: {len(measured)} row{plural}, of which {one} out of sample; more than 25 % off "
-        f"{len(missed)}, of which {other} out of sample."
+        f"Measured: {len(checked)} fact{plural}, of which {one} out of sample; more than 25 % off "
+        f"{len(missed)}, of which {other} out of sample; not checkable {len(facts) - len(checked)}."
     )
 
 
@@ -110,4 +129,6 @@ def thesis_page(rows: Sequence[Row]) -> str:
         *("| " + " | ".join(row.cells()[column] for column in COLUMNS) + " |" for row in rows),
         "",
     ]
+    if whys := [f"- **{row.item}**, {row.condition}: {row.why}" for row in rows if row.why]:
+        lines += [_WHY, *whys, ""]
     return "\n".join(lines)

@@ -106,6 +106,11 @@ class Row:
         What deviations are relative to, where the published value is zero.
     in_sample : bool
         Whether parameters of what is judged were chosen for this number.
+    counted : bool
+        Whether the measured fact is counted by this row: not where it judges a formula that the
+        shipped bench does not run on, nor where it reads again what another row counts.
+    why : str
+        Why what was measured is missed; empty where it is not.
     limit : float, optional
         The last value tried, where a search may end without a result; in the unit `unit` [-].
     digits : int
@@ -126,6 +131,8 @@ class Row:
     as_printed: float | None = None
     scale: float | None = None
     in_sample: bool = False
+    counted: bool = True
+    why: str = ""
     limit: float | None = None
     digits: int = 4
 
@@ -149,13 +156,16 @@ class Row:
         return self._words() + (" (in sample)" if self.in_sample else "")
 
     @property
+    def best(self) -> float:
+        """What a measurement is held against: what ships, or a formula that is not counted [-]."""
+        formula = not self.counted and math.isnan(self.calibrated)
+        return self.exact if formula else self.calibrated
+
+    @property
     def misses(self) -> bool:
-        """Whether this was measured and the program's best is more than a quarter off it."""
-        best = self.exact if math.isnan(self.calibrated) else self.calibrated
-        if self.judged is Column.CALIBRATED:
-            best = self.calibrated
-        checkable = self.measured and not math.isnan(best)
-        return checkable and self._word(best, self.meant or self.published) == "fails"
+        """Whether this was measured and `best` is more than a quarter off it."""
+        checkable = self.measured and not math.isnan(self.best)
+        return checkable and self._word(self.best, self.meant or self.published) == "fails"
 
     def _words(self) -> str:
         value = getattr(self, self.judged.value)

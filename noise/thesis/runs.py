@@ -195,8 +195,13 @@ def mean_torque(material: str, case: Case) -> float:
 
 
 def torque_swing(material: str, case: Case) -> float:
-    """Root mean square of the torque about its mean [Nm], once the run has settled."""
-    return float(_settled(motion(material, case)).torque.std())
+    """Largest less smallest torque [Nm], once the run has settled.
+
+    The thesis compares amplitudes by "analyses of the torque time traces" (5.2.1). A root mean
+    square is not read from a trace: of one amplitude, it follows the waveform, which the support
+    changes.
+    """
+    return float(np.ptp(_settled(motion(material, case)).torque))
 
 
 def sudden_share(material: str, case: Case) -> float:

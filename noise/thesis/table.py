@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from noise.thesis import (
     torques,
     waveforms,
 )
+from noise.thesis.explanations import WHY
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -72,11 +74,15 @@ GROUPS: tuple[Callable[[], Iterable[Row]], ...] = (
 
 
 def thesis_rows(groups: Iterable[Callable[[], Iterable[Row]]]) -> list[Row]:
-    """Compute the rows of groups.
+    """Compute the rows of groups; those that are missed say why.
 
     Examples
     --------
     >>> [row.verdict for row in thesis_rows([misprints.misprints])][:2]
     ['misprint', 'misprint']
     """
-    return [row for group in groups for row in group()]
+    return [
+        replace(row, why=WHY.get((row.item, row.condition), ""))
+        for group in groups
+        for row in group()
+    ]

@@ -75,7 +75,7 @@ def _line_share(material: str, case: Case) -> float:
 
 
 def amplitudes() -> Iterator[Row]:
-    """Swing of the torque, rms: what changes it (5.2.1) and what does not (6.1)."""
+    """Swing of the torque's trace: what changes it (5.2.1) and what does not (6.1)."""
     for before, after, published, where in (
         (Case(1.0, 0.178, LONG), Case(2.5, 0.178, LONG), number(1.0), "over 1 rad/s, 5.2.1"),
         (Case(1.0, 0.279, LONG), Case(1.0, 0.279, SHORT), number(1.0), "over 2214 Nm/rad, 6.1"),

@@ -19,6 +19,7 @@ from models.rig_files.rig_file import load_material_rig
 from models.structure.shaft import fixed_free_frequencies, free_free_frequencies
 from noise.cli import main
 from noise.thesis import page, row, table
+from noise.thesis.explanations import WHY
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import critical_damping, largest_sticking
 from sim.analysis.critical_speeds import critical_speeds, regime_at
@@ -37,13 +38,37 @@ def published_rows():
     return [dict(zip(cells[0], line, strict=True)) for line in cells[2:]]
 
 
+@pytest.fixture(scope="module")
+def computed_rows():
+    return table.thesis_rows(table.GROUPS)
+
+
 # The page
 
 
-def test_the_page_is_what_the_program_writes():
-    assert PAGE.read_text(encoding="utf-8") == page.thesis_page(table.thesis_rows(table.GROUPS)), (
-        STALE
-    )
+def test_the_page_is_what_the_program_writes(computed_rows):
+    assert PAGE.read_text(encoding="utf-8") == page.thesis_page(computed_rows), STALE
+
+
+def test_what_was_measured_and_missed_says_why_and_nothing_else_does(computed_rows):
+    missed = {(r.item, r.condition) for r in computed_rows if r.misses}
+    assert missed == {(r.item, r.condition) for r in computed_rows if r.why}
+    assert missed == set(WHY)
+
+
+def test_what_a_verdict_says_to_fail_a_measurement_is_missed(computed_rows):
+    for found in computed_rows:
+        if found.measured and "fails" in found.verdict:
+            assert found.misses
+
+
+def test_a_measured_fact_is_counted_by_what_ships(computed_rows):
+    for found in computed_rows:
+        if found.measured and found.counted and np.isnan(found.calibrated):
+            # The shipped material does not slip there, nor did the rig, beyond its V_crit1.
+            assert found.item in {"slip_frequency", "strongest_share"}
+    modes = [r for r in computed_rows if r.item == "beam_mode" and r.measured and r.counted]
+    assert sorted(r.published.low for r in modes) == [250.0, 310.0, 900.0, 1375.0, 4500.0, 6000.0]
 
 
 def test_the_page_has_a_row_for_every_checkable_number():
@@ -153,10 +178,15 @@ def test_what_was_measured_and_missed_is_counted():
     assert missed.misses
     assert not replace(missed, measured=False).misses
     assert not replace(missed, calibrated=11.0).misses
-    assert replace(missed, exact=20.0, calibrated=np.nan).misses
-    assert not replace(missed, calibrated=np.nan, judged=row.Column.CALIBRATED).misses
-    page_of = page.measured_counts([missed, replace(missed, in_sample=True)])
-    assert page_of.endswith("more than 25 % off 2, of which 1 out of sample.")
+    formula = replace(missed, exact=20.0, calibrated=np.nan, counted=False)
+    assert formula.misses
+    nothing = replace(missed, exact=20.0, calibrated=np.nan)
+    assert not nothing.misses
+    rows = [missed, replace(missed, in_sample=True), formula, nothing]
+    assert page.measured_counts(rows) == (
+        "Measured: 2 facts, of which 1 out of sample; more than 25 % off 2, of which 1 out of "
+        "sample; not checkable 1."
+    )
 
 
 # Verdicts
