@@ -10,6 +10,7 @@ from scipy.fft import irfft, rfft, rfftfreq
 
 from models.condition import KnownCondition
 from models.errors import BushingNoiseError, ParameterError
+from noise.diagnosis.bench.conditions import speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.static_test import static_test
 from noise.recordings import find_recordings, read_recording
@@ -191,6 +192,9 @@ def measured(recording: Recording, name: str) -> Measured:
             "turns back and forth and slips; record rotation of one sign, or, as a static test, "
             "slow motion to three quarters of the torque at which it slips"
         )
+    stated = abs(recording.condition.speed or 0.0)
+    if stated and (words := speed_words(abs(mean) / stated, stated)):
+        raise ParameterError(words)
     speed = np.abs(speed)
     if float(np.mean(torque)) < 0.0:  # the shaft turned backwards, or the cell counts so
         torque = -torque

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.signal import welch
 
 from models.errors import ParameterError
+from noise.diagnosis.bench.units import unit_of
 from sim.run import simulate
 from sim.temperature import at_temperature
 
@@ -97,6 +98,8 @@ def structure_notes(rig: Rig, recordings: Sequence[Measured]) -> list[str]:
         told += "above" if offset > 0.0 else "below"
         if abs(offset) <= _CLOSE:
             told = f"measured {_KINDS[kind]} is within {_CLOSE:g} dB of"
-        after = "" if abs(offset) <= _CLOSE else "; measure responses with frf"
+        unit = unit_of(kind, 10.0 ** (offset / 20.0))
+        after = f"; is it in {unit}?" if unit else "; measure responses with frf"
+        after = "" if abs(offset) <= _CLOSE else after
         notes.append(f"the structure is that of the known bench: {told} what it predicts{after}")
     return notes

@@ -2,7 +2,8 @@
 
 Everything is checked here, at the edge, and refused in one line that names file, channel and
 field; behind it channels and conditions can be trusted. Keys that are not ours are passed over, so
-an engineer's own notes may stand in the same file. Values are never guessed: a number in quotes or
+an engineer's own notes may stand in the same file, unless they state a condition in another unit
+than ours. Values are never guessed: a number in quotes or
 a torque in kN m is refused, only spellings of the same unit are alike.
 
 A channel of which the file holds what the measurement chain read has the unit ``V``, ``mV`` or
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 __all__ = ["Sidecar", "find_sidecar", "parse_sidecar", "read_sidecar", "sidecar_text"]
 
 _ABSOLUTE_ZERO = -273.15  # degree Celsius
+
+_CONDITIONS = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad", "temperature_C")
 
 
 @dataclass(frozen=True)
@@ -252,6 +255,10 @@ def _condition(entry: object, where: str) -> Condition:
         return Condition()
     if not isinstance(entry, dict):
         _refuse(where, f"conditions is {show(entry)}, expected an object {{...}}")
+    for key in entry:
+        ours = next((ours for ours in _CONDITIONS if _stem(key) == _stem(ours)), key)
+        if key != ours and isinstance(entry[key], int | float):
+            _refuse(where, f"conditions has {show(key)}, which is not read; state {ours}")
     material = entry.get("material")
     if material is not None and (not isinstance(material, str) or not material.strip()):
         _refuse(where, f"material is {show(material)}, expected a name in quotes")
@@ -267,6 +274,14 @@ def _condition(entry: object, where: str) -> Condition:
             entry.get("temperature_C"), f"{where}: temperature_C", least=_ABSOLUTE_ZERO
         ),
     )
+
+
+def _stem(key: str) -> str:
+    """Return the quantity that a condition's key begins with; it ends with its unit."""
+    for quantity in ("interference", "support", "temperature", "speed"):
+        if key.lower().startswith(quantity):
+            return quantity
+    return key
 
 
 def _number(

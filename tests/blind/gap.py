@@ -11,15 +11,18 @@ A band counts for six floors at most, so that none decides alone.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from .benches import CHANNELS
-from .cases import run_case
-from .design import Design, design_of
+from .cases import Case, run_case
 
-__all__ = ["gap_between", "gaps_of", "repeats_of", "summary"]
+if TYPE_CHECKING:
+    from .design import Design
+
+__all__ = ["gap_between", "gaps_of", "null_gap", "repeats_of", "summary"]
 
 _LOWEST, _HIGHEST_SHARE, _PER_OCTAVE = 40.0, 0.42, 6
 _LEAST_LEVEL, _LEAST_PHASE = 0.5, 0.05
@@ -96,18 +99,33 @@ def repeats_of(design: Design, without: tuple) -> list[tuple[np.ndarray, np.ndar
     return list(zip(run_case(few).recordings, run_case(few, again=3).recordings, strict=True))
 
 
-def gaps_of(answer: dict) -> dict:
+def gaps_of(case: Case) -> dict:
     """Gap of a case and, of several effects, of each by itself; as the answer's further keys."""
-    design = design_of(answer)
+    design = case.design
     names = [form.effect for form, _ in design.forms]
     if design.kind == "none":
         return {"gap": 1.0, "gap_alone": {}}
     plain = run_case(design, frozenset(names), plain=True).recordings
     repeats = repeats_of(design, plain)
 
-    def gap(off: frozenset[str] = frozenset()) -> float:
-        recordings = run_case(design, off).recordings
-        return gap_between(recordings, plain, repeats, design.rate, design.bench.channels)
+    def gap(of: Case) -> float:
+        return gap_between(of.recordings, plain, repeats, design.rate, design.bench.channels)
 
-    alone = {name: gap(frozenset(names) - {name}) for name in names if len(names) > 1}
-    return {"gap": gap(), "gap_alone": alone}
+    alone = {
+        name: gap(run_case(design, frozenset(names) - {name})) for name in names if len(names) > 1
+    }
+    return {"gap": gap(case), "gap_alone": alone}
+
+
+def null_gap(design: Design) -> float:
+    """Gap of a bench on which nothing is the matter from the one that its user describes.
+
+    Both are of other chance, so that it is about that of two repeats; what sidecars say wrongly is
+    right in the second.
+    """
+    null = replace(design, kind="none", offsets={}, forms=())
+    right = replace(null, bench=replace(design.bench, speed_factor=1.0, warmer=0.0))
+    recordings = run_case(null).recordings
+    repeats = repeats_of(null, recordings)
+    described = run_case(right, again=1).recordings
+    return gap_between(recordings, described, repeats, design.rate, design.bench.channels)

@@ -6,11 +6,10 @@ is written before the first case is made.
 
 from __future__ import annotations
 
-import json
 import time
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-__all__ = ["Wanted", "add_gaps", "each", "generate", "generate_sealed"]
+__all__ = ["Wanted", "each", "generate", "generate_sealed"]
 
 
 @dataclass(frozen=True)
@@ -54,6 +53,7 @@ def _one(job: tuple[Path, Path, int, int, str, str, str]) -> None:
     data, answers, seed, index, kept_for, block, bench = job
     name = f"case-{index + 1:04d}" if bench == "quiet" else f"{bench}-{index + 1:04d}"
     case = run_case(draw_design(seed, index, kept_for, block, bench))
+    case = replace(case, answer=case.answer | gaps_of(case))
     write_case(case, data / name, answers / f"{name}.json")
 
 
@@ -86,15 +86,3 @@ def generate_sealed(
     )  # fmt: skip
     _make(data, answers, wanted, SEALED, workers)
     return opened
-
-
-def _gap(path: Path) -> None:
-    answer = json.loads(path.read_text(encoding="utf-8"))
-    if "gap" not in answer:
-        path.write_text(json.dumps(answer | gaps_of(answer), indent=1) + "\n", encoding="utf-8")
-
-
-def add_gaps(answers: Path, workers: int) -> None:
-    """Add to each answer how far the case is from nothing being the matter, where it lacks it."""
-    with each(workers) as mapped:
-        list(mapped(_gap, sorted(answers.glob("*.json"))))

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from models.rig_files.rig_file import load_material_rig
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import Case
 from noise.diagnosis.diagnose import diagnose_case
 from noise.diagnosis.outcome import as_json, from_json
 from noise.diagnosis.text.sentences import answer, headline
+from sim.run import simulate
 from tests.helpers.small_rigs import RIG, at, only, run
 from tests.helpers.wrong_benches import WRONG_BENCHES
 
@@ -65,6 +69,21 @@ def test_fewer_channels_are_no_wrong_bench(right, kinds):
 def test_a_shaft_that_turns_backwards_is_no_wrong_bench():
     recordings = [run(at(-speed), seed=i) for i, speed in enumerate(SPEEDS[:3])]
     assert bench_findings(_case(recordings)) == ()
+
+
+@pytest.mark.parametrize("name", ["fluorocarbon", "PDMS", "natural-rubber"])
+def test_another_material_is_told(name):
+    other = load_material_rig(name)
+    fit = min(other.fits, key=lambda fit: abs(fit.interference - 0.279e-3)).interference
+    fit = 0.279e-3 if len(other.fits) > 1 else fit
+    recordings = []
+    for i, speed in enumerate(SPEEDS[:4]):
+        made = simulate(
+            other, speed, interference=fit, seconds=0.4, rng=np.random.default_rng(i)
+        ).recording
+        recordings.append(replace(made, condition=at(speed)))
+    (told,) = bench_findings(_case(recordings))
+    assert "another material" in told
 
 
 def test_what_is_wrong_comes_first_and_is_kept(right):

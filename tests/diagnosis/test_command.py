@@ -7,13 +7,13 @@ import math
 from dataclasses import replace
 
 import pytest
-from noise.diagnosis.fit.user_effects import prefer_user_effects
 
 from models.condition import FIXED
 from models.errors import ParameterError
 from noise.base.user_effects import effect_library
 from noise.cli import main
 from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.fit.by_fits import prefer_by_fits
 from noise.diagnosis.outcome import EffectFinding, as_json
 from noise.diagnosis.run import diagnose
 from sim.effects import EFFECTS
@@ -296,7 +296,7 @@ def test_an_own_effect_takes_over_only_where_it_closes_clearly_more():
     (name,) = before.verdict
     for mine, taken in ((1.2, True), (2.9, False), (7.0, False)):
         findings = {name: _gaps(name, 3.0), "mine": _gaps("mine", mine)}
-        after = prefer_user_effects(before, findings, ["mine"])
+        after = prefer_by_fits(before, findings, ["mine"])
         assert (after.verdict == ("mine",)) == taken
         if taken:
             assert after.probabilities["mine"] == pytest.approx(0.9)
@@ -305,23 +305,21 @@ def test_an_own_effect_takes_over_only_where_it_closes_clearly_more():
 
 def test_an_own_effect_that_closes_a_small_gap_is_as_probable_as_what_it_closes():
     small = replace(_gaps("mine", 1.0, closed=None), gap_before=1.4, gap_recalibrated=1.4)
-    after = prefer_user_effects(one_effect(), {"mine": small}, ["mine"])
+    after = prefer_by_fits(one_effect(), {"mine": small}, ["mine"])
     assert after.verdict == ("mine",)
     assert after.probabilities["mine"] == pytest.approx(1.0)
 
 
 def test_where_there_is_no_gap_an_own_effect_has_none_to_close():
     nothing = replace(one_effect(), verdict=())
-    assert (
-        prefer_user_effects(nothing, {"mine": _gaps("mine", 1.0, closed=None)}, ["mine"]) is nothing
-    )
-    assert prefer_user_effects(one_effect(), {}, ["mine"]).verdict == one_effect().verdict
+    assert prefer_by_fits(nothing, {"mine": _gaps("mine", 1.0, closed=None)}, ["mine"]) is nothing
+    assert prefer_by_fits(one_effect(), {}, ["mine"]).verdict == one_effect().verdict
 
 
 def test_an_own_effect_that_closes_a_gap_which_the_first_answer_missed_is_named():
     nothing = replace(one_effect(), verdict=())
-    assert prefer_user_effects(nothing, {"mine": _gaps("mine", 1.2)}, ["mine"]).verdict == ("mine",)
-    assert prefer_user_effects(nothing, {"mine": _gaps("mine", 5.5)}, ["mine"]) is nothing
+    assert prefer_by_fits(nothing, {"mine": _gaps("mine", 1.2)}, ["mine"]).verdict == ("mine",)
+    assert prefer_by_fits(nothing, {"mine": _gaps("mine", 5.5)}, ["mine"]) is nothing
 
 
 def test_numbers_that_are_none_become_null():

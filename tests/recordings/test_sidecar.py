@@ -83,6 +83,20 @@ def test_null_support_is_the_fixed_clamp_and_a_missing_one_unknown():
     assert parse_sidecar('{"conditions": {}}').condition.support_stiffness is None
 
 
+@pytest.mark.parametrize(
+    ("key", "ours"),
+    [
+        ("speed_rpm", "speed_rad_s"),
+        ("interference_m", "interference_mm"),
+        ("temperature_F", "temperature_C"),
+        ("support_stiffness_Nmm_rad", "support_stiffness_Nm_rad"),
+    ],
+)
+def test_a_condition_in_another_unit_is_refused_by_name(key, ours):
+    with pytest.raises(RecordingError, match=f"'{key}', which is not read; state {ours}"):
+        parse_sidecar(json.dumps({"conditions": {key: 48.0}}))
+
+
 def test_null_is_unknown_for_the_other_conditions():
     names = ("speed_rad_s", "interference_mm", "material", "temperature_C")
     text = json.dumps({"conditions": dict.fromkeys(names)})

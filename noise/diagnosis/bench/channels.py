@@ -39,8 +39,9 @@ path could be told from."""
 _ALIKE = 0.7
 """Correlation from which a channel follows from the torque [-]."""
 
-_STEADY = 0.35
-"""Range of logarithms of a factor over the recordings, where it is a unit's [-]."""
+_STEADY = 0.3, 0.7
+"""Difference of logarithms from the middle of the recordings within which a factor that is a unit's
+lies, in what share of them [-]; clipping and impacts change from one condition to the next."""
 
 _AGAINST = 0.9
 """Correlation from which a channel is the torque's with its sign turned [-]."""
@@ -127,7 +128,7 @@ def wrong_units(levels: Sequence[Levels]) -> Iterator[str]:
             continue
         gains = scale * np.array([max(fit.gain, 1e-12) for fit in fits])
         factor, alike = float(np.median(gains)), float(np.median([abs(f.alike) for f in fits]))
-        steady = float(np.ptp(np.log(gains))) < _STEADY
+        steady = np.mean(np.abs(np.log(gains / factor)) < _STEADY[0]) >= _STEADY[1]
         unit = unit_of(kind, factor) if alike > _ALIKE and steady else ""
         follows = float(np.median([fit.explained for fit in fits])) > 0.5
         if unit or (follows and not _GAIN[0] < factor < _GAIN[1]):

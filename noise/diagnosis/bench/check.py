@@ -17,6 +17,7 @@ from noise.diagnosis.bench.channels import (
 )
 from noise.diagnosis.bench.conditions import shuffled_conditions, wrong_speed
 from noise.diagnosis.bench.levels import levels_of
+from noise.diagnosis.bench.materials import another_level, another_material
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
 if TYPE_CHECKING:
@@ -53,4 +54,8 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
     if shuffled := shuffled_conditions(case, levels):
         return (shuffled,)
     found = [*turned_channels(levels), *wrong_units(levels), wrong_speed(levels)]
-    return tuple(filter(None, found))
+    if found := [text for text in found if text]:
+        return tuple(found)
+    level = another_level(levels)
+    other = level or another_material(case, cache, library)
+    return (other,) if other else ()

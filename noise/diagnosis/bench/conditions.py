@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.bench.levels import Levels
     from noise.diagnosis.case import Case
 
-__all__ = ["shuffled_conditions", "wrong_speed"]
+__all__ = ["shuffled_conditions", "speed_words", "wrong_speed"]
 
 _SPEED = 0.2
 """Difference of logarithms of the speed that is stated and that of the angle; a speed that is read
@@ -40,23 +40,41 @@ def wrong_speed(levels: Sequence[Levels]) -> str:
     ratios = np.array([one.turned / one.speed for one in levels if one.turned is not None])
     if not ratios.size:
         return ""
-    ratio, n = float(np.median(ratios)), ratios.size
     stated = float(np.median([abs(one.speed) for one in levels if one.turned is not None]))
-    turns = f"{ratio * stated:.2g} rad/s where {stated:.2g} rad/s is stated"
+    if words := speed_words(float(np.median(ratios)), stated):
+        return words
+    far = int(np.count_nonzero(np.abs(np.log(np.abs(ratios) + 1e-12)) > 2.0 * _SPEED))
+    if not far:
+        return ""
+    return f"the angle turns at another speed than stated in {far} of {ratios.size} recordings"
+
+
+def speed_words(ratio: float, stated: float) -> str:
+    """Say what is wrong with a speed, by that of the angle; empty if nothing is.
+
+    Parameters
+    ----------
+    ratio : float
+        Speed of the angle over the one that is stated [-].
+    stated : float
+        [rad/s]
+
+    Examples
+    --------
+    >>> speed_words(57.3, 2.0), speed_words(1.03, 2.0)
+    ('channel angle looks like degrees, not rad (factor 57)', '')
+    """
     if not ratio:
         return "channel angle does not turn"
     if abs(np.log(abs(ratio))) < _SPEED:
-        if ratio < 0.0:
-            return "channel angle turns against the stated speed: the sign of either is wrong"
-        far = int(np.count_nonzero(np.abs(np.log(np.abs(ratios))) > 2.0 * _SPEED))
-        return f"the angle turns at another speed than stated in {far} of {n} recordings" * (
-            far > 0
-        )
+        turned = "channel angle turns against the stated speed: the sign of either is wrong"
+        return turned if ratio < 0.0 else ""
     if unit := unit_of("angle", ratio):
         return f"channel angle looks like {unit}, not rad (factor {max(ratio, 1 / ratio):.2g})"
     if unit := unit_of("speed", 1.0 / ratio):
         return f"the stated speed looks like {unit}, not rad/s (factor {max(ratio, 1 / ratio):.2g})"
-    if abs(ratio) < _STILL or ratio < 0.0:
+    turns = f"{ratio * stated:.2g} rad/s where {stated:.2g} rad/s is stated"
+    if ratio < _STILL:
         return f"channel angle does not turn as stated: {turns}"
     return f"the stated speed is {factor_words(1.0 / ratio)}: the angle turns at {turns}"
 

@@ -136,6 +136,7 @@ def power_quantiles(spectra, first, share, scratch, found) -> None:
     share : float
         From 0 to 1 [-].
     scratch : ndarray, shape (n_spectra,)
+        [unit^2]
     found : ndarray, shape (n_asked,), filled in
         Of as many bins [unit^2].
     """
@@ -160,6 +161,7 @@ def line_ratios(power, lines, ratios, beside) -> None:
     ratios : ndarray, shape (n_lines,), filled in
         [-], 1 where the spectrum ends before.
     beside : ndarray, shape (16,), scratch
+        [unit of the power]
     """
     for j in range(lines.size):
         k = lines[j]

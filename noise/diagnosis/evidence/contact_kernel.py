@@ -160,6 +160,7 @@ def describe_slips(torque, friction, sliding, starts, ends, near, scratch, found
     near : int
         Samples before a slip in which its peak is looked for, and after it for its trough.
     scratch : ndarray, shape (n,)
+        [Nm]
     found : ndarray, shape (4, n_slips), filled in
         Peak of the friction torque, trough of the torque [Nm], fastest sliding speed [rad/s],
         median friction torque [Nm].
@@ -218,9 +219,9 @@ def gather_rings(signals, first, last, rows, sums):
     first, last : ndarray of int, shape (n_sticks,)
         First sample of each stick, and first after it.
     rows : ndarray, shape (4, n), filled in stick after stick
-        Signals less their mean in the stick.
+        Signals less their mean in the stick [their unit].
     sums : ndarray, shape (4,), filled in
-        Of each signal over all sticks.
+        Of each signal over all sticks [their unit].
 
     Returns
     -------

@@ -94,8 +94,9 @@ def summary(
         What a missing channel would tell is missing [unit of the number].
     """
     condition, rate = known_condition(recording.condition), recording.rate
+    # Arrays of the one kind that loops are compiled for.
     signal = {
-        kind: recording.samples[row]
+        kind: np.require(recording.samples[row], np.float64, ["C", "W"])
         for kind in ("torque", *_OUTPUTS, "angle")
         if (row := recording.first(kind)) is not None
     }

@@ -40,11 +40,7 @@ def by_bench(pairs: list[tuple[Truth, Answer]]) -> dict[str, dict[str, Figure]]:
     """Figures of each kind of bench, in the order in which they appear."""
     benches = dict.fromkeys(t.bench for t, _ in pairs)
     return {
-        bench: {
-            name: f
-            for name, f in score_pairs([(t, a) for t, a in pairs if t.bench == bench]).items()
-            if name in ASKED
-        }
+        bench: score_pairs([(t, a) for t, a in pairs if t.bench == bench], names=ASKED)
         for bench in benches
     }
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..effects import CAUSES
-from ..generate import Wanted, add_gaps, each, generate_sealed
+from ..generate import Wanted, each, generate_sealed
 from .answers import same_names
 from .baselines import BASELINES
 from .by_bench import by_bench, by_bench_json, by_bench_text
@@ -73,7 +73,6 @@ def _said(truths: list[Truth], data: Path, asked: Asked) -> list[Mapping | None]
 
 
 def _scores(data: Path, answers: Path, asked: Asked, least_closed: float) -> Scores:
-    add_gaps(answers, asked.workers)
     if asked.floors:
         from .floors import add_floors
 

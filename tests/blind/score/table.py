@@ -17,7 +17,7 @@ from .probabilities import probabilities
 from .unknowns import unknowns
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from .answers import Answer
     from .truth import Truth
@@ -56,17 +56,19 @@ def score(
 def score_pairs(
     pairs: list[tuple[Truth, Answer]],
     *,
+    names: Collection[str] | None = None,
     least_closed: float = LEAST_CLOSED,
     seed: int = 0,
     draws: int = DRAWS,
 ) -> dict[str, Figure]:
-    """Return figures by name of pairs of truth and answer."""
+    """Return figures by name of pairs of truth and answer; `names` are those wanted, if not all."""
     quantities = [
         *detection(pairs), *causes(pairs), *unknowns(pairs), *probabilities(pairs),
         *closing(pairs, least_closed), *power(pairs),
     ]  # fmt: skip
     rng = np.random.default_rng(seed)
-    return {q.name: figure(q, rng, draws) for q in quantities}
+    wanted = [q for q in quantities if names is None or q.name in names]
+    return {q.name: figure(q, rng, draws) for q in wanted}
 
 
 def loss(own: Scores, others: Scores) -> dict[str, Figure]:
