@@ -126,7 +126,7 @@ BOUNDS = {
     ),
     "support_stiffness_Nm_rad": Bounds(
         "Nm/rad",
-        (100.0, 1e6),
+        (1e3, 2e5),
         (1e-3, 1e12),
         "2214 and 3745 at the rig (Table 3.2); 'fixed' is no number",
         ((1e-3, "Nmm/rad"), (180.0 / math.pi, "Nm/degree"), (1e3, "kNm/rad")),

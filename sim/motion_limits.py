@@ -79,7 +79,8 @@ def refuse_fast(
     damping += law.get("contact_damping_per_torque", 0.0) * kinetic_torque
     sliding = top_speed + _FASTEST_SLIP
     stiffness = contact * kinetic_torque + system.elastomer_stiffness
-    renewal = law.get("renewal_angle", law.get("renewal_angle_per_torque", 0.0) * kinetic_torque)
+    renewal = law.get("renewal_angle", 0.0)
+    renewal += law.get("renewal_angle_per_torque", 0.0) * kinetic_torque
     rates = [
         math.sqrt(stiffness / system.elastomer_inertia),
         damping / system.elastomer_inertia,

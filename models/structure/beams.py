@@ -26,6 +26,8 @@ Translations of the clamp, which a torque does not drive on a symmetric rig, are
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,6 +57,7 @@ __all__ = [
     "PULSE",
     "TORQUE",
     "beam_structure",
+    "on_anchors",
     "rigid_clamp_inertia",
 ]
 
@@ -94,19 +97,54 @@ def rigid_clamp_inertia(beams: Beams, support_stiffness: float, clamp_inertia: f
     >>> round(1 / rigid_clamp_inertia(steel, 2214.0, 1 / 1200))
     1688
     """
+    inertia = _clamp_inertia(beams, support_stiffness, clamp_inertia)
+    if inertia <= 0.0:
+        raise ParameterError(
+            f"beams of {beam_length(beams, support_stiffness):.3g} m, for {support_stiffness:.4g} "
+            f"Nm/rad, have more inertia than the clamp's {clamp_inertia:.4g} kg m2 that is to "
+            "include them; use a larger support stiffness or clamp inertia"
+        )
+    return inertia
+
+
+def _clamp_inertia(beams: Beams, support_stiffness: float, clamp_inertia: float) -> float:
+    """Inertia of the clamp alone, or 0 where the beams' is more than that of both [kg m2]."""
     omega2 = support_stiffness / clamp_inertia
     half = _half_structure(beams, support_stiffness)
     dynamic = 2 * (half.stiffness - omega2 * half.mass)
     condensed = dynamic[0, 0] - dynamic[0, 1:] @ np.linalg.solve(dynamic[1:, 1:], dynamic[1:, 0])
-    inertia = float(condensed / omega2)
     inner = eigh(half.stiffness[1:, 1:], half.mass[1:, 1:], eigvals_only=True)
-    if inertia <= 0 or inner[0] <= omega2:
-        raise ParameterError(
-            f"beams of {beam_length(beams, support_stiffness):.3g} m, for {support_stiffness:.4g} "
-            f"Nm/rad, have more inertia than the clamp's {clamp_inertia:.4g} kg m2 that is to "
-            f"include them; use a larger support stiffness or clamp inertia, or stiffer anchors"
-        )
-    return inertia
+    return max(float(condensed / omega2), 0.0) if inner[0] > omega2 else 0.0
+
+
+def on_anchors(beams: Beams, support_stiffness: float, clamp_inertia: float) -> Beams:
+    """Return the beams on their anchors, or on rigid ones where theirs cannot be.
+
+    Anchors that yield are heavier beams for the same k_B and first mode. Very long or very short
+    ones would then have more inertia than the lumped model has in all.
+
+    Parameters
+    ----------
+    beams : Beams
+    support_stiffness : float
+        k_B [Nm/rad].
+    clamp_inertia : float
+        J_C of the lumped model, beams included [kg m2].
+
+    Returns
+    -------
+    Beams
+
+    Examples
+    --------
+    >>> from models.rig import Beams
+    >>> steel = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.01, 0.3, anchor_rotation=250.0)
+    >>> [on_anchors(steel, k, 1 / 1200).anchor_rotation for k in (1000.0, 2214.0)]
+    [inf, 250.0]
+    """
+    if _clamp_inertia(beams, support_stiffness, clamp_inertia) > 0.0:
+        return beams
+    return replace(beams, anchor_rotation=math.inf, anchor_translation=math.inf)
 
 
 def beam_structure(
@@ -125,7 +163,8 @@ def beam_structure(
     support_stiffness : float
         k_B [Nm/rad]; it sets the beams' length by (4.11), and the clamp feels it at rest.
     clamp_inertia : float
-        J_C of the lumped model [kg m2].
+        J_C of the lumped model [kg m2]; where the beams on their anchors would have more, the
+        anchors are rigid (`on_anchors`).
     damping_ratio : float
         Of the first torsional mode [-]; the others have that of `beams`.
     highest_frequency : float
@@ -164,6 +203,7 @@ def beam_structure(
     >>> model.frequencies[:3].round().astype(int).tolist()
     [259, 1197, 3085]
     """
+    beams = on_anchors(beams, support_stiffness, clamp_inertia)
     length = beam_length(beams, support_stiffness)
     half = _half_structure(beams, support_stiffness)
     stiffness, mass = 2 * half.stiffness, 2 * half.mass

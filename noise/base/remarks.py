@@ -63,6 +63,7 @@ def use_remarks(
         remark("support_stiffness_Nm_rad", *finite),
         remark("temperature_C", *temperature),
         _support_remark(rig, support_stiffness),
+        _anchor_remark(rig, finite),
     ]
     return [text for text in dict.fromkeys(found) if text]
 
@@ -93,6 +94,20 @@ def _support_remark(rig: Rig, asked: Sequence[float]) -> str:
     return (
         f"damping is given for supports of {named}; for "
         f"{', '.join(_stiffness(k) for k in other)} Nm/rad {how}"
+    )
+
+
+def _anchor_remark(rig: Rig, asked: Sequence[float]) -> str:
+    if math.isinf(rig.beams.anchor_rotation) and math.isinf(rig.beams.anchor_translation):
+        return ""
+    from models.structure.beams import on_anchors
+
+    rigid = [k for k in asked if on_anchors(rig.beams, k, rig.clamp_inertia) is not rig.beams]
+    if not rigid:
+        return ""
+    return (
+        f"on anchors that yield, beams for {', '.join(_stiffness(k) for k in rigid)} Nm/rad would "
+        "have more inertia than the clamp has in all; their anchors are taken as rigid"
     )
 
 

@@ -38,9 +38,9 @@ def configure(parser: ArgumentParser) -> None:
         "--plots",
         type=Path,
         metavar="FOLDER",
-        help="folder for Figures 5.3, 5.14 to 5.18 and 6.1 to 6.10 as simulated here, "
-        "figure-5.3.png and so on, and torque and frequency against speed for each fit, "
-        "speeds-0.279mm.png and so on; their names are printed",
+        help="folder for the figures that show data, as computed here, figure-5.3.png and so on "
+        "(3.3, 5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, B1, C1, G3, H1), and torque and frequency "
+        "against speed for each fit, speeds-0.279mm.png and so on; their names are printed",
     )
     opt.add_seed(parser, "accepted as by every command; nothing here is random")
 
@@ -82,9 +82,9 @@ def _write_table(out: Path | None) -> None:
 def _draw(folder: Path) -> None:
     say("preparing")
     from noise.pictures.files import write_picture
-    from noise.pictures.thesis import N_PICTURES, thesis_pictures
+    from noise.pictures.thesis import FIGURES, thesis_pictures
 
-    for name, figure in track(thesis_pictures(), "drawing", total=N_PICTURES, unit="picture"):
+    for name, figure in track(thesis_pictures(), "drawing", total=len(FIGURES), unit="picture"):
         path = folder / f"{name}.png"
         write_picture(path, figure)
         print(path)

@@ -33,6 +33,9 @@ MOST = 3.0
 _LINE_SHARE = 10.0 ** (-18.0 / 20.0)
 """Amplitude of a line that counts, over the strongest: `noise.noise_definition`."""
 
+_RISES = 3.0 / 7.0
+"""Half the spread of the slip rate's rises over their middle, "10 to 25 Hz" for a step (5.2.1)."""
+
 _SLIP_BAND, _MIDDLE_BAND, _ELASTOMER_BAND = (120.0, 420.0), (420.0, 760.0), (850.0, 1150.0)
 
 
@@ -122,6 +125,18 @@ def _torque_spread(_rig: Rig, _number: TableNumber, runs: Sequence[SettledRun]) 
     return max(means) / min(means)
 
 
+def _slip_rate_rise(_rig: Rig, number: TableNumber, runs: Sequence[SettledRun]) -> float:
+    rise = runs[-1].slips.rate - runs[0].slips.rate
+    return rise / (number.speeds[-1] - number.speeds[0])
+
+
+def _rise_misfit(found: float, measured: float) -> float:
+    """Nil where a rise is within the spread of those that were measured."""
+    if math.isnan(found):
+        return MOST
+    return min(MOST, max(0.0, abs(found / measured - 1.0) / _RISES - 1.0))
+
+
 def _squawk(run: SettledRun) -> float:
     """How far a run is from slips that ring at the first torsional mode."""
     return (
@@ -165,6 +180,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "mean_torque_spread": Quantity(
         "1", _torque_spread, lambda found, most: max(0.0, found - most), at_a_speed=False
     ),
+    "slip_rate_rise": Quantity("Hz s/rad", _slip_rate_rise, _rise_misfit, at_a_speed=False),
     "squawk": _noise(_squawk),
     "squeal": _noise(_squeal),
     "none": _noise(_silence),

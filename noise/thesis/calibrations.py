@@ -17,20 +17,29 @@ from noise.thesis.row import Row, number
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-__all__ = ["potentiometer", "torque_cell", "transducers"]
+__all__ = [
+    "POTENTIOMETER", "POTENTIOMETER_ANGLES", "TORQUE_CELL", "TORQUE_CELL_TORQUES",
+    "potentiometer", "regression", "torque_cell", "transducers",
+]  # fmt: skip
 
-_POTENTIOMETER = (0.0020, 0.0511, 0.0777, 0.1035, 0.1581, 0.2140, 0.2410, 0.3161)
+POTENTIOMETER = (0.0020, 0.0511, 0.0777, 0.1035, 0.1581, 0.2140, 0.2410, 0.3161)
 """Voltages of Table B1 [V]."""
 
 _ANGLES_PRINTED = (1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 5 / 6, 1.0)
 _ANGLES_MEANT = (0.0, 1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1.0)
 """Over pi."""
 
-_TORQUE_CELL = (
+POTENTIOMETER_ANGLES = tuple(math.pi * angle for angle in _ANGLES_MEANT)
+"""At which the voltages of Table B1 were read [rad], as they are meant."""
+
+TORQUE_CELL = (
     -483.0, -426.0, -361.0, -302.0, -240.0, -183.0, -120.0, -63.0, 0.0,
     63.0, 121.0, 184.0, 243.0, 306.0, 365.0, 428.0, 488.0,
 )  # fmt: skip
-"""Voltages of Table C1 [mV], at -40 to 40 Nm in steps of 5 Nm."""
+"""Voltages of Table C1 [mV]."""
+
+TORQUE_CELL_TORQUES = tuple(5.0 * step for step in range(-8, 9))
+"""At which they were read [Nm]."""
 
 _GRAVITY = 9.80665
 _INCH = 0.0254
@@ -45,8 +54,14 @@ _ACCELEROMETER = 12.55e-3
 """Sensitivity (Figure D1) [V/g]."""
 
 
-def _regression(x: Sequence[float], y: Sequence[float]) -> tuple[float, float, float]:
-    """Offset, slope and correlation coefficient, (B1) and (B2)."""
+def regression(x: Sequence[float], y: Sequence[float]) -> tuple[float, float, float]:
+    """Fit a line: offset, slope and correlation coefficient, (B1) and (B2).
+
+    Examples
+    --------
+    >>> [round(number, 3) for number in regression([0.0, 1.0, 2.0], [1.0, 3.0, 5.0])]
+    [1.0, 2.0, 1.0]
+    """
     slope, offset = np.polyfit(x, y, 1)
     return float(offset), float(slope), float(np.corrcoef(x, y)[0, 1])
 
@@ -54,7 +69,7 @@ def _regression(x: Sequence[float], y: Sequence[float]) -> tuple[float, float, f
 def potentiometer() -> list[Row]:
     """Appendix B."""
     printed, meant = (
-        _regression([math.pi * angle for angle in angles], _POTENTIOMETER)
+        regression([math.pi * angle for angle in angles], POTENTIOMETER)
         for angles in (_ANGLES_PRINTED, _ANGLES_MEANT)
     )
     return [
@@ -76,14 +91,14 @@ def potentiometer() -> list[Row]:
 
 def torque_cell() -> Iterator[Row]:
     """Appendix C."""
-    torque = 5.0 * np.arange(-8, 9)
+    torque = np.array(TORQUE_CELL_TORQUES)
     up, down = torque >= 0.0, torque <= 0.0
-    voltage = np.array(_TORQUE_CELL)
+    voltage = np.array(TORQUE_CELL)
     for name, side, equation, offset in (
         ("positive", up, "(C3)", "0.4222"),
         ("negative", down, "(C5)", "0.0000"),
     ):
-        fitted = _regression(torque[side].tolist(), voltage[side].tolist())
+        fitted = regression(torque[side].tolist(), voltage[side].tolist())
         where = f"{equation}, {name} torque, Table C1"
         yield Row(
             "torque_cell_offset", where, "mV", number(float(offset), offset),
@@ -96,7 +111,7 @@ def torque_cell() -> Iterator[Row]:
             "torque_cell_correlation", where, "1", number(0.9999),
             exact=fitted[2], tolerance=1e-4, digits=5,
         )  # fmt: skip
-    slope = _regression(torque[up].tolist(), voltage[up].tolist())[1]
+    slope = regression(torque[up].tolist(), voltage[up].tolist())[1]
     yield Row("torque_cell_gain", "Appendix C", "Nm/V", number(82.0), exact=1e3 / slope)
 
 

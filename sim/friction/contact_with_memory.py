@@ -2,7 +2,7 @@ r"""Elastic contact that remembers how long it has touched.
 
 .. math::
     \dot z &= v - K |v| z / g(\varphi, v), \qquad T = K z + \sigma \dot z \\
-    \dot\varphi &= 1 - |v| \varphi / D \\
+    \dot\varphi &= 1 - |v| \varphi / D, \qquad D = D_0 + D_1 T_{kin} \\
     g &= T_{kin} + (T_{crit} - T_{kin}) \frac{\varphi}{\varphi + \tau}
          + \beta T_{kin} e^{-(|v| / v_w)^n}
 
@@ -12,10 +12,12 @@ its torque falls with sliding speed; without the last, nothing sustains itself. 
 contact of Canudas de Wit et al. (1995), the rate-and-state laws of Dieterich and Ruina (1983),
 whose ageing here saturates, and the falling torque of Bo and Pavelescu (1982) with exponents n up
 to 2, where it falls steepest at 0.7 of v_w. Stiffness and damping of the contact go with the real
-area of contact, hence with T_kin.
+area of contact, hence with T_kin; so may the way D in which it is renewed, as spots of contact grow
+and join under load.
 
-Limits: steady sliding at speed v gives T = g(D/|v|, v); tau -> infinity and beta = 0 give a
-constant T_kin; at rest for long, T may rise to T_crit and the share beta of T_kin.
+Limits: steady sliding at speed v gives T = g(D/|v|, v), and with D_0 = 0 torques that are larger
+age as if they slid more slowly; tau -> infinity and beta = 0 give a constant T_kin; at rest for
+long, T may rise to T_crit and the share beta of T_kin.
 """
 
 from __future__ import annotations
@@ -34,13 +36,16 @@ __all__ = ["LAW"]
 _LONG_REST = 1.0
 """Age of the contact at the start [s]."""
 
+_LEAST_RENEWAL = 1e-6
+"""Of D [rad], whatever its parts."""
+
 _PARAMETERS = {
     **BRISTLE_PARAMETERS,
     "contact_stiffness_per_torque": Parameter(
         1700.0, "1/rad", 1.0, 5e3, "K / T_kin: shear stiffness of the contact"
     ),
     "renewal_angle": Parameter(
-        4e-4, "rad", 2e-5, 1.0, "D: sliding distance over which the contact is renewed"
+        4e-4, "rad", 0.0, 1.0, "D_0: sliding distance over which the contact is renewed"
     ),
     "ageing_time": Parameter(4e-4, "s", 1e-7, 1e3, "tau: time in which strength is regained"),
     "weakening_share": Parameter(
@@ -48,6 +53,9 @@ _PARAMETERS = {
     ),
     "weakening_speed": Parameter(20.0, "rad/s", 1e-3, 1e4, "v_w: speed over which it fades"),
     "weakening_exponent": Parameter(1.0, "", 1.0, 4.0, "n: 1 falls at once, 2 as a Gaussian"),
+    "renewal_angle_per_torque": Parameter(
+        0.0, "rad/Nm", 0.0, 1e-2, "D_1: how much longer it is for each Nm of T_kin"
+    ),
 }
 
 
@@ -69,7 +77,7 @@ def _torque(v, c, contact, state, state_rates):
         + c[4] * kinetic * math.exp(-power)
     )
     state_rates[0] = v - stiffness * speed * z / strength
-    state_rates[1] = 1.0 - speed * age / c[2]
+    state_rates[1] = 1.0 - speed * age / max(c[2] + c[7] * kinetic, _LEAST_RENEWAL)
     return stiffness * z + damping * state_rates[0]
 
 

@@ -5,7 +5,8 @@ with six laws of friction and scores what ``bushing-noise identify`` finds of th
 tells how often ``bushing-noise diagnose`` finds no gap any more against the rig that it improved.
 
 ``score`` takes a folder that ``generate`` has written, or ``--sealed``, which makes the sealed set,
-scores it, and writes both to the log in the repository.
+scores it, and writes both to the log in the repository. Without ``--bench`` all kinds of bench are
+made, of each as many cases as ``--cases`` says, or else one block.
 """
 
 from __future__ import annotations
@@ -14,10 +15,15 @@ import argparse
 import sys
 from pathlib import Path
 
+from .benches import KINDS
+from .design import BLOCKS
 from .generate import Wanted, generate
 from .score.baselines import BASELINES
 from .score.diagnosing import DIAGNOSE
 from .score.run import Asked, score_folder, score_sealed
+
+SEALED_SEEDS = 1000
+"""From which on seeds are of the sealed set, which was opened once before, with seed 1."""
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -29,10 +35,11 @@ def main(arguments: list[str] | None = None) -> None:
     if given.command == "improve":
         _improve(given)
         return
-    wanted = Wanted(given.seed, given.cases, "quotas" if given.balanced else "shares")
+    wanted = _wanted(given)
     if given.command == "generate":
         seconds = generate(given.out, wanted, given.workers)
-        sys.stderr.write(f"{given.cases} cases in {seconds:.0f} s\n")
+        made = wanted.cases * len(wanted.benches)
+        sys.stderr.write(f"{made} cases in {seconds:.0f} s\n")
         return
     asked = Asked(
         given.diagnose, given.baseline, given.quick, given.workers, given.equivalent, given.own,
@@ -44,6 +51,16 @@ def main(arguments: list[str] | None = None) -> None:
         score_sealed(wanted, asked, given.out)
     else:
         score_folder(given.folder, asked, given.out)
+
+
+def _wanted(given: argparse.Namespace) -> Wanted:
+    sealed = given.command == "score" and given.sealed
+    block = given.block or ("sealed kind" if sealed else "kind")
+    seed = given.seed if given.seed is not None else SEALED_SEEDS + 1 if sealed else 1
+    if (seed >= SEALED_SEEDS) != sealed:
+        raise SystemExit(f"--seed {seed}: seeds from {SEALED_SEEDS} on are of the sealed set alone")
+    cases = given.cases or len(BLOCKS[block])
+    return Wanted(seed, cases, block, tuple(given.bench or KINDS))
 
 
 def _identify(given: argparse.Namespace) -> None:
@@ -87,13 +104,13 @@ def _parser() -> argparse.ArgumentParser:
     improving.add_argument("--out", type=Path, metavar="FILE.json")
     for one in (making, scoring):
         one.add_argument("--out", type=Path, required=True)
-        one.add_argument("--seed", type=int, default=1)
-        one.add_argument("--cases", type=int, default=600)
+        one.add_argument("--seed", type=int)
+        one.add_argument("--bench", action="append", choices=list(KINDS), help="repeatable")
+        one.add_argument("--cases", type=int, help="of each kind of bench; one block by default")
         one.add_argument("--workers", type=int, default=2)
         one.add_argument(
-            "--balanced", action="store_true",
-            help="quotas rather than shares: 1500 cases hold 300 nulls, 40 of each cause and "
-            "100 strangers, for which shares take 2100",
+            "--block", choices=list(BLOCKS),
+            help="how many of each class; by default those of a development draw of a kind",
         )  # fmt: skip
     scoring.add_argument("folder", type=Path, nargs="?", help="what generate has written")
     scoring.add_argument("--sealed", action="store_true", help="open the sealed set; logged")

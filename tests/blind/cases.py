@@ -14,9 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import resample_poly
 
-from .design import Design, draw_design, stream
+from .benches import CHANNELS, KINDS, NOISE
+from .design import Design, design_of
 from .files import rig_text, support_name, write_npz, write_wav
+from .laws import LAWS, contact_of
 from .rig import plain, turn
+from .starts import SETTLING, STARTS
 from .structure import Structure, draw_structure
 
 if TYPE_CHECKING:
@@ -31,9 +34,6 @@ __all__ = [
     "structures_of", "without_effects", "write_case",
 ]  # fmt: skip
 
-CHANNELS = {"torque": "N m", "acceleration": "m/s^2", "pressure": "Pa", "angle": "rad"}
-NOISE = {"torque": 0.005, "acceleration": 0.03, "pressure": 1.0e-3, "angle": 1e-4}
-_SETTLING = 0.35
 _LEAST_RATE = 75e3
 
 
@@ -50,26 +50,31 @@ class Case:
 def structures_of(design: Design) -> dict[float, Structure]:
     """Draw the structure of each support of a case."""
     supports = sorted({c.support for c in design.conditions})
-    return {
-        kb: draw_structure(stream(design.seed, design.kept_for, design.index, 6, i), kb)
-        for i, kb in enumerate(supports)
-    }
+    return {kb: draw_structure(design.stream(6, i), kb) for i, kb in enumerate(supports)}
 
 
 def _record(design: Design, k: int, structure: Structure, off: frozenset[str], again: int = 0):
     """Make recording `k`, or a repeat of it; effects named in `off` are left out."""
-    where, condition = (design.seed, design.kept_for, design.index), design.conditions[k]
+    condition, bench = design.conditions[k], design.bench
     k += again * len(design.conditions)
-    chance = stream(*where, 7, k)
+    chance = design.stream(7, k)
     decimation = int(np.ceil(_LEAST_RATE / design.rate))
     rate = design.rate * decimation * (1.0 + design.rate_error)
     n = round(design.seconds * design.rate) * decimation
-    speed = condition.speed * np.exp(0.004 * chance.standard_normal())
-    setup = plain(design.true(condition, k), speed,
-                  rate=rate, seconds=n / rate, settling=_SETTLING)  # fmt: skip
+    speed = condition.speed * np.exp(0.004 * chance.standard_normal()) * bench.speed_factor
+    starting = design.stream(12, k)
+    start = str(starting.choice(KINDS[bench.kind].starts))
+    setup = plain(design.true(condition, k), speed, rate=rate, seconds=n / rate,
+                  settling=0.0 if start == "rest" else SETTLING)  # fmt: skip
+    since = np.maximum(setup.time - setup.settle / rate, 0.0)
+    setup.omega *= STARTS[start](starting, design.seconds)(since)
+    setup.law = LAWS[bench.law.name].code
+    setup.contact = contact_of(bench.law.values)
+    for i, listed in enumerate(bench.listed):
+        listed.apply(setup, design.stream(13, i, k))
     for j, (form, strength) in enumerate(design.forms):
         if form.effect not in off:
-            form.apply(setup, strength, stream(*where, 8, j), stream(*where, 9, j, k))
+            form.apply(setup, strength, design.stream(8, j), design.stream(9, j, k))
     turned = turn(setup)
     signals = structure.respond(turned)
     for change in setup.structure + setup.radiation:
@@ -80,8 +85,15 @@ def _record(design: Design, k: int, structure: Structure, off: frozenset[str], a
     for change in setup.sensors:
         change(signals, turned)
     return np.stack([
-        sampled(signals[name], decimation, NOISE[name], name, chance) for name in CHANNELS
+        _stepped(sampled(signals[name], decimation, bench.noise[name], name, chance),
+                 bench.step_of(name))
+        for name in CHANNELS
     ])  # fmt: skip
+
+
+def _stepped(samples, step):
+    """Samples in steps of a converter, whose range is never left."""
+    return samples if step == 0.0 else (step * np.round(samples / step)).astype(np.float32)
 
 
 def sampled(x, decimation, level, name, rng):
@@ -119,10 +131,10 @@ def run_case(
 def responses_of(design: Design, structures: dict[float, Structure], again: int = 0):
     """Measure the structures of a case; `again` numbers further measurements of the same."""
     first = {c.support: c for c in reversed(design.conditions)}
-    where = (design.seed, design.kept_for, design.index, 10)
+    poor = design.bench.responses == "poor"
     return {
         kb: structures[kb].measured(
-            design.nominal(first[kb]), stream(*where, i + len(structures) * again)
+            design.nominal(first[kb]), design.stream(10, i + len(structures) * again), poor=poor
         )
         for i, kb in enumerate(sorted(structures))
     }
@@ -138,6 +150,7 @@ def answer_of(design: Design) -> dict:
         "index": design.index,
         "set": design.kept_for,
         "block": design.block,
+        "bench": design.bench.kind,
         "class": design.kind,
         "verdict": verdict,
         "effects": [
@@ -161,7 +174,7 @@ def _repeats(design: Design) -> list[list[str]]:
 
 def without_effects(answer: dict, names: frozenset[str] | None = None) -> Case:
     """Make a case again with effects off (all, or those named): the truth's own closed gap."""
-    design = draw_design(answer["seed"], answer["index"], answer["set"], answer["block"])
+    design = design_of(answer)
     return run_case(design, names or frozenset(form.effect for form, _ in design.forms))
 
 
@@ -170,13 +183,15 @@ def write_case(case: Case, data: Path, answers: Path | None) -> None:
     data.mkdir(parents=True)
     design = case.design
     data.joinpath("rig.toml").write_text(rig_text(design), encoding="utf-8")
-    for kb, pair in case.responses.items():
+    channels = design.bench.channels
+    for kb, pair in case.responses.items() if "acceleration" in channels else ():
         for name, content in zip(("acceleration", "pressure"), pair, strict=True):
             write_npz(data / f"torque_to_{name}_{support_name(kb)}.npz", content)
     for k, (condition, samples) in enumerate(zip(design.conditions, case.recordings, strict=True)):
-        write_wav(data / f"run{k + 1:02d}.wav", samples, design.rate)
+        rows = [list(CHANNELS).index(name) for name in channels]
+        write_wav(data / f"run{k + 1:02d}.wav", samples[rows], design.rate)
         sidecar = {
-            "channels": [{"name": name, "unit": unit} for name, unit in CHANNELS.items()],
+            "channels": [{"name": name, "unit": CHANNELS[name]} for name in channels],
             "conditions": {
                 "speed_rad_s": condition.speed,
                 "interference_mm": condition.interference_mm,

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .benches import NOISE
+from .laws import LAWS
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -43,8 +46,8 @@ def rig_text(design: Design) -> str:
         'material = "fluorocarbon"',
         f"elastomer_inertia_kgm2 = {design.inertias[0]:.6g}",
         f"clamp_inertia_kgm2 = {design.inertias[1]:.6g}",
-        "effects = []",
-        'friction = { law = "coulomb" }',
+        f"effects = [{', '.join(chr(34) + one.text + chr(34) for one in design.bench.listed)}]",
+        f"friction = {{ {_friction(design)} }}",
     ]
     by_support = {support_name(kb): c for kb, c in design.damping.items()}
     damping = ", ".join(f'"{name}" = {c:.5g}' for name, c in by_support.items())
@@ -54,7 +57,8 @@ def rig_text(design: Design) -> str:
             f"elastomer_stiffness_Nm_rad = {stiffness:.6g}", f"critical_torque_Nm = {critical:.6g}",
             f"kinetic_torque_Nm = {kinetic:.6g}", f"damping_Nms_rad = {{ {damping} }}",
         ]  # fmt: skip
-    for support in sorted({c.support for c in design.conditions}):
+    measured = sorted({c.support for c in design.conditions})
+    for support in measured if design.bench.responses != "none" else ():
         name = support_name(support)
         lines += [
             "", "[[measured_response]]",
@@ -62,4 +66,25 @@ def rig_text(design: Design) -> str:
             f'torque_to_acceleration = "torque_to_acceleration_{name}.npz"',
             f'torque_to_pressure = "torque_to_pressure_{name}.npz"',
         ]  # fmt: skip
+    if design.bench.stated:
+        lines += ["", "[sensors]", *_sensors(design)]
     return "\n".join(lines) + "\n"
+
+
+def _friction(design: Design) -> str:
+    """Law and numbers of the friction, as a rig file's table has them."""
+    stated = LAWS[design.bench.law.name]
+    numbers = [f"{stated.keys[key]} = {x:g}" for key, x in design.bench.law.values.items()]
+    return ", ".join([f'law = "{stated.named}"', *numbers])
+
+
+def _sensors(design: Design) -> list[str]:
+    """Noise and converter of the sensors, as their maker states them."""
+    bench = design.bench
+    noise = ", ".join(f"{name} = {bench.noise[name]:.3g}" for name in NOISE)
+    lines = [f"noise = {{ {noise} }}"]
+    if bench.bits:
+        ranges = ", ".join(f"{name} = {bench.range_of(name):g}" for name in NOISE)
+        bits = ", ".join(f"{name} = {bits}" for name, bits in bench.bits.items())
+        lines += [f"range = {{ {ranges} }}", f"bits = {{ {bits} }}"]
+    return lines

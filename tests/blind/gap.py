@@ -10,13 +10,19 @@ A band counts for six floors at most, so that none decides alone.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from .cases import run_case
-from .design import Design, draw_design
+from .benches import CHANNELS
+from .cases import Case, run_case
 
-__all__ = ["gap_between", "gaps_of", "repeats_of", "summary"]
+if TYPE_CHECKING:
+    from .design import Design
+
+__all__ = ["gap_between", "gaps_of", "null_gap", "repeats_of", "summary"]
 
 _LOWEST, _HIGHEST_SHARE, _PER_OCTAVE = 40.0, 0.42, 6
 _LEAST_LEVEL, _LEAST_PHASE = 0.5, 0.05
@@ -63,41 +69,63 @@ def _apart(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 def gap_between(
     with_it: list[np.ndarray],
     without: list[np.ndarray],
-    repeats: list[tuple[int, int]],
+    repeats: list[tuple[np.ndarray, np.ndarray]],
     rate: float,
+    channels: tuple[str, ...] = tuple(CHANNELS),
 ) -> float:
-    """Gap of recordings from the same without; `repeats` are places of two of one condition."""
+    """Gap of recordings from the same without; `repeats` are pairs of one condition, without."""
     plain = [summary(x, rate) for x in without]
     away = [_apart(summary(x, rate), y) for x, y in zip(with_it, plain, strict=True)]
-    spread = np.mean([_apart(plain[i], plain[j]) ** 2 for i, j in repeats], axis=0)
+    spread = np.mean([_apart(summary(x, rate), summary(y, rate)) ** 2 for x, y in repeats], axis=0)
     smooth = uniform_filter1d(spread, _SMOOTHED, axis=1, mode="nearest")
     floor = np.sqrt(np.maximum(smooth, 0.0))
     least = np.repeat([_LEAST_LEVEL, _LEAST_PHASE], [6, 3])[:, None]
     z = np.minimum(np.abs(away) / np.maximum(floor, least), _LARGEST)
-    gap = float(np.sqrt(1.0 + np.mean(z**2, axis=(0, 2)).max()))
+    of_channel = [name in channels for name in ("torque", "acceleration", "pressure")]
+    seen = of_channel + [of_channel[a] and of_channel[b] for a, b in _WAYS]
+    gap = float(np.sqrt(1.0 + np.mean(z**2, axis=(0, 2))[seen + seen[3:]].max()))
     if not np.isfinite(gap):
         raise RuntimeError("the gap is not finite")
     return gap
 
 
-def repeats_of(design: Design) -> list[tuple[int, int]]:
-    """Places of recordings that are of one condition."""
+def repeats_of(design: Design, without: tuple) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Pairs of recordings of one condition; where the case repeats none, its first two are."""
     c = design.conditions
-    return [(i, j) for i in range(len(c)) for j in range(i) if c[i] == c[j]]
+    found = [(without[i], without[j]) for i in range(len(c)) for j in range(i) if c[i] == c[j]]
+    if found:
+        return found
+    few = replace(design, conditions=c[:2], offsets={}, forms=())
+    return list(zip(run_case(few).recordings, run_case(few, again=3).recordings, strict=True))
 
 
-def gaps_of(answer: dict) -> dict:
+def gaps_of(case: Case) -> dict:
     """Gap of a case and, of several effects, of each by itself; as the answer's further keys."""
-    design = draw_design(answer["seed"], answer["index"], answer["set"], answer["block"])
+    design = case.design
     names = [form.effect for form, _ in design.forms]
     if design.kind == "none":
         return {"gap": 1.0, "gap_alone": {}}
-    repeats, rate = repeats_of(design), design.rate
     plain = run_case(design, frozenset(names), plain=True).recordings
-    whole = gap_between(run_case(design).recordings, plain, repeats, rate)
-    alone = {}
-    if len(names) > 1:
-        for name in names:
-            only = run_case(design, frozenset(names) - {name}).recordings
-            alone[name] = gap_between(only, plain, repeats, rate)
-    return {"gap": whole, "gap_alone": alone}
+    repeats = repeats_of(design, plain)
+
+    def gap(of: Case) -> float:
+        return gap_between(of.recordings, plain, repeats, design.rate, design.bench.channels)
+
+    alone = {
+        name: gap(run_case(design, frozenset(names) - {name})) for name in names if len(names) > 1
+    }
+    return {"gap": gap(case), "gap_alone": alone}
+
+
+def null_gap(design: Design) -> float:
+    """Gap of a bench on which nothing is the matter from the one that its user describes.
+
+    Both are of other chance, so that it is about that of two repeats; what sidecars say wrongly is
+    right in the second.
+    """
+    null = replace(design, kind="none", offsets={}, forms=())
+    right = replace(null, bench=replace(design.bench, speed_factor=1.0, warmer=0.0))
+    recordings = run_case(null).recordings
+    repeats = repeats_of(null, recordings)
+    described = run_case(right, again=1).recordings
+    return gap_between(recordings, described, repeats, design.rate, design.bench.channels)

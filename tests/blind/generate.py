@@ -6,11 +6,10 @@ is written before the first case is made.
 
 from __future__ import annotations
 
-import json
 import time
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
@@ -24,16 +23,20 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-__all__ = ["Wanted", "add_gaps", "each", "generate", "generate_sealed"]
+__all__ = ["Wanted", "each", "generate", "generate_sealed"]
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """Which cases to make: the first `cases` of a seed; `block` as in `design.BLOCKS`."""
+    """Which cases to make: of each kind of bench the first `cases` of a seed.
+
+    `block` is as in `design.BLOCKS`, `benches` names kinds as `benches.KINDS` does.
+    """
 
     seed: int
     cases: int
     block: str = "shares"
+    benches: tuple[str, ...] = ("quiet",)
 
 
 @contextmanager
@@ -46,10 +49,11 @@ def each(workers: int) -> Iterator[Callable]:
         yield pool.map
 
 
-def _one(job: tuple[Path, Path, int, int, str, str]) -> None:
-    data, answers, seed, index, kept_for, block = job
-    name = f"case-{index + 1:04d}"
-    case = run_case(draw_design(seed, index, kept_for, block))
+def _one(job: tuple[Path, Path, int, int, str, str, str]) -> None:
+    data, answers, seed, index, kept_for, block, bench = job
+    name = f"case-{index + 1:04d}" if bench == "quiet" else f"{bench}-{index + 1:04d}"
+    case = run_case(draw_design(seed, index, kept_for, block, bench))
+    case = replace(case, answer=case.answer | gaps_of(case))
     write_case(case, data / name, answers / f"{name}.json")
 
 
@@ -58,8 +62,10 @@ def _make(data: Path, answers: Path, wanted: Wanted, kept_for: str, workers: int
         raise SystemExit(f"{data} is there already; name another folder")
     begun = time.perf_counter()
     jobs = [
-        (data, answers, wanted.seed, i, kept_for, wanted.block) for i in range(wanted.cases)
-    ]  # fmt: skip
+        (data, answers, wanted.seed, i, kept_for, wanted.block, bench)
+        for bench in wanted.benches
+        for i in range(wanted.cases)
+    ]
     with each(workers) as mapped:
         list(mapped(_one, jobs))
     return time.perf_counter() - begun
@@ -75,19 +81,8 @@ def generate_sealed(
 ) -> str:
     """Log that the sealed set is opened, then write its cases; return the opening's name."""
     opened = log_opening(
-        log, seed=wanted.seed, cases=wanted.cases, block=wanted.block, about=about
+        log, seed=wanted.seed, cases=wanted.cases, block=wanted.block, benches=wanted.benches,
+        about=about,
     )  # fmt: skip
     _make(data, answers, wanted, SEALED, workers)
     return opened
-
-
-def _gap(path: Path) -> None:
-    answer = json.loads(path.read_text(encoding="utf-8"))
-    if "gap" not in answer:
-        path.write_text(json.dumps(answer | gaps_of(answer), indent=1) + "\n", encoding="utf-8")
-
-
-def add_gaps(answers: Path, workers: int) -> None:
-    """Add to each answer how far the case is from nothing being the matter, where it lacks it."""
-    with each(workers) as mapped:
-        list(mapped(_gap, sorted(answers.glob("case-*.json"))))

@@ -3,7 +3,8 @@
 Velocity Verlet at 300 to 400 kHz, so that the fastest mode turns by 0.02 rad in a step; the instant
 at which stick or slip ends is found by a straight line through the step, which is then taken in
 two pieces. Everything that an effect may change is a table, a modulation over time or a scalar
-that is neutral in the plain rig, so one loop serves all.
+that is neutral in the plain rig, and laws of friction that creep are numbers of a contact, so one
+loop serves all.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ import math
 
 import numpy as np
 from numba import njit
+
+from .contact import REST, START, TRUE_STICK, drag_of
 
 # Scalars of a run
 (J_E, J_C, K_E, K_B, C_E, C_B, T_CRIT, T_KIN) = range(8)
@@ -87,11 +90,12 @@ def _shaft_torque(lag, rate, p):
 
 
 @njit(cache=True, error_model="numpy")
-def _step(y, h, way, t_kin, ratio_base, drive, k_now, p, z, tables, m):
+def _step(y, h, way, t_kin, ratio_base, drive, k_now, p, z, tables, m, creeping, drop):
     """Advance the state by `h`; return the friction torque, the elastomer's, and the sliding.
 
     y: x1, v1, a1, x2, v2, a2, end of the shaft x, v, a, absorber x, v, a. drive: shaft's angle,
-    speed, acceleration at the end of the step. way: of the sliding, 0 in stick.
+    speed, acceleration at the end of the step. way: of the sliding, 0 in stick. creeping: law,
+    numbers and state of a contact that never sticks truly; drop: what it may bear beyond t_kin.
     """
     weakening, creep, branches, friction, softening = tables
     fixed = p[K_B] < 0.0
@@ -134,6 +138,9 @@ def _step(y, h, way, t_kin, ratio_base, drive, k_now, p, z, tables, m):
     else:
         sliding = abs(vs - v1)
         drag = way * t_kin * _look_up(weakening, sliding / LARGEST_SLIDING)
+        law, c, b = creeping
+        if law != TRUE_STICK:
+            drag = drag_of(law, c, t_kin, drag, drop, vs - v1, h, b)
         a1 = (drag - torque) / p[J_E]
         v1 = half1 + 0.5 * h * a1
         if compliant:
@@ -180,12 +187,13 @@ def _age(t):
 def integrate(
     steps, h, p, start, omega, torque_gain, film_noise, stiffness_gain,
     weakening, ageing, scatter, creep, angle_gain, film, heat, softening_by_heat,
-    branches, friction, softening, result, slips,
+    branches, friction, softening, law, contact, result, slips,
 ):  # fmt: skip
     """Integrate result.shape[0] samples of `steps` steps of `h` each; return the number of slips.
 
     omega and the three modulations: at the samples and one beyond. slips: rows of time and drop.
-    heat: rows of resistance and time constant. Filled in place: result, slips.
+    heat: rows of resistance and time constant. A contact that creeps slips where it slides at twice
+    the shaft's speed, and rests where it is slower than the shaft. Filled in place: result, slips.
     """
     n = result.shape[0]
     y, old, drive = start.copy(), start.copy(), np.zeros(3)
@@ -195,6 +203,9 @@ def integrate(
     tables = (weakening, creep, branches, friction, softening)
     way, stick_time, slid, drag, torque = np.sign(y[7] - y[1]), 0.0, 0.0, 0.0, 0.0
     angle, sticks, n_slips = y[6], 0, 0
+    creeping, loose = (law, contact, np.array(START)), False
+    if law != TRUE_STICK:
+        way = 1.0
     before = 0.0  # the holding torque, or the sliding speed, a step ago
     for i in range(n):
         slope = (omega[i + 1] - omega[i]) / (steps * h)
@@ -218,19 +229,29 @@ def integrate(
             left = h
             drive[0] = angle + left * (speed + 0.5 * slope * left)
             drive[1], drive[2] = speed + slope * left, slope
-            crit = t_kin + drop * scatter[sticks % scatter.size] * _look_up(
-                ageing, _age(stick_time)
-            )
+            rested = stick_time if law == TRUE_STICK else creeping[2][REST]
+            crit = t_kin + drop * scatter[sticks % scatter.size] * _look_up(ageing, _age(rested))
             crit = max(crit, LEAST_TORQUE)
             ratio = min(max(torque / crit, 0.0), 1.0)
-            drag, torque, sliding = _step(y, left, way, t_kin, ratio, drive, k_now, p, z, tables, m)
+            drag, torque, sliding = _step(
+                y, left, way, t_kin, ratio, drive, k_now, p, z, tables, m, creeping, crit - t_kin
+            )
             now = drag if way == 0.0 else way * sliding
             allowed = 0.0
             if way != 0.0 and drive[1] > 0.0:
                 allowed = way * y[7] * _look_up(creep, min(max(torque / crit, 0.0), 1.0))
                 now -= allowed
             breaks = way == 0.0 and abs(now) > crit
-            stops = way != 0.0 and now < 0.0
+            stops = way != 0.0 and now < 0.0 and law == TRUE_STICK
+            if law != TRUE_STICK and not loose and sliding > 2.0 * y[7]:
+                loose = True
+                if n_slips < slips.shape[0]:
+                    slips[n_slips, 0] = (i * steps + j + 1) * h
+                    slips[n_slips, 1] = max(drag - t_kin, 0.0)
+                    n_slips += 1
+            elif loose and sliding < y[7]:
+                loose = False
+                sticks += 1
             if breaks or stops:
                 if breaks:
                     span = abs(now) - abs(before)
@@ -242,8 +263,9 @@ def integrate(
                 drive[0] = angle + part * h * (speed + 0.5 * slope * part * h)
                 drive[1] = speed + slope * part * h
                 drag, torque, sliding = _step(
-                    y, part * h, way, t_kin, ratio, drive, k_now, p, z, tables, m
-                )
+                    y, part * h, way, t_kin, ratio, drive, k_now, p, z, tables, m, creeping,
+                    crit - t_kin,
+                )  # fmt: skip
                 left = (1.0 - part) * h
                 if breaks:
                     way = 1.0 if now > 0.0 else -1.0
@@ -270,8 +292,9 @@ def integrate(
                 drive[0] = angle + h * (speed + 0.5 * slope * h)
                 drive[1] = speed + slope * h
                 drag, torque, sliding = _step(
-                    y, left, way, t_kin, ratio, drive, k_now, p, z, tables, m
-                )
+                    y, left, way, t_kin, ratio, drive, k_now, p, z, tables, m, creeping,
+                    crit - t_kin,
+                )  # fmt: skip
                 now = drag if way == 0.0 else way * sliding
                 if way != 0.0 and drive[1] > 0.0:
                     now -= way * y[7] * _look_up(creep, min(max(torque / crit, 0.0), 1.0))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import kernel
+from . import contact, kernel
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +27,10 @@ FIXED = -1.0
 """Support stiffness of the clamp that is bolted down."""
 
 STEP_RATE = 300e3
-"""Steps per second, at least."""
+"""Steps per second, at least; in proportion more where the elastomer's mode is much faster."""
+
+_SLOW_ENOUGH = 14e3
+"""Of the elastomer's mode, for so many steps [rad/s]."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,8 @@ class Setup:
     heat: NDArray[np.float64]
     branches: NDArray[np.float64]
     friction: NDArray[np.float64]
+    law: int = contact.TRUE_STICK
+    contact: NDArray[np.float64] = field(default_factory=lambda: np.zeros(contact.N_CONTACT))
     structure: list[Callable[[Signals, Turned], None]] = field(default_factory=list)
     radiation: list[Callable[[Signals, Turned], None]] = field(default_factory=list)
     sensors: list[Callable[[Signals, Turned], None]] = field(default_factory=list)
@@ -132,7 +137,9 @@ def plain(
 
 def turn(setup: Setup, start: NDArray[np.float64] | None = None) -> Turned:
     """Run a setup; `start` holds x1, v1, a1, x2, v2, a2 and those of shaft's end and absorber."""
-    steps = int(np.ceil(STEP_RATE / setup.rate))
+    p = setup.parameters
+    fastest = np.sqrt(p.elastomer_stiffness / p.elastomer_inertia)
+    steps = int(np.ceil(STEP_RATE * max(1.0, fastest / _SLOW_ENOUGH) / setup.rate))
     if start is None:
         start = np.zeros(12)
         start[1] = start[7] = setup.omega[0]
@@ -142,6 +149,6 @@ def turn(setup: Setup, start: NDArray[np.float64] | None = None) -> Turned:
         steps, 1.0 / (steps * setup.rate), setup.p, start, setup.omega, setup.torque_gain,
         setup.film_noise, setup.stiffness_gain, setup.weakening, setup.ageing, setup.scatter,
         setup.creep, setup.angle_gain, setup.film, setup.heat, setup.softening_by_heat,
-        setup.branches, setup.friction, setup.softening, result, slips,
+        setup.branches, setup.friction, setup.softening, setup.law, setup.contact, result, slips,
     )  # fmt: skip
     return Turned(setup.rate, setup.settle, result, slips[:n_slips].copy())

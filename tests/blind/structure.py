@@ -25,6 +25,7 @@ __all__ = ["Structure", "accelerance", "draw_structure", "filtered"]
 
 _BLOWS = 32
 _LINES = np.arange(10.0, 10_001.0, 2.5)
+_POOR_NOISE, _POOR_GAIN = 1.0 / 0.9 - 1.0, 0.05
 _LEAST_WIDTH = 7.5
 """Of a mode at half power [Hz]: three lines, since a hammer test could not resolve a narrower one.
 Low ones that are lighter damped would besides ring on from the start into the recording."""
@@ -96,12 +97,16 @@ class Structure:
             to_pressure = to_pressure + self.clamp_to_pressure * late * turning
         return to_acceleration, to_pressure
 
-    def measured(self, parameters: Parameters, rng: np.random.Generator):
-        """Return what a hammer test gives: two mappings as an NPZ file holds them."""
+    def measured(self, parameters: Parameters, rng: np.random.Generator, *, poor: bool = False):
+        """Return what a hammer test gives: two mappings as an NPZ file holds them.
+
+        A poor one has a coherence of 0.9 at most, and gains that are off by 5 %.
+        """
         measured = []
         for response, unit in zip(self.exact(parameters, _LINES), ("m/s^2", "Pa"), strict=True):
             floor = 0.006 * np.median(np.abs(response)) * (1.0 + (30.0 / _LINES) ** 2)
             noise = (floor / np.abs(response)) ** 2 + 1e-3 * (1.0 + (_LINES / 6e3) ** 4)
+            noise += _POOR_NOISE if poor else 0.0
             coherence = 1.0 / (1.0 + np.minimum(noise, np.where(_LINES < 250.0, 0.3, 9.0)))
             spread = np.abs(response) * np.sqrt((1.0 - coherence) / (2 * _BLOWS * coherence))
             error = rng.standard_normal((2, _LINES.size)) * spread / np.sqrt(2.0)
@@ -113,9 +118,10 @@ class Structure:
                 0.01,
                 1.0,
             )
+            gain = np.exp(_POOR_GAIN * rng.standard_normal()) if poor else 1.0
             measured.append({
                 "frequency_hz": _LINES,
-                "response": (response + error[0] + 1j * error[1]).astype(np.complex64),
+                "response": (gain * (response + error[0] + 1j * error[1])).astype(np.complex64),
                 "coherence": found.astype(np.float32),
                 "input_unit": np.array("N m"),
                 "output_unit": np.array(unit),

@@ -52,7 +52,7 @@ def refusal(capsys, *given):
         (("--temperature", "80", "--material", "fluorocarbon-thesis"),
          "temperature 80 degree Celsius is recorded and changes nothing"),
         (("--support-stiffness", "3000"), "for 3000 Nm/rad it is interpolated between these"),
-        (("--support-stiffness", "2e6"), "support_stiffness_Nm_rad = 2e+06 is outside the usual"),
+        (("--support-stiffness", "3e5"), "support_stiffness_Nm_rad = 300000 is outside the usual"),
         (("--interference", "0.000279"), "interference_mm = 0.000279 is outside the usual 0.02 to "
                                          "3 mm (is it in metres?)"),
         (("--change", "critical_torque=x1000"), "outside the usual 0.3 to 500 Nm (is it in Nmm?)"),

@@ -45,7 +45,8 @@ def test_the_same_seed_gives_the_same_case_and_only_a_cause_makes_a_gap(kind):
 def test_own_cases_are_scored_beside_others(tmp_path, capsys):
     from tests.blind.__main__ import main as blind
 
-    for command in (main, lambda call: blind(["generate", *call])):
+    quiet = ["--bench", "quiet", "--block", "shares"]
+    for command in (main, lambda call: blind(["generate", *call, *quiet])):
         where = tmp_path / ("own" if command is main else "blind")
         command(["--out", str(where), "--seed", "4", "--cases", "1", "--workers", "1"])
     own = {p.name for p in (tmp_path / "own" / "data" / "case-0001").iterdir()}

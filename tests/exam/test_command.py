@@ -11,6 +11,7 @@ import pytest
 
 from tests.blind import generate as generating
 from tests.blind.__main__ import main
+from tests.blind.cases import run_case
 from tests.blind.design import BLOCKS, draw_design
 from tests.blind.effects import CAUSES, DEVELOPMENT, SEALED
 from tests.blind.gap import gaps_of
@@ -41,7 +42,8 @@ def test_development_cases_are_written_answers_apart_and_scored(tmp_path, capsys
     module.diagnose = diagnose
     monkeypatch.setitem(sys.modules, "a_diagnosis", module)
     where = tmp_path / "cases"
-    main(["generate", "--out", str(where), "--seed", "167", "--cases", "2", "--workers", "1"])
+    main(["generate", "--out", str(where), "--seed", "167", "--cases", "2", "--workers", "1",
+          "--bench", "quiet", "--block", "shares"])  # fmt: skip
     assert {p.name for p in where.iterdir()} == {"data", "answers"}
     answer = json.loads((where / "answers" / "case-0001.json").read_text())
     assert answer["set"] == DEVELOPMENT
@@ -72,8 +74,7 @@ def test_a_diagnosis_that_is_not_there_is_said_in_one_line(tmp_path):
         main(["score", str(tmp_path), "--sealed", "--baseline", "none", "--out", str(tmp_path)])
 
 
-def test_each_opening_of_the_sealed_set_is_logged_with_commit_and_figures(tmp_path, monkeypatch):
-    monkeypatch.setattr("tests.blind.score.run.add_gaps", lambda *_: None)
+def test_each_opening_of_the_sealed_set_is_logged_with_commit_and_figures(tmp_path):
     log = tmp_path / "log.jsonl"
     asked = Asked("", baseline="none")
     for seed in (1, 2):
@@ -158,7 +159,7 @@ def test_shares_take_2100_cases_for_forty_of_each_cause():
 @pytest.mark.parametrize("kind", ["none", "parameters", "pair"])
 def test_the_gap_is_one_where_nothing_is_the_matter_and_above_elsewhere(kind):
     design = next(d for d in (draw_design(2, i, DEVELOPMENT) for i in range(60)) if d.kind == kind)
-    found = gaps_of({"seed": 2, "index": design.index, "set": DEVELOPMENT, "block": "shares"})
+    found = gaps_of(run_case(design))
     assert (found["gap"] == 1.0) == (kind == "none")
     assert found["gap"] >= 1.0
     assert set(found["gap_alone"]) == {form.effect for form, _ in design.forms}

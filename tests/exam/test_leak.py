@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.blind.benches import KINDS
 from tests.blind.cases import (
     Case,
     answer_of,
@@ -26,11 +27,11 @@ def _classes(design):
     return design.kind, f"{design.kind} {stage}"
 
 
-def _seen(tmp_path, count, change=None):
+def _seen(tmp_path, count, change=None, kinds=("quiet",)):
     """Write cases with silence for samples, which the check does not look at, and look at them."""
     seen, classes = [], []
     for index in range(count):
-        design = draw_design(17, index, DEVELOPMENT)
+        design = draw_design(17, index, DEVELOPMENT, kind=kinds[index % len(kinds)])
         n = round(design.seconds * design.rate)
         silence = (np.zeros((4, n), np.float32),) * len(design.conditions)
         case = Case(design, silence, responses_of(design, structures_of(design)), answer_of(design))
@@ -40,13 +41,19 @@ def _seen(tmp_path, count, change=None):
             change(folder, design)
         seen.append(seen_of(folder))
         classes.append(_classes(design))
-    width = min(map(len, seen))
-    assert {len(row) for row in seen} == {width}
+    assert kinds != ("quiet",) or len({len(row) for row in seen}) == 1
     return seen, classes
 
 
 def test_what_is_no_sound_tells_no_class(tmp_path):
     seen, classes = _seen(tmp_path, 60)
+    found = leak(seen, ["nothing" if kind in ("none", "parameters") else "something"
+                        for kind, _ in classes], shuffles=20)  # fmt: skip
+    assert found.p_value > 0.05
+
+
+def test_no_kind_of_bench_tells_the_class(tmp_path):
+    seen, classes = _seen(tmp_path, 66, kinds=tuple(KINDS))
     found = leak(seen, ["nothing" if kind in ("none", "parameters") else "something"
                         for kind, _ in classes], shuffles=20)  # fmt: skip
     assert found.p_value > 0.05

@@ -35,7 +35,7 @@ from tests.blind.cases import (
     structures_of,
     write_case,
 )
-from tests.blind.design import Design, draw_design, stream
+from tests.blind.design import Design, draw_design
 from tests.blind.effects import DEVELOPMENT, Form
 from tests.blind.gap import gap_between, repeats_of
 from tests.blind.generate import each
@@ -63,7 +63,7 @@ def own_design(seed: int, index: int) -> Design | None:
     forms = []
     for j, (form, strength) in enumerate(design.forms):
         effect = EFFECTS[form.effect]
-        rng = stream(seed, DEVELOPMENT, index, 11, j)
+        rng = design.stream(11, j)
         name = effect.forms[int(rng.integers(len(effect.forms)))]
         forms.append((replace(form, name=name, kept_for=_OWN), strength))
     return replace(design, forms=tuple(forms))
@@ -77,8 +77,8 @@ def _spec(form: Form, strength: float) -> LawSpec:
 
 
 def _record(design: Design, k: int, rig: Rig, on: frozenset[str]) -> np.ndarray:
-    condition, where = design.conditions[k], (design.seed, design.kept_for, design.index)
-    chance, true = stream(*where, 7, k), design.true(condition, k)
+    condition = design.conditions[k]
+    chance, true = design.stream(7, k), design.true(condition, k)
     support = condition.support if condition.support > 0.0 else np.inf
     fit = Fit(
         interference=1e-3 * condition.interference_mm,
@@ -103,7 +103,7 @@ def _record(design: Design, k: int, rig: Rig, on: frozenset[str]) -> np.ndarray:
             support_stiffness=support,
             seconds=design.seconds,
             acquisition=Acquisition(rate=design.rate, noise={}),
-            rng=stream(*where, 9, k),
+            rng=design.stream(9, k),
         )
     by_name = dict(zip(run.recording.channel_names, run.recording.samples, strict=True))
     return np.stack([sampled(by_name[name], 1, NOISE[name], name, chance) for name in CHANNELS])
@@ -128,7 +128,7 @@ def own_case(design: Design) -> Case:
     answer = answer_of(design) | {"set": _OWN, "gap": 1.0, "gap_alone": {}}
     if design.kind != "none":
         plain = recordings(replace(design, offsets={}), frozenset())
-        where = repeats_of(design), design.rate
+        where = repeats_of(design, plain), design.rate
         answer["gap"] = gap_between(found, plain, *where)
         if len(names) > 1:
             answer["gap_alone"] = {

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
+from hypothesis import given, settings, strategies as st
+from scipy.signal import resample_poly
 
 from models.rig_files.rig_file import load_material_rig
 from models.sensors import Sensor, Sensors
@@ -12,6 +13,8 @@ from sim.acquisition import (
     CONVERTER_GAIN,
     THESIS_CONVERTER,
     Acquisition,
+    anti_alias_filter,
+    decimate,
     decimate_sensed,
     digitise,
     sample,
@@ -146,3 +149,12 @@ def test_no_sensors_change_nothing():
     ideal = replace(rig, sensors=Sensors({"torque": Sensor(antialias=60e3)}))
     first, second = (simulate(r, 2.0, seconds=0.1).recording.samples for r in (rig, ideal))
     assert np.array_equal(first, second)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(2, 5), st.integers(2, 3000), st.integers(0, 1000))
+def test_decimation_is_that_of_scipy_to_the_last_bit(factor, n, seed):
+    x = np.random.default_rng(seed).normal(3.0, 1.0, n).cumsum()
+    taps = anti_alias_filter(factor)
+    expected = resample_poly(x, 1, factor, padtype="line", window=taps)
+    assert np.array_equal(decimate(x, factor), expected)

@@ -15,6 +15,7 @@ from sim.analysis.critical_speeds import SPEEDS, motion_from_rest
 from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime, regime_measures
 from sim.analysis.slips import LEAST_SUDDEN, find_slips, motion_slips
 from sim.analysis.sweep import Sweep
+from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -22,7 +23,7 @@ RATE = 30e3
 OWN = 1e-3
 TIME = np.arange(round(RATE)) / RATE
 THESIS = load_material_rig("fluorocarbon-thesis")
-FLUOROCARBON = load_material_rig("fluorocarbon")
+FLUOROCARBON = constant_version(load_material_rig("fluorocarbon"))
 SUPPORTS = (2214.0, 3745.0, FIXED)
 PLACES = [(fit, support) for fit in (0.178e-3, 0.279e-3, 0.381e-3) for support in SUPPORTS]
 
@@ -131,7 +132,7 @@ def test_with_true_stick_slips_are_those_of_the_solver(fit, support):
 
 
 @pytest.mark.parametrize(
-    ("support", "speed", "rate"), [(2214.0, 9.0, 250.0), (3745.0, 10.0, 326.0)]
+    ("support", "speed", "rate"), [(2214.0, 9.0, 250.0), (3745.0, 10.0, 317.0)]
 )
 def test_slips_of_the_tight_fit_are_no_subharmonics(support, speed, rate):
     run = motion(FLUOROCARBON, speed, 0.381e-3, support).since(round(0.5 * RATE))
@@ -158,7 +159,7 @@ def test_a_contact_that_creeps_sticks_and_slips_on_a_fixed_clamp_at_the_lowest_s
 
 
 def test_grazing_the_shafts_speed_is_no_stick_slip():
-    run = motion(FLUOROCARBON, 13.0, 0.381e-3)
+    run = motion(FLUOROCARBON, 7.0, support=2214.0)
     assert run.since(15000).stuck.mean() > 0.01
     assert friction_regime(run) is Regime.QUASI_HARMONIC
 

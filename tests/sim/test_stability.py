@@ -10,13 +10,14 @@ from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from sim.analysis.critical_speeds import critical_speeds
 from sim.analysis.stability import steady_sliding
+from sim.constant_version import constant_version
 from sim.effects import EFFECTS
 from sim.friction import LAWS
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
 THESIS = load_material_rig("fluorocarbon-thesis")
-MEMORY = load_material_rig("fluorocarbon")
+MEMORY = constant_version(load_material_rig("fluorocarbon"))
 SPEEDS = np.arange(0.25, 15.0, 0.25)
 
 
@@ -76,11 +77,11 @@ def test_a_vibration_dies_as_fast_in_simulation_as_stability_says(speed, support
     assert np.log(late / early) / 0.3 == pytest.approx(float(found), rel=0.02)
 
 
-def test_where_sliding_is_unstable_the_calibrated_fluorocarbon_vibrates_to_within_a_step():
+def test_the_calibrated_fluorocarbon_vibrates_where_sliding_is_unstable_and_little_beyond():
     speeds = SPEEDS[(SPEEDS >= 7.0) & (SPEEDS <= 9.5)]
     stable = steady_sliding(MEMORY, speeds, 0.279e-3, 2214.0).stable
     simulated = critical_speeds(MEMORY, 0.279e-3, 2214.0, speeds.tolist()).v_crit2
-    assert abs(speeds[~stable].max() - simulated) <= 0.25
+    assert 0.0 <= simulated - speeds[~stable].max() <= 0.5  # a large start may hold on
 
 
 @pytest.mark.parametrize("law", list(LAWS))

@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.fft import irfft, rfft
 
 from models.recording import Channel, Recording
 from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
@@ -177,14 +178,23 @@ def _sampled(
 ) -> NDArray[np.float64]:
     """Decimate, and add white noise, a coloured one and a drift."""
     x = decimate(signal, decimation)
-    f = np.fft.rfftfreq(x.size)
-    slow = np.fft.irfft(np.fft.rfft(rng.standard_normal(x.size)) / np.sqrt(1.0 + f / 1e-3), x.size)
-    drift = rng.standard_normal() * np.linspace(-1.0, 1.0, x.size)
-    unsteady = rng.uniform(0.0, 3.0) * slow + rng.uniform(0.0, 3.0) * drift
+    colour, ramp = _unsteady(x.size)
+    slow = irfft(rfft(rng.standard_normal(x.size)) / colour, x.size, overwrite_x=True)
+    drift = rng.standard_normal()
+    slow *= rng.uniform(0.0, 3.0)
+    slow += (drift * rng.uniform(0.0, 3.0)) * ramp
     loud = noise * float(np.exp(0.1 * rng.standard_normal()))
-    return np.asarray(
-        (1.0 + gain * rng.standard_normal()) * x + loud * (rng.standard_normal(x.size) + unsteady)
-    )
+    sensitivity = 1.0 + gain * rng.standard_normal()
+    slow += rng.standard_normal(x.size)
+    slow *= loud
+    slow += sensitivity * x
+    return np.asarray(slow)
+
+
+@lru_cache(maxsize=4)
+def _unsteady(n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """By what white noise of `n` samples is divided to be coloured, and a drift [-]."""
+    return np.sqrt(1.0 + np.fft.rfftfreq(n) / 1e-3), np.linspace(-1.0, 1.0, n)
 
 
 def _strength(rng: np.random.Generator) -> float:

@@ -6,25 +6,35 @@ None needs a model: a sensor that fails shows it in its own signal.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
 from features.kernels.segments import segment_spectra
+from noise.diagnosis.evidence.channel_kernel import (
+    band_power_sums,
+    describe_distribution,
+    detrend_and_window,
+    line_ratios,
+    power_quantiles,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
 __all__ = [
     "BAND_EDGES",
     "USABLE",
+    "Bands",
     "angle_summary",
     "band_bins",
+    "band_levels",
+    "bins_between",
     "channel_summary",
     "hum_summary",
+    "quantile",
     "segment_frequency",
     "shaft_speed",
 ]
@@ -42,6 +52,12 @@ Numbers = dict[str, float]
 
 _FLOOR_BANDS = ((100.0, 700.0), (700.0, 2500.0), (2500.0, 6000.0), (6000.0, 10000.0))
 """[Hz]"""
+
+_FLOOR_LENGTH = 1024
+"""Of the segments whose quietest tenth is the floor [samples]."""
+
+_QUIET = 0.1
+"""Of the segments."""
 
 _MAINS = (50, 60)
 """[Hz]"""
@@ -72,28 +88,36 @@ def channel_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     >>> clipped["top"] > channel_summary(sound, 30e3)["top"]
     True
     """
-    top, bottom = float(x.max()), float(x.min())
-    span = top - bottom + 1e-12
-    mean, spread, median = float(x.mean()), float(x.std()) + 1e-12, float(np.median(x))
-    away = x - mean
-    high, low = x > top - 0.05 * span, x < bottom + 0.05 * span
+    found = np.empty(12)
+    describe_distribution(x, found)
+    top, bottom, mean, deviation, third, n_top, n_bottom, n_flat, *stays = found.tolist()
+    spread, median = deviation + 1e-12, quantile(x, 0.5)
     numbers = {
-        "top": _log_share(x > top - 0.02 * span),
-        "bottom": _log_share(x < bottom + 0.02 * span),
+        "top": _log_share(n_top),
+        "bottom": _log_share(n_bottom),
         "crest": math.log(max(top - mean, mean - bottom, 1e-12) / spread),
         "asymmetry": math.log((top - median + 1e-12) / (median - bottom + 1e-12)),
-        "skewness": float(away @ (away * away)) / x.size / spread**3,
-        "flat": _log_share(np.abs(np.diff(x)) < 1e-3 * span),
-        "dwell_top": _dwell(high),
-        "dwell_bottom": _dwell(low),
+        "skewness": third / spread**3,
+        "flat": _log_share(n_flat),
+        "dwell_top": _dwell(*stays[:2]),
+        "dwell_bottom": _dwell(*stays[2:]),
         "offset": mean / spread,
     }
-    power = np.percentile(np.abs(segment_spectra(x, 1024)) ** 2, 10, axis=0)
-    frequency = np.fft.rfftfreq(1024, 1.0 / rate)
-    for i, (first, last) in enumerate(_FLOOR_BANDS):
-        inside = (frequency > first) & (frequency < last)
-        numbers[f"floor_{i}"] = 0.5 * math.log(float(power[inside].mean()) + 1e-16)
+    spectra = segment_spectra(x, _FLOOR_LENGTH)
+    inside, *bands = _floor_bins(rate)
+    quiet = np.empty(inside.stop - inside.start)
+    power_quantiles(spectra, inside.start, _QUIET, np.empty(len(spectra)), quiet)
+    for i, band in enumerate(bands):
+        numbers[f"floor_{i}"] = 0.5 * math.log(float(quiet[band].mean()) + 1e-16)
     return numbers
+
+
+@lru_cache(maxsize=8)
+def _floor_bins(rate: float) -> tuple[slice, ...]:
+    """Bins from the lowest to the highest floor, and which of them lie in each."""
+    frequency = np.asarray(np.fft.rfftfreq(_FLOOR_LENGTH, 1.0 / rate), np.float64)
+    whole = bins_between(frequency, (_FLOOR_BANDS[0][0], _FLOOR_BANDS[-1][1]))
+    return whole, *(bins_between(frequency[whole], band) for band in _FLOOR_BANDS)
 
 
 def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
@@ -119,19 +143,70 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     True
     """
     n = x.size
-    power = np.abs(rfft(_detrended(x) * np.hanning(n))) ** 2
-    spacing = rate / n
-    numbers: Numbers = {}
-    for mains in _MAINS:
-        lines = [_line(power, k * mains / spacing) for k in range(1, 8)]
-        numbers[f"hum_{mains}"] = lines[0]
-        numbers[f"hum_odd_{mains}"] = float(np.mean(lines[2::2]))
-        numbers[f"hum_even_{mains}"] = float(np.mean(lines[1::2]))
-    first, last = math.ceil(44.0 / spacing), math.floor(66.0 / spacing)
+    windowed = np.empty(n)
+    detrend_and_window(x, _hanning(n), windowed)
+    lines, first, last = _hum_lines(rate / n)
+    # Harmonics lie in the lowest bins; of the others no power is asked.
+    spectrum = rfft(windowed)[: int(lines.max()) + 13]
+    power = spectrum.real**2 + spectrum.imag**2
     best = first + int(np.argmax(power[first : last + 1]))
-    numbers["hum_best"] = _line(power, best)
+    ratios = np.empty(lines.size + 1)
+    line_ratios(power, np.append(lines, best), ratios, np.empty(16))
+    logarithms = np.log(ratios)
+    numbers: Numbers = {}
+    for mains, of_mains in zip(_MAINS, logarithms[:-1].reshape(len(_MAINS), -1), strict=True):
+        numbers[f"hum_{mains}"] = float(of_mains[0])
+        numbers[f"hum_odd_{mains}"] = float(of_mains[2::2].mean())
+        numbers[f"hum_even_{mains}"] = float(of_mains[1::2].mean())
+    numbers["hum_best"] = float(logarithms[-1])
     numbers["hum_level"] = 0.5 * math.log(16.0 * float(power[best]) / n**2 + 1e-14)
     return numbers
+
+
+@lru_cache(maxsize=16)
+def _hum_lines(spacing: float) -> tuple[NDArray[np.int64], int, int]:
+    """Bins of the harmonics of each mains, and between which the strongest hum is looked for."""
+    lines = [round(k * mains / spacing) for mains in _MAINS for k in range(1, 8)]
+    return np.array(lines), math.ceil(44.0 / spacing), math.floor(66.0 / spacing)
+
+
+@lru_cache(maxsize=16)
+def _hanning(n: int) -> NDArray[np.float64]:
+    window = np.hanning(n)
+    window.setflags(write=False)
+    return window
+
+
+def band_levels(x: NDArray[np.float64], rate: float) -> Numbers:
+    """Summarise how loud a signal is in each band.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [unit of the channel]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    dict of str to float
+        Logarithms of amplitudes in the channel's unit.
+
+    Examples
+    --------
+    >>> tone = np.sin(2 * np.pi * 440 * np.arange(30_000) / 30e3)
+    >>> levels = band_levels(tone, 30e3)
+    >>> max(levels, key=levels.get)  # from 350 to 500 Hz
+    'band_6'
+    """
+    spectra, bands = segment_spectra(x, segment_frequency(rate)[0]), band_bins(rate)
+    sums = np.empty((len(spectra), len(bands.numbers)))
+    band_power_sums(spectra, bands.first, bands.last, sums)
+    power = sums.mean(axis=0) / (bands.last - bands.first)
+    return {
+        f"band_{i}": level
+        for i, level in zip(bands.numbers, (0.5 * np.log(power + 1e-14)).tolist(), strict=True)
+    }
 
 
 def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numbers:
@@ -166,7 +241,7 @@ def angle_summary(angle: NDArray[np.float64], speed: float, rate: float) -> Numb
     v = np.diff(means) * rate / block / abs(speed)
     v -= v.mean()
     spread = float(v.std()) + 1e-9
-    power = np.abs(rfft(v * np.hanning(v.size))) ** 2
+    power = np.abs(rfft(v * _hanning(v.size))) ** 2
     power[0] = 0.0
     best = int(np.argmax(power))
     return {
@@ -210,50 +285,78 @@ def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     before, after = 2.0 * left[0] - left[m:0:-1], 2.0 * left[-1] - left[-2 : -m - 2 : -1]
     extended = np.concatenate([before, left, after])
     length = next_fast_len(extended.size, real=True)
-    s = 2j * np.pi * np.fft.rfftfreq(length, 1.0 / rate)
-    x = np.clip((np.abs(s) / (2.0 * np.pi) - _SPEED_LIMIT) / _SPEED_LIMIT, 0.0, 1.0)
-    gain = 0.5 + 0.5 * np.cos(np.pi * x)
-    return np.asarray(mean_speed + irfft(rfft(extended, length) * s * gain, length)[m : m + n])
+    filtered = rfft(extended, length)
+    derivative = _slow_derivative(length, rate)
+    filtered[: derivative.size] *= derivative
+    filtered[derivative.size :] = 0.0
+    return np.asarray(mean_speed + irfft(filtered, length)[m : m + n])
+
+
+@lru_cache(maxsize=8)
+def _slow_derivative(length: int, rate: float) -> NDArray[np.complex128]:
+    """Transfer function of a derivative that fades out above `_SPEED_LIMIT`, up to its end."""
+    frequency = np.fft.rfftfreq(length, 1.0 / rate)
+    frequency = frequency[frequency < 2.0 * _SPEED_LIMIT]
+    x = np.clip((frequency - _SPEED_LIMIT) / _SPEED_LIMIT, 0.0, 1.0)
+    found = 2j * np.pi * frequency * (0.5 + 0.5 * np.cos(np.pi * x))
+    found.setflags(write=False)
+    return np.asarray(found)
 
 
 def _about_line(angle: NDArray[np.float64], rate: float) -> tuple[float, NDArray[np.float64]]:
     """Mean speed [rad/s], and what the angle has besides [rad]."""
-    time = np.arange(angle.size, dtype=np.float64) / rate
-    speed = _slope(time, angle)
-    return speed, angle - angle.mean() - speed * (time - time.mean())
+    time = _centred_time(angle.size, rate)
+    left = angle - angle.mean()
+    speed = float(time @ left) / float(time @ time)
+    left -= speed * time
+    return speed, left
 
 
-def _line(power: NDArray[np.float64], bin_number: float) -> float:
-    """Logarithm of the power of a line over the median of what lies beside it [-]."""
-    k = round(bin_number)
-    if k + 13 > power.size:
-        return 0.0
-    beside = np.concatenate([power[max(k - 12, 1) : max(k - 4, 1)], power[k + 5 : k + 13]])
-    return math.log(
-        (float(power[max(k - 2, 0) : k + 3].max()) + 1e-30) / (float(np.median(beside)) + 1e-30)
-    )
+@lru_cache(maxsize=8)
+def _centred_time(n: int, rate: float) -> NDArray[np.float64]:
+    time = (np.arange(n, dtype=np.float64) - 0.5 * (n - 1)) / rate
+    time.setflags(write=False)
+    return time
 
 
-def _detrended(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    time = np.arange(x.size, dtype=np.float64) - 0.5 * (x.size - 1)
-    return np.asarray(x - x.mean() - _slope(time, x) * time)
+def _log_share(share: float) -> float:
+    return math.log(share + 1e-4)
 
 
-def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
-    away = x - x.mean()
-    return float(away @ (y - y.mean())) / float(away @ away)
-
-
-def _log_share(chosen: NDArray[np.bool_]) -> float:
-    return math.log(float(chosen.mean()) + 1e-4)
-
-
-def _dwell(chosen: NDArray[np.bool_]) -> float:
+def _dwell(samples: float, stays: float) -> float:
     """Logarithm of the mean length of a stay in samples [-]."""
-    stays = max(int(np.count_nonzero(chosen[1:] & ~chosen[:-1])), 1)
-    return math.log(max(float(chosen.sum()), 1.0) / stays)
+    return math.log(max(samples, 1.0) / max(stays, 1.0))
 
 
+def quantile(x: NDArray[np.float64], share: float) -> float:
+    """Quantile, linear between values, as of `numpy.quantile` without its checks.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [any unit], no NaN.
+    share : float
+        From 0 to 1 [-].
+
+    Returns
+    -------
+    float
+        [unit of the values]
+
+    Examples
+    --------
+    >>> quantile(np.array([3.0, 1.0, 2.0, 9.0]), 0.5)
+    2.5
+    """
+    place = share * (x.size - 1)
+    low = int(place)
+    high = min(low + 1, x.size - 1)
+    parted = np.partition(x, (low, high))
+    below, above = float(parted[low]), float(parted[high])
+    return below + (place - low) * (above - below)
+
+
+@lru_cache(maxsize=8)
 def segment_frequency(rate: float) -> tuple[int, NDArray[np.float64]]:
     """Length of the segments in which bands are resolved, and the frequency of their bins.
 
@@ -278,27 +381,64 @@ def segment_frequency(rate: float) -> tuple[int, NDArray[np.float64]]:
     return length, np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
 
 
-def band_bins(rate: float) -> Iterator[tuple[int, NDArray[np.bool_]]]:
-    """Yield the number of each band that a rate reaches, from 1, and which bins lie in it.
+class Bands(NamedTuple):
+    """Bands that a rate reaches.
+
+    Parameters
+    ----------
+    numbers : tuple of int
+        From 1.
+    first, last : ndarray of int, shape (n_bands,)
+        First bin of `segment_frequency` that lies in each, and first after it.
+    """
+
+    numbers: tuple[int, ...]
+    first: NDArray[np.int64]
+    last: NDArray[np.int64]
+
+
+@lru_cache(maxsize=8)
+def band_bins(rate: float) -> Bands:
+    """Find which bins lie in each of the bands that a rate reaches.
 
     Parameters
     ----------
     rate : float
         Sampling rate [Hz].
 
-    Yields
-    ------
-    number : int
-    inside : ndarray of bool, shape (n_bins,)
-        Of the bins of `segment_frequency`.
+    Returns
+    -------
+    Bands
 
     Examples
     --------
-    >>> [number for number, _ in band_bins(10e3)][-1]
+    >>> band_bins(10e3).numbers[-1]
     12
     """
-    place = np.digitize(segment_frequency(rate)[1], BAND_EDGES)
-    for number in range(1, BAND_EDGES.size):
-        inside = place == number
-        if BAND_EDGES[number] < USABLE * rate and inside.any():
-            yield number, inside
+    edges = np.searchsorted(segment_frequency(rate)[1], BAND_EDGES)
+    reached = (BAND_EDGES[1:] < USABLE * rate) & (np.diff(edges) > 0)
+    numbers = tuple((np.flatnonzero(reached) + 1).tolist())
+    return Bands(numbers, edges[:-1][reached], edges[1:][reached])
+
+
+def bins_between(frequency: NDArray[np.float64], band: tuple[float, float]) -> slice:
+    """Find the bins between two frequencies.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (n_bins,)
+        Rising [Hz].
+    band : tuple of float
+        The two, which are not in it [Hz].
+
+    Returns
+    -------
+    slice
+
+    Examples
+    --------
+    >>> bins_between(np.array([0.0, 10.0, 20.0, 30.0]), (5.0, 30.0))
+    slice(1, 3, None)
+    """
+    first = int(np.searchsorted(frequency, band[0], "right"))
+    return slice(first, max(first, int(np.searchsorted(frequency, band[1]))))

@@ -19,6 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.slip_speeds import in_intervals, slip_intervals
+from noise.diagnosis.evidence.channel_kernel import describe_distribution
+from noise.diagnosis.evidence.channel_summary import quantile
+from noise.diagnosis.evidence.contact_kernel import describe_slips, gather_sticking
 from noise.diagnosis.evidence.slip_summary import cycle_shape, torque_by_speed
 
 if TYPE_CHECKING:
@@ -33,6 +36,13 @@ Numbers = dict[str, float]
 
 _TORQUE_EDGES = np.array([0.0, 0.5, 0.65, 0.8, 0.92, 1.1])
 """Of classes of the friction torque over the critical one."""
+
+_EXPLANATIONS: tuple[str, ...] = ("speed", "stiffness", "softening", "damping", "clamp", "release")
+"""Of what sliding there seems to be in stick: another speed, stiffness, damping or inertia, a
+stiffness that changes with torque, or a contact that gives before it breaks."""
+
+_SLIDES_ON = 0.3
+"""Share of a recording from which a contact slides on and on."""
 
 _FEWEST = 8
 """Samples that make a mean."""
@@ -93,16 +103,18 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
     n = found.torque.size
     near = in_intervals(starts, ends, n, margin=int(_AROUND * found.rate))
     wanted = max(abs(speed), 0.05)
-    stick = ~near & (np.abs(found.sliding_speed) < 0.7 * wanted + 1.2)
+    calm = found.sliding_speed[~near]
+    stick, of_stick = _stick(found, fit, near, wanted)
     numbers = {
         "slip_rate": math.log(max(starts.size * found.rate / n, 0.5)),
-        "stick_share": float(stick.mean()),
+        "stick_share": stick / n,
         "slip_share": float(near.mean()),
-        "calm_speed": _mean(found.sliding_speed[~near]) / wanted,
-        "calm_spread": float(np.std(found.sliding_speed[~near])) / wanted,
+        "calm_speed": _mean(calm) / wanted,
+        "calm_spread": float(calm.std()) / wanted,
     }
-    numbers |= _stick(found, fit, stick, wanted)
-    numbers |= _sliding(found, fit, ~near & ~stick)
+    numbers |= of_stick
+    if n - stick - np.count_nonzero(near) >= _SLIDES_ON * n:
+        numbers |= _sliding(found, fit, ~near & (np.abs(found.sliding_speed) >= _slow(wanted)))
     numbers |= torque_by_speed(found, fit, in_intervals(starts, ends, n))
     numbers |= _cycles(found, fit, starts, ends)
     numbers |= cycle_shape(found, fit, starts, ends)
@@ -110,57 +122,53 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
     return numbers
 
 
-def _stick(found: Reconstruction, fit: Fit, stick: NDArray[np.bool_], speed: float) -> Numbers:
-    creep = found.sliding_speed / speed
-    ratio = found.friction_torque / fit.critical_torque
-    rising = found.torque_rate > 0.0
+def _slow(speed: float) -> float:
+    """Sliding speed below which the surface sticks [rad/s]."""
+    return 0.7 * speed + 1.2
+
+
+def _stick(
+    found: Reconstruction, fit: Fit, near: NDArray[np.bool_], speed: float
+) -> tuple[int, Numbers]:
+    """Count the samples in stick, and summarise them."""
+    n = found.torque.size
+    rows, target = np.empty((n, len(_EXPLANATIONS))), np.empty(n)
+    classes, winding = np.empty((2, _TORQUE_EDGES.size - 1, 2)), np.empty((3, 3))
+    m = gather_sticking(
+        (
+            found.torque, found.friction_torque, found.torque_rate,
+            found.shaft_speed, found.sliding_speed, found.clamp_speed,
+        ),
+        (found.by_stiffness, found.by_damping, found.by_clamp),
+        near, (speed, _slow(speed), fit.critical_torque, fit.kinetic_torque),
+        _TORQUE_EDGES, rows, target, classes, winding,
+    )  # fmt: skip
     numbers: Numbers = {}
-    for name, chosen in (("up", stick & rising), ("down", stick & ~rising)):
-        place = np.digitize(ratio[chosen], _TORQUE_EDGES)
-        for i in range(1, _TORQUE_EDGES.size):
-            numbers[f"creep_{name}_{i}"] = _mean(creep[chosen][place == i])
-    if stick.sum() < 200:
-        return numbers
-    # What sliding there seems to be in stick, as another stiffness, damping, inertia or speed,
-    # a stiffness that changes with torque, or a contact that gives before it breaks.
-    wound = (found.torque - fit.kinetic_torque) / fit.kinetic_torque
-    columns = {
-        "speed": found.shaft_speed,
-        "stiffness": found.by_stiffness,
-        "softening": found.by_stiffness * wound,
-        "damping": found.by_damping,
-        "clamp": found.by_clamp,
-        "release": found.shaft_speed * np.clip(ratio, 0.0, 1.2) ** 6,
-    }
+    for name, row in zip(("up", "down"), classes.tolist(), strict=True):
+        for i, (count, total) in enumerate(row, start=1):
+            numbers[f"creep_{name}_{i}"] = total / count if count >= _FEWEST else math.nan
+    if m < 200:
+        return m, numbers
+    a, b, names = rows[:m], target[:m], _EXPLANATIONS
     if not found.by_clamp.any():
         # All of the shaft's speed winds the elastomer: another speed is another stiffness.
-        columns = {name: columns[name] for name in columns if name not in ("speed", "clamp")}
-    a = np.stack([column[stick] for column in columns.values()], axis=1)
-    b = found.sliding_speed[stick]
+        kept = [i for i, name in enumerate(names) if name not in ("speed", "clamp")]
+        a, names = a[:, kept], tuple(names[i] for i in kept)
     gram = a.T @ a
     gram += 1e-6 * np.trace(gram) / len(gram) * np.eye(len(gram))
     x = np.linalg.solve(gram, a.T @ b)
-    numbers |= {f"stick_{name}": float(value) for name, value in zip(columns, x, strict=True)}
+    numbers |= {f"stick_{name}": value for name, value in zip(names, x.tolist(), strict=True)}
     left = b - a @ x
-    numbers["stick_left"] = float(np.std(left)) / speed
-    numbers["stick_explained"] = 1.0 - float(np.var(left)) / max(float(np.var(b)), 1e-12)
-    wind = found.shaft_speed - found.clamp_speed
-    for name, chosen in (
-        ("all", stick),
-        ("late", stick & rising & (ratio > 0.85)),
-        ("early", stick & rising & (ratio < 0.7)),
-    ):
-        if chosen.sum() > 60:
-            u = wind[chosen]
-            slope = float(found.torque_rate[chosen] @ u) / (float(u @ u) * fit.elastomer_stiffness)
-            numbers[f"stiffness_{name}"] = slope
-    return numbers
+    numbers["stick_left"] = float(left.std()) / speed
+    numbers["stick_explained"] = 1.0 - float(left.var()) / max(float(b.var()), 1e-12)
+    for name, (count, work, square) in zip(("all", "late", "early"), winding.tolist(), strict=True):
+        if count > 60:
+            numbers[f"stiffness_{name}"] = work / (square * fit.elastomer_stiffness)
+    return m, numbers
 
 
 def _sliding(found: Reconstruction, fit: Fit, sliding: NDArray[np.bool_]) -> Numbers:
     """Of a contact that slides on and on."""
-    if sliding.mean() < 0.3:
-        return {}
     v, torque = found.sliding_speed[sliding], found.friction_torque[sliding] / fit.kinetic_torque
     return {
         "sliding_torque": float(torque.mean()),
@@ -178,31 +186,34 @@ def _cycles(
         return {}
     rate, near = found.rate, int(_NEAR_PEAK * found.rate)
     critical, kinetic = fit.critical_torque, fit.kinetic_torque
-    pairs = list(zip(starts.tolist(), ends.tolist(), strict=True))
-    friction, torque = found.friction_torque, found.torque
-    peak = np.array([friction[max(a - near, 0) : a + 2].max() for a, _ in pairs]) / critical
-    trough = np.array([torque[a : b + near].min() for a, b in pairs]) / kinetic
-    fastest = np.array([found.sliding_speed[a:b].max() for a, b in pairs])
-    sliding = np.array([float(np.median(friction[a:b])) for a, b in pairs]) / kinetic
+    slips = np.empty((4, n_slips))
+    describe_slips(
+        found.torque, found.friction_torque, found.sliding_speed, starts, ends, near,
+        np.empty(found.torque.size), slips,
+    )  # fmt: skip
+    peak, trough, fastest, sliding = slips
+    peak /= critical
+    trough /= kinetic
+    sliding /= kinetic
     time = starts / rate
     interval, duration = np.diff(time), (ends - starts) / rate
     stuck = np.maximum(starts[1:] - ends[:-1], 1) / rate
     numbers = {
-        "peak": float(np.median(peak)),
+        "peak": quantile(peak, 0.5),
         "peak_spread": float(peak.std()),
-        "peak_range": float(np.subtract(*np.percentile(peak, [90, 10]))),
+        "peak_range": quantile(peak, 0.9) - quantile(peak, 0.1),
         "peak_least": float(peak.min()),
-        "trough": float(np.median(trough)),
+        "trough": quantile(trough, 0.5),
         "trough_spread": float(trough.std()),
-        "fastest": float(np.median(fastest)),
+        "fastest": quantile(fastest, 0.5),
         "fastest_spread": float(fastest.std()),
-        "kinetic": float(np.median(sliding)),
+        "kinetic": quantile(sliding, 0.5),
         "kinetic_spread": float(sliding.std()),
-        "interval": math.log(float(np.median(interval))),
+        "interval": math.log(quantile(interval, 0.5)),
         "interval_spread": float(interval.std() / interval.mean()),
-        "duration": math.log(float(np.median(duration))),
+        "duration": math.log(quantile(duration, 0.5)),
         "duration_spread": float(duration.std() / duration.mean()),
-        "time_stuck": math.log(float(np.median(stuck))),
+        "time_stuck": math.log(quantile(stuck, 0.5)),
         "fastest_drift": _slope(time, fastest) * float(time.std()),
     }
     if n_slips >= 8:
@@ -231,19 +242,21 @@ def _torque(found: Reconstruction, fit: Fit) -> Numbers:
     block = int(0.02 * found.rate)
     passed = np.cumsum(torque)
     slow = (passed[block:] - passed[:-block]) / block
-    away = torque - torque.mean()
+    distribution = np.empty(12)
+    describe_distribution(torque, distribution)
+    highest, lowest, mean, spread, third = distribution[:5].tolist()
     return {
-        "mean": float(torque.mean()) / kinetic,
-        "spread": float(torque.std()) / kinetic,
+        "mean": mean / kinetic,
+        "spread": spread / kinetic,
         "drift": float(q[3] - q[0]),
         "bend": float(q[0] + q[3] - q[1] - q[2]),
         "early_drift": float(q[1] - q[0]),
         "quarters": float(q.std()),
         "slow": float(slow.std()) / kinetic,
-        "highest": float(torque.max()) / critical,
-        "lowest": float(torque.min()) / kinetic,
+        "highest": highest / critical,
+        "lowest": lowest / kinetic,
         "friction_highest": float(found.friction_torque.max()) / critical,
-        "skewness": float(away @ (away * away)) / torque.size / (float(torque.std()) ** 3 + 1e-9),
+        "skewness": third / (spread**3 + 1e-9),
     }
 
 

@@ -8,13 +8,22 @@ has too much, when it comes, and how it decays.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, rfft
 
 from features.kernels.segments import segment_spectra
-from noise.diagnosis.evidence.channel_summary import USABLE, band_bins, segment_frequency
+from noise.diagnosis.evidence.channel_kernel import band_power_sums
+from noise.diagnosis.evidence.channel_summary import (
+    USABLE,
+    band_bins,
+    bins_between,
+    quantile,
+    segment_frequency,
+)
+from noise.diagnosis.evidence.path_kernel import cross_powers, quarter_moments
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,6 +47,9 @@ _ECHO = (6e-4, 2e-2)
 
 _SHORT = 256
 """Samples of a short segment, in which impacts are told from what lasts."""
+
+_LOW, _HIGHEST = (-1.0, 2500.0), 12e3
+"""Bands of short segments: low from the constant on, high from there up to the highest [Hz]."""
 
 _CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
 
@@ -79,11 +91,11 @@ def path_summary(
     residual = m - p
     size, frequency = segment_frequency(rate)
     of_p, of_m = segment_spectra(p, size), segment_spectra(m, size)
-    pp, mm = (np.abs(of_p) ** 2).mean(axis=0), (np.abs(of_m) ** 2).mean(axis=0)
-    pm = (np.conj(of_p) * of_m).mean(axis=0)
-    left = (np.abs(of_m - of_p) ** 2).mean(axis=0)
+    powers, pm = np.empty((3, frequency.size)), np.empty(frequency.size, np.complex128)
+    cross_powers(of_p, of_m, powers, pm)
+    pp, mm, left = powers
     numbers = _by_band(pp, mm, pm, left, rate)
-    numbers |= _transfer(frequency, pp, mm, pm, rate)
+    numbers |= _transfer(size, pp, mm, pm, rate)
     numbers |= _by_time(p, m, residual)
     numbers |= _impacts(residual, rate, slips - ends.start / rate)
     return numbers, residual
@@ -112,14 +124,20 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
     """
     size = 2048
     x, y = segment_spectra(one, size), segment_spectra(other, size)
-    frequency = np.asarray(np.fft.rfftfreq(size, 1.0 / rate), np.float64)
-    cross = np.abs((np.conj(x) * y).mean(axis=0)) ** 2
-    power = (np.abs(x) ** 2).mean(axis=0) * (np.abs(y) ** 2).mean(axis=0)
+    powers, xy = np.empty((3, x.shape[1])), np.empty(x.shape[1], np.complex128)
+    cross_powers(x, y, powers, xy)
+    coherence = (xy.real**2 + xy.imag**2) / (powers[0] * powers[1] + 1e-30)
     return {
-        f"common_{i}": math.log(float((cross / (power + 1e-30))[inside].mean()) + 1e-9)
-        for i, (low, high) in enumerate(_CROSS_BANDS)
-        if (inside := (frequency > low) & (frequency < high)).any()
+        f"common_{i}": math.log(float(coherence[inside].mean()) + 1e-9)
+        for i, band in enumerate(_CROSS_BANDS)
+        if (inside := _bins(band, size, rate)).start < inside.stop
     }
+
+
+@lru_cache(maxsize=32)
+def _bins(band: tuple[float, float], length: int, rate: float) -> slice:
+    """Bins of a spectrum of `length` samples between two frequencies [Hz]."""
+    return bins_between(np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64), band)
 
 
 def _by_band(
@@ -129,45 +147,51 @@ def _by_band(
     left: NDArray[np.float64],
     rate: float,
 ) -> Numbers:
-    numbers: Numbers = {}
     coherent = np.abs(pm) ** 2 / (pp * mm + 1e-30) * mm
-    for i, inside in band_bins(rate):
-        a, c = float(pp[inside].sum()) + 1e-30, float(mm[inside].sum()) + 1e-30
-        share = min(float(coherent[inside].sum()) / c, 0.99999)
+    bands = band_bins(rate)
+    rows = np.stack([pp, mm, coherent, left, pm.real, pm.imag])[:, : bands.last[-1]]
+    sums = np.add.reduceat(rows, bands.first, axis=1).T  # each band begins where one ends
+    numbers: Numbers = {}
+    for i, n, (a, c, shared, wrong, real, imaginary) in zip(
+        bands.numbers, (bands.last - bands.first).tolist(), sums.tolist(), strict=True
+    ):
+        a, c = a + 1e-30, c + 1e-30
+        share = min(shared / c, 0.99999)
         numbers[f"gain_{i}"] = 0.5 * math.log(c / a)
         numbers[f"incoherent_{i}"] = math.log(1.0 - share + 1e-5)
-        numbers[f"transfer_{i}"] = math.log(1e-4 + abs(complex(pm[inside].sum()) / a - 1.0))
-        numbers[f"left_{i}"] = 0.5 * math.log(float(left[inside].sum()) / c + 1e-9)
-        numbers[f"excess_{i}"] = 0.5 * math.log(float(left[inside].mean()) + 1e-14)
-        numbers[f"level_{i}"] = 0.5 * math.log(float(mm[inside].mean()) + 1e-14)
+        numbers[f"transfer_{i}"] = math.log(1e-4 + abs(complex(real, imaginary) / a - 1.0))
+        numbers[f"left_{i}"] = 0.5 * math.log(wrong / c + 1e-9)
+        numbers[f"excess_{i}"] = 0.5 * math.log(wrong / n + 1e-14)
+        numbers[f"level_{i}"] = 0.5 * math.log((c - 1e-30) / n + 1e-14)
     return numbers
 
 
 def _transfer(
-    frequency: NDArray[np.float64],
+    size: int,
     pp: NDArray[np.float64],
     mm: NDArray[np.float64],
     pm: NDArray[np.complex128],
     rate: float,
 ) -> Numbers:
     """Gain, tilt, delay and decay of the transfer function from predicted to measured."""
-    inside = (frequency > _REFERENCE_BAND[0]) & (frequency < _REFERENCE_BAND[1])
+    inside, n_bins = _bins(_REFERENCE_BAND, size, rate), size // 2 + 1
+    octaves, taper = _weights(size, rate)
     h = pm[inside] / np.maximum(pp[inside], 1e-30)
     coherence = np.abs(pm[inside]) ** 2 / (pp[inside] * mm[inside] + 1e-30)
     weight = coherence / np.maximum(1.0 - coherence, 1e-3)
     total = float(weight.sum()) + 1e-12
-    magnitude = np.log(np.maximum(np.abs(h), 1e-6))
+    absolute = np.abs(h)
+    magnitude = np.log(np.maximum(absolute, 1e-6))
     gain = float((weight * magnitude).sum()) / total
-    octaves = np.log2(frequency[inside] / 700.0)
-    phases = np.zeros(frequency.size, complex)
-    phases[inside] = weight * h / np.maximum(np.abs(h), 1e-30)
-    length = _FINE * 2 * (frequency.size - 1)
+    phases = np.zeros(n_bins, complex)
+    phases[inside] = weight * h / np.maximum(absolute, 1e-30)
+    length = _FINE * size
     correlation = irfft(phases, length) * (0.5 * length / total)
     most = int(_LONGEST_DELAY * rate * _FINE)
     correlation = np.concatenate([correlation[-most:], correlation[: most + 1]])
     best = int(np.argmax(correlation))
-    impulse = np.zeros(frequency.size, complex)
-    impulse[inside] = h * np.sqrt(weight / (weight.max() + 1e-30)) * np.hanning(h.size) ** 0.25
+    impulse = np.zeros(n_bins, complex)
+    impulse[inside] = h * np.sqrt(weight / (weight.max() + 1e-30)) * taper
     answer = irfft(impulse)
     energy = answer**2
     whole = float(energy.sum()) + 1e-30
@@ -187,6 +211,13 @@ def _transfer(
         "ring_late": between(6e-3, 20e-3),
         "ring_before": math.log(float(energy[-int(0.02 * rate) :].sum()) / whole + 1e-6),
     } | _echo(answer, rate)
+
+
+@lru_cache(maxsize=8)
+def _weights(size: int, rate: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Octaves from the middle of the reference band [-], and a taper towards its ends [-]."""
+    frequency = np.fft.rfftfreq(size, 1.0 / rate)[_bins(_REFERENCE_BAND, size, rate)]
+    return np.log2(frequency / 700.0), np.hanning(frequency.size) ** 0.25
 
 
 def _echo(answer: NDArray[np.float64], rate: float) -> Numbers:
@@ -211,16 +242,17 @@ def _by_time(
     p: NDArray[np.float64], m: NDArray[np.float64], residual: NDArray[np.float64]
 ) -> Numbers:
     """Size and drift of the residual over the quarters of a recording."""
-    quarter = residual.size // 4
-
-    def quarters(x: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray(x[: 4 * quarter].reshape(4, quarter).std(axis=1)) + 1e-12
-
-    of_residual, of_gain = quarters(residual), quarters(m) / quarters(p)
+    found = np.empty((3, 6))
+    for row, x in zip(found, (residual, m, p), strict=True):
+        quarter_moments(x, row)
+    of_residual, of_m, of_p = found[:, 2:] + 1e-12
+    of_gain = of_m / of_p
+    (left, *_), (whole, *_) = found[:2].tolist()
+    kurtosis = (found[:, 1] / (found[:, 0] ** 2 + 1e-30) + 1e-9).tolist()
     return {
-        "residual": math.log(float(residual.std()) / (float(m.std()) + 1e-12) + 1e-9),
-        "residual_kurtosis": math.log(_kurtosis(residual)),
-        "kurtosis": math.log(_kurtosis(m) / _kurtosis(p)),
+        "residual": math.log(math.sqrt(left) / (math.sqrt(whole) + 1e-12) + 1e-9),
+        "residual_kurtosis": math.log(kurtosis[0]),
+        "kurtosis": math.log(kurtosis[1] / kurtosis[2]),
         "residual_drift": math.log(of_residual[3] / of_residual[0]),
         "residual_quarters": float(of_residual.std() / of_residual.mean()),
         "gain_drift": math.log(of_gain[3] / of_gain[0]),
@@ -229,15 +261,17 @@ def _by_time(
 
 def _impacts(residual: NDArray[np.float64], rate: float, slips: NDArray[np.float64]) -> Numbers:
     """Level of the residual in short segments above and below 2.5 kHz, and after slips."""
-    power = np.abs(segment_spectra(residual, _SHORT)) ** 2
-    frequency = np.fft.rfftfreq(_SHORT, 1.0 / rate)
-    high = power[:, (frequency > 2500.0) & (frequency < min(12e3, USABLE * rate))].sum(axis=1)
-    low = power[:, frequency < 2500.0].sum(axis=1)
+    spectra = segment_spectra(residual, _SHORT)
+    bins = [_bins(band, _SHORT, rate) for band in (_LOW, (_LOW[1], min(_HIGHEST, USABLE * rate)))]
+    first, last = np.array([[inside.start, inside.stop] for inside in bins]).T
+    powers = np.empty((len(spectra), 2))
+    band_power_sums(spectra, first, last, powers)
+    low, high = np.ascontiguousarray(powers.T)
     numbers = {
-        "high_floor": _half_log(float(np.percentile(high, 10))),
-        "high_most": _half_log(float(np.percentile(high, 98))),
+        "high_floor": _half_log(quantile(high, 0.1)),
+        "high_most": _half_log(quantile(high, 0.98)),
         "high_mean": _half_log(float(high.mean())),
-        "low_floor": _half_log(float(np.percentile(low, 10))),
+        "low_floor": _half_log(quantile(low, 0.1)),
     }
     if slips.size > 3:
         middle = (np.arange(high.size) + 1) * (_SHORT // 2) / rate

@@ -12,6 +12,7 @@ Differentiation makes noise of what the cell does not resolve, so everything is 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
 
     from sim.bushing import LumpedBushing
 
-__all__ = ["LEAD", "LIMIT", "TAIL", "Reconstruction", "closed_loop", "reconstruct"]
+__all__ = [
+    "LEAD", "LIMIT", "TAIL", "Reconstruction", "closed_length", "closed_loop", "closed_spectrum",
+    "reconstruct",
+]  # fmt: skip
 
 LIMIT = 8000.0
 """Highest frequency kept [Hz], at most a third of the rate; its flank ends a third above."""
@@ -78,6 +82,7 @@ def reconstruct(
     shaft_speed: NDArray[np.float64],
     rate: float,
     bushing: LumpedBushing,
+    spectrum: NDArray[np.complex128] | None = None,
 ) -> Reconstruction:
     """Rebuild the contact's torque and sliding speed from the torque that was measured.
 
@@ -90,6 +95,8 @@ def reconstruct(
     rate : float
         [Hz]
     bushing : LumpedBushing
+    spectrum : ndarray of complex, optional
+        Of the torque, where it is known already, as `closed_spectrum` gives it [Nm].
 
     Returns
     -------
@@ -110,42 +117,98 @@ def reconstruct(
     """
     n = torque.size
     mean = float(np.mean(torque))
-    closed = closed_loop(torque, rate) - mean
-    length = closed.size
-    s = 2j * np.pi * np.fft.rfftfreq(length, 1.0 / rate)
-    spectrum = rfft(closed) * _low_pass(np.abs(s) / (2.0 * np.pi), rate)
-    of_elastomer = bushing.elastomer_stiffness + bushing.elastomer_damping * s
-    twist = spectrum / of_elastomer
-    by_damping = bushing.elastomer_damping * s * s * twist / of_elastomer
-    clamp = by_clamp = np.zeros_like(spectrum)
-    if not bushing.clamp_is_fixed:
-        of_clamp = (
-            bushing.support_stiffness + bushing.support_damping * s + bushing.clamp_inertia * s * s
-        )
-        clamp = spectrum / of_clamp
-        by_damping = by_damping + bushing.support_damping * s * s * clamp / of_clamp
-        by_clamp = bushing.clamp_inertia * s**3 * clamp / of_clamp
+    if spectrum is None:
+        spectrum = closed_spectrum(torque, rate)
+    length = closed_length(n, rate)
     kept = slice(round(LEAD * rate), n - round(TAIL * rate))
-
-    def back(x: NDArray[np.complex128]) -> NDArray[np.float64]:
-        return np.asarray(irfft(x, length)[kept])
-
-    smooth = back(spectrum) + mean
-    surface = twist + clamp
+    filters = _filters(length, rate, bushing)
+    bins = spectrum[: filters.shape[1]].copy()
+    bins[0] -= mean * length
+    spectra = np.zeros((len(filters), length // 2 + 1), np.complex128)
+    np.multiply(filters, bins, out=spectra[:, : bins.size])
+    rows = irfft(spectra, length, axis=1, overwrite_x=True)[:, kept]
+    torques, inertial, torque_rate, creep, by_stiffness, by_damping, *of_clamp = rows
+    clamp_speed, by_clamp = of_clamp or np.zeros((2, torques.size))
     speed = shaft_speed[kept]
+    smooth = torques + mean
     return Reconstruction(
         rate=rate,
         start=kept.start / rate,
         torque=smooth,
-        friction_torque=smooth + bushing.elastomer_inertia * back(surface * s * s),
-        torque_rate=back(spectrum * s),
+        friction_torque=smooth + inertial,
+        torque_rate=torque_rate,
         shaft_speed=speed,
-        sliding_speed=speed - back(surface * s),
-        clamp_speed=back(clamp * s),
-        by_stiffness=back(bushing.elastomer_stiffness * s * twist / of_elastomer),
-        by_damping=back(by_damping),
-        by_clamp=back(by_clamp),
+        sliding_speed=speed - creep,
+        clamp_speed=clamp_speed,
+        by_stiffness=by_stiffness,
+        by_damping=by_damping,
+        by_clamp=by_clamp,
     )
+
+
+@lru_cache(maxsize=6)
+def _filters(length: int, rate: float, bushing: LumpedBushing) -> NDArray[np.complex128]:
+    """Transfer functions from the torque to all that is rebuilt, up to the end of the low-pass.
+
+    Those of a clamp that moves come last.
+    """
+    frequency = np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
+    low_pass = _low_pass(frequency, rate)
+    n = int(np.flatnonzero(low_pass)[-1]) + 1
+    s, low_pass = 2j * np.pi * frequency[:n], low_pass[:n]
+    of_elastomer = bushing.elastomer_stiffness + bushing.elastomer_damping * s
+    twist = low_pass / of_elastomer
+    by_stiffness = bushing.elastomer_stiffness * s * twist / of_elastomer
+    by_damping = bushing.elastomer_damping * s * s * twist / of_elastomer
+    surface, of_clamp = twist, []
+    if not bushing.clamp_is_fixed:
+        yields = (
+            bushing.support_stiffness + bushing.support_damping * s + bushing.clamp_inertia * s * s
+        )
+        clamp = low_pass / yields
+        surface = twist + clamp
+        by_damping = by_damping + bushing.support_damping * s * s * clamp / yields
+        of_clamp = [clamp * s, bushing.clamp_inertia * s**3 * clamp / yields]
+    inertial = bushing.elastomer_inertia * surface * s * s
+    found = np.stack([
+        low_pass, inertial, low_pass * s, surface * s, by_stiffness, by_damping, *of_clamp,
+    ])  # fmt: skip
+    found.setflags(write=False)
+    return found
+
+
+def closed_spectrum(signal: NDArray[np.float64], rate: float) -> NDArray[np.complex128]:
+    """Transform of a signal that `closed_loop` has led back to its start.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        [any unit]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray of complex, shape (`closed_length` // 2 + 1,)
+        [unit of the signal]
+
+    Examples
+    --------
+    >>> closed_spectrum(np.array([0.0, 2.0]), 8.0).real.round(1)
+    array([ 4., -2.,  0.])
+    """
+    return np.asarray(rfft(closed_loop(signal, rate)))
+
+
+def closed_length(n: int, rate: float) -> int:
+    """Return how many samples `closed_loop` makes of `n` at a sampling rate [Hz].
+
+    Examples
+    --------
+    >>> closed_length(2, 8.0)
+    4
+    """
+    return int(next_fast_len(n + round(_WAY_BACK * rate), real=True))
 
 
 def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
@@ -169,9 +232,13 @@ def closed_loop(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]
     array([0., 2., 2., 0.])
     """
     n = signal.size
-    length = next_fast_len(n + round(_WAY_BACK * rate), real=True)
-    turn = 0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, length - n))
+    turn = _turn(closed_length(n, rate) - n)
     return np.concatenate([signal, signal[0] + turn * (signal[-1] - signal[0])])
+
+
+@lru_cache(maxsize=8)
+def _turn(n: int) -> NDArray[np.float64]:
+    return np.asarray(0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, n)))
 
 
 def _low_pass(frequency: NDArray[np.float64], rate: float) -> NDArray[np.float64]:

@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.diagnosis.evidence.contact_kernel import gather_rings, gather_slipping, mean_cycle
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -63,31 +65,19 @@ def cycle_shape(
     """
     if starts.size < _FEWEST:
         return {}
-    torque = found.torque / fit.critical_torque
-    creep = found.sliding_speed / np.maximum(np.abs(found.shaft_speed), 0.05)
-    earlier = np.concatenate([[0], ends[:-1]])
-    later = np.concatenate([starts[1:], [torque.size]])
+    rate = found.rate
+    before, after = (np.array([round(t * rate) for t in times]) for times in (_BEFORE, _AFTER))
+    sums = np.empty((before.size + after.size, 3))
+    mean_cycle(
+        found.torque, found.sliding_speed, found.shaft_speed, starts, ends, before, after, sums
+    )
+    names = [f"before_{i}" for i in range(before.size)] + [f"after_{i}" for i in range(after.size)]
     numbers: dict[str, float] = {}
-    for i, time in enumerate(_BEFORE):
-        at = starts - round(time * found.rate)
-        inside = at > earlier
-        numbers |= _means(f"before_{i}", torque, creep, at[inside])
-    for i, time in enumerate(_AFTER):
-        at = ends + round(time * found.rate)
-        inside = at < later
-        numbers |= _means(f"after_{i}", torque, creep, at[inside])
+    for name, (count, torque, crept) in zip(names, sums.tolist(), strict=True):
+        if count >= _FEWEST:
+            numbers[f"{name}_torque"] = torque / count / fit.critical_torque
+            numbers[f"{name}_creep"] = crept / count
     return numbers | _ringing(found, starts, ends)
-
-
-def _means(
-    name: str, torque: NDArray[np.float64], creep: NDArray[np.float64], at: NDArray[np.int64]
-) -> dict[str, float]:
-    if at.size < _FEWEST:
-        return {}
-    return {
-        f"{name}_torque": float(torque[at].mean()),
-        f"{name}_creep": float(creep[at].mean()),
-    }
 
 
 def _ringing(
@@ -104,26 +94,24 @@ def _ringing(
     first, last = first[long], last[long]
     if first.size < _FEWEST:
         return {}
-    lengths = last - first
-    stick = np.repeat(np.arange(first.size), lengths)
-    at = np.arange(lengths.sum()) + np.repeat(first - (np.cumsum(lengths) - lengths), lengths)
-
-    columns = [found.sliding_speed, found.by_stiffness, found.by_damping, found.by_clamp]
-    means = [np.bincount(stick, x[at]) / lengths for x in columns]
-    rings = [x[at] - mean[stick] for x, mean in zip(columns, means, strict=True)]
+    rows, sums = np.empty((4, found.torque.size)), np.empty(4)
+    signals = (found.sliding_speed, found.by_stiffness, found.by_damping, found.by_clamp)
+    n = gather_rings(signals, first, last, rows, sums)
+    rings = rows[:, :n]
+    products = rings @ rings.T
+    spreads = np.sqrt(np.diag(products) / n)  # their means are 0
     numbers = {
-        "slow_stiffness": float(np.sum(lengths * means[0]) / (np.sum(lengths * means[1]) + 1e-9)),
-        "ring": math.log(float(np.std(rings[1])) + 1e-3),
+        "slow_stiffness": float(sums[0] / (sums[1] + 1e-9)),
+        "ring": math.log(float(spreads[1]) + 1e-3),
     }
-    known = [k for k in (1, 2, 3) if float(np.std(rings[k])) > 1e-6]
-    a = np.stack([rings[k] for k in known], axis=1)
-    gram = a.T @ a
+    known = [k for k in (1, 2, 3) if spreads[k] > 1e-6]
+    gram = products[np.ix_(known, known)]
     gram += 1e-4 * np.diag(np.diag(gram))
-    x = np.linalg.solve(gram, a.T @ rings[0])
+    x = np.linalg.solve(gram, products[known, 0])
     names = {1: "ring_stiffness", 2: "ring_damping", 3: "ring_clamp"}
     numbers |= {names[k]: float(value) for k, value in zip(known, x, strict=True)}
-    spread = float(np.var(rings[0]))
-    numbers["ring_left"] = 0.5 * math.log(float(np.var(rings[0] - a @ x)) / (spread + 1e-12) + 1e-6)
+    left = float(np.var(rings[0] - x @ rings[known]))
+    numbers["ring_left"] = 0.5 * math.log(left / (float(spreads[0]) ** 2 + 1e-12) + 1e-6)
     numbers["ring_unlike"] = numbers["ring_stiffness"] - numbers["slow_stiffness"]
     return numbers
 
@@ -159,26 +147,23 @@ def torque_by_speed(
     dict of str to float
         Torques over the kinetic one of the rig file [-].
     """
-    faster = np.gradient(found.sliding_speed) > 0.0
+    n, n_classes = slipping.size, _SPEED_EDGES.size - 1
+    rows, target, classes = np.empty((n, 4)), np.empty(n), np.empty((2, n_classes, 3))
+    m = gather_slipping(
+        found.sliding_speed, found.friction_torque / fit.kinetic_torque, slipping, _FITTED,
+        _SPEED_EDGES, rows, target, classes,
+    )  # fmt: skip
     numbers: dict[str, float] = {}
-    for name, chosen in (("up", slipping & faster), ("down", slipping & ~faster)):
-        place = np.digitize(found.sliding_speed[chosen], _SPEED_EDGES)
-        torque = found.friction_torque[chosen] / fit.kinetic_torque
-        for i in range(1, _SPEED_EDGES.size):
-            here = torque[place == i]
-            numbers[f"law_{name}_{i}"] = (
-                float(here.mean()) if here.size >= _FEWEST_SAMPLES else math.nan
-            )
+    for name, row in zip(("up", "down"), classes.tolist(), strict=True):
+        for i, (count, total, square) in enumerate(row, start=1):
+            enough = count >= _FEWEST_SAMPLES
+            numbers[f"law_{name}_{i}"] = total / count if enough else math.nan
             if name == "down":
-                numbers[f"law_spread_{i}"] = float(here.std()) if here.size > 20 else math.nan
-    inside = slipping & (found.sliding_speed > _FITTED[0])
-    inside &= found.sliding_speed < _FITTED[1]
-    if inside.sum() > _ENOUGH:
-        v = found.sliding_speed[inside] / _FITTED[1] - 0.5
-        a = np.stack([np.ones_like(v), v, v * v - 1.0 / 12.0, faster[inside] - 0.5], axis=1)
-        b = found.friction_torque[inside] / fit.kinetic_torque
-        x = np.linalg.solve(a.T @ a + 1e-6 * len(a) * np.eye(4), a.T @ b)
+                numbers[f"law_spread_{i}"] = math.sqrt(square / count) if count > 20 else math.nan
+    if m > _ENOUGH:
+        a, b = rows[:m], target[:m]
+        x = np.linalg.solve(a.T @ a + 1e-6 * m * np.eye(4), a.T @ b)
         names = ("law_level", "law_slope", "law_bend", "law_loop")
-        numbers |= {name: float(value) for name, value in zip(names, x, strict=True)}
+        numbers |= dict(zip(names, x.tolist(), strict=True))
         numbers["law_left"] = float(np.std(b - a @ x))
     return numbers

@@ -15,21 +15,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.segments import segment_spectra
 from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
-    band_bins,
+    band_levels,
     channel_summary,
     hum_summary,
-    segment_frequency,
     shaft_speed,
 )
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
-from noise.diagnosis.evidence.reconstruction import reconstruct
+from noise.diagnosis.evidence.reconstruction import closed_spectrum, reconstruct
 from noise.diagnosis.simulated.nominal import condition_key, nominal_repeats
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict_outputs
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
@@ -96,8 +94,9 @@ def summary(
         What a missing channel would tell is missing [unit of the number].
     """
     condition, rate = known_condition(recording.condition), recording.rate
+    # Arrays of the one kind that loops are compiled for.
     signal = {
-        kind: recording.samples[row]
+        kind: np.require(recording.samples[row], np.float64, ["C", "W"])
         for kind in ("torque", *_OUTPUTS, "angle")
         if (row := recording.first(kind)) is not None
     }
@@ -112,21 +111,21 @@ def summary(
         if kind in signal:
             numbers |= _named(kind, channel_summary(signal[kind], rate))
             numbers |= _named(f"{kind}_raw", hum_summary(signal[kind], rate))
-            numbers |= _named(kind, _levels(signal[kind], rate))
+            numbers |= _named(kind, band_levels(signal[kind], rate))
     if "torque" not in signal:
         return numbers
     torque = signal["torque"]
     bushing = lumped_bushing(rig, condition.interference, condition.support_stiffness)
-    found = reconstruct(turn * torque, speed, rate, bushing)
+    spectrum = closed_spectrum(torque, rate)
+    found = reconstruct(turn * torque, speed, rate, bushing, turn * spectrum)
     fit = rig.fit(condition.interference)
     numbers |= _named("contact", contact_summary(found, fit, wanted))
     slips = slip_starts(found, wanted)[0] / rate + found.start
     residuals = {}
-    for kind in _OUTPUTS:
-        if kind in signal:
-            expected = predict(torque, rate, transfer_functions[kind])
-            more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
-            numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
+    paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
+    for kind, expected in predict_outputs(spectrum, torque.size, rate, paths).items():
+        more, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
+        numbers |= _named(kind, more) | _named(kind, hum_summary(residuals[kind], rate))
     if len(residuals) == len(_OUTPUTS):
         numbers |= common_residual(residuals["acceleration"], residuals["pressure"], rate)
     return numbers
@@ -231,14 +230,6 @@ def same_channels(repeat: Recording, recording: Recording) -> Recording:
     return replace(
         repeat, samples=repeat.samples[rows], channels=tuple(repeat.channels[i] for i in rows)
     )
-
-
-def _levels(x: NDArray[np.float64], rate: float) -> Numbers:
-    power = (np.abs(segment_spectra(x, segment_frequency(rate)[0])) ** 2).mean(axis=0)
-    return {
-        f"band_{i}": 0.5 * math.log(float(power[inside].mean()) + 1e-14)
-        for i, inside in band_bins(rate)
-    }
 
 
 def _moments(repeats: list[Numbers]) -> tuple[Numbers, Numbers]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from models.condition import known_condition
 from models.sensors import Sensor
+from noise.diagnosis.evidence.reconstruction import closed_spectrum
 from noise.diagnosis.simulated.repeats import (
     CHANNELS,
     Scatter,
@@ -21,7 +22,11 @@ from noise.diagnosis.simulated.repeats import (
     plan_repeat,
     record,
 )
-from noise.diagnosis.simulated.transfer_functions import chain_of, predict, shift_clamp_mode
+from noise.diagnosis.simulated.transfer_functions import (
+    chain_of,
+    predict_outputs,
+    shift_clamp_mode,
+)
 from sim.acquisition import decimate_sensed
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
@@ -114,19 +119,21 @@ def nominal_recordings(
             corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
             for corner in {corners[name] for name in ("torque", *_OUTPUTS)}
         }
-        torque = {name: by_filter[corners[name]] for name in ("torque", *_OUTPUTS)}
         angle = decimate_sensed(motion.shaft_angle, decimation, plan.rate, rig.sensors.of("angle"))
         lumped = lumped_bushing(once, *at)
-        outputs = {
-            name: predict(
-                _steadied(torque[name], kept, rate), rate,
-                shift_clamp_mode(transfer_functions[name], bushing, lumped),
-            )[kept]
-            for name in _OUTPUTS
-        }  # fmt: skip
+        outputs: dict[str, NDArray[np.float64]] = {}
+        for corner in {corners[name] for name in _OUTPUTS}:
+            paths = {
+                name: shift_clamp_mode(transfer_functions[name], bushing, lumped)
+                for name in _OUTPUTS
+                if corners[name] == corner
+            }
+            torque = _steadied(by_filter[corner], kept, rate)
+            spectrum = closed_spectrum(torque, rate)
+            outputs |= predict_outputs(spectrum, torque.size, rate, paths)
         signals = {
-            "torque": torque["torque"][kept],
-            **outputs,
+            "torque": by_filter[corners["torque"]][kept],
+            **{name: outputs[name][kept] for name in _OUTPUTS},
             "angle": angle[kept] - angle[before],
         }
         through = rig.sensors.unfiltered()

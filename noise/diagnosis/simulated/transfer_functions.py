@@ -8,10 +8,11 @@ impulse response.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.fft import rfft
+from scipy.fft import irfft, rfft
 
 from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
@@ -20,7 +21,7 @@ from models.transfer_functions.filtering import filter_period
 from models.transfer_functions.impulse_response import FINER, fill_between_lines, impulse_response
 from models.transfer_functions.measured import measured_with
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.evidence.reconstruction import closed_loop
+from noise.diagnosis.evidence.reconstruction import closed_length, closed_loop
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -39,6 +40,7 @@ __all__ = [
     "TransferFunctionCache",
     "chain_of",
     "predict",
+    "predict_outputs",
     "shift_clamp_mode",
     "torque_transfer_functions",
     "with_chain_effects",
@@ -210,6 +212,68 @@ def predict(
     """
     closed = closed_loop(torque, rate)
     return filter_period(closed - closed.mean(), rate, transfer, falls_below=True)[: torque.size]
+
+
+def predict_outputs(
+    spectrum: NDArray[np.complex128],
+    n: int,
+    rate: float,
+    transfer_functions: Mapping[str, TransferFunction],
+) -> dict[str, NDArray[np.float64]]:
+    """Send a torque through several transfer functions, as `predict` does through one.
+
+    Parameters
+    ----------
+    spectrum : ndarray of complex
+        Of the torque, as `closed_spectrum` gives it [Nm].
+    n : int
+        Samples of the torque.
+    rate : float
+        Sampling rate [Hz].
+    transfer_functions : mapping of str to TransferFunction
+        From N m.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+        [output unit of each]
+
+    Examples
+    --------
+    >>> double = TransferFunction(np.array([0.0, 4e3]), np.array([2.0 + 0j, 2.0 + 0j]))
+    >>> tone = np.sin(2 * np.pi * 100.0 * np.arange(800) / 8e3)
+    >>> from noise.diagnosis.evidence.reconstruction import closed_spectrum
+    >>> found = predict_outputs(closed_spectrum(tone, 8e3), 800, 8e3, {"pressure": double})
+    >>> bool(np.allclose(found["pressure"], predict(tone, 8e3, double)))
+    True
+    """
+    length = closed_length(n, rate)
+    outputs = [
+        spectrum * _on_lines(_Same(transfer), length, rate)
+        for transfer in transfer_functions.values()
+    ]
+    rows = irfft(np.stack(outputs), length, axis=1)[:, :n] if outputs else ()
+    return dict(zip(transfer_functions, rows, strict=True))
+
+
+class _Same:
+    """An object that is looked up as itself, whatever it holds: its content takes long to hash."""
+
+    def __init__(self, it: TransferFunction) -> None:
+        self.it = it
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.it is other.it
+
+    def __hash__(self) -> int:
+        return id(self.it)
+
+
+@lru_cache(maxsize=16)
+def _on_lines(same: _Same, length: int, rate: float) -> NDArray[np.complex128]:
+    """Response at the lines of a transform; the same few are asked for again and again."""
+    frequencies = np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
+    return same.it.at(frequencies, falls_below=True)
 
 
 def shift_clamp_mode(

@@ -27,7 +27,7 @@ from noise.training.calibrate.report import (
     speeds_page,
     values_page,
 )
-from noise.training.calibrate.thesis_table import CELLS, SPEEDS_ALONE, THESIS_TABLE
+from noise.training.calibrate.thesis_table import CELLS, THESIS_TABLE
 from noise.training.calibrate.unknowns import rig_of, start, values_at
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def _run(options: argparse.Namespace) -> None:
     fitted = {cell: speed for cell, speed in speeds.items() if cell in CELLS}
     print(speeds_page("Fitted, at 0.279 mm", fitted))
     hints = {cell: speed for cell, speed in speeds.items() if cell not in CELLS}
-    print(speeds_page("A hint to the search, at 0.178 mm", hints))
+    print(speeds_page("Fitted with less weight, at 0.178 mm", hints))
     print(noises_page(rig))
     if options.leave_out:
         predicted = dict(Parallel(n_jobs=-1)(delayed(_predicted)(options, cell) for cell in CELLS))
@@ -87,8 +87,8 @@ def _run(options: argparse.Namespace) -> None:
 
 
 def _predicted(options: argparse.Namespace, cell: TableNumber) -> tuple[TableNumber, float]:
-    """Critical speed of a rig that is fitted to all cells but this."""
-    others = [other for other in SPEEDS_ALONE if other != cell]
+    """Critical speed of a rig that is fitted to all numbers but this."""
+    others = [other for other in THESIS_TABLE if other != cell]
     found = _fitted(options, others, f"without {cell}", rounded=True)
     return cell, measured_speeds(found.rig, (cell,))[cell]
 

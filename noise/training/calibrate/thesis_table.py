@@ -2,10 +2,13 @@
 
 The six critical speeds at 0.279 mm (Tables 5.1 and 5.2) are what is fitted, and what can be left
 out. The rest steers the search with less weight: V_crit2 at 0.178 mm, stick-slip beyond 13 rad/s at
-0.381 mm, mean torques that hardly vary with speed (5.1.1), and the noises of 5.2.3.
+0.381 mm and how slowly the rate of slips rises there, mean torques that hardly vary with speed
+(5.1.1), and the noises of 5.2.3.
 """
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 
@@ -30,6 +33,7 @@ _WINDOW = 0.8, 1.35
 """Over what was measured: where the grid is fine."""
 
 _CRITICAL_SPEEDS, _THIN, _FLATNESS, _STICK, _NOISE = 20.0, 1.25, 2.0, 0.15, 0.25
+_RISE, _TIGHT_TORQUE = 0.25, 1.0
 """Weights."""
 
 _FLAT = 1.10
@@ -63,12 +67,22 @@ THIN_CELLS = tuple(
     )
     for support in SUPPORTS
 )
-"""At 0.178 mm, where stiffness and damping were not measured: a hint."""
+"""At 0.178 mm, where stiffness and damping were not measured."""
 
 _FLAT_TORQUES = tuple(
     TableNumber("mean_torque_spread", _FLAT, 0.279e-3, support, _grid(support), _FLATNESS)
     for support in SUPPORTS
 )
+
+_RISES = tuple(
+    TableNumber("slip_rate_rise", 17.5 / 2.5, 0.381e-3, LONG, speeds, _RISE)
+    for speeds in pairwise((2.5, 5.0, 7.5, 10.0))
+)
+"""By 10 to 25 Hz for each 2.5 rad/s (5.2.1)."""
+
+_TIGHT_MEAN = (
+    TableNumber("mean_torque", 30.0, 0.381e-3, LONG, (5.0,), _TIGHT_TORQUE),
+)  # Appendix G
 
 _STICKING = tuple(
     TableNumber("sudden_share", LEAST_SUDDEN, 0.381e-3, support, (speed,), _STICK)
@@ -92,4 +106,4 @@ NOISES = tuple(
 SPEEDS_ALONE = CELLS + _FLAT_TORQUES
 """Without the other interferences and the noises."""
 
-THESIS_TABLE = SPEEDS_ALONE + THIN_CELLS + _STICKING + NOISES
+THESIS_TABLE = SPEEDS_ALONE + THIN_CELLS + _STICKING + _RISES + _TIGHT_MEAN + NOISES

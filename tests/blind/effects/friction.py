@@ -42,52 +42,52 @@ def logarithmic_creep(s, a, case, run):
 
 @form("velocity_weakening", "friction", DEVELOPMENT)
 def inverse_root(s, a, case, run):
-    s.weakening = 1.0 - 0.5 * a * (1.0 - 1.0 / np.sqrt(1.0 + _SLIDING / case.uniform(2.0, 8.0)))
+    s.weakening *= 1.0 - 0.5 * a * (1.0 - 1.0 / np.sqrt(1.0 + _SLIDING / case.uniform(2.0, 8.0)))
 
 
 @form("velocity_weakening", "friction", DEVELOPMENT)
 def two_plateaus(s, a, case, run):
     middle, width = case.uniform(4.0, 9.0), case.uniform(3.0, 8.0)
     x = np.clip((_SLIDING - middle) / width + 0.5, 0.0, 1.0)
-    s.weakening = 1.0 - 0.35 * a * (x * x * (3.0 - 2.0 * x) + 0.2 * _SLIDING / 60.0)
+    s.weakening *= 1.0 - 0.35 * a * (x * x * (3.0 - 2.0 * x) + 0.2 * _SLIDING / 60.0)
 
 
 @form("velocity_weakening", "friction", SEALED)
 def arctangent(s, a, case, run):
     x = _SLIDING / case.uniform(2.5, 10.0)
-    s.weakening = 1.0 - 0.4 * a * 2.0 / np.pi * np.arctan(x)
+    s.weakening *= 1.0 - 0.4 * a * 2.0 / np.pi * np.arctan(x)
 
 
 @form("velocity_weakening", "friction", SEALED)
 def table_of_a_tribometer(s, a, case, run):
     knots = np.array([0.0, 1.0, 2.0, 4.0, 7.0, 12.0, 20.0, 35.0, 60.0])
     fall = np.concatenate([[0.0], np.cumsum(case.dirichlet(np.full(knots.size - 1, 2.0)))])
-    s.weakening = 1.0 - 0.4 * a * np.interp(_SLIDING, knots, fall)
+    s.weakening *= 1.0 - 0.4 * a * np.interp(_SLIDING, knots, fall)
 
 
 @form("velocity_strengthening", "friction", DEVELOPMENT)
 def root_of_speed(s, a, case, run):
     v = case.uniform(1.5, 4.0)
-    s.weakening = 1.0 + 0.5 * a * (np.sqrt(1.0 + _SLIDING / v) - 1.0) / (np.sqrt(1 + 10 / v) - 1)
+    s.weakening *= 1.0 + 0.5 * a * (np.sqrt(1.0 + _SLIDING / v) - 1.0) / (np.sqrt(1 + 10 / v) - 1)
 
 
 @form("velocity_strengthening", "friction", DEVELOPMENT)
 def hyperbolic_sine_of_eyring(s, a, case, run):
     v = case.uniform(1.0, 3.0)
-    s.weakening = 1.0 + 0.5 * a * np.arcsinh(_SLIDING / v) / np.arcsinh(10.0 / v)
+    s.weakening *= 1.0 + 0.5 * a * np.arcsinh(_SLIDING / v) / np.arcsinh(10.0 / v)
 
 
 @form("velocity_strengthening", "friction", SEALED)
 def lubricated_power(s, a, case, run):
     m = case.uniform(0.55, 0.85)
-    s.weakening = 1.0 + 0.5 * a * ((1.0 + _SLIDING) ** m - 1.0) / (11.0**m - 1.0)
+    s.weakening *= 1.0 + 0.5 * a * ((1.0 + _SLIDING) ** m - 1.0) / (11.0**m - 1.0)
 
 
 @form("velocity_strengthening", "friction", SEALED)
 def from_a_threshold(s, a, case, run):
     start = case.uniform(0.5, 2.5)
     away = 0.5 * (_SLIDING - start + np.hypot(_SLIDING - start, 0.8))
-    s.weakening = 1.0 + 0.4 * a * (away - away[0]) / 10.0
+    s.weakening *= 1.0 + 0.4 * a * (away - away[0]) / 10.0
 
 
 def _aged(s, a, share):

@@ -1,36 +1,31 @@
 """Six friction laws of the second rig, in formulas of its own.
 
-Three stick truly and run on the tables of `tests.blind.kernel`; three creep.
+Three stick truly and run on the tables of `tests.blind.kernel`; three creep. The logarithm of rate
+and state spans three decades, of which a cycle spans one: its drop is the larger.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import kernel
-from ..rig import STEP_RATE, Turned, turn
-from . import contact_kernel as creeping
+from .. import contact, kernel
+from ..laws import Law, contact_of
+from ..rig import turn
 
 if TYPE_CHECKING:
-    from ..rig import Setup
+    from ..rig import Setup, Turned
 
 __all__ = ["LAWS", "Law", "draw_law", "turn_with"]
 
 LAWS = ("constant", "stribeck", "rate_and_state", "memory", "bristle", "ageing")
 
+_CREEPING = {
+    "bristle": contact.BRISTLE, "rate_and_state": contact.RATE_AND_STATE, "memory": contact.MEMORY,
+}  # fmt: skip
 _SLIDING = np.linspace(0.0, kernel.LARGEST_SLIDING, kernel.POINTS)
 _AGE = kernel.LOWEST_AGE * 10.0 ** (kernel.AGE_DECADES * np.linspace(0.0, 1.0, kernel.POINTS))
-
-
-@dataclass(frozen=True)
-class Law:
-    """A law by name, with its own numbers in SI units; torques are those of a fit."""
-
-    name: str
-    values: dict[str, float]
 
 
 def draw_law(name: str, rng: np.random.Generator) -> Law:
@@ -73,25 +68,6 @@ def turn_with(setup: Setup, law: Law) -> Turned:
     if law.name == "ageing":
         setup.ageing = 1.0 - np.exp(-((_AGE / v["time"]) ** 0.7))
         return turn(setup)
-    kinds = {
-        "bristle": creeping.BRISTLE,
-        "rate_and_state": creeping.RATE_AND_STATE,
-        "memory": creeping.MEMORY,
-    }
-    c = np.ones(creeping.N_CONTACT)
-    c[creeping.STRENGTH], c[creeping.DROP] = p[kernel.T_KIN], drop
-    if law.name == "rate_and_state":
-        c[creeping.DROP] *= 2.5  # a logarithm over three decades, of which a cycle spans one
-    c[creeping.STIFFNESS] = v["stiffness"] * p[kernel.T_KIN]
-    c[creeping.VISCOUS] = v["viscous"] * p[kernel.T_KIN]
-    for name, place in (
-        ("speed", creeping.SPEED), ("renewal", creeping.RENEWAL), ("time", creeping.TIME),
-        ("direct", creeping.DIRECT), ("weakening", creeping.WEAKENING),
-    ):  # fmt: skip
-        c[place] = v.get(name, 0.0 if name in ("direct", "weakening") else 1.0)
-    steps = int(np.ceil(STEP_RATE / setup.rate))
-    result = np.empty((setup.n, kernel.N_COLUMNS))
-    creeping.integrate(
-        kinds[law.name], c, p, steps, 1.0 / (steps * setup.rate), setup.omega, result
-    )
-    return Turned(setup.rate, setup.settle, result, np.zeros((0, 2)))
+    setup.law = _CREEPING[law.name]
+    setup.contact = contact_of(v, drop=2.5 if law.name == "rate_and_state" else 1.0)
+    return turn(setup)

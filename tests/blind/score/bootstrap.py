@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ __all__ = ["Aim", "Figure", "Quantity", "at_least", "at_most", "between", "figur
 
 DRAWS = 1000
 LEVEL = 0.95
+_NORMAL = 1.959964
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,10 @@ class Figure:
 
 
 def figure(quantity: Quantity, rng: np.random.Generator, draws: int = DRAWS) -> Figure:
-    """Value and percentile interval of a quantity; draws for which it is undefined are left out."""
+    """Value and interval of a quantity: Wilson's of a share, else percentiles of draws.
+
+    Draws for which it is undefined are left out. Of a share that is 0 or 1 draws say nothing.
+    """
     n = len(quantity.rows)
     value = quantity.statistic(quantity.rows) if n else np.nan
     if not np.isfinite(value):
@@ -102,4 +107,14 @@ def figure(quantity: Quantity, rng: np.random.Generator, draws: int = DRAWS) -> 
     ])  # fmt: skip
     kept = found[np.isfinite(found)]
     low, high = np.quantile(kept, [0.5 - LEVEL / 2, 0.5 + LEVEL / 2])
+    if quantity.statistic is mean and np.isin(quantity.rows[:, 0], (0.0, 1.0)).all():
+        low, high = _share(value, n)
     return Figure(quantity.name, n, float(value), float(low), float(high), quantity.aim, found)
+
+
+def _share(p: float, n: int) -> tuple[float, float]:
+    """Wilson's interval of a share."""
+    middle = p + _NORMAL**2 / (2 * n)
+    half = _NORMAL * math.sqrt(p * (1.0 - p) / n + _NORMAL**2 / (4 * n * n))
+    scale = 1.0 + _NORMAL**2 / n
+    return max(0.0, (middle - half) / scale), min(1.0, (middle + half) / scale)

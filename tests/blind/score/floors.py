@@ -18,14 +18,15 @@ from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.floor import case_gap
 
 from ..cases import Case, run_case, write_case
-from ..design import draw_design
+from ..design import design_of
 from ..generate import each
 from .truth import LEAST_GAP
 
-__all__ = ["add_floors", "floors_of"]
+__all__ = ["add_floors", "floors_of", "gap_from_rig_file"]
 
 
-def _distance(case: Case) -> float:
+def gap_from_rig_file(case: Case) -> float:
+    """Distance of recordings from what their rig file simulates, in the diagnosis' floors."""
     with tempfile.TemporaryDirectory() as away, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of bands that a measured response does not reach
         folder = Path(away) / "case"
@@ -36,12 +37,12 @@ def _distance(case: Case) -> float:
 
 def floors_of(answer: dict) -> dict:
     """Return distances with and without what is the matter, and what its absence closes."""
-    design = draw_design(answer["seed"], answer["index"], answer["set"], answer["block"])
-    with_it = _distance(run_case(design))
+    design = design_of(answer)
+    with_it = gap_from_rig_file(run_case(design))
     if design.kind == "none":
         return {"floors": with_it, "floors_off": with_it}
     off = frozenset(form.effect for form, _ in design.forms)
-    without = _distance(run_case(design, off, plain=True))
+    without = gap_from_rig_file(run_case(design, off, plain=True))
     found = {"floors": with_it, "floors_off": without}
     if with_it > LEAST_GAP:
         found["closed"] = (with_it - without) / (with_it - 1.0)
@@ -57,4 +58,4 @@ def _add(path: Path) -> None:
 def add_floors(answers: Path, workers: int) -> None:
     """Add to each answer how many floors the case is off, where it lacks them."""
     with each(workers) as mapped:
-        list(mapped(_add, sorted(answers.glob("case-*.json"))))
+        list(mapped(_add, sorted(answers.glob("*.json"))))

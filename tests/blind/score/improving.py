@@ -38,10 +38,8 @@ def strong_singles(seed: int, cases: int) -> list[int]:
     for index in count():
         if len(found) == cases:
             return found
-        if draw_design(seed, index, DEVELOPMENT).kind != "one":
-            continue
-        where = {"seed": seed, "index": index, "set": DEVELOPMENT, "block": "shares"}
-        if gaps_of(where)["gap"] > LEAST_GAP:
+        design = draw_design(seed, index, DEVELOPMENT)
+        if design.kind == "one" and gaps_of(run_case(design))["gap"] > LEAST_GAP:
             found.append(index)
     raise AssertionError("there is always another case")
 

@@ -84,9 +84,9 @@ def seen_of(case: Path, *, levels: bool = False) -> list[float]:
         level = _levels(wav) if levels else []
         size = wav.with_suffix(".json").stat().st_size
         recordings.append([*_header(wav), *said, size, *level])
-    responses = [[p.stat().st_size] for p in paths if p.suffix == ".npz"]
+    responses = [[p.stat().st_size] for p in paths if p.suffix == ".npz"] or [[0.0]]
     rig = tomllib.loads(case.joinpath("rig.toml").read_text(encoding="utf-8"))
-    rig.pop("measured_response")
+    rig.pop("measured_response", None)
     return [
         place[0], float(len(paths)), *counts, *_numbers(rig),
         case.joinpath("rig.toml").stat().st_size, *_of_many(recordings), *_of_many(responses),
@@ -95,11 +95,15 @@ def seen_of(case: Path, *, levels: bool = False) -> list[float]:
 
 
 def leak(cases: list[list[float]], classes: list[str], shuffles: int = 100, seed: int = 0) -> Leak:
-    """Guess classes from what is seen of the cases, and from the same shuffled."""
+    """Guess classes from what is seen of the cases, and from the same shuffled.
+
+    Where rig files or recordings hold more in some cases, the rest of the others counts as 0.
+    """
     from sklearn.ensemble import ExtraTreesClassifier
     from sklearn.model_selection import StratifiedKFold, permutation_test_score
 
-    table = np.array(cases)
+    width = max(map(len, cases))
+    table = np.array([[*row, *[0.0] * (width - len(row))] for row in cases])
     share, chance, p = permutation_test_score(
         ExtraTreesClassifier(30, min_samples_leaf=2, max_features=0.5, random_state=seed),
         table[:, table.std(axis=0) > 0.0], np.array(classes),

@@ -43,10 +43,15 @@ def log_opening(log: Path, **about: object) -> str:
 
 
 def log_figures(log: Path, opened: str, figures: dict) -> None:
-    """Write what an opening gave."""
-    short = {
-        name: [f["cases"], f["value"], f["low"], f["high"]]
+    """Write what an opening gave, in all and by kind of bench."""
+    in_all = {name: f for name, f in figures.items() if name != "by bench"}
+    benches = {bench: _short(of) for bench, of in figures.get("by bench", {}).items()}
+    _append(log, {"figures_of": opened, "figures": _short(in_all), "by_bench": benches})
+
+
+def _short(figures: dict) -> dict[str, list]:
+    return {
+        name: [f["cases"], f["value"], f["low"], f["high"], *([f["bench"]] if "bench" in f else [])]
         for name, f in figures.items()
         if f["value"] is not None
     }
-    _append(log, {"figures_of": opened, "figures": short})

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..effects import CAUSES
-from ..generate import Wanted, add_gaps, each, generate_sealed
+from ..generate import Wanted, each, generate_sealed
 from .answers import same_names
 from .baselines import BASELINES
+from .by_bench import by_bench, by_bench_json, by_bench_text
 from .closing import LEAST_CLOSED
 from .diagnosing import diagnose_copy, resolve
 from .log import LOG, log_figures
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["OWN_CLOSED", "Asked", "score_folder", "score_sealed"]
 
-OWN_CLOSED = 0.90
+OWN_CLOSED = 0.95
 """Median closed fraction that is aimed at for the library's own forms."""
 
 
@@ -72,7 +73,6 @@ def _said(truths: list[Truth], data: Path, asked: Asked) -> list[Mapping | None]
 
 
 def _scores(data: Path, answers: Path, asked: Asked, least_closed: float) -> Scores:
-    add_gaps(answers, asked.workers)
     if asked.floors:
         from .floors import add_floors
 
@@ -102,8 +102,10 @@ def _report(data: Path, answers: Path, asked: Asked, out: Path) -> dict:
     else:
         text = as_text(figures)
     draw_confusion(scores.pairs, out / "confusion.png")
+    benches = by_bench(scores.pairs)
+    text = f"{by_bench_text(benches, scores.figures)}\n\n{text}"
     out.joinpath("score.txt").write_text(text + "\n", encoding="utf-8")
-    listed = as_json(figures)
+    listed = as_json(figures) | {"by bench": by_bench_json(benches)}
     out.joinpath("score.json").write_text(json.dumps(listed, indent=1) + "\n", encoding="utf-8")
     sys.stdout.write(text + "\n")
     return listed

@@ -17,12 +17,12 @@ from .probabilities import probabilities
 from .unknowns import unknowns
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from .answers import Answer
     from .truth import Truth
 
-__all__ = ["Scores", "as_json", "as_text", "loss", "score"]
+__all__ = ["Scores", "as_json", "as_text", "loss", "score", "score_pairs"]
 
 COMPARED = (
     "detection", "stage", "parameters told from physics", "right cause first",
@@ -50,12 +50,25 @@ def score(
 ) -> Scores:
     """Score diagnoses (None where one failed) of cases; `same` gives equivalent names one name."""
     pairs = [merged(t, read_answer(d, t.case), same or {}) for t, d in scored]
+    return Scores(score_pairs(pairs, least_closed=least_closed, seed=seed, draws=draws), pairs)
+
+
+def score_pairs(
+    pairs: list[tuple[Truth, Answer]],
+    *,
+    names: Collection[str] | None = None,
+    least_closed: float = LEAST_CLOSED,
+    seed: int = 0,
+    draws: int = DRAWS,
+) -> dict[str, Figure]:
+    """Return figures by name of pairs of truth and answer; `names` are those wanted, if not all."""
     quantities = [
         *detection(pairs), *causes(pairs), *unknowns(pairs), *probabilities(pairs),
         *closing(pairs, least_closed), *power(pairs),
     ]  # fmt: skip
     rng = np.random.default_rng(seed)
-    return Scores({q.name: figure(q, rng, draws) for q in quantities}, pairs)
+    wanted = [q for q in quantities if names is None or q.name in names]
+    return {q.name: figure(q, rng, draws) for q in wanted}
 
 
 def loss(own: Scores, others: Scores) -> dict[str, Figure]:

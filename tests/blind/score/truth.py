@@ -36,6 +36,7 @@ class Truth:
     gap: float | None = None
     alone: dict[str, float] = field(default_factory=dict)
     closed: float = 1.0
+    bench: str = "quiet"
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -60,12 +61,13 @@ def truth_of(case: str, answer: dict) -> Truth:
         answer.get("floors", answer.get("gap")),
         answer.get("gap_alone", {}),
         answer.get("closed", 1.0),
+        answer.get("bench", "quiet"),
     )
 
 
 def read_truths(folder: Path) -> list[Truth]:
     """Read a folder of answers, in the order of their names."""
-    paths = sorted(folder.glob("case-*.json"))
+    paths = sorted(folder.glob("*.json"))
     if not paths:
         raise SystemExit(f"{folder} holds no answers")
     return [truth_of(path.stem, json.loads(path.read_text(encoding="utf-8"))) for path in paths]

@@ -51,8 +51,9 @@ def unknowns(pairs: list[tuple[Truth, Answer]]) -> list[Quantity]:
         Quantity.of("unknown: AUROC", rows, auroc, at_least(0.95)),
         Quantity.of("unknown: recall at 5 %", rows, recall, at_least(0.85)),
         Quantity.of("unknown: named with p > 0.9", [_named(a) for a in strangers],
-                    aim=at_most(0.02)),
-        Quantity.of("unknown: said so", ["unknown" in a.verdict for a in strangers]),
+                    aim=at_most(0.03)),
+        Quantity.of("unknown: said so", ["unknown" in a.verdict for a in strangers],
+                    aim=at_least(0.80)),
     ]  # fmt: skip
 
 

@@ -1,0 +1,156 @@
+"""Kinds of bench: nothing is the matter on them, and what they differ by is stated or seen."""
+
+import tomllib
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models.rig_files.rig_file import load_rig
+from noise.recordings.files import read_recording
+from tests.blind.__main__ import main
+from tests.blind.benches import BITS, KINDS, NOISE, Bench, draw_bench
+from tests.blind.cases import run_case, write_case
+from tests.blind.design import BLOCKS, draw_design
+from tests.blind.effects import DEVELOPMENT, FORMS, SEALED, STRANGERS
+from tests.blind.files import rig_text
+from tests.blind.gap import gaps_of, null_gap
+from tests.blind.laws import CONSTANT, LAWS, draw_law
+from tests.blind.score.answers import Answer
+from tests.blind.score.by_bench import ASKED, by_bench, by_bench_text, worst
+from tests.blind.score.floors import gap_from_rig_file
+from tests.blind.score.table import score_pairs
+from tests.blind.score.truth import Truth
+from tests.blind.starts import STARTS
+
+
+def _null(kind, index=0, **changes):
+    design = draw_design(6, index, DEVELOPMENT, "kind", kind)
+    return replace(design, kind="none", forms=(), offsets={}, **changes)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_without_an_effect_a_bench_lies_within_its_own_floor_and_with_one_beyond(kind):
+    design = _null(kind, seconds=0.3)
+    strong = replace(
+        design, kind="one", forms=((FORMS["velocity_strengthening", "root_of_speed"], 1.0),)
+    )
+    nothing = null_gap(design)
+    assert nothing < 3.5  # two repeats of a quiet bench are 1.5 to 2.2 apart
+    assert gaps_of(run_case(strong))["gap"] > nothing
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_handed_out_of_each_kind_can_be_read(kind, tmp_path):
+    for index in range(3):
+        design = _null(kind, index, seconds=0.3)
+        design = replace(design, conditions=design.conditions[:1])
+        write_case(run_case(design), tmp_path / str(index), None)
+        rig = load_rig(tmp_path / str(index) / "rig.toml")
+        recording = read_recording(tmp_path / str(index) / "run01.wav")
+        assert recording.channel_names == design.bench.channels
+        assert rig.friction.name == LAWS[design.bench.law.name].named
+        assert [effect.name for effect in rig.effects] == [x.effect for x in design.bench.listed]
+        assert bool(rig.measured) == (design.bench.responses != "none")
+        assert ("sensors" in tomllib.loads(rig_text(design))) == design.bench.stated
+        assert np.isfinite(recording.samples).all()
+
+
+@pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
+@pytest.mark.parametrize("name", sorted(set(LAWS) - {"constant"}))
+def test_the_first_simulator_solves_a_stated_law_as_this_rig_does(name):
+    bench = Bench("laws", law=draw_law(name, np.random.default_rng(4)))
+    design = _null("quiet", 1, seconds=0.5, bench=bench)
+    case = run_case(replace(design, conditions=design.conditions[:4]))
+    stated = gap_from_rig_file(case)
+    unstated = gap_from_rig_file(
+        replace(case, design=replace(case.design, bench=replace(bench, law=CONSTANT)))
+    )
+    assert stated < 2.2
+    assert unstated > 1.5 * stated
+
+
+def test_a_converter_leaves_only_its_steps():
+    bench = Bench("sensors", bits=dict.fromkeys(NOISE, BITS))
+    assert bench.step_of("torque") == pytest.approx(0.05, rel=0.01)
+    assert bench.step_of("acceleration") == pytest.approx(0.48, rel=0.01)
+    assert bench.step_of("pressure") == pytest.approx(14e-3, rel=0.01)
+    assert bench.step_of("angle") == pytest.approx(6e-3, rel=0.01)
+    design = _null("sensors", seconds=0.3)
+    design = replace(design, bench=bench, conditions=design.conditions[:1])
+    (samples,) = run_case(design).recordings
+    for x, name in zip(samples.astype(float), NOISE, strict=True):
+        steps = x / bench.step_of(name)
+        assert steps == pytest.approx(np.round(steps), abs=1e-3)
+
+
+@pytest.mark.parametrize("name", sorted(STARTS))
+def test_every_start_ends_at_the_stated_speed(name):
+    for seed in range(20):
+        course = STARTS[name](np.random.default_rng(seed), 0.5)
+        assert course(np.array([0.5]))[0] == pytest.approx(1.0, abs=0.03)
+        assert (course(np.linspace(0.0, 0.5, 99)) >= 0.0).all()
+
+
+def test_a_block_of_a_kind_holds_its_quotas_sealed_or_not():
+    for kind in ("quiet", "laws"):
+        for block, kept_for, least in (
+            ("kind", DEVELOPMENT, {"none": 20, "one": 16, "pair": 8, "stranger": 6}),
+            ("sealed kind", SEALED, {"none": 75, "one": 60, "pair": 30, "stranger": 20}),
+        ):
+            designs = [draw_design(8, i, kept_for, block, kind) for i in range(len(BLOCKS[block]))]
+            counts = Counter(d.kind for d in designs)
+            assert all(counts[name] >= n for name, n in least.items())
+            for design in designs:
+                names = {form.effect for form, _ in design.forms}
+                assert not names & set(design.bench.without)
+                assert {form.kept_for for form, _ in design.forms} <= {kept_for}
+
+
+def test_strangers_of_the_sealed_set_are_of_kinds_that_development_never_sees():
+    kinds = {kept: {k for k, form in FORMS.items() if form.kept_for == kept}
+             for kept in (DEVELOPMENT, SEALED)}  # fmt: skip
+    seen = {kept: {effect for effect, _ in kinds[kept]} & set(STRANGERS) for kept in kinds}
+    assert not seen[DEVELOPMENT] & seen[SEALED]
+    assert len(seen[SEALED]) >= 8
+
+
+def test_kinds_of_bench_share_no_chance_and_sizes_reach_a_factor_of_three():
+    inertias = {draw_design(1, 0, DEVELOPMENT, "kind", kind).inertias for kind in KINDS}
+    assert len(inertias) == len(KINDS)
+    rng = np.random.default_rng(0)
+    factors = np.array([list(draw_bench("sizes", rng).sizes.values()) for _ in range(300)])
+    assert factors.max() == pytest.approx(3.0, rel=0.05)
+    assert factors.min() == pytest.approx(1.0 / 3.0, rel=0.05)
+
+
+def test_seeds_of_the_sealed_set_are_its_own(tmp_path):
+    with pytest.raises(SystemExit, match="seeds from 1000 on are of the sealed set alone"):
+        main(["generate", "--seed", "1001", "--out", str(tmp_path / "a")])
+    with pytest.raises(SystemExit, match="seeds from 1000 on are of the sealed set alone"):
+        main(["score", "--sealed", "--seed", "1", "--out", str(tmp_path / "a")])
+
+
+def test_the_worst_kind_of_bench_is_the_headline():
+    def null(bench, alarm):
+        said = Answer(("clipping",) if alarm else (), {"none": 0.5})
+        return Truth("case", "none", (), bench=bench), said
+
+    pairs = [null("quiet", False)] * 9 + [null("starts", True)] * 3 + [null("starts", False)]
+    scores = by_bench(pairs)
+    bench, figure = worst(scores)["false alarms on null cases"]
+    assert bench == "starts"
+    assert figure.value == 0.75
+    assert 0.2 < figure.low < 0.75 < figure.high < 1.0
+    text = by_bench_text(scores, score_pairs(pairs, names=ASKED)).splitlines()
+    assert text[1].startswith("worst")
+    assert "starts" in text[2]
+    assert "MISSED" in text[3]
+
+
+def test_a_share_of_none_has_an_interval():
+    pairs = [(Truth("case", "none", ()), Answer((), {"none": 1.0}))] * 20
+    scores = score_pairs(pairs, names=ASKED)
+    assert scores["false alarms on null cases"].low == 0.0
+    assert scores["false alarms on null cases"].high == pytest.approx(0.161, abs=0.001)
