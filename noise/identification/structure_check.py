@@ -99,7 +99,7 @@ def structure_notes(rig: Rig, recordings: Sequence[Measured]) -> list[str]:
         if abs(offset) <= _CLOSE:
             told = f"measured {_KINDS[kind]} is within {_CLOSE:g} dB of"
         unit = unit_of(kind, 10.0 ** (offset / 20.0))
-        after = f"; is it in {unit}?" if unit else "; measure responses with frf"
+        after = "; measure responses with frf" + (f", or is it in {unit}?" if unit else "")
         after = "" if abs(offset) <= _CLOSE else after
         notes.append(f"the structure is that of the known bench: {told} what it predicts{after}")
     return notes

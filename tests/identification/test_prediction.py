@@ -8,6 +8,7 @@ from models.rig_files.rig_file import load_material_rig
 from noise.identification.excerpts import excerpts_of
 from noise.identification.prediction import foretold, friction_of
 from sim.bushing import lumped_bushing
+from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 from tests.identification.test_bushing_fit import recorded
@@ -16,7 +17,7 @@ from tests.identification.test_bushing_fit import recorded
 @pytest.fixture(scope="module", params=["fluorocarbon-thesis", "fluorocarbon"])
 def case(request):
     """A rig with true stick, one with an elastic contact; its bushing, friction and excerpts."""
-    rig = load_material_rig(request.param)
+    rig = constant_version(load_material_rig(request.param))
     motion = simulate_motion(
         rig, ConstantSpeed(1.2), interference=0.279e-3, support_stiffness=2214.0, seconds=0.8,
         rate=30e3,

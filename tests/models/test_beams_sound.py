@@ -141,7 +141,7 @@ def test_beams_add_to_the_plate_and_leave_the_acceleration():
         added = getattr(loud, name) - getattr(silent, name)
         alone = beams_pressure(
             beams, 2214.0, rig().clamp_inertia,
-            (1 - rig().elastomer_damping_share) * 0.105
+            (1 - rig().elastomer_damping_share) * rig().fit(0.279e-3).damping[2214.0]
             / (2 * np.sqrt(2214.0 * rig().clamp_inertia)),
             rig().plate.clamp_position, rig().microphone, RATE, added.size, 40e3,
         )[at]  # fmt: skip

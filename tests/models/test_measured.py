@@ -17,7 +17,7 @@ from tests.helpers.spectra import path_spectra
 
 FIT = 0.279e-3
 RATE = 48e3
-F = np.arange(20.0, 16001.0)
+F = np.arange(20.0, 20001.0)
 
 ENTRY = """material = "fluorocarbon"
 [[measured_response]]
