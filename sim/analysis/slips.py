@@ -176,7 +176,7 @@ def motion_slips(motion: Motion) -> Slips:
     >>> rig = constant_version(load_material_rig("fluorocarbon"))
     >>> found = motion_slips(simulate(rig, 2.5).motion)
     >>> round(found.rate), found.pattern
-    (244, 1)
+    (250, 1)
     """
     twist = motion.interface_angle - motion.clamp_angle
     return find_slips(twist, motion.shaft_speed, motion.rate, own_period=_own_period(motion, twist))

@@ -42,7 +42,20 @@ def _comparison(name):
     return CaseComparison(RIG, runs, EFFECTS, None, (), np.empty(0))
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(
+            name,
+            marks=pytest.mark.xfail(
+                name == "mount_resonance",
+                reason="on beams whose anchors yield no form estimated of it closes anything",
+                strict=True,
+            ),
+        )
+        for name in CASES
+    ],
+)
 def test_a_form_that_was_estimated_closes_much_of_what_the_true_one_does_where_it_is_not_from(name):
     comparison = _comparison(name)
     left = []

@@ -15,6 +15,7 @@ from noise.pictures.speeds import plot_sweep, plot_torque_of_fits
 from noise.pictures.sweep import sweep_torque
 from noise.thesis.runs import LONG, SHORT
 from sim.analysis.sweep import Sweep
+from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
@@ -24,7 +25,7 @@ SUPPORTS = (LONG, SHORT, FIXED)
 
 @cache
 def swept(material="fluorocarbon-thesis", interference=0.279e-3):
-    rig = load_material_rig(material)
+    rig = constant_version(load_material_rig(material))
     return sweep_torque(rig, SPEEDS, interference=interference, support_stiffness=SUPPORTS)
 
 
@@ -62,11 +63,11 @@ def test_the_strongest_line_of_plain_stick_slip_is_its_rate():
 
 def test_a_contact_that_creeps_is_counted_by_its_torque():
     motion = simulate_motion(
-        load_material_rig("fluorocarbon"), ConstantSpeed(1.0),
+        constant_version(load_material_rig("fluorocarbon")), ConstantSpeed(5.0),
         interference=0.279e-3, support_stiffness=SHORT, seconds=1.5, rate=30e3,
     )  # fmt: skip
     fundamental = analyse_harmonics(motion.since(15000).torque, motion.rate).fundamental
-    assert swept("fluorocarbon").slip_frequency[1, 0] == pytest.approx(fundamental, rel=0.05)
+    assert swept("fluorocarbon").slip_frequency[1, 1] == pytest.approx(fundamental, rel=0.05)
 
 
 def test_each_support_has_its_torque_above_its_frequencies():

@@ -20,7 +20,7 @@ def test_the_nominal_bushing_is_the_design_itself():
     found = outcomes(FLUOROCARBON, [[1.0, 1.0]], names=["damping", "interference"], point=POINT)
     alone = evaluate_point(FLUOROCARBON.rig, 10.0, interference=0.279e-3, support_stiffness=3745.0)
     assert found.labels.tolist() == [alone.label] == ["squeal"]
-    assert found.v_crit2[0] == pytest.approx(11.53, abs=0.05)
+    assert found.v_crit2[0] == pytest.approx(12.07, abs=0.05)
     assert found.margin[0] == pytest.approx(2.0 - found.v_crit2[0])
     assert math.isnan(found.v_crit1[0])
 

@@ -101,7 +101,7 @@ def values_at(point: ArrayLike) -> dict[str, float]:
     Examples
     --------
     >>> round(values_at(start(rounded=True))["torque_drop"], 2)
-    3.0
+    4.0
     """
     return {
         name: min(max(math.exp(logarithm), unknown.low), unknown.high)
@@ -117,7 +117,7 @@ def rig_of(values: Mapping[str, float]) -> Rig | None:
     Examples
     --------
     >>> round(rig_of(values_at(start(rounded=True))).fit(0.279e-3).kinetic_torque, 2)
-    7.77
+    7.52
     """
     base = load_material_rig("fluorocarbon")
     age = values["renewal_angle"] / _SPEED
