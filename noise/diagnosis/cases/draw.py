@@ -26,7 +26,7 @@ from noise.diagnosis.simulated.repeats import CHANNELS, Scatter, run_signals
 from sim.acquisition import Acquisition, decimate
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
-from sim.timing import DIAGNOSIS
+from sim.timing import LEARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -107,7 +107,7 @@ def _drawn_rig(number: int) -> tuple[Setting, dict[float, ImpulseResponses]]:
         for support in sorted({c.support_stiffness for c in setting.conditions})
     }
     measured = tuple(s.measured(support, rng) for support, s in structures.items())
-    fine = DIAGNOSIS.rate(setting.rate)
+    fine = LEARNING.rate(setting.rate)
     return (
         replace(setting, rig=replace(setting.rig, measured=measured)),
         {support: s.response(fine) for support, s in structures.items()},
@@ -157,7 +157,7 @@ def _record(
         with_offsets(setting.rig, offsets), condition, effects, plain, setting.seconds, chance,
         chain_seed=chain_seed,
     )  # fmt: skip
-    decimation = DIAGNOSIS.decimation(setting.rate)
+    decimation = LEARNING.decimation(setting.rate)
     samples = [
         _sampled(
             signals[name], decimation, noise[name], 0.0 if name == "angle" else scatter.gain, chance

@@ -120,7 +120,7 @@ def summary(
     found = reconstruct(turn * torque, speed, rate, bushing, turn * spectrum)
     fit = rig.fit(condition.interference)
     numbers |= _named("contact", contact_summary(found, fit, wanted))
-    slips = slip_starts(found, wanted)[0] / rate + found.start
+    slips = slip_starts(found, wanted)[0] / found.rate + found.start
     residuals = {}
     paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
     for kind, expected in predict_outputs(spectrum, torque.size, rate, paths).items():
