@@ -36,7 +36,7 @@ def _age(
     form: str, a: float, rng: Rng, shape: Array, *, level: float = 1.0, whole: bool = False,
     renewal: float = 0.0, kinetic: float = 0.0, gain: float = 0.97,
 ) -> Effect:  # fmt: skip
-    time = log_uniform(rng, 2e-4, 0.1)
+    time = log_uniform(rng, 1e-3, 0.15)
     header = [gain * a, time, renewal or _RENEWAL, level, whole, renewal > 0.0, kinetic]
     return on_contact(
         "static_ageing", form, a, ageing_hook,
