@@ -26,15 +26,21 @@ from noise.diagnosis.cases.structures import THESIS, draw_structure, draw_trade
 from noise.diagnosis.cases.truth import KINDS, Truth, seen_through
 from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.diagnosis.cases.variants import draw_variant
-from noise.diagnosis.simulated.repeats import CHANNELS, Scatter, perturb_run, plan_repeat
+from noise.diagnosis.simulated.repeats import (
+    CHANNELS,
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    repeat_motion,
+)
 from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.pipeline import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
-from sim.timing import DIAGNOSIS
+from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
+from sim.timing import LEARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -143,7 +149,7 @@ def _drawn_rig(number: int) -> _DrawnRig:
     poor = bench.responses == "poor"
     measured = tuple(s.measured(support, rng, poor=poor) for support, s in structures.items())
     known = replace(rig, measured=measured)
-    fine = DIAGNOSIS.rate(bench.rate)
+    fine = LEARNING.rate(bench.rate)
     plain = {support: s.response(fine) for support, s in structures.items()}
     listed = activated(rig.effects, EFFECTS)
     if any(one.effect.force or one.effect.chain for one in listed):
@@ -248,15 +254,15 @@ def _record(
     setting, bench = drawn.setting, drawn.setting.bench
     stated = setting.conditions[place]
     true = replace(stated, speed=drawn.speeds[place], temperature=23.0 + bench.warmer)
-    fine = DIAGNOSIS.rate(bench.rate)
+    fine = LEARNING.rate(bench.rate)
     listed = activated(setting.rig.effects, EFFECTS)
     rig = with_offsets(drawn.warmer, dict(truth.offsets))
     once, at = perturb_run(rig, true, Scatter(), chance, support=True)
     plan = plan_repeat(once, at, (*listed, *effects), rate=fine, seconds=bench.seconds)
     if bench.start:
-        shaft, before = draw_start(bench.start, at.speed, bench.seconds, DIAGNOSIS.settling, chance)
+        shaft, before = draw_start(bench.start, at.speed, bench.seconds, LEARNING.settling, chance)
         plan = replace(plan, shaft=shaft, n_settling=round(before * fine))
-    motion = run_motion(plan, chance)
+    motion = repeat_motion(plan, chance)
     paths, stream = drawn.plain[stated.support_stiffness], np.random.default_rng(chain_seed)
     for channels, effect in zip(acting, effects, strict=True):
         changed = changed_chain(paths, [effect], stream)
@@ -270,7 +276,7 @@ def _record(
         channels |= {k for k, x in read.items() if not np.array_equal(x, signals[k])}
         signals = read
     kinds = ("torque", "angle") if bench.responses == "none" else CHANNELS
-    decimation = DIAGNOSIS.decimation(bench.rate)
+    decimation = LEARNING.decimation(bench.rate)
     samples = [_sampled(signals[k], decimation, k, setting.sensors, chance) for k in kinds]
     return Recording(np.stack(samples), bench.rate, tuple(map(Channel, kinds)), stated)
 

@@ -56,7 +56,7 @@ _SIMULATED = {True: 7.0, False: 5.0}
 """Seconds that the recordings of a case may last together, settling included, before conditions are
 made fewer: where the law is the constant one, and where it is not."""
 
-_SETTLING = 0.35
+_SETTLING = 0.25
 
 
 @dataclass(frozen=True)
