@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
-from noise.diagnosis.evidence.sensor_noise import with_estimated_noise
+from noise.diagnosis.preparation.prepare import prepared
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
@@ -40,18 +40,22 @@ class Case:
     Parameters
     ----------
     rig : Rig
-        With the noise of its sensors, where that is to be taken from the recordings.
+        With its sensors as the recordings show them, where its file does not state them.
     names : tuple of str
         Of the files.
     recordings : tuple of Recording
+        As `noise.diagnosis.preparation.prepare.prepared` gives them.
     refused : tuple of (str, str)
         Name and reason of what was left out.
+    notes : tuple of str
+        What was done to the recordings, a line each.
     """
 
     rig: Rig
     names: tuple[str, ...]
     recordings: tuple[Recording, ...]
     refused: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def read_case(paths: Sequence[Path], rig: Rig) -> Case:
@@ -86,8 +90,10 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         raise ParameterError(
             f"{', '.join(str(path) for path in paths)}: no recording that can be diagnosed{reason}"
         )
-    seen = with_estimated_noise(rig, recordings)
-    return Case(seen, tuple(names), tuple(recordings), tuple(refused))
+    ready = prepared(rig, recordings)
+    refused += [(names[i], reason) for i, reason in ready.left_out.items()]
+    kept = tuple(name for i, name in enumerate(names) if i not in ready.left_out)
+    return Case(ready.rig, kept, ready.recordings, tuple(refused), ready.notes)
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:

@@ -194,6 +194,7 @@ def _notes(case: Case) -> tuple[str, ...]:
         )
     elif len(different) == len(case.recordings):
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
+    notes += case.notes
     notes += noise_remarks(case.rig.sensors, kinds)
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
