@@ -153,8 +153,9 @@ def draw_bench(rng: np.random.Generator) -> Bench:
 
     Examples
     --------
-    >>> draw_bench(np.random.default_rng(0)).departures
-    ()
+    >>> bench = draw_bench(np.random.default_rng(0))
+    >>> bool(bench.law) == ("laws" in bench.departures)
+    True
     """
     usual = Acquisition().noise
     bench = Bench(

@@ -64,7 +64,7 @@ _VARIANTS = 0.65
 """Share of the effects that have none of the simulator's own forms."""
 
 _IRREGULAR = 0.25
-"""Share of the effects that are an irregularity which the rig file lists too, where it lists one."""
+"""Share of the cases with effects that have more of an irregularity that the rig file lists."""
 
 _TORQUE_PER_K, _STIFFNESS_PER_K = -0.005, -0.003
 """By what a rubber whose file states no dependence differs when it is warmer."""
@@ -281,9 +281,7 @@ def _record(
     return Recording(np.stack(samples), bench.rate, tuple(map(Channel, kinds)), stated)
 
 
-def _heard_in(
-    effect: ActiveEffect, before: ImpulseResponses, after: ImpulseResponses
-) -> set[str]:
+def _heard_in(effect: ActiveEffect, before: ImpulseResponses, after: ImpulseResponses) -> set[str]:
     """Return the channels in which an effect on motion, force or chain can be seen."""
     acts = effect.effect
     if acts.contact is not None or acts.drive is not None:

@@ -6,20 +6,23 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from models.condition import FIXED, KnownCondition
 from models.rig import Fit, LawSpec
 from models.rig_files.rig_file import load_material_rig
+from models.sensors import Sensors
 from noise.diagnosis.cases.benches import Bench, draw_bench
 from noise.diagnosis.cases.laws import MATERIALS, draw_law, scaled_law
 from sim.constant_version import constant_version
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+from sim.timing import DIAGNOSIS, REGIME_RATE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
+
+    import numpy as np
 
     from models.rig import Rig
-    from models.sensors import Sensors
 
 __all__ = ["OFFSETS", "Setting", "draw_setting", "with_offsets"]
 
@@ -56,7 +59,9 @@ _SIMULATED = {True: 7.0, False: 5.0}
 """Seconds that the recordings of a case may last together, settling included, before conditions are
 made fewer: where the law is the constant one, and where it is not."""
 
-_SETTLING = 0.25
+_TRIES, _LOOKED_AT, _A_WHILE, _LEAST_SWING = 4, 2, 0.2, 0.01
+"""Draws of a law until a rig vibrates, conditions at which that is seen, for how long [s], and the
+torque's standard deviation over its mean [-]: nobody brings many rigs that are silent."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +90,7 @@ def draw_setting(rng: np.random.Generator) -> Setting:
 
     Examples
     --------
+    >>> import numpy as np
     >>> setting = draw_setting(np.random.default_rng(0))
     >>> 2 <= len(setting.conditions) <= 9
     True
@@ -92,13 +98,18 @@ def draw_setting(rng: np.random.Generator) -> Setting:
     bench = draw_bench(rng)
     rig = _rig(bench, rng)
     conditions = _conditions(rig, bench, rng)
+    if bench.law and bench.law not in MATERIALS:
+        for _ in range(_TRIES):
+            if _vibrates(rig, conditions[:_LOOKED_AT]):
+                break
+            rig = replace(rig, friction=_law(draw_law(bench.law, rng), bench))
     largest = {
         "torque": 2.0 * max(fit.critical_torque for fit in rig.fits),
         "angle": 1.3 * bench.seconds * max(c.speed for c in conditions),
     }
     sensors = bench.sensors(largest)
-    stated = replace(rig, sensors=sensors) if bench.stated else rig
-    return Setting(stated, conditions, bench, sensors)
+    stated = sensors if bench.stated else Sensors(noise_from_recordings=True)
+    return Setting(replace(rig, sensors=stated), conditions, bench, sensors)
 
 
 def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
@@ -148,13 +159,12 @@ def _rig(bench: Bench, rng: np.random.Generator) -> Rig:
         law = draw_law(bench.law, rng) if bench.law else LawSpec("coulomb", {})
         plain = replace(thesis, fits=fits, friction=law, elastomer_damping_share=0.5, effects=())
         if bench.law and rng.random() < _STATED_SCATTER:
-            scatter = {"form": "uniform", "scatter": float(rng.uniform(0.1, 0.4))}
-            plain = replace(plain, effects=(LawSpec("critical_torque_scatter", scatter),))
+            scatter = float(rng.uniform(0.1, 0.4))
+            plain = replace(plain, effects=(
+                LawSpec("critical_torque_scatter", {"form": "uniform", "scatter": scatter}),
+            ))  # fmt: skip
     if bench.law:
-        law = scaled_law(
-            plain.friction, angle=bench.angle, time=bench.time, torque=bench.sizes["torque"]
-        )
-        plain = replace(plain, friction=law)
+        plain = replace(plain, friction=_law(plain.friction, bench))
     known = {spec.name for spec in plain.effects}
     return replace(
         plain,
@@ -163,6 +173,24 @@ def _rig(bench: Bench, rng: np.random.Generator) -> Rig:
         fits=tuple(_sized(fit, bench, rng) for fit in plain.fits),
         effects=(*plain.effects, *(spec for spec in bench.listed if spec.name not in known)),
     )
+
+
+def _law(law: LawSpec, bench: Bench) -> LawSpec:
+    return scaled_law(law, angle=bench.angle, time=bench.time, torque=bench.sizes["torque"])
+
+
+def _vibrates(rig: Rig, conditions: Sequence[KnownCondition]) -> bool:
+    """Whether a rig does anything but slide evenly at one of its conditions."""
+    for c in conditions:
+        motion = simulate_motion(
+            rig, ConstantSpeed(c.speed), interference=c.interference,
+            support_stiffness=c.support_stiffness, seconds=_A_WHILE, rate=REGIME_RATE, effects=(),
+            tolerance=DIAGNOSIS.tolerance,
+        )  # fmt: skip
+        late = motion.torque[motion.torque.size // 2 :]
+        if late.std() > _LEAST_SWING * abs(late.mean()):
+            return True
+    return False
 
 
 def _sized(fit: Fit, bench: Bench, rng: np.random.Generator) -> Fit:
@@ -177,8 +205,7 @@ def _sized(fit: Fit, bench: Bench, rng: np.random.Generator) -> Fit:
         critical_torque=fit.critical_torque * torque,
         kinetic_torque=fit.kinetic_torque * torque,
         damping={
-            _support(support, bench): _about(c * damping, rng)
-            for support, c in fit.damping.items()
+            _support(support, bench): _about(c * damping, rng) for support, c in fit.damping.items()
         },
     )
 
@@ -194,7 +221,7 @@ def _support(support: float, bench: Bench) -> float:
 
 def _conditions(rig: Rig, bench: Bench, rng: np.random.Generator) -> tuple[KnownCondition, ...]:
     again = 2 if bench.repeats else 0
-    most = int(_SIMULATED[not bench.law] / (bench.seconds + _SETTLING)) - again
+    most = int(_SIMULATED[not bench.law] / (bench.seconds + DIAGNOSIS.settling)) - again
     different = min(int(rng.integers(2, 8)), max(most, 2))
     known = sorted(rig.fits[0].damping)
     supports = rng.choice(known, rng.integers(1, 3), replace=False).tolist()

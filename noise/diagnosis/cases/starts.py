@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    Course = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
 __all__ = ["STARTS", "draw_start"]
 
 _STEP = 5e-4
@@ -22,8 +24,6 @@ _STEP = 5e-4
 
 _LATEST = 0.55
 """Share of a recording after which the shaft turns evenly, to a per mille of its speed."""
-
-Course = "Callable[[NDArray[np.float64]], NDArray[np.float64]]"
 
 
 def draw_start(

@@ -1,4 +1,4 @@
-"""What is known of the bench that a case was recorded on: numbers that say what others mean there."""
+"""What is known of the bench of a case: numbers that say what the others mean there."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ and the speeds that the angle tells.
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from models.errors import BushingNoiseError
+from noise.base.progress import say
 from noise.diagnosis.cases.draw import SHARED, draw_case
 from noise.diagnosis.evidence.summary import NominalNumbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
@@ -28,7 +30,8 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
     from models.sensors import Sensors
-
+    from noise.diagnosis.cases.draw import DrawnCase
+    from noise.diagnosis.evidence.summary import CaseTable
 
 __all__ = ["known_cases", "known_cases_of_a_rig"]
 
@@ -55,23 +58,33 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
     known = []
     for seed in seeds:
         try:
-            case = draw_case(seed)
-            ready = prepared(case.rig, case.recordings)
-            recordings = [_trimmed(r, case.recordings[0].duration) for r in ready.recordings]
-            if len(recordings) < _FEWEST:
-                continue
-            repeats = next((s for s in shared if s.serves(ready.rig)), None)
-            if repeats is None:
-                repeats = _Shared(NominalNumbers(ready.rig))
-                shared.append(repeats)
-            alike = [repeats.at_known_speed(recording) for recording in recordings]
-            table = case_table(alike, repeats.nominal.rig, nominal=repeats.nominal)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # a response that ends early says so in each case
+                case = draw_case(seed)
+                table = _table(case, shared)
         except BushingNoiseError:
             continue
-        known.append(
-            Known(with_rows(table, _single), case.truth, seed // SHARED, case.departures, seed)
-        )
+        except Exception as error:  # one case is no reason to lose all others
+            say(f"case {seed} is left out: {type(error).__name__}: {error}")
+            continue
+        if table is not None:
+            single = with_rows(table, _single)
+            known.append(Known(single, case.truth, seed // SHARED, case.departures, seed))
     return known
+
+
+def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
+    """Summarise a case as a user's would be, with repeats of earlier ones where these serve."""
+    ready = prepared(case.rig, case.recordings)
+    recordings = [_trimmed(r, case.recordings[0].duration) for r in ready.recordings]
+    if len(recordings) < _FEWEST:
+        return None
+    repeats = next((s for s in shared if s.serves(ready.rig)), None)
+    if repeats is None:
+        repeats = _Shared(NominalNumbers(ready.rig))
+        shared.append(repeats)
+    alike = [repeats.at_known_speed(recording) for recording in recordings]
+    return case_table(alike, repeats.nominal.rig, nominal=repeats.nominal)
 
 
 def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:

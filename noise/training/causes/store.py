@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, astuple
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from noise.training.causes.fit import Known
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -91,7 +91,10 @@ def save_cases(path: Path, cases: Sequence[Known]) -> None:
     header = {"names": names, "cases": [_described(case) for case in cases]}
     text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
     with atomic(path) as passing:
-        np.savez_compressed(passing, header=text, **{part: rows(part) for part in _PARTS})
+        measured, nominal, scatter = map(rows, _PARTS)
+        np.savez_compressed(
+            passing, header=text, measured=measured, nominal=nominal, scatter=scatter
+        )
 
 
 def load_cases(folder: Path) -> list[Known]:
@@ -156,8 +159,11 @@ def _described(case: Known) -> dict[str, Any]:
 def _known(names: tuple[str, ...], parts: Sequence[Any], said: dict[str, Any]) -> Known:
     truth = {key: _tuples(value) for key, value in said["truth"].items()}
     conditions = tuple(KnownCondition(*values) for values in said["conditions"])
+    measured, nominal, scatter = parts
     return Known(
-        CaseTable(names, *parts, conditions, said["rate"], said["bench"]),
+        CaseTable(
+            names, measured, nominal, scatter, conditions, said["rate"], said["bench"]
+        ),
         Truth(**truth), said["rig"], tuple(said["departures"]), said["seed"],
     )  # fmt: skip
 
