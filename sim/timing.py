@@ -50,7 +50,7 @@ class Timing:
 SIMULATION = Timing(least_rate=90e3, settling=0.5)
 """Of recordings that are simulated to be kept: sound is right up to 20 kHz and beyond."""
 
-DIAGNOSIS = Timing(least_rate=75e3, settling=0.25, tolerance=1e-5)
+DIAGNOSIS = Timing(least_rate=75e3, settling=0.25, tolerance=3e-6)
 """Of the many runs that a diagnosis compares with recordings: settled as long as structures are
 followed to ring on, torques right to four digits. The shipped posterior of causes was fitted to
 runs of exactly these, so they change with it only."""

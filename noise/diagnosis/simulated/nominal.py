@@ -27,6 +27,7 @@ from noise.diagnosis.simulated.transfer_functions import (
     chain_of,
     predict_outputs,
     shift_clamp_mode,
+    with_clamp_shifted,
 )
 from sim.acquisition import decimate_sensed
 from sim.bushing import lumped_bushing
@@ -124,13 +125,11 @@ def nominal_recordings(
         lumped = lumped_bushing(once, *at)
         outputs: dict[str, NDArray[np.float64]] = {}
         for corner in {corners[name] for name in _OUTPUTS}:
-            paths = {
-                name: shift_clamp_mode(transfer_functions[name], bushing, lumped)
-                for name in _OUTPUTS
-                if corners[name] == corner
-            }
+            paths = {n: transfer_functions[n] for n in _OUTPUTS if corners[n] == corner}
             torque = _steadied(by_filter[corner], kept, rate)
-            spectrum = closed_spectrum(torque, rate)
+            spectrum = with_clamp_shifted(
+                closed_spectrum(torque, rate), torque.size, rate, bushing, lumped
+            )
             outputs |= predict_outputs(spectrum, torque.size, rate, paths)
         signals = {
             "torque": by_filter[corners["torque"]][kept],

@@ -44,6 +44,7 @@ __all__ = [
     "shift_clamp_mode",
     "torque_transfer_functions",
     "with_chain_effects",
+    "with_clamp_shifted",
 ]
 
 _LONGEST = 0.25
@@ -297,12 +298,46 @@ def shift_clamp_mode(
     """
     if nominal.clamp_is_fixed:
         return transfer
-    s = 2j * np.pi * transfer.frequencies
+    shift = _clamp_shift(transfer.frequencies, nominal, scattered)
+    return replace(transfer, response=transfer.response * shift)
+
+
+def with_clamp_shifted(
+    spectrum: NDArray[np.complex128],
+    n: int,
+    rate: float,
+    nominal: LumpedBushing,
+    scattered: LumpedBushing,
+) -> NDArray[np.complex128]:
+    """Change a torque such that what it makes has the clamp's mode as `shift_clamp_mode` moves it.
+
+    Parameters
+    ----------
+    spectrum, n, rate
+        As `predict_outputs` takes them.
+    nominal, scattered : LumpedBushing
+        As of `shift_clamp_mode`.
+
+    Returns
+    -------
+    ndarray of complex
+        As long as `spectrum` [Nm].
+    """
+    if nominal.clamp_is_fixed:
+        return spectrum
+    lines = np.asarray(np.fft.rfftfreq(closed_length(n, rate), 1.0 / rate), np.float64)
+    return spectrum * _clamp_shift(lines, nominal, scattered)
+
+
+def _clamp_shift(
+    frequencies: NDArray[np.float64], nominal: LumpedBushing, scattered: LumpedBushing
+) -> NDArray[np.complex128]:
+    s = 2j * np.pi * frequencies
     of_nominal, of_scattered = (
-        b.support_stiffness + b.support_damping * s + b.clamp_inertia * s * s
+        b.support_stiffness + s * (b.support_damping + s * b.clamp_inertia)
         for b in (nominal, scattered)
     )
-    return replace(transfer, response=transfer.response * of_nominal / of_scattered)
+    return np.asarray(of_nominal / of_scattered)
 
 
 def chain_of(

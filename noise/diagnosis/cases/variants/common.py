@@ -129,6 +129,17 @@ def on_sensors(
     return _variant(name, form, strength, sensors=sensors)
 
 
+def on_signals(
+    name: str, form: str, strength: float, change: Callable[[Signals, float, Rng], Signals]
+) -> Effect:
+    """Make an effect that changes all signals at once: ``change(signals, rate, rng)``."""
+
+    def sensors(signals: Signals, rate: float, _form: str, _values: Any, rng: Rng) -> Signals:
+        return change(signals, rate, rng) if strength > 0.0 else signals
+
+    return _variant(name, form, strength, sensors=sensors)
+
+
 def draw_shares(
     rng: Rng, names: tuple[str, ...] = SENSED, *, signed: bool = False
 ) -> dict[str, float]:
