@@ -49,6 +49,10 @@ _LENGTHS = (0.4, 0.5, 0.6, 0.8, 1.0)
 _SHORTEST, _LONGEST, _RARELY = 0.3, 5.0, 4.0
 """Of records [s]; the larger the last, the rarer the long ones."""
 
+_LONGEST_OF_LAWS = {True: 1.6, False: 0.7}
+"""Where the law is not the constant one, whose motion costs ten times as much [s]: of benches with
+records of other lengths, and of the others."""
+
 _NOISE = (0.2, 6.0)
 _BITS = (12, 16)
 _LARGEST = 3.4
@@ -177,7 +181,8 @@ def draw_bench(rng: np.random.Generator) -> Bench:
     for name, (_, draw) in DEPARTURES.items():
         if name in met:
             bench = replace(bench, **draw(rng))
-    return replace(bench, departures=tuple(met))
+    longest = _LONGEST_OF_LAWS["records" in met] if bench.law else _LONGEST
+    return replace(bench, departures=tuple(met), seconds=min(bench.seconds, longest))
 
 
 def _sensors(rng: np.random.Generator) -> dict[str, Any]:

@@ -55,7 +55,7 @@ _STATED_SCATTER = 0.3
 _FASTEST = 10.0
 _SLOWEST = 0.6
 
-_SIMULATED = {True: 7.0, False: 5.0}
+_SIMULATED = {True: 6.5, False: 4.2}
 """Seconds that the recordings of a case may last together, settling included, before conditions are
 made fewer: where the law is the constant one, and where it is not."""
 
