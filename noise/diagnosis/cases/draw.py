@@ -35,11 +35,14 @@ if TYPE_CHECKING:
 
     from models.condition import KnownCondition
     from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Rig
+    from models.rig import Fit, Rig
     from noise.diagnosis.cases.rigs import Setting
     from sim.effects.effect import ActiveEffect
 
-__all__ = ["NOISE_DRAWN", "SHARED", "DrawnCase", "draw_case"]
+__all__ = [
+    "NOISE_DRAWN", "SHARED", "DrawnCase", "active_effect", "draw_case", "draw_offsets",
+    "unknown_effect",
+]  # fmt: skip
 
 SHARED = 4
 """Cases of one rig."""
@@ -117,25 +120,33 @@ def _drawn_rig(number: int) -> tuple[Setting, dict[float, ImpulseResponses]]:
 def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveEffect]]:
     kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
     if kind == "parameters":
-        sign = float(rng.choice([-1.0, 1.0]))
-        names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
-        offsets = tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
-        return Truth(kind, offsets=offsets), []
+        return Truth(kind, offsets=draw_offsets(rng)), []
     if kind == "unknown":
         name, strength = str(rng.choice(list(UNKNOWN_EFFECTS))), _strength(rng)
-        middle = rig.fit(0.279e-3)
-        unknown_effect = draw_unknown_effect(
-            name, strength, middle.kinetic_torque, middle.elastomer_stiffness, rng
-        )
-        return Truth(kind, (name,), ("plain",), (strength,)), [unknown_effect.active({})]
+        unknown = unknown_effect(name, strength, rig.fit(0.279e-3), rng)
+        return Truth(kind, (name,), ("plain",), (strength,)), [unknown]
     count = {"one": 1, "pair": 2, "triple": 3}.get(kind, 0)
     names = rng.choice(sorted(EFFECTS), count, replace=False).tolist()
     strengths = tuple(_strength(rng) for _ in names)
-    effects = [_drawn_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
+    effects = [active_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
     return Truth(kind, tuple(names), tuple(e.form for e in effects), strengths), effects
 
 
-def _drawn_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+def draw_offsets(rng: np.random.Generator) -> tuple[tuple[str, float], ...]:
+    """Draw one or two parameters that are off, and by what factor [-]."""
+    sign = float(rng.choice([-1.0, 1.0]))
+    names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
+    return tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
+
+
+def unknown_effect(name: str, strength: float, fit: Fit, rng: np.random.Generator) -> ActiveEffect:
+    """Draw an effect of `UNKNOWN_EFFECTS`, of a strength from 0 to 1 [-], on a rig's fit."""
+    drawn = draw_unknown_effect(name, strength, fit.kinetic_torque, fit.elastomer_stiffness, rng)
+    return drawn.active({})
+
+
+def active_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+    """Draw an effect of the contract, of a strength from 0 to 1 [-], in any form."""
     spec = drawn_effect(name, strength, rng)
     if rng.random() < _VARIANTS:
         return draw_variant(name, strength, rng).active({})
