@@ -75,7 +75,13 @@ class LocalCache:
             return {}
 
     def write(self, known: Mapping[tuple[frozenset[str], int], NDArray[np.float64]]) -> None:
-        """Keep cases; without effect where the folder cannot be written."""
+        """Keep cases; without effect where the folder cannot be written.
+
+        Parameters
+        ----------
+        known : mapping of (frozenset of str, int) to ndarray, shape (n_causes,)
+            Natural logarithms of odds of each case by cause and number [-].
+        """
         header = {"cases": [[sorted(hypothesis), number] for hypothesis, number in known]}
         arrays = {f"odds{i}": odds for i, odds in enumerate(known.values())}
         with suppress(ParameterError, OSError):
