@@ -18,8 +18,9 @@ from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
 from noise.diagnosis.evidence.sensor_noise import noise_remarks
+from noise.diagnosis.findings import EffectFinding, StageFinding
 from noise.diagnosis.first_answer import first_answer, known_effects
-from noise.diagnosis.outcome import Diagnosis, EffectFinding, StageFinding
+from noise.diagnosis.outcome import Diagnosis
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 

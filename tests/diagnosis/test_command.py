@@ -13,8 +13,9 @@ from models.errors import ParameterError
 from noise.base.user_effects import effect_library
 from noise.cli import main
 from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.findings import EffectFinding
 from noise.diagnosis.fit.by_fits import prefer_by_fits
-from noise.diagnosis.outcome import EffectFinding, as_json
+from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.run import diagnose
 from sim.effects import EFFECTS
 from tests.helpers.made_diagnoses import one_effect

@@ -11,9 +11,9 @@ from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.findings import EffectFinding
 from noise.diagnosis.first_answer import first_answer, known_effects
 from noise.diagnosis.fit.by_fits import prefer_by_fits
-from noise.diagnosis.outcome import EffectFinding
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns, with_effects
 from sim.effects import EFFECTS
 from sim.run import simulate

@@ -8,14 +8,14 @@ from functools import cache
 from models.recording import Recording
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.diagnosis.outcome import (
-    Diagnosis,
+from noise.diagnosis.findings import (
     EffectFinding,
     Illustration,
     LabelsAndLevels,
     Location,
     StageFinding,
 )
+from noise.diagnosis.outcome import Diagnosis
 from sim.run import simulate
 
 STAGES = {

@@ -17,7 +17,7 @@ import numpy as np
 
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
 from noise.diagnosis.evidence.evidence import deviations, standard_errors
-from noise.diagnosis.outcome import Location, StageFinding
+from noise.diagnosis.findings import Location, StageFinding
 from sim.effects.effect import Stage
 
 if TYPE_CHECKING:

@@ -16,7 +16,8 @@ from noise.diagnosis.gap.distance import closed_fraction
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from noise.diagnosis.outcome import Diagnosis, EffectFinding
+    from noise.diagnosis.findings import EffectFinding
+    from noise.diagnosis.outcome import Diagnosis
 
 __all__ = ["prefer_by_fits"]
 

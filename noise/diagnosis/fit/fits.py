@@ -16,6 +16,7 @@ from noise.base.interval import SURE_90
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.causes.location import locate
 from noise.diagnosis.evidence.friction_curves import friction_curves
+from noise.diagnosis.findings import EffectFinding, Illustration
 from noise.diagnosis.fit.by_fits import prefer_by_fits
 from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.closing import Scores, closed_interval, closed_share, rms
@@ -23,7 +24,6 @@ from noise.diagnosis.fit.fit_effect import fit_effect, strength_of
 from noise.diagnosis.fit.fit_parameters import Fitted, fit_parameters, split
 from noise.diagnosis.fit.improve import improved_rig
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
-from noise.diagnosis.outcome import EffectFinding, Illustration
 from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
 

@@ -22,7 +22,8 @@ from noise.diagnosis.text.words import (
 )
 
 if TYPE_CHECKING:
-    from noise.diagnosis.outcome import Diagnosis, EffectFinding
+    from noise.diagnosis.findings import EffectFinding
+    from noise.diagnosis.outcome import Diagnosis
 
 __all__ = [
     "answer",
@@ -153,7 +154,7 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import EffectFinding
+    >>> from noise.diagnosis.findings import EffectFinding
     >>> closed_words(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
     ...                            closed_high=0.99))
     '96 % (91 % to 99 %)'
@@ -171,7 +172,7 @@ def closed_sentence(finding: EffectFinding) -> str:
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import EffectFinding
+    >>> from noise.diagnosis.findings import EffectFinding
     >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
     ...                               closed_high=0.99))
     'The fit closes 96 % of the closable gap (90 % interval 91 % to 99 %).'

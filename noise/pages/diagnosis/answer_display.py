@@ -25,7 +25,8 @@ from sim.effects import EFFECTS
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from noise.diagnosis.outcome import Diagnosis, EffectFinding, Location
+    from noise.diagnosis.findings import EffectFinding, Location
+    from noise.diagnosis.outcome import Diagnosis
 
 __all__ = [
     "CauseRow", "ParameterRow", "StageBox", "cause_rows", "parameter_rows", "place_rows",
@@ -121,7 +122,8 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import Diagnosis, StageFinding
+    >>> from noise.diagnosis.findings import StageFinding
+    >>> from noise.diagnosis.outcome import Diagnosis
     >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
     >>> boxes = stage_boxes(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
     >>> [(box.name, box.gap) for box in boxes][:2]
@@ -205,7 +207,7 @@ def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import Location
+    >>> from noise.diagnosis.findings import Location
     >>> place_rows([Location("friction", ("torque",), (0.0, 1800.0), "stick", "all", 0.004)])
     (('friction', 'torque', 'stick', 'all', 'p = 0.0040'),)
     """

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from models.transfer_functions.files import write_transfer_function
 from noise.base.atomic import atomic
+from noise.diagnosis.findings import ROLES
 from noise.diagnosis.improved_file import NAME, RESPONSES, response_files
-from noise.diagnosis.outcome import ROLES, as_json
+from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.text.improved_sentences import improved_sentence
 from noise.diagnosis.text.sentences import answer, headline
 from noise.diagnosis.text.words import NOT_DETERMINED, number, p_number
@@ -30,7 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from noise.diagnosis.outcome import Diagnosis, LabelsAndLevels
+    from noise.diagnosis.findings import LabelsAndLevels
+    from noise.diagnosis.outcome import Diagnosis
     from noise.pages.engine.clips import Clip
     from noise.pages.engine.entry import Entry
 
