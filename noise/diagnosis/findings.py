@@ -12,8 +12,12 @@ if TYPE_CHECKING:
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
 __all__ = [
-    "ROLES", "EffectFinding", "Illustration", "LabelsAndLevels", "Location", "StageFinding",
+    "LARGEST_GAP", "ROLES", "Agreement", "EffectFinding", "HypothesisFinding", "Illustration",
+    "LabelsAndLevels", "Location", "Remainder", "StageFinding",
 ]  # fmt: skip
+
+LARGEST_GAP = 100.0
+"""Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter."""
 
 ROLES = ("measured", "before", "after")
 """What is compared: the recording, the nominal model, and the model with what was found."""
@@ -26,7 +30,7 @@ class StageFinding:
     Parameters
     ----------
     gap : float
-        In units of what repeats differ by [-].
+        In units of what repeats differ by; `LARGEST_GAP` stands for all that are larger [-].
     share : float
         Of the whole gap [-].
     p_value : float
@@ -81,6 +85,8 @@ class EffectFinding:
         On recordings that no fit has seen; None where it was not fitted, in floors [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional
         Shares of the closable gap, with a 90 % interval; None where there is nothing to close.
+    fitted_with : tuple of str
+        Effects that share its fit and its figures.
     """
 
     name: str
@@ -96,6 +102,68 @@ class EffectFinding:
     closed_low: float | None = None
     closed_high: float | None = None
     closed_by_effect: float | None = None
+    fitted_with: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class HypothesisFinding:
+    """Causes that may be at work together, and no others.
+
+    Parameters
+    ----------
+    causes : tuple of str
+        None where nothing is the matter.
+    probability : float
+        [-]
+    gap : float, optional
+        That is left with them on recordings that no fit has seen; None where it was not fitted, in
+        floors [-].
+    """
+
+    causes: tuple[str, ...]
+    probability: float
+    gap: float | None = None
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How far a recording lies from the rig as its file describes it.
+
+    Parameters
+    ----------
+    recording : str
+    speed, interference : float
+        [rad/s], [m]
+    gap : float
+        In units of what repeats differ by [-].
+    channels : mapping of str to float
+        The same by kind of channel [-].
+    """
+
+    recording: str
+    speed: float
+    interference: float
+    gap: float
+    channels: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """What is still to be explained once the verdict's model is fitted.
+
+    Parameters
+    ----------
+    gap : float
+        On recordings that no fit has seen, in floors [-].
+    channels : tuple of str
+        In which it is largest, the first most of all.
+    band : (float, float)
+        [Hz]
+    """
+
+    gap: float
+    channels: tuple[str, ...]
+    band: tuple[float, float]
 
 
 @dataclass(frozen=True)

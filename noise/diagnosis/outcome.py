@@ -12,10 +12,13 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
     from noise.diagnosis.findings import (
+        Agreement,
         EffectFinding,
+        HypothesisFinding,
         Illustration,
         LabelsAndLevels,
         Location,
+        Remainder,
         StageFinding,
     )
     from noise.diagnosis.improvement import Improvement
@@ -60,6 +63,12 @@ class Diagnosis:
         the surest first.
     improvement : Improvement, optional
         What closes the gap; None where nothing does, and where it was not looked for.
+    hypotheses : tuple of HypothesisFinding
+        Sets of causes, the likeliest first.
+    agreement : tuple of Agreement
+        Of each recording with the rig file, before anything was fitted.
+    remainder : Remainder, optional
+        None where the fit leaves no more than repeats differ by, and where there was none.
     bench : tuple of str
         Why the recordings cannot be of the rig as it is described, one line each; nothing else was
         then looked for, and the verdict is ``("unknown",)``.
@@ -90,6 +99,9 @@ class Diagnosis:
     illustrations: tuple[Illustration, ...] = ()
     differences: tuple[Location, ...] = ()
     improvement: Improvement | None = None
+    hypotheses: tuple[HypothesisFinding, ...] = ()
+    agreement: tuple[Agreement, ...] = ()
+    remainder: Remainder | None = None
     bench: tuple[str, ...] = ()
 
     @property

@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 from noise.diagnosis.findings import (
     ROLES,
+    Agreement,
     EffectFinding,
+    HypothesisFinding,
     LabelsAndLevels,
     Location,
+    Remainder,
     StageFinding,
 )
 from noise.diagnosis.outcome import Diagnosis
@@ -73,6 +76,22 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
             }
             for heard in diagnosis.labels_and_levels
         ],
+        "hypotheses": [
+            {"causes": list(one.causes), "probability": _rounded(one.probability),
+             "gap_after": _rounded(one.gap)}
+            for one in diagnosis.hypotheses
+        ],
+        "agreement": [
+            {"recording": one.recording, "speed_rad_s": _rounded(one.speed, 6),
+             "interference_mm": _rounded(1e3 * one.interference, 6), "gap": _rounded(one.gap),
+             "channels": {name: _rounded(gap) for name, gap in one.channels.items()}}
+            for one in diagnosis.agreement
+        ],
+        "remainder": None if diagnosis.remainder is None else {
+            "gap": _rounded(diagnosis.remainder.gap),
+            "channels": list(diagnosis.remainder.channels),
+            "band_hz": [_rounded(f, 1) for f in diagnosis.remainder.band],
+        },
         "bench": list(diagnosis.bench),
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
@@ -109,7 +128,8 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
                 _number(each["probability"]),
                 dict(each.get("parameters") or {}),
                 cast("tuple[float, float] | None", tuple(each.get("strength") or ()) or None),
-                *(each.get(name) for name in _FIGURES),
+                **{name: each.get(name) for name in _FIGURES},
+                fitted_with=tuple(each.get("fitted_with") or ()),
             )
             for each in data["effects"]
         ),
@@ -133,6 +153,14 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
             for one in data.get("heard") or ()
         ),
         differences=tuple(map(_location_from, data.get("map") or ())),
+        hypotheses=tuple(
+            HypothesisFinding(
+                tuple(one["causes"]), _number(one["probability"]), one.get("gap_after")
+            )
+            for one in data.get("hypotheses") or ()
+        ),
+        agreement=tuple(map(_agreement_from, data.get("agreement") or ())),
+        remainder=_remainder_from(data.get("remainder")),
         bench=tuple(map(str, data.get("bench") or ())),
     )
 
@@ -167,7 +195,23 @@ def _effect(effect: EffectFinding) -> dict[str, Any]:
         },
         "strength": None if effect.strength is None else [_rounded(x) for x in effect.strength],
         **{name: _rounded(getattr(effect, name)) for name in _FIGURES},
+        "fitted_with": list(effect.fitted_with),
     }
+
+
+def _agreement_from(found: Mapping[str, Any]) -> Agreement:
+    channels = {name: _number(gap) for name, gap in found["channels"].items()}
+    return Agreement(
+        found["recording"], _number(found["speed_rad_s"]),
+        1e-3 * _number(found["interference_mm"]), _number(found["gap"]), channels,
+    )  # fmt: skip
+
+
+def _remainder_from(found: Mapping[str, Any] | None) -> Remainder | None:
+    if found is None:
+        return None
+    low, high = map(_number, found["band_hz"])
+    return Remainder(_number(found["gap"]), tuple(found["channels"]), (low, high))
 
 
 def _rounded(value: float | None, digits: int = 4) -> float | None:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.gap.distance import closed_fraction
-from noise.diagnosis.text.sentences import closed_sentence, finding_of
+from noise.diagnosis.text.found import finding_of
+from noise.diagnosis.text.sentences import closed_sentence
 from noise.diagnosis.text.words import cause_of, joined, percent
 from noise.pages.engine.ticks import round_ticks
 
