@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
+from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.evidence.sensor_noise import with_estimated_noise
 from noise.recordings import find_recordings, read_recording
@@ -46,12 +47,15 @@ class Case:
     recordings : tuple of Recording
     refused : tuple of (str, str)
         Name and reason of what was left out.
+    faults : tuple of str
+        Channels that are dead, and left out, or clip, one line each.
     """
 
     rig: Rig
     names: tuple[str, ...]
     recordings: tuple[Recording, ...]
     refused: tuple[tuple[str, str], ...] = ()
+    faults: tuple[str, ...] = ()
 
 
 def read_case(paths: Sequence[Path], rig: Rig) -> Case:
@@ -86,8 +90,16 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         raise ParameterError(
             f"{', '.join(str(path) for path in paths)}: no recording that can be diagnosed{reason}"
         )
+    faults = clipped_channels(recordings, rig)
+    sounding = without_dead_channels(names, recordings)
+    if any(recording is not None for recording in sounding.recordings):  # else the check says it
+        faults = [*sounding.findings, *faults]
+        pairs = list(zip(names, sounding.recordings, strict=True))
+        refused += [(name, "all its channels are dead") for name, left in pairs if left is None]
+        names = [name for name, left in pairs if left is not None]
+        recordings = [left for _, left in pairs if left is not None]
     seen = with_estimated_noise(rig, recordings)
-    return Case(seen, tuple(names), tuple(recordings), tuple(refused))
+    return Case(seen, tuple(names), tuple(recordings), tuple(refused), faults=tuple(faults))
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:

@@ -93,12 +93,14 @@ def diagnose_case(
         p_value=gap.p_value,
         seconds=time.perf_counter() - started,
         notes=(
+            *case.faults,
             *map(_listed, first.suspected),
             *_notes(case),
             *first.unlearned,
             *case_remarks(case, library),
         ),
         differences=differences(table, posterior),
+        faults=case.faults,
     )
     if not quick:
         from noise.diagnosis.fit.fits import (
@@ -128,8 +130,9 @@ def _unlike(
         floor=1.0,
         p_value=unknown,
         seconds=seconds,
-        notes=(*found, *_notes(case), *case_remarks(case, library)),
+        notes=(*found, *case.faults, *_notes(case), *case_remarks(case, library)),
         bench=found,
+        faults=case.faults,
     )
 
 

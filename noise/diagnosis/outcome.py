@@ -187,6 +187,8 @@ class Diagnosis:
     bench : tuple of str
         Why the recordings cannot be of the rig as it is described, one line each; nothing else was
         then looked for, and the verdict is ``("unknown",)``.
+    faults : tuple of str
+        Channels that are dead, and were left out, or clip, one line each.
 
     Examples
     --------
@@ -215,6 +217,7 @@ class Diagnosis:
     differences: tuple[Location, ...] = ()
     improvement: Improvement | None = None
     bench: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
 
     @property
     def improved(self) -> Rig | None:
@@ -290,6 +293,7 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
             for heard in diagnosis.labels_and_levels
         ],
         "bench": list(diagnosis.bench),
+        "faults": list(diagnosis.faults),
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
     }  # fmt: skip
@@ -349,6 +353,7 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
         ),
         differences=tuple(map(_location_from, data.get("map") or ())),
         bench=tuple(map(str, data.get("bench") or ())),
+        faults=tuple(map(str, data.get("faults") or ())),
     )
 
 

@@ -75,7 +75,7 @@ def headline(diagnosis: Diagnosis) -> str:
 def answer(diagnosis: Diagnosis) -> list[str]:
     """Return all sentences of the answer: verdict, location, what cannot be told apart.
 
-    Of recordings that cannot be of their rig, why not.
+    Before all, which channels are dead or clip; of recordings that cannot be of their rig, why not.
 
     Examples
     --------
@@ -84,10 +84,10 @@ def answer(diagnosis: Diagnosis) -> list[str]:
     ['Recordings and simulation differ no more than repeats do: there is nothing to explain (gap
       0.9, floor 1, p = 0.60).']
     """
+    found = [f"{text[0].upper()}{text[1:]}." for text in (*diagnosis.bench, *diagnosis.faults)]
     if diagnosis.bench:
-        found = [f"{text[0].upper()}{text[1:]}." for text in diagnosis.bench]
         return [*found, "No cause is looked for before that is put right."]
-    sentences = [verdict_sentence(diagnosis), location_sentence(diagnosis)]
+    sentences = [*found, verdict_sentence(diagnosis), location_sentence(diagnosis)]
     return [*filter(None, sentences), *equivalence_sentences(diagnosis)]
 
 
