@@ -124,6 +124,7 @@ def _stated(
         p_value=first.gap.p_value,
         seconds=0.0,
         notes=(
+            *case.faults,
             *map(_listed, first.suspected),
             *_notes(case),
             *first.unlearned,
@@ -135,6 +136,7 @@ def _stated(
             for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)
         ),
         agreement=_agreement(case, first.gap),
+        faults=case.faults,
     )
 
 
@@ -168,8 +170,9 @@ def _unlike(
         floor=1.0,
         p_value=unknown,
         seconds=seconds,
-        notes=(*found, *_notes(case), *case_remarks(case, library)),
+        notes=(*found, *case.faults, *_notes(case), *case_remarks(case, library)),
         bench=found,
+        faults=case.faults,
     )
 
 
