@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
+from noise.diagnosis.evidence.bench_context import bench_context
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
     band_levels,
@@ -65,6 +66,8 @@ class CaseTable:
     conditions : tuple of Condition
     rate : float
         Sampling rate of the recordings [Hz].
+    bench : mapping of str to float
+        As `noise.diagnosis.evidence.bench_context.bench_context` gives it.
     """
 
     names: tuple[str, ...]
@@ -73,6 +76,7 @@ class CaseTable:
     scatter: NDArray[np.float64]
     conditions: tuple[Condition, ...]
     rate: float
+    bench: Mapping[str, float] = field(default_factory=dict)
 
 
 def summary(
@@ -211,6 +215,7 @@ def case_table(
         table(spreads),
         tuple(recording.condition for recording in recordings),
         recordings[0].rate,
+        bench_context(rig, recordings),
     )
 
 

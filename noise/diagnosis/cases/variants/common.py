@@ -198,6 +198,13 @@ def wander(rng: Rng, n: int, rate: float, corner: float) -> Array:
     return np.asarray(time_series * math.sqrt(0.5 * rate / (1.11 * corner)))
 
 
+def slowly(rng: Rng, n: int, rate: float, corner: float) -> Array:
+    """Draw as `wander` does, at the price of few samples where the corner lies far below `rate`."""
+    coarse = max(1, int(rate / (20.0 * corner)))
+    slow = wander(rng, n // coarse + 2, rate / coarse, corner)
+    return np.interp(np.arange(n), coarse * np.arange(slow.size), slow)
+
+
 def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:
     """Draw a time series that switches between -1 and 1, so often a second [Hz]."""
     return np.where(np.cumsum(rng.random(n) < often / rate) % 2 == int(rng.integers(2)), 1.0, -1.0)
