@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import map_coordinates
-from scipy.signal import lfilter
 
 from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 
@@ -54,14 +53,19 @@ def waveguide(rate: float, first: float, reflection: float, dullness: float) -> 
     array([0.  , 0.  , 0.  , 0.  , 0.5 , 0.  , 0.  , 0.  , 0.25])
     """
     way = max(2, round(rate / first))
-    passes = np.log(1e-4) / np.log(abs(reflection))
-    unit = np.zeros(int(min(passes * way + way, max(_LONGEST * rate, 3 * way))))
-    unit[0] = 1.0
-    echo = np.zeros(way + 2)
-    echo[way - 1 :] = reflection * np.array([0.5 * dullness, 1.0 - dullness, 0.5 * dullness])
-    denominator = -echo
-    denominator[0] += 1.0
-    return np.asarray(lfilter(echo, denominator, unit))
+    passes = int(np.log(1e-4) / np.log(abs(reflection)))
+    n = int(min(passes * way + way, max(_LONGEST * rate, 3 * way)))
+    echoes = np.zeros(n)
+    echo = reflection * np.array([0.5 * dullness, 1.0 - dullness, 0.5 * dullness])
+    wave = echo
+    for middle in range(way, n, way):
+        half = wave.size // 2
+        stop = min(middle + half + 1, n)
+        echoes[middle - half : stop] += wave[: stop - middle + half]
+        wave = np.convolve(wave, echo)
+        if wave.size > 2 * way - 3:  # its far tails are as good as nothing
+            wave = wave[1:-1]
+    return echoes
 
 
 def rings(rate: float, modes: Sequence[Mode]) -> Array:
