@@ -69,7 +69,19 @@ def waveguide(rate: float, first: float, reflection: float, dullness: float) -> 
 
 
 def rings(rate: float, modes: Sequence[Mode]) -> Array:
-    """Sum of resonances of unit peak times their strength, impulse response of shape (n,) [-].
+    """Sum of resonances of unit peak times their strength.
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+    modes : sequence of (float, float, float)
+        Frequency [Hz], damping ratio [-], strength with its sense [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Impulse response [-].
 
     Examples
     --------
@@ -87,7 +99,19 @@ def rings(rate: float, modes: Sequence[Mode]) -> Array:
 
 
 def shifted(response: Array, factor: float) -> Array:
-    """Move all modes of an impulse response, shape (n,), by a factor of frequency [-].
+    """Move all modes of an impulse response.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    factor : float
+        Of their frequencies [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [as `response`]
 
     Examples
     --------
@@ -102,17 +126,60 @@ def shifted(response: Array, factor: float) -> Array:
 
 
 def damped(response: Array, rate: float, decay: float) -> Array:
-    """Let an impulse response, shape (n,) at a rate [Hz], decay faster by so much [1/s]."""
+    """Let an impulse response decay faster.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    rate : float
+        Sampling rate [Hz].
+    decay : float
+        By so much [1/s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [as `response`]
+    """
     return np.asarray(response * np.exp(-decay / rate * np.arange(response.size)))
 
 
 def split(response: Array, rate: float, apart: float) -> Array:
-    """Split each mode of an impulse response, shape (n,), into two so far apart [Hz]."""
+    """Split each mode of an impulse response into two.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    rate : float
+        Sampling rate [Hz].
+    apart : float
+        How far the two lie apart [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [as `response`]
+    """
     return np.asarray(response * np.cos(np.pi * apart / rate * np.arange(response.size)))
 
 
 def band_level(response: Array, rate: float) -> float:
-    """Root mean square of what an impulse response, shape (n,), passes from 200 to 6000 Hz."""
+    """Root mean square of what an impulse response passes from 200 to 6000 Hz.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    float
+        [as `response`]
+    """
     passed = np.abs(np.fft.rfft(response, max(response.size, 2048)))
     frequency = np.fft.rfftfreq(max(response.size, 2048), 1.0 / rate)
     inside = (frequency >= _BAND[0]) & (frequency <= _BAND[1])
