@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 from noise.diagnosis.bench.channels import (
     backwards,
-    dead_channels,
     swapped_channels,
     turned_channels,
     wrong_units,
 )
 from noise.diagnosis.bench.conditions import shuffled_conditions, wrong_speed
+from noise.diagnosis.bench.faults import dead_channels
 from noise.diagnosis.bench.levels import levels_of
 from noise.diagnosis.bench.materials import another_level, another_material
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache

@@ -48,11 +48,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Rig
+    from models.rig import Fit, Rig
     from noise.diagnosis.cases.rigs import Setting
     from sim.effects.effect import ActiveEffect
 
-__all__ = ["SHARED", "DrawnCase", "draw_case"]
+__all__ = [
+    "SHARED", "DrawnCase", "active_effect", "draw_case", "draw_offsets", "unknown_effect",
+]  # fmt: skip
 
 SHARED = 4
 """Cases of one rig."""
@@ -197,17 +199,11 @@ def _warmer(rig: Rig, warmer: float) -> Rig:
 def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveEffect]]:
     kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
     if kind == "parameters":
-        sign = float(rng.choice([-1.0, 1.0]))
-        names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
-        offsets = tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
-        return Truth(kind, offsets=offsets), []
+        return Truth(kind, offsets=draw_offsets(rng)), []
     if kind == "unknown":
         name, strength = str(rng.choice(list(UNKNOWN_EFFECTS))), _strength(rng)
-        middle = rig.fit(0.279e-3)
-        unknown_effect = draw_unknown_effect(
-            name, strength, middle.kinetic_torque, middle.elastomer_stiffness, rng
-        )
-        return Truth(kind, (name,), ("plain",), (strength,)), [unknown_effect.active({})]
+        unknown = unknown_effect(name, strength, rig.fit(0.279e-3), rng)
+        return Truth(kind, (name,), ("plain",), (strength,)), [unknown]
     # Of what the rig file lists nothing is missing, but of an irregularity there may be more.
     more = [spec.name for spec in irregular_effects(rig)]
     listed = {spec.name for spec in rig.effects} - set(more)
@@ -217,7 +213,7 @@ def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveE
     if names and more and not set(more) & set(names) and rng.random() < _IRREGULAR:
         names[0] = str(rng.choice(more))
     strengths = tuple(_strength(rng) for _ in names)
-    effects = [_drawn_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
+    effects = [active_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
     return Truth(kind, tuple(names), tuple(e.form for e in effects), strengths), effects
 
 
@@ -233,7 +229,21 @@ def _without_effect(rig: Rig) -> set[str]:
     return nothing
 
 
-def _drawn_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+def draw_offsets(rng: np.random.Generator) -> tuple[tuple[str, float], ...]:
+    """Draw one or two parameters that are off, and by what factor [-]."""
+    sign = float(rng.choice([-1.0, 1.0]))
+    names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
+    return tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
+
+
+def unknown_effect(name: str, strength: float, fit: Fit, rng: np.random.Generator) -> ActiveEffect:
+    """Draw an effect of `UNKNOWN_EFFECTS`, of a strength from 0 to 1 [-], on a rig's fit."""
+    drawn = draw_unknown_effect(name, strength, fit.kinetic_torque, fit.elastomer_stiffness, rng)
+    return drawn.active({})
+
+
+def active_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+    """Draw an effect of the contract, of a strength from 0 to 1 [-], in any form."""
     spec = drawn_effect(name, strength, rng)
     if rng.random() < _VARIANTS:
         return draw_variant(name, strength, rng).active({})

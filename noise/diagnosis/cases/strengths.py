@@ -147,18 +147,18 @@ _PARAMETERS: dict[str, dict[str, Draw]] = {
     },
     "slip_pulse": {
         "amplitude": _times(800.0),
-        "threshold": lambda _strength, rng: float(rng.choice([0.0, 0.0, 1.0, 3.0])),
+        "threshold": lambda _strength, rng: float(rng.choice([0.0, 0.0, 0.3, 1.0])),
         "duration": _log(1.5e-5, 6e-4),
     },
     "speed_fluctuation": {
         "depth": _times(0.3), "frequency": _log(2.0, 100.0), "bandwidth": _log(2.0, 80.0),
     },
-    "static_ageing": {"share": _times(0.97), "ageing_time": _log(2e-4, 0.1)},
+    "static_ageing": {"share": _times(0.97), "ageing_time": _log(1e-3, 0.1)},
     "transfer_film": {
         "coverage": _STRENGTH, "torque_ratio": _log(1.3, 4.0), "drop_left": _even(0.05, 0.7),
         "roughness": _log(0.005, 0.1), "growth_angle": _log(0.05, 3.0), "formed": _ZERO,
     },
-    "velocity_strengthening": {"gain": _times(1.5), "speed": _log(3.0, 40.0)},
+    "velocity_strengthening": {"gain": _times(1.5), "speed": _log(8.0, 40.0)},
     "velocity_weakening": {"share": _times(0.85), "speed": _log(0.8, 50.0)},
     "viscoelastic_stiffness": {
         "stiffening": _times(3.0), "relaxation_time": _log(3e-5, 0.1), "spread": _even(2.0, 8.0),

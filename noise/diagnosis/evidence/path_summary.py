@@ -75,7 +75,8 @@ def path_summary(
     -------
     numbers : dict of str to float
         By name, those of a band with its number; ratios and coherences as logarithms [-], ``delay``
-        in microseconds, ``*_at`` as logarithms of seconds or hertz.
+        in microseconds, ``*_at`` as logarithms of seconds or hertz; none of a recording that is
+        shorter than the segments by which bands are told.
     residual : ndarray, shape (n_kept,)
         Measured less predicted, without its ends [unit of the channel].
 
@@ -90,6 +91,8 @@ def path_summary(
     p, m = predicted[ends], measured[ends]
     residual = m - p
     size, frequency = segment_frequency(rate)
+    if p.size < size:
+        return {}, residual
     of_p, of_m = segment_spectra(p, size), segment_spectra(m, size)
     powers, pm = np.empty((3, frequency.size)), np.empty(frequency.size, np.complex128)
     cross_powers(of_p, of_m, powers, pm)

@@ -373,7 +373,9 @@ def chain_of(
     torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
     struck = sounding = np.zeros(1)
     if impacts:
-        modelled = impulse_responses(rig, interference, support_stiffness, rate)
+        # What a torque makes is known, and costs much where it was measured.
+        unmeasured = replace(rig, measured=())
+        modelled = impulse_responses(unmeasured, interference, support_stiffness, rate)
         struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
     return ImpulseResponses(
         rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding

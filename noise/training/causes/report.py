@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.diagnosis.causes.verdict import verdict_of
+from noise.diagnosis.causes.joint import joint_probabilities
+from noise.diagnosis.causes.verdict import likeliest, needs_explaining
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -62,10 +63,7 @@ def report(posterior: Posterior, cases: Sequence[Known], left_out: Sequence[Know
     """
 
     def answered(some: Sequence[Known]) -> list[_Answer]:
-        return [
-            (case, verdict_of(posterior.probabilities(case.table), posterior.alarm))
-            for case in some
-        ]
+        return [(case, _verdict(posterior, case)) for case in some]
 
     answers = answered(cases)
     kinds = sorted({name for case in cases for name in case.departures})
@@ -85,6 +83,13 @@ def report(posterior: Posterior, cases: Sequence[Known], left_out: Sequence[Know
         for form, some in plain.items()
     ]
     return "\n".join(lines)
+
+
+def _verdict(posterior: Posterior, case: Known) -> tuple[str, ...]:
+    p = posterior.probabilities(case.table)
+    if not needs_explaining(p["none"], posterior.alarm):
+        return ()
+    return likeliest({h: x for h, x in joint_probabilities(p).items() if h})
 
 
 def _score(

@@ -131,12 +131,6 @@ def _slow_creep(a: float, rng: Rng) -> Effect:
     return _branches("slow", a, rng, rng.uniform(0.2, 1.0, 2), times, lost=lost)
 
 
-def _damping(a: float, rng: Rng) -> Effect:
-    """Damp in proportion to frequency up to the highest (Kelvin and Voigt)."""
-    times = np.array([log_uniform(rng, 2e-5, 6e-5)])
-    return _branches("damping", a, rng, np.ones(1), times)
-
-
 def _constant_loss(a: float, rng: Rng) -> Effect:
     """Damp alike at all frequencies: structural damping (Bert 1973)."""
     times = np.geomspace(2.5e-5, 0.05, 6)
@@ -187,6 +181,6 @@ SOFTENING: tuple[Recipe, ...] = (
     _soft_held, _soft_recovering, _soft_bristles,
 )  # fmt: skip
 VISCOELASTICITY: tuple[Recipe, ...] = (
-    _springpot, _drawn_branches, _slow_and_fast, _relaxing, _slow_creep, _damping, _constant_loss,
+    _springpot, _drawn_branches, _slow_and_fast, _relaxing, _slow_creep, _constant_loss,
     _thinning, _thickening,
 )  # fmt: skip

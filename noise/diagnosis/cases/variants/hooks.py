@@ -124,10 +124,12 @@ def creep_hook(context, values, state, state_rates, contact) -> None:
     """Creep over torque.
 
     Share, lag, speed of the creep itself (0 where it is a share of the shaft's), time in stick over
-    which it fades (0 for none); curve over the torque's share of the critical one.
+    which it fades (0 for none), share of the drop that is lost; curve over the torque's share of
+    the critical one.
     """
+    contact[CRITICAL] -= values[4] * (contact[CRITICAL] - contact[KINETIC])
     r = min(abs(context[TORQUE]) / contact[CRITICAL], 1.0)
-    f = _curve(values, 4, r)
+    f = _curve(values, 5, r)
     if values[1] > 0.0:
         state_rates[0] = (f - state[0]) / values[1]
         f = min(max(state[0], 0.0), 1.0)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["STRENGTHENING", "WEAKENING"]
 
-_STEEPEST = 1.2
+_STEEPEST = 0.5
 """Rise over the kinetic torque that the solver follows well [s/rad]."""
 
 _FARTHEST = 50.0

@@ -36,7 +36,7 @@ def _age(
     form: str, a: float, rng: Rng, shape: Array, *, level: float = 1.0, whole: bool = False,
     renewal: float = 0.0, kinetic: float = 0.0, gain: float = 0.97,
 ) -> Effect:  # fmt: skip
-    time = log_uniform(rng, 2e-4, 0.1)
+    time = log_uniform(rng, 1e-3, 0.15)
     header = [gain * a, time, renewal or _RENEWAL, level, whole, renewal > 0.0, kinetic]
     return on_contact(
         "static_ageing", form, a, ageing_hook,
@@ -82,7 +82,7 @@ def _stiffens(a: float, rng: Rng) -> Effect:
     fading = log_uniform(rng, 3e-4, 2e-2)
     n = float(rng.uniform(0.0, 2.0))
     shape = curve(lambda r: (r + 1e-9) ** n)
-    header = [0.93 * a, 0.0, 0.0, fading]
+    header = [0.93 * a, 0.0, 0.0, fading, 0.0]
     return on_contact(
         "static_ageing", "stiffness", a, creep_hook,
         lambda _rng: np.concatenate([header, shape]), n_states=1,
@@ -120,9 +120,9 @@ def _exponential(_rng: Rng) -> Array:
 
 def _creeps(
     form: str, a: float, _rng: Rng, shape: Array, lag: float = 0.0, speed: float = 0.0,
-    fading: float = 0.0, share: float | None = None,
+    fading: float = 0.0, share: float | None = None, lost: float = 0.0,
 ) -> Effect:  # fmt: skip
-    header = [_MOST * a if share is None else share, lag, speed, fading]
+    header = [_MOST * a if share is None else share, lag, speed, fading, lost]
     return on_contact(
         "partial_slip", form, a, creep_hook,
         lambda _rng: np.concatenate([header, shape]), n_states=1,
@@ -132,6 +132,11 @@ def _creeps(
 def _creep_lagging(a: float, rng: Rng) -> Effect:
     n, lag = log_uniform(rng, 1.0, 6.0), log_uniform(rng, 1e-4, 3e-3)
     return _creeps("lagging", a, rng, curve(lambda r: r**n), lag)
+
+
+def _creep_weakened(a: float, rng: Rng) -> Effect:
+    """Carry less before the slip, too: what has slipped already holds the kinetic torque alone."""
+    return _creeps("weakened", a, rng, drawn_curve(rng), lost=a * float(rng.uniform(0.2, 0.8)))
 
 
 def _creep_fading(a: float, rng: Rng) -> Effect:
@@ -232,6 +237,6 @@ CREEP = (
     *family(_creeps, ("table", drawn_curve), ("threshold", _threshold), ("logarithmic", _late),
             ("bristles", _bristles), ("early", _early), ("annulus", _annulus), ("zones", _zones),
             ("precursors", _precursors), ("series", lambda _rng: curve(np.ones_like))),
-    _creep_lagging, _creep_fading, _creep_viscous, _creep_activated,
+    _creep_lagging, _creep_weakened, _creep_fading, _creep_viscous, _creep_activated,
     _dahl, _mindlin,
 )  # fmt: skip

@@ -78,7 +78,7 @@ def _film_grown(a: float, rng: Rng) -> Effect:
 
 def _film_there(a: float, rng: Rng) -> Effect:
     """Begin with a film that is there: it only changes torque, drop and roughness."""
-    return _film("there", a, rng, curve(np.ones_like))
+    return _film("there", a, rng, curve(np.ones_like), rough=(0.02, 0.15))
 
 
 def _film_smooth(a: float, rng: Rng) -> Effect:
