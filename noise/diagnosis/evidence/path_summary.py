@@ -117,7 +117,7 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
     Returns
     -------
     dict of str to float
-        Logarithms of coherences [-].
+        Logarithms of coherences [-]; none of residuals that are shorter than a segment.
 
     Examples
     --------
@@ -126,6 +126,8 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
     True
     """
     size = 2048
+    if one.size < size:
+        return {}
     x, y = segment_spectra(one, size), segment_spectra(other, size)
     powers, xy = np.empty((3, x.shape[1])), np.empty(x.shape[1], np.complex128)
     cross_powers(x, y, powers, xy)
