@@ -21,6 +21,7 @@ from noise.diagnosis.cases.draw import SHARED, draw_case
 from noise.diagnosis.evidence.summary import NominalNumbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
 from noise.training.causes.fit import Known, with_rows
+from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -119,16 +120,15 @@ class _Shared:
 
 
 def _alike(one: Sensors, other: Sensors) -> bool:
-    if one.by_kind.keys() != other.by_kind.keys():
-        return False
-    for kind, a in one.by_kind.items():
-        b = other.by_kind[kind]
-        if replace(a, noise=b.noise) != b or (a.noise is None) != (b.noise is None):
+    """Whether sensors are the same but for estimates of noise and steps that hardly differ."""
+    for kind, usual in Acquisition().noise.items():
+        a, b = one.of(kind), other.of(kind)
+        if (a.bits, a.antialias) != (b.bits, b.antialias) or not math.isclose(a.step, b.step):
             return False
-        if a.noise is not None and b.noise is not None:
-            least = 0.1 * a.step  # less than that is lost in the rounding
-            if not math.isclose(a.noise, b.noise, rel_tol=_SAME_NOISE, abs_tol=least):
-                return False
+        levels = [usual if sensor.noise is None else sensor.noise for sensor in (a, b)]
+        least = 0.1 * a.step  # less than that is lost in the rounding
+        if not math.isclose(*levels, rel_tol=_SAME_NOISE, abs_tol=least):
+            return False
     return True
 
 
