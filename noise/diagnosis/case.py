@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
+from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
 from noise.diagnosis.preparation.prepare import prepared
 from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording
@@ -46,6 +47,8 @@ class Case:
         Name and reason of what was left out.
     notes : tuple of str
         What was done to the recordings, a line each.
+    faults : tuple of str
+        Channels that are dead, and left out, or clip, one line each.
     """
 
     rig: Rig
@@ -53,6 +56,7 @@ class Case:
     recordings: tuple[Recording, ...]
     refused: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
 
 
 def read_case(paths: Sequence[Path], rig: Rig) -> Case:
@@ -87,10 +91,20 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         raise ParameterError(
             f"{', '.join(str(path) for path in paths)}: no recording that can be diagnosed{reason}"
         )
+    faults = clipped_channels(recordings, rig)
+    sounding = without_dead_channels(names, recordings)
+    if any(recording is not None for recording in sounding.recordings):  # else the check says it
+        faults = [*sounding.findings, *faults]
+        pairs = list(zip(names, sounding.recordings, strict=True))
+        refused += [(name, "all its channels are dead") for name, left in pairs if left is None]
+        names = [name for name, left in pairs if left is not None]
+        recordings = [left for _, left in pairs if left is not None]
     ready = prepared(rig, recordings)
     refused += [(names[i], reason) for i, reason in ready.left_out.items()]
     kept = tuple(name for i, name in enumerate(names) if i not in ready.left_out)
-    return Case(ready.rig, kept, ready.recordings, tuple(refused), ready.notes)
+    return Case(
+        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, faults=tuple(faults)
+    )
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:
