@@ -62,8 +62,9 @@ def run(options: Namespace) -> int:
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import case_remarks, diagnose_case
     from noise.diagnosis.improved_file import check_base
-    from noise.diagnosis.outcome import as_json
-    from noise.diagnosis.text.sentences import answer, closed_sentence, finding_of
+    from noise.diagnosis.outcome_json import as_json
+    from noise.diagnosis.text.found import finding_of
+    from noise.diagnosis.text.sentences import answer, closed_sentence
 
     library = effect_library(options.effects)
     rig = opt.changed(load_rig(options.rig), options.change)

@@ -9,7 +9,7 @@ from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
-from noise.diagnosis.evidence.sensor_noise import with_estimated_noise
+from noise.diagnosis.preparation.prepare import prepared
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
@@ -41,12 +41,15 @@ class Case:
     Parameters
     ----------
     rig : Rig
-        With the noise of its sensors, where that is to be taken from the recordings.
+        With its sensors as the recordings show them, where its file does not state them.
     names : tuple of str
         Of the files.
     recordings : tuple of Recording
+        As `noise.diagnosis.preparation.prepare.prepared` gives them.
     refused : tuple of (str, str)
         Name and reason of what was left out.
+    notes : tuple of str
+        What was done to the recordings, a line each.
     faults : tuple of str
         Channels that are dead, and left out, or clip, one line each.
     """
@@ -55,6 +58,7 @@ class Case:
     names: tuple[str, ...]
     recordings: tuple[Recording, ...]
     refused: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
 
 
@@ -98,8 +102,12 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         refused += [(name, "all its channels are dead") for name, left in pairs if left is None]
         names = [name for name, left in pairs if left is not None]
         recordings = [left for _, left in pairs if left is not None]
-    seen = with_estimated_noise(rig, recordings)
-    return Case(seen, tuple(names), tuple(recordings), tuple(refused), faults=tuple(faults))
+    ready = prepared(rig, recordings)
+    refused += [(names[i], reason) for i, reason in ready.left_out.items()]
+    kept = tuple(name for i, name in enumerate(names) if i not in ready.left_out)
+    return Case(
+        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, faults=tuple(faults)
+    )
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:

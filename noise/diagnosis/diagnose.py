@@ -1,7 +1,8 @@
 """The diagnosis: from recordings and a rig file to what is missing, and how sure that is.
 
-In order: is there a gap beyond what repeats differ by; where; which cause is how probable; how far
-parameters alone, and each likely cause with them, close it on recordings that no fit has seen.
+In order: does the rig file describe the recordings to within what repeats differ by; where not;
+which causes are how probable together; how far parameters alone, and the likeliest of these with
+them, close the gap on recordings that no fit has seen, and how probable that leaves them.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition
@@ -18,8 +20,10 @@ from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
 from noise.diagnosis.evidence.sensor_noise import noise_remarks
-from noise.diagnosis.first_answer import first_answer, known_effects
-from noise.diagnosis.outcome import Diagnosis, EffectFinding, StageFinding
+from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
+from noise.diagnosis.first_answer import first_answer
+from noise.diagnosis.gap.signature import KINDS
+from noise.diagnosis.outcome import Diagnosis
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 
@@ -28,12 +32,15 @@ if TYPE_CHECKING:
 
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
+    from noise.diagnosis.first_answer import FirstAnswer
+    from noise.diagnosis.fit.judge import Judged
+    from noise.diagnosis.gap.distance import Gap
     from sim.effects.effect import Effect
 
 __all__ = ["case_remarks", "diagnose_case"]
 
 _SHOWN = 5
-"""Effects that are listed at least."""
+"""Effects that are listed at least, and hypotheses."""
 
 
 def diagnose_case(
@@ -73,25 +80,49 @@ def diagnose_case(
         return _unlike(case, found, library, time.perf_counter() - started)
     posterior = posterior or load_posterior()
     first = first_answer(case, library, posterior, seed, tell)
-    table, gap, probabilities, verdict = first.table, first.gap, first.probabilities, first.verdict
-    known = known_effects(case.rig, library)
-    findings = stage_findings(table, posterior)
-    ranked = [name for name in _ranked(probabilities) if name in EFFECTS]
-    stage = EFFECTS[verdict[0]].stage.value if verdict and verdict[0] in EFFECTS else None
-    diagnosis = Diagnosis(
+    if quick:
+        answer = _stated(case, first, first, posterior, library)
+    else:
+        from noise.diagnosis.fit.fits import add_fits  # loads the classifier; no part of a quick
+        from noise.diagnosis.fit.judge import judge  # answer
+
+        stages = stage_findings(first.table, posterior)
+        judged = judge(case, first, stages, posterior, library, seed, tell)
+        answer = _stated(case, first, judged, posterior, library)
+        answer = add_fits(case, answer, judged, posterior, seed, tell)
+    return replace(answer, seconds=time.perf_counter() - started)
+
+
+def _stated(
+    case: Case,
+    first: FirstAnswer,
+    judged: FirstAnswer | Judged,
+    posterior: Posterior,
+    library: Mapping[str, Effect],
+) -> Diagnosis:
+    """State a verdict: where it lies, what else it could be, what to measure next."""
+    verdict, probabilities = judged.verdict, judged.probabilities
+    findings = stage_findings(first.table, posterior)
+    ranked = [name for name in _ranked(probabilities) if name in library]
+    stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
+    place = locate(first.table, posterior, stage)
+    return Diagnosis(
         verdict=verdict,
         equivalent=equivalent_pairs(ranked, probabilities, _kinds(case)),
-        location=locate(table, posterior, stage) if verdict else None,
+        location=place if verdict else None,
         stages=findings,
-        effects=tuple(_unfitted(name, probabilities) for name in ranked[:_SHOWN]),
+        effects=tuple(
+            EffectFinding(name, library[name].stage.value, probabilities[name])
+            for name in ranked[:_SHOWN]
+        ),
         probabilities=probabilities,
         parameters={},
-        next_measurement=next_measurement(verdict, probabilities, _kinds(case)),
+        next_measurement=next_measurement(verdict, probabilities, _kinds(case), place.stage),
         held_out=(),
-        gap=gap.distance,
+        gap=first.gap.distance,
         floor=1.0,
-        p_value=gap.p_value,
-        seconds=time.perf_counter() - started,
+        p_value=first.gap.p_value,
+        seconds=0.0,
         notes=(
             *case.faults,
             *map(_listed, first.suspected),
@@ -99,16 +130,25 @@ def diagnose_case(
             *first.unlearned,
             *case_remarks(case, library),
         ),
-        differences=differences(table, posterior),
+        differences=differences(first.table, posterior),
+        hypotheses=tuple(
+            HypothesisFinding(tuple(sorted(hypothesis)), p)
+            for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)
+        ),
+        agreement=_agreement(case, first.gap),
         faults=case.faults,
     )
-    if not quick:
-        from noise.diagnosis.fit.fits import (
-            add_fits,  # loads the classifier; no part of a quick answer
-        )
 
-        diagnosis = add_fits(case, diagnosis, table, posterior, library, known, seed, tell)
-    return replace(diagnosis, seconds=time.perf_counter() - started)
+
+def _agreement(case: Case, gap: Gap) -> tuple[Agreement, ...]:
+    found = []
+    for name, recording, whole, each in zip(
+        case.names, case.recordings, gap.of_recordings, gap.of_channels, strict=True
+    ):
+        at = known_condition(recording.condition)
+        channels = {k: float(d) for k, d in zip(KINDS, each, strict=True) if math.isfinite(d)}
+        found.append(Agreement(name, at.speed, at.interference, float(whole), channels))
+    return tuple(found)
 
 
 def _unlike(
@@ -145,10 +185,6 @@ def _listed(name: str) -> str:
         f"what is left looks like {name}, which the rig file lists already: its form or numbers "
         "are off"
     )
-
-
-def _unfitted(name: str, probabilities: Mapping[str, float]) -> EffectFinding:
-    return EffectFinding(name, EFFECTS[name].stage.value, probabilities[name])
 
 
 def _kinds(case: Case) -> frozenset[str]:
@@ -197,6 +233,7 @@ def _notes(case: Case) -> tuple[str, ...]:
         )
     elif len(different) == len(case.recordings):
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
+    notes += case.notes
     notes += noise_remarks(case.rig.sensors, kinds)
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]

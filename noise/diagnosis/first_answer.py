@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.causes.joint import joint_probabilities, marginals
 from noise.diagnosis.causes.unlearned import unlearned_sensors
-from noise.diagnosis.causes.verdict import NAMED, verdict_of
+from noise.diagnosis.causes.verdict import likeliest, needs_explaining
 from noise.diagnosis.evidence.summary import case_table
 from noise.diagnosis.gap.floor import case_gap
 from sim.constant_version import constant_version
@@ -16,12 +17,16 @@ if TYPE_CHECKING:
 
     from models.rig import Rig
     from noise.diagnosis.case import Case
+    from noise.diagnosis.causes.joint import Hypothesis
     from noise.diagnosis.causes.posterior import Posterior
     from noise.diagnosis.evidence.summary import CaseTable
     from noise.diagnosis.gap.distance import Gap
     from sim.effects.effect import Effect
 
 __all__ = ["FirstAnswer", "first_answer", "known_effects"]
+
+_SUSPECTED = 0.5
+"""Probability from which on an effect that the rig file lists is said to be off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +37,8 @@ class FirstAnswer:
     ----------
     table : CaseTable
     gap : Gap
+    hypotheses : mapping of frozenset of str to float
+        Of each set of causes, the likeliest first [-].
     probabilities : mapping of str to float
         Of each cause [-]; 0 of the effects that the rig file lists, but those of which there can
         be more (`known_effects`).
@@ -45,6 +52,7 @@ class FirstAnswer:
 
     table: CaseTable
     gap: Gap
+    hypotheses: Mapping[Hypothesis, float]
     probabilities: Mapping[str, float]
     verdict: tuple[str, ...]
     suspected: tuple[str, ...]
@@ -103,6 +111,11 @@ def first_answer(
     probabilities |= dict.fromkeys(again, 0.0)
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
     unlearned = unlearned_sensors(case.rig.sensors, case.recordings)
-    verdict = verdict_of(probabilities, posterior.alarm, gap, learned=not unlearned)
-    suspected = tuple(name for name, p in again.items() if verdict and p >= NAMED)
-    return FirstAnswer(table, gap, probabilities, verdict, suspected, unlearned)
+    hypotheses = joint_probabilities(probabilities)
+    verdict: tuple[str, ...] = ()
+    if needs_explaining(probabilities["none"], posterior.alarm, gap, learned=not unlearned):
+        verdict = likeliest({h: p for h, p in hypotheses.items() if h})
+        single = marginals(hypotheses)
+        probabilities = {name: single.get(name, 0.0) for name in probabilities}
+    suspected = tuple(name for name, p in again.items() if verdict and p >= _SUSPECTED)
+    return FirstAnswer(table, gap, hypotheses, probabilities, verdict, suspected, unlearned)

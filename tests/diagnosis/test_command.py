@@ -13,8 +13,7 @@ from models.errors import ParameterError
 from noise.base.user_effects import effect_library
 from noise.cli import main
 from noise.diagnosis.causes.posterior import load_posterior
-from noise.diagnosis.fit.by_fits import prefer_by_fits
-from noise.diagnosis.outcome import EffectFinding, as_json
+from noise.diagnosis.outcome_json import as_json
 from noise.diagnosis.run import diagnose
 from sim.effects import EFFECTS
 from tests.helpers.made_diagnoses import one_effect
@@ -284,42 +283,6 @@ def test_an_own_effect_that_the_rig_file_lists_is_no_finding(tmp_path, capsys):
         assert "rectifier" not in told["verdict"]
         chances.append(told["probabilities"]["none"])
     assert chances[1] > chances[0]
-
-
-def _gaps(name, after, closed=0.9):
-    return EffectFinding(name, "measurement", 0.0, gap_before=8.0, gap_recalibrated=6.0,
-                         gap_after=after, gap_floor=1.0, closed=closed)  # fmt: skip
-
-
-def test_an_own_effect_takes_over_only_where_it_closes_clearly_more():
-    before = one_effect()
-    (name,) = before.verdict
-    for mine, taken in ((1.2, True), (2.9, False), (7.0, False)):
-        findings = {name: _gaps(name, 3.0), "mine": _gaps("mine", mine)}
-        after = prefer_by_fits(before, findings, ["mine"])
-        assert (after.verdict == ("mine",)) == taken
-        if taken:
-            assert after.probabilities["mine"] == pytest.approx(0.9)
-            assert after.probabilities[name] <= 0.1 * before.probabilities[name] + 1e-9
-
-
-def test_an_own_effect_that_closes_a_small_gap_is_as_probable_as_what_it_closes():
-    small = replace(_gaps("mine", 1.0, closed=None), gap_before=1.4, gap_recalibrated=1.4)
-    after = prefer_by_fits(one_effect(), {"mine": small}, ["mine"])
-    assert after.verdict == ("mine",)
-    assert after.probabilities["mine"] == pytest.approx(1.0)
-
-
-def test_where_there_is_no_gap_an_own_effect_has_none_to_close():
-    nothing = replace(one_effect(), verdict=())
-    assert prefer_by_fits(nothing, {"mine": _gaps("mine", 1.0, closed=None)}, ["mine"]) is nothing
-    assert prefer_by_fits(one_effect(), {}, ["mine"]).verdict == one_effect().verdict
-
-
-def test_an_own_effect_that_closes_a_gap_which_the_first_answer_missed_is_named():
-    nothing = replace(one_effect(), verdict=())
-    assert prefer_by_fits(nothing, {"mine": _gaps("mine", 1.2)}, ["mine"]).verdict == ("mine",)
-    assert prefer_by_fits(nothing, {"mine": _gaps("mine", 5.5)}, ["mine"]) is nothing
 
 
 def test_numbers_that_are_none_become_null():

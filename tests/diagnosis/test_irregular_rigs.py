@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
-import pytest
 
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.first_answer import first_answer, known_effects
-from noise.diagnosis.fit.by_fits import prefer_by_fits
-from noise.diagnosis.outcome import EffectFinding
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns, with_effects
 from sim.effects import EFFECTS
 from sim.run import simulate
-from tests.helpers.made_diagnoses import parameters
 
 RIG = load_material_rig("fluorocarbon")
 SCATTER = "critical_torque_scatter"
@@ -62,17 +56,3 @@ def test_a_model_with_more_scatter_has_it_instead_of_the_files():
     )
     stated = ModelRuns(scattered(0.6), EFFECTS, {}).simulated(Model(), template, 3)
     assert np.array_equal(more.samples, stated.samples)
-
-
-@pytest.mark.parametrize(("after", "verdict"), [(1.1, (SCATTER,)), (4.0, ("parameters",))])
-def test_the_fits_decide_whether_there_is_more_of_what_the_file_states(after, verdict):
-    finding = EffectFinding(
-        SCATTER, "friction", 0.1, gap_before=5.0, gap_recalibrated=4.2, gap_after=after,
-        gap_floor=1.0, closed=(5.0 - after) / 4.0,
-    )  # fmt: skip
-    first = replace(
-        parameters(), verdict=("parameters",), probabilities={"parameters": 0.5, SCATTER: 0.1}
-    )
-    found = prefer_by_fits(first, {SCATTER: finding}, [SCATTER])
-    assert found.verdict == verdict
-    assert (found.probabilities[SCATTER] > 0.9) == (verdict == (SCATTER,))

@@ -7,11 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
 from noise.diagnosis.cases.truth import Truth
+from noise.diagnosis.causes.joint import joint_probabilities, marginals
 from noise.diagnosis.causes.posterior import CAUSES, calibrated, load_posterior, odds_features
-from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement, verdict_of
+from noise.diagnosis.causes.verdict import (
+    equivalent_pairs,
+    likeliest,
+    needs_explaining,
+    next_measurement,
+)
+from noise.diagnosis.gap.distance import Gap
 from noise.training.causes.fit import Known, causes_of, train_posterior, with_channels, with_fewer
 from noise.training.trees import boosted_trees
 from sim.effects import EFFECTS
@@ -55,7 +63,7 @@ def test_training_is_deterministic():
 def test_at_most_few_cases_without_a_cause_raise_the_alarm(posterior):
     rng = np.random.default_rng(11)
     tables = [made_table(rng) for _ in range(60)]
-    alarms = [bool(verdict_of(posterior.probabilities(t), posterior.alarm)) for t in tables]
+    alarms = [needs_explaining(posterior.probabilities(t)["none"], posterior.alarm) for t in tables]
     assert np.mean(alarms) <= 0.05
     assert 0.0 < posterior.alarm <= 0.5
 
@@ -221,22 +229,45 @@ def _p(**given):
 @pytest.mark.parametrize(
     ("p", "verdict"),
     [
-        (_p(none=0.9, clipping=0.8), ()),
-        (_p(none=0.05, clipping=0.8), ()),
         (_p(none=0.01, clipping=0.8), ("clipping",)),
         (_p(none=0.01, clipping=0.2, beam_modes=0.1), ("clipping",)),
         (_p(none=0.01, clipping=0.7, beam_modes=0.9), ("beam_modes", "clipping")),
         (_p(none=0.01, clipping=0.7, parameters=0.9), ("parameters",)),
         (_p(none=0.01, clipping=0.7, unknown=0.71), ("unknown",)),
         (_p(none=0.01, clipping=0.9, unknown=0.71), ("clipping",)),
+        (_p(none=0.9, clipping=0.1), ()),
         (
             _p(none=0.0, clipping=0.9, beam_modes=0.8, plate_modes=0.7, mains_hum=0.6),
             ("clipping", "beam_modes", "plate_modes"),
         ),
     ],
 )
-def test_the_verdict_follows_the_probabilities(p, verdict):
-    assert verdict_of(p, 0.05) == verdict
+def test_the_verdict_is_the_likeliest_set_of_causes(p, verdict):
+    assert likeliest(joint_probabilities(p)) == verdict
+
+
+def test_a_set_that_was_not_fitted_is_not_named():
+    chances = joint_probabilities(_p(clipping=0.9, beam_modes=0.8, unknown=0.1))
+    assert likeliest(chances) == ("clipping", "beam_modes")
+    assert likeliest(chances, [frozenset({"clipping"})]) == ("clipping",)
+    assert likeliest(chances, []) == ("unknown",)
+
+
+@given(st.dictionaries(st.sampled_from(list(EFFECTS)), st.floats(0.001, 0.999), max_size=6))
+def test_causes_are_at_least_as_likely_as_any_set_that_they_are_in(p):
+    joint = joint_probabilities(_p(none=0.1, unknown=0.1, parameters=0.1, **p))
+    assert sum(joint.values()) == pytest.approx(1.0)
+    single = marginals(joint)
+    for causes, chance in joint.items():
+        assert all(single[name] >= chance - 1e-12 for name in causes)
+
+
+def test_something_is_to_be_explained_where_nothing_is_unlikely_to_be_the_matter():
+    assert not needs_explaining(0.05, 0.05)
+    assert needs_explaining(0.049, 0.05)
+    large, common = Gap(3.0, 0.001, np.ones(1)), Gap(3.0, 0.4, np.ones(1))
+    assert needs_explaining(0.9, 0.05, large)
+    assert not needs_explaining(0.9, 0.05, common)
 
 
 def test_two_causes_as_probable_as_each_other_are_declared_alike():

@@ -14,7 +14,7 @@ from models.sensors import Sensor, Sensors
 from noise.cli import main
 from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.unlearned import unlearned_sensors
-from noise.diagnosis.causes.verdict import verdict_of
+from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.evidence.sensor_noise import (
     estimated_noise,
     noise_remarks,
@@ -170,11 +170,10 @@ def test_good_sensors_are_those_the_causes_were_learned_with():
 
 
 def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():
-    sure = {"none": 0.001, "clipping": 0.9, "unknown": 0.0, "parameters": 0.0}
     likely, unlikely = (Gap(1.0, p, np.ones(1)) for p in (0.4, 0.003))
-    assert verdict_of(sure, 0.05, likely) == ("clipping",)
-    assert verdict_of(sure, 0.05, likely, learned=False) == ()
-    assert verdict_of(sure, 0.05, unlikely, learned=False) == ("clipping",)
+    assert needs_explaining(0.001, 0.05, likely)
+    assert not needs_explaining(0.001, 0.05, likely, learned=False)
+    assert needs_explaining(0.001, 0.05, unlikely, learned=False)
 
 
 def test_volts_are_identified_and_diagnosed_as_torque_and_angle(tmp_path):

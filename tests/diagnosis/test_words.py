@@ -9,18 +9,21 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
+from noise.diagnosis.findings import Agreement, Remainder
+from noise.diagnosis.text.agreement_sentences import AGREES, agreement_sentence
 from noise.diagnosis.text.sentences import (
+    answer,
     closed_sentence,
     equivalence_sentences,
-    headline,
     location_sentence,
-    verdict_sentence,
 )
+from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
 from noise.diagnosis.text.words import (
     CAUSES,
     STAGES,
     chance,
     evidence,
+    floors,
     frequency,
     p_number,
     percent,
@@ -28,6 +31,7 @@ from noise.diagnosis.text.words import (
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from tests.helpers.made_diagnoses import (
+    SLIGHT,
     none,
     one_effect,
     pair,
@@ -91,13 +95,88 @@ def test_each_effect_of_several_has_its_own_probability():
 
 def test_unknown_names_no_effect():
     sentence = verdict_sentence(unknown())
-    assert "its cause is unknown (likely, 88 %)" in sentence
+    assert sentence == (
+        "Something differs in friction while the contact sticks; none of the known effects closes "
+        "it: the cause is unknown (likely, 88 %)."
+    )
     assert not any(cause.name in sentence for name, cause in CAUSES.items() if name in EFFECTS)
 
 
 def test_a_probability_that_is_not_known_is_not_said():
     silent = replace(unknown(), probabilities={})
-    assert verdict_sentence(silent).endswith("its cause is unknown.")
+    assert verdict_sentence(silent).endswith("the cause is unknown.")
+
+
+def test_an_unlikely_cause_is_no_headline():
+    doubtful = replace(one_effect(), probabilities={"partial_slip": 0.44, "static_ageing": 0.31})
+    assert headline(doubtful) == "Something differs in friction"
+    assert verdict_sentence(doubtful) == (
+        "Something differs in friction; it may be partial slip (44 %) or static ageing (31 %)."
+    )
+
+
+def test_what_the_table_of_stages_contradicts_is_no_headline():
+    same = replace(one_effect(), stages=one_effect().stages | {"friction": SLIGHT})
+    assert headline(same) == "Something differs in friction"
+    assert "although friction does not differ" in verdict_sentence(same)
+
+
+def test_a_place_where_repeats_differ_as_much_is_no_beginning():
+    slight = replace(one_effect(), location=replace(one_effect().location, p_value=0.6))
+    assert location_sentence(slight).startswith("It shows most in the friction")
+    assert location_sentence(slight).endswith("; though repeats differ as much (p = 0.60).")
+
+
+def test_without_a_gap_an_alternative_that_is_likelier_is_said():
+    torn = replace(none(), probabilities={"none": 0.2, "clipping": 0.6})
+    assert verdict_sentence(torn).endswith(" If anything, it is clipping (60 %).")
+
+
+def test_a_quick_answer_says_that_nothing_was_fitted():
+    assert answer(pressure_alone())[-1].startswith("Nothing has been fitted")
+    assert not any("Nothing has been fitted" in text for text in answer(one_effect()))
+
+
+def test_what_a_weak_fit_leaves_is_something_else():
+    left = Remainder(3.04, ("torque",), (100.0, 450.0))
+    (found, *others) = one_effect().effects
+    for closed, words in ((0.2, "Missing: partial slip and something else"),
+                          (0.9, "Missing: partial slip")):  # fmt: skip
+        weak = replace(found, closed_by_effect=closed)
+        assert headline(replace(one_effect(), effects=(weak, *others), remainder=left)) == words
+
+
+def far(name, speed, gap, interference=0.279e-3, **channels):
+    return Agreement(name, speed, interference, gap, channels or {"torque": gap, "pressure": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        ((far("a", 1.0, 1.1), far("b", 4.0, 3.0)), "not above 1 rad/s"),
+        ((far("a", 1.0, 3.0), far("b", 4.0, 1.0)), "not below 4 rad/s"),
+        ((far("a", 1.0, 3.0, 0.4e-3), far("b", 1.0, 1.0), far("c", 1.0, 1.1)), "above 0.279 mm"),
+        ((far("a", 1.0, 3.0), far("b", 2.0, 1.0), far("c", 3.0, 5.0)), "not at a and c"),
+    ],
+)
+def test_it_is_said_where_the_rig_file_does_not_describe_the_rig(found, words):
+    sentence = agreement_sentence(replace(one_effect(), agreement=found))
+    assert words in sentence
+    assert sentence.endswith("in the torque.")
+
+
+@given(st.lists(st.floats(0.3, 300.0), min_size=1, max_size=6))
+def test_a_rig_file_describes_the_rig_only_where_every_recording_is_near(gaps):
+    found = tuple(far(f"run{i}", 1.0 + i, gap) for i, gap in enumerate(gaps))
+    sentence = agreement_sentence(replace(none(), agreement=found))
+    assert sentence.startswith("The rig file describes the rig:") == (max(gaps) <= AGREES)
+    assert ("does not describe" in sentence) == (min(gaps) > AGREES)
+    assert "nan" not in sentence
+
+
+def test_a_gap_that_is_capped_is_said_to_be_more():
+    assert floors(100.0) == "more than 100"
+    assert floors(99.94) == "99.9"
 
 
 def test_the_place_says_channel_band_phase_and_condition():

@@ -8,14 +8,17 @@ from functools import cache
 from models.recording import Recording
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
-from noise.diagnosis.outcome import (
-    Diagnosis,
+from noise.diagnosis.findings import (
+    Agreement,
     EffectFinding,
+    HypothesisFinding,
     Illustration,
     LabelsAndLevels,
     Location,
+    Remainder,
     StageFinding,
 )
+from noise.diagnosis.outcome import Diagnosis
 from sim.run import simulate
 
 STAGES = {
@@ -34,6 +37,12 @@ PARAMETERS = {
     "critical_torque": (0.97, 1.02),
     "damping": (0.81, 0.93),
 }
+
+
+AGREEMENT = (
+    Agreement("run03", 2.5, 0.381e-3, 7.7, {"torque": 9.1, "acceleration": 6.0, "pressure": 2.2}),
+    Agreement("run07", 1.0, 0.381e-3, 1.2, {"torque": 1.4, "acceleration": 0.9, "pressure": 1.1}),
+)
 
 
 @cache
@@ -72,6 +81,7 @@ def base(verdict, **others):
         "floor": 1.0,
         "p_value": 0.0004,
         "seconds": 21.4,
+        "agreement": AGREEMENT,
     }
     return Diagnosis(verdict=verdict, **(known | others))
 
@@ -85,6 +95,7 @@ def none():
         parameters={},
         gap=0.92,
         p_value=0.61,
+        agreement=AGREEMENT[1:],
         illustrations=(illustration("run03", run(), run(), None),),
         labels_and_levels=(LabelsAndLevels("run03", "creak", "creak", None, 78.2, 77.9, None),),
     )
@@ -146,6 +157,7 @@ def pair():
     return base(
         ("partial_slip", "further_trouble"),
         effects=found,
+        stages=STAGES | {"measurement": StageFinding(3.1, 0.2, 0.004)},
         probabilities={"partial_slip": 0.91, "further_trouble": 0.78, "unknown": 0.06, **SMALL},
         illustrations=(
             illustration("run03", run(PARTIAL, HUM), run(), run(PARTIAL, HUM)),
@@ -162,6 +174,11 @@ def unknown():
         ("unknown",),
         effects=(tried,),
         probabilities={"unknown": 0.88, "velocity_weakening": 0.12, **SMALL},
+        hypotheses=(
+            HypothesisFinding(("unknown",), 0.88),
+            HypothesisFinding(("velocity_weakening",), 0.12, 4.8),
+        ),
+        remainder=Remainder(4.8, ("torque", "pressure"), (500.0, 1400.0)),
         next_measurement="Two speeds more, with the clamp bolted down.",
         illustrations=(illustration("run03", run(PARTIAL), run(), None),),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from noise.diagnosis.text.sentences import headline, verdict_sentence
+from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
 from noise.pages.diagnosis.page import write_diagnosis
 from tests.helpers.browser import chromium
 from tests.helpers.made_diagnoses import KINDS

@@ -14,14 +14,10 @@ import soundfile
 
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.diagnosis.outcome import (
-    Diagnosis,
-    Illustration,
-    StageFinding,
-    as_json,
-    from_json,
-)
-from noise.diagnosis.text.sentences import verdict_sentence
+from noise.diagnosis.findings import Illustration, StageFinding
+from noise.diagnosis.outcome import Diagnosis
+from noise.diagnosis.outcome_json import as_json, from_json
+from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.pages.diagnosis.answer_display import cause_rows, parameter_rows, stage_boxes
 from noise.pages.diagnosis.figures import cycle_window, illustration_panels, sixth_octaves
 from noise.pages.diagnosis.page import write_diagnosis

@@ -17,7 +17,7 @@ import numpy as np
 
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
 from noise.diagnosis.evidence.evidence import deviations, standard_errors
-from noise.diagnosis.outcome import Location, StageFinding
+from noise.diagnosis.findings import LARGEST_GAP, Location, StageFinding
 from sim.effects.effect import Stage
 
 if TYPE_CHECKING:
@@ -42,9 +42,6 @@ _HEALTH = (
 _OVERALL = ("band", "level", "raw", "skewness")
 """Numbers that a channel has of all that comes before it: with a torque to compare with, they tell
 nothing of the channel's own stage."""
-
-_LARGEST_GAP = 100.0
-"""Of a stage: larger ones come from numbers that hardly scatter, and are all alike."""
 
 _WHOLE_BAND = (0.0, 1800.0)
 """Of a difference that is in no band: where the contact's cycle lives [Hz]."""
@@ -106,7 +103,7 @@ def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFin
         most = _most(size[stages == stage])
         null = posterior.null[:, i]
         gap = most / max(float(np.median(null)), 1e-9)
-        found[stage] = (min(gap, _LARGEST_GAP), _p_value(most, null))
+        found[stage] = (min(gap, LARGEST_GAP), _p_value(most, null))
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
     whole = sum(excess.values())
     return {

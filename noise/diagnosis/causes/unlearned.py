@@ -11,7 +11,7 @@ import math
 from typing import TYPE_CHECKING
 
 from models.recording import CHANNEL_UNITS
-from noise.diagnosis.cases.draw import NOISE_DRAWN
+from noise.diagnosis.cases.benches import NOISE_DRAWN
 from noise.diagnosis.evidence.channel_summary import USABLE
 from sim.acquisition import Acquisition
 

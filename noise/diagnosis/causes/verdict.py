@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+from noise.diagnosis.causes.joint import marginals
 
+if TYPE_CHECKING:
+    from collections.abc import Collection, Container, Mapping, Sequence
+
+    from noise.diagnosis.causes.joint import Hypothesis
     from noise.diagnosis.gap.distance import Gap
 
-__all__ = ["equivalent_pairs", "next_measurement", "verdict_of"]
+__all__ = ["ALONE", "equivalent_pairs", "likeliest", "needs_explaining", "next_measurement"]
 
-NAMED = 0.5
-"""An effect beside the first is named from this probability."""
-
-MOST = 3
+ALONE = ("parameters", "unknown")
+"""Causes that no effect is named beside."""
 
 BEYOND = 2.5
 """Floors from which a gap that repeats hardly ever have is one to explain."""
@@ -26,54 +27,60 @@ UNUSUAL = 0.05
 """Probability of a gap between repeats that has to be small for an alarm of models that have not
 seen such sensors."""
 
-_EXCLUSIVE = ("parameters", "unknown")
 
-
-def verdict_of(
-    probabilities: Mapping[str, float],
-    alarm: float,
-    gap: Gap | None = None,
-    *,
-    learned: bool = True,
-) -> tuple[str, ...]:
-    """Decide what to say.
+def needs_explaining(
+    none: float, alarm: float, gap: Gap | None = None, *, learned: bool = True
+) -> bool:
+    """Tell whether there is something to explain.
 
     Parameters
     ----------
-    probabilities : mapping of str to float
-        Of every cause being at work [-].
+    none : float
+        Probability [-] of nothing being the matter.
     alarm : float
-        Probability of ``none`` below which there is something to explain.
+        Below which there is something to explain [-].
     gap : Gap, optional
         Against simulated repeats; one that these hardly ever have needs explaining as well.
     learned : bool
         Whether the probabilities were learned with sensors such as these; where they were not,
         there is nothing to explain unless the gap says so.
 
-    Returns
-    -------
-    tuple of str
+    Examples
+    --------
+    >>> needs_explaining(0.6, 0.05), needs_explaining(0.01, 0.05)
+    (False, True)
+    """
+    if gap is not None and not learned and gap.p_value > UNUSUAL:
+        return False
+    return none < alarm or (gap is not None and _is_beyond(gap))
+
+
+def likeliest(
+    hypotheses: Mapping[Hypothesis, float], fitted: Container[Hypothesis] | None = None
+) -> tuple[str, ...]:
+    """Return the causes of the likeliest hypothesis, the likeliest of them first.
+
+    Parameters
+    ----------
+    hypotheses : mapping of frozenset of str to float
+        [-]
+    fitted : container of frozenset of str, optional
+        Sets of effects that were fitted, and may be named; by default all may.
 
     Examples
     --------
-    >>> verdict_of({"none": 0.6, "parameters": 0.3, "clipping": 0.2, "unknown": 0.1}, 0.05)
-    ()
-    >>> verdict_of({"none": 0.0, "parameters": 0.1, "clipping": 0.9, "unknown": 0.1}, 0.05)
-    ('clipping',)
+    >>> likely = {frozenset({"clipping", "mains_hum"}): 0.5, frozenset({"mains_hum"}): 0.3,
+    ...           frozenset({"unknown"}): 0.2}
+    >>> likeliest(likely), likeliest(likely, [frozenset({"mains_hum"})])
+    (('mains_hum', 'clipping'), ('mains_hum',))
     """
-    if gap is not None and not learned and gap.p_value > UNUSUAL:
-        return ()
-    if probabilities["none"] >= alarm and not (gap is not None and _is_beyond(gap)):
-        return ()
-    others = {name: p for name, p in probabilities.items() if name != "none"}
-    first = max(others, key=lambda name: others[name])
-    if first in _EXCLUSIVE:
-        return (first,)
-    effects = sorted(
-        (name for name in others if name not in _EXCLUSIVE and others[name] >= NAMED),
-        key=lambda name: -others[name],
-    )
-    return tuple(effects[:MOST]) or (first,)
+    named = [
+        h for h in hypotheses
+        if fitted is None or not h or h <= set(ALONE) or h in fitted
+    ]  # fmt: skip
+    best = max(named, key=lambda hypothesis: hypotheses[hypothesis])
+    single = marginals(hypotheses)
+    return tuple(sorted(best, key=lambda name: (-single[name], name)))
 
 
 def _is_beyond(gap: Gap) -> bool:
@@ -153,10 +160,45 @@ def equivalent_pairs(
     return tuple(dict.fromkeys(found))
 
 
+_WHERE_UNKNOWN = {
+    "drive": "the angle at both ends of the shaft, and a run with the bushing taken out",
+    "friction": (
+        "the same condition at three speeds and two fits, twice each: what grows with speed, "
+        "torque or time tells an effect that no library has"
+    ),
+    "structure": (
+        "hammer hits on clamp and beams, and a second accelerometer beside the first: what rings "
+        "there tells an effect that no library has"
+    ),
+    "radiation": (
+        "the same run with the microphone at half the distance, and with the plate damped: what "
+        "changes tells an effect that no library has"
+    ),
+    "measurement": (
+        "a run with the shaft at rest, and one with another sensor in the place of each: what "
+        "stays tells an effect that no library has"
+    ),
+}
+"""What tells more of a difference that nothing known closes, by stage."""
+
+
 def next_measurement(
-    verdict: Sequence[str], probabilities: Mapping[str, float], kinds: Collection[str]
+    verdict: Sequence[str],
+    probabilities: Mapping[str, float],
+    kinds: Collection[str],
+    stage: str = "friction",
 ) -> str:
     """Say what would make the answer surer.
+
+    Parameters
+    ----------
+    verdict : sequence of str
+    probabilities : mapping of str to float
+        [-]
+    kinds : collection of str
+        Of the channels that were recorded.
+    stage : str
+        That differs most.
 
     Examples
     --------
@@ -174,10 +216,7 @@ def next_measurement(
         if advice is not None and probabilities[other] > 0.5 * _ALIKE:
             return advice
     if verdict == ("unknown",):
-        return (
-            "the same condition at three speeds and two fits, twice each: what grows with speed, "
-            "torque or time tells an effect that no library has"
-        )
+        return _WHERE_UNKNOWN[stage]
     if probabilities[ranked[0]] < 0.9:
         return "two more speeds, one below and one above those recorded, each twice"
     return "one condition outside those recorded, to confirm that the fitted effect predicts it"

@@ -9,7 +9,7 @@ from features.kernels.bands import overall_level
 from features.kernels.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
 from noise.classifier import load_classifier
-from noise.diagnosis.outcome import LabelsAndLevels
+from noise.diagnosis.findings import LabelsAndLevels
 from noise.labels.segments import file_label, label_recording
 
 if TYPE_CHECKING:

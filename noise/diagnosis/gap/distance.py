@@ -15,7 +15,7 @@ repeats (Phipson & Smyth 2010, Stat. Appl. Genet. Mol. Biol. 9, 39).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from typing import TYPE_CHECKING, TypeVar
 
@@ -140,12 +140,16 @@ class Gap:
         Distance of each recording, in floors [-].
     widened : float
         By how much the floor is larger than the repeats alone had it [-].
+    of_channels : ndarray, shape (n_recordings, n_kinds)
+        Distance of each recording in each kind of channel, in floors of its own; NaN where there
+        is none, and none at all where it was not asked for [-].
     """
 
     distance: float
     p_value: float
     of_recordings: NDArray[np.float64]
     widened: float = 1.0
+    of_channels: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, len(KINDS))))
 
 
 def reference(

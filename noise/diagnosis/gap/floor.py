@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.diagnosis.gap.by_channel import channel_distances
 from noise.diagnosis.gap.distance import (
     LEAST_SCALE,
     gap_of,
@@ -126,7 +127,11 @@ def repeat_gap(
     """
     signatures = [signature(recording) for recording in recordings]
     references, widened = references_of(recordings, signatures, repeats, least=least, seed=seed)
-    return replace(gap_of(signatures, references, seed=seed), widened=widened)
+    return replace(
+        gap_of(signatures, references, seed=seed),
+        widened=widened,
+        of_channels=channel_distances(signatures, references),
+    )
 
 
 def references_of(

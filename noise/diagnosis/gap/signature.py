@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from models.recording import Recording
 
 __all__ = [
+    "EDGES",
     "GROUPS",
     "KINDS",
     "NAMES",
@@ -55,7 +56,8 @@ _CORNER = 500.0
 """Below which that noise rises as 1/f, as amplifiers' and rooms' does [Hz]; assumed."""
 
 _N_BANDS = math.floor(_PER_OCTAVE * math.log2(_HIGHEST / _LOWEST))
-_EDGES = _LOWEST * 2.0 ** (np.arange(_N_BANDS + 1) / _PER_OCTAVE)
+EDGES = _LOWEST * 2.0 ** (np.arange(_N_BANDS + 1) / _PER_OCTAVE)
+"""Of the bands, shape (n_bands + 1,) [Hz]."""
 
 _STATISTICS = ("mean", "spread", "slow", "skewness", "highest", "lowest", "steepest_fall")
 """Of the torque: logarithm of its mean, its standard deviation and that of its slow part over the
@@ -65,7 +67,7 @@ GROUPS = (*KINDS, "cycle")
 """Parts of a signature that weigh alike in a distance: three spectra, and the torque's cycle."""
 
 NAMES = (
-    *(f"{kind}_{round(low)}" for kind in KINDS for low in _EDGES[:-1].tolist()),
+    *(f"{kind}_{round(low)}" for kind in KINDS for low in EDGES[:-1].tolist()),
     *(f"cycle_{name}" for name in _STATISTICS),
 )
 """Of the values of a signature."""
@@ -153,9 +155,9 @@ def joined_signature(parts: Mapping[str, NDArray[np.float64]]) -> NDArray[np.flo
 
 def _levels(signal: NDArray[np.float64], rate: float, kind: str) -> NDArray[np.float64]:
     spectrum = welch(signal - signal.mean(), rate, _RESOLUTION)
-    power = band_power(spectrum, _EDGES[:-1], _EDGES[1:])
-    power[_EDGES[1:] > _USABLE * rate] = np.nan
-    lines = np.diff(_EDGES) + _CORNER * np.diff(np.log(_EDGES))
+    power = band_power(spectrum, EDGES[:-1], EDGES[1:])
+    power[EDGES[1:] > _USABLE * rate] = np.nan
+    lines = np.diff(EDGES) + _CORNER * np.diff(np.log(EDGES))
     noise = _SENSOR_NOISE[kind] ** 2 * lines / _NOISE_BAND
     return np.asarray(0.5 * np.log(power + noise))
 

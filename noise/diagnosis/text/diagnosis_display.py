@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from models.drawing import BLUE, GREY, axes_or_new
 from models.html_table import html_table
-from noise.diagnosis.text.sentences import headline, location_sentence, verdict_sentence
+from noise.diagnosis.text.sentences import location_sentence
+from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
 from noise.diagnosis.text.words import STAGES, cause_of, p_number, percent
 
 if TYPE_CHECKING:

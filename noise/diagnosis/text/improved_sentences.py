@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.improved_file import own_effects
-from noise.diagnosis.text.sentences import parameter_name
+from noise.diagnosis.text.found import parameter_name
 from noise.diagnosis.text.words import cause_of, joined, number
 
 if TYPE_CHECKING:

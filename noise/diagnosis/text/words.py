@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass
 
 from models.errors import ParameterError
+from noise.diagnosis.findings import LARGEST_GAP
 
 __all__ = [
     "CAUSES",
@@ -21,6 +22,7 @@ __all__ = [
     "cause_of",
     "chance",
     "evidence",
+    "floors",
     "frequency",
     "joined",
     "number",
@@ -209,6 +211,19 @@ def number(value: float | None, form: str = ".2f") -> str:
     if value is None or not math.isfinite(value):
         return NOT_DETERMINED
     return format(value, form).replace("-", "\N{MINUS SIGN}")
+
+
+def floors(gap: float | None, form: str = ".1f") -> str:
+    """Return a gap in floors [-] as it is printed; one that is beyond all telling says so.
+
+    Examples
+    --------
+    >>> floors(1.23), floors(100.0), floors(None)
+    ('1.2', 'more than 100', 'not determined')
+    """
+    if gap is not None and gap >= LARGEST_GAP:
+        return f"more than {LARGEST_GAP:g}"
+    return number(gap, form)
 
 
 def frequency(hertz: float) -> str:

@@ -10,12 +10,16 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.text.sentences import closed_words, finding_of, parameter_name
+from noise.diagnosis.gap.signature import KINDS
+from noise.diagnosis.text.found import finding_of, parameter_name, stage_of_effect
+from noise.diagnosis.text.sentences import closed_words
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     STAGES,
     cause_of,
     evidence,
+    floors,
+    joined,
     number,
     p_number,
     percent,
@@ -25,11 +29,12 @@ from sim.effects import EFFECTS
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from noise.diagnosis.outcome import Diagnosis, EffectFinding, Location
+    from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, Location
+    from noise.diagnosis.outcome import Diagnosis
 
 __all__ = [
-    "CauseRow", "ParameterRow", "StageBox", "cause_rows", "parameter_rows", "place_rows",
-    "stage_boxes",
+    "CauseRow", "ParameterRow", "StageBox", "agreement_rows", "cause_rows", "hypothesis_rows",
+    "parameter_rows", "place_rows", "stage_boxes",
 ]  # fmt: skip
 
 _PASSED_ON = {
@@ -121,14 +126,15 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import Diagnosis, StageFinding
+    >>> from noise.diagnosis.findings import StageFinding
+    >>> from noise.diagnosis.outcome import Diagnosis
     >>> found = {"drive": StageFinding(1.04, 0.02, 0.4)}
     >>> boxes = stage_boxes(Diagnosis((), (), None, found, (), {}, {}, "", (), 1.0, 1.0, 0.6, 1.0))
     >>> [(box.name, box.gap) for box in boxes][:2]
     [('drive', '1.04'), ('friction', 'not determined')]
     """
     boxes = []
-    acting = {name: _stage_of(diagnosis, name) for name in diagnosis.verdict}
+    acting = {name: stage_of_effect(diagnosis, name) for name in diagnosis.verdict}
     for name, what in STAGES.items():
         finding = diagnosis.stages.get(name)
         p_value = math.nan if finding is None else finding.p_value
@@ -136,7 +142,7 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
             StageBox(
                 name=name,
                 what=what,
-                gap=number(None if finding is None else finding.gap),
+                gap=floors(None if finding is None else finding.gap, ".2f"),
                 p_value=p_number(p_value) if math.isfinite(p_value) else "",
                 words=evidence(p_value) if math.isfinite(p_value) else "",
                 share=percent(None if finding is None else finding.share),
@@ -172,6 +178,43 @@ def cause_rows(diagnosis: Diagnosis) -> tuple[tuple[CauseRow, ...], tuple[CauseR
     return tuple(rows[:n]), tuple(rows[n:])
 
 
+def agreement_rows(agreement: Sequence[Agreement]) -> tuple[tuple[str, ...], ...]:
+    """Return how far each recording is off: name, speed, interference, whole gap, each channel's.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.findings import Agreement
+    >>> agreement_rows([Agreement("run01.wav", 2.5, 2.79e-4, 1.2, {"torque": 0.9})])
+    (('run01.wav', '2.5', '0.279', '1.2', '0.9', 'not recorded', 'not recorded'),)
+    """
+    return tuple(
+        (
+            one.recording, f"{one.speed:g}", f"{1e3 * one.interference:.3g}", floors(one.gap),
+            *(floors(one.channels[k]) if k in one.channels else "not recorded" for k in KINDS),
+        )
+        for one in agreement
+    )  # fmt: skip
+
+
+def hypothesis_rows(hypotheses: Sequence[HypothesisFinding]) -> tuple[tuple[str, ...], ...]:
+    """Return hypotheses: causes in words, probability, gap that is left with them.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.findings import HypothesisFinding
+    >>> hypothesis_rows([HypothesisFinding(("clipping", "mains_hum"), 0.42, 1.2)])
+    (('clipping and mains hum', '42 %', '1.2'),)
+    """
+    return tuple(
+        (
+            joined([cause_of(name).name for name in one.causes or ("none",)]),
+            percent(one.probability),
+            "not fitted" if one.gap is None else floors(one.gap),
+        )
+        for one in hypotheses
+    )
+
+
 def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> tuple[ParameterRow, ...]:
     """Return refitted parameters on a common axis about 1.
 
@@ -205,7 +248,7 @@ def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import Location
+    >>> from noise.diagnosis.findings import Location
     >>> place_rows([Location("friction", ("torque",), (0.0, 1800.0), "stick", "all", 0.004)])
     (('friction', 'torque', 'stick', 'all', 'p = 0.0040'),)
     """
@@ -231,7 +274,7 @@ def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
     return CauseRow(
         name=cause.name,
         clause=cause.clause,
-        stage="" if beside else _stage_of(diagnosis, name),
+        stage="" if beside else stage_of_effect(diagnosis, name),
         probability=probability,
         chance=percent(probability),
         named=name in diagnosis.verdict or (name == "none" and not diagnosis.verdict),
@@ -244,13 +287,6 @@ def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
     )
 
 
-def _stage_of(diagnosis: Diagnosis, name: str) -> str:
-    finding = finding_of(diagnosis, name)
-    if finding is not None:
-        return str(finding.stage)
-    return str(EFFECTS[name].stage) if name in EFFECTS else ""
-
-
 def _strength(finding: EffectFinding) -> str:
     if finding.strength is None:
         return NOT_DETERMINED
@@ -258,12 +294,25 @@ def _strength(finding: EffectFinding) -> str:
     if finding.name not in EFFECTS:
         return f"{low} to {high}"
     effect = EFFECTS[finding.name]
+    if not _known_form(finding):
+        of = "of a gross one" if "strength" in finding.parameters else "of what was estimated"
+        return f"{low} to {high} {of}"
     unit = effect.parameters[effect.strength].unit
     return f"{parameter_name(effect.strength)} {low} to {high} {unit}".strip()
 
 
+def _known_form(finding: EffectFinding) -> bool:
+    """Tell whether a fit has a form of the simulator's own, whose numbers have its units."""
+    if finding.name not in EFFECTS:
+        return False
+    return (
+        finding.parameters.get("form", EFFECTS[finding.name].forms[0])
+        in EFFECTS[finding.name].forms
+    )
+
+
 def _fitted(finding: EffectFinding) -> tuple[str, ...]:
-    known = EFFECTS[finding.name].parameters if finding.name in EFFECTS else {}
+    known = EFFECTS[finding.name].parameters if _known_form(finding) else {}
     words = []
     for name, value in finding.parameters.items():
         text = value if isinstance(value, str) else number(value, ".3g")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from noise.diagnosis.outcome import ROLES
+from noise.diagnosis.findings import ROLES
 from noise.pages.diagnosis.contact_figures import contact_panels
 from noise.pages.diagnosis.figures import CURVES, illustration_panels
 from noise.pages.diagnosis.sounds import illustration_entries

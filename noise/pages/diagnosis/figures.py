@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.recording import Recording
-    from noise.diagnosis.outcome import Illustration
+    from noise.diagnosis.findings import Illustration
 
 __all__ = ["CURVES", "Curve", "cycle_window", "draw", "illustration_panels", "sixth_octaves"]
 
@@ -78,7 +78,7 @@ def illustration_panels(illustration: Illustration) -> tuple[Panel, ...]:
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.diagnosis.outcome import Illustration
+    >>> from noise.diagnosis.findings import Illustration
     >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 9600)), 48e3,
     ...                  (Channel("pressure"),))
     >>> (panel,) = illustration_panels(Illustration("hiss", hiss, hiss, None))

@@ -12,13 +12,19 @@ from typing import TYPE_CHECKING, Any
 
 from models.transfer_functions.files import write_transfer_function
 from noise.base.atomic import atomic
+from noise.diagnosis.findings import ROLES
+from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.improved_file import NAME, RESPONSES, response_files
-from noise.diagnosis.outcome import ROLES, as_json
+from noise.diagnosis.outcome_json import as_json
+from noise.diagnosis.text.agreement_sentences import agreement_sentence
 from noise.diagnosis.text.improved_sentences import improved_sentence
-from noise.diagnosis.text.sentences import answer, headline
+from noise.diagnosis.text.sentences import answer
+from noise.diagnosis.text.verdict_sentences import headline
 from noise.diagnosis.text.words import NOT_DETERMINED, number, p_number
 from noise.pages.diagnosis.answer_display import (
+    agreement_rows,
     cause_rows,
+    hypothesis_rows,
     parameter_rows,
     place_rows,
     stage_boxes,
@@ -30,7 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from noise.diagnosis.outcome import Diagnosis, LabelsAndLevels
+    from noise.diagnosis.findings import LabelsAndLevels
+    from noise.diagnosis.outcome import Diagnosis
     from noise.pages.engine.clips import Clip
     from noise.pages.engine.entry import Entry
 
@@ -99,12 +106,14 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
 
         entries, clips, contents = draw_comparisons(diagnosis)
     likely, unlikely = cause_rows(diagnosis)
+    agreement = "" if diagnosis.bench else agreement_sentence(diagnosis)
     return page_html(
         "diagnosis.html.j2",
         entries,
         clips,
         title=headline(diagnosis),
-        answer=answer(diagnosis),
+        agreement=agreement,
+        answer=[sentence for sentence in answer(diagnosis) if sentence != agreement],
         stages=stage_boxes(diagnosis),
         waterfall=waterfall(diagnosis),
         likely=likely,
@@ -115,6 +124,9 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
         commands=commands,
         notes=diagnosis.notes,
         places=place_rows(diagnosis.differences),
+        kinds=KINDS,
+        agreements=agreement_rows(diagnosis.agreement),
+        hypotheses=hypothesis_rows(diagnosis.hypotheses),
         parameters=parameter_rows(diagnosis.parameters),
         held_out=diagnosis.held_out,
         heard=[_heard_row(heard) for heard in diagnosis.labels_and_levels],

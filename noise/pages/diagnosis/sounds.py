@@ -17,7 +17,7 @@ import soundfile
 
 from models.errors import RecordingError
 from noise.audio.sound import audible
-from noise.diagnosis.outcome import ROLES
+from noise.diagnosis.findings import ROLES
 from noise.diagnosis.text.words import number
 from noise.pages.diagnosis.figures import CURVES
 from noise.pages.engine.entry import RATE, Entry
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.diagnosis.outcome import Diagnosis, Illustration, LabelsAndLevels
+    from noise.diagnosis.findings import Illustration, LabelsAndLevels
+    from noise.diagnosis.outcome import Diagnosis
 
 __all__ = ["LONGEST", "illustration_entries", "reported_entries"]
 
@@ -57,7 +58,7 @@ def illustration_entries(
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from noise.diagnosis.outcome import Illustration
+    >>> from noise.diagnosis.findings import Illustration
     >>> hiss = Recording(np.random.default_rng(1).normal(size=(1, 480)), 48e3,
     ...                  (Channel("pressure"),))
     >>> found = illustration_entries(Illustration("hiss", hiss, hiss, None))

@@ -11,12 +11,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.gap.distance import closed_fraction
-from noise.diagnosis.text.sentences import closed_sentence, finding_of
+from noise.diagnosis.text.found import finding_of
+from noise.diagnosis.text.sentences import closed_sentence
 from noise.diagnosis.text.words import cause_of, joined, percent
 from noise.pages.engine.ticks import round_ticks
 
 if TYPE_CHECKING:
-    from noise.diagnosis.outcome import Diagnosis, EffectFinding
+    from noise.diagnosis.findings import EffectFinding
+    from noise.diagnosis.outcome import Diagnosis
 
 __all__ = ["Bar", "Waterfall", "waterfall"]
 
@@ -75,7 +77,8 @@ def waterfall(diagnosis: Diagnosis) -> Waterfall | None:
 
     Examples
     --------
-    >>> from noise.diagnosis.outcome import Diagnosis, EffectFinding
+    >>> from noise.diagnosis.findings import EffectFinding
+    >>> from noise.diagnosis.outcome import Diagnosis
     >>> hum = EffectFinding("mains_hum", "measurement", 0.9, gap_before=7.7, gap_recalibrated=4.1,
     ...                     gap_after=1.3, gap_floor=1.0, closed=0.955)
     >>> found = waterfall(Diagnosis(("mains_hum",), (), None, {}, (hum,), {}, {}, "", (), 7.7, 1.0,

@@ -10,8 +10,9 @@ import json
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import RecordingError
-from noise.diagnosis.outcome import from_json
-from noise.diagnosis.text.sentences import answer, headline
+from noise.diagnosis.outcome_json import from_json
+from noise.diagnosis.text.sentences import answer
+from noise.diagnosis.text.verdict_sentences import headline
 from noise.pages.diagnosis.sounds import reported_entries
 
 if TYPE_CHECKING:

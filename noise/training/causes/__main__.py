@@ -1,39 +1,40 @@
-"""``python -m noise.training.causes``: draw cases and train the cause posterior on them."""
+"""``python -m noise.training.causes``: draw cases, and train the cause posterior on them."""
 
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
-from itertools import chain
 from pathlib import Path
 
-from noise.base.progress import track
+from models.errors import ParameterError
+from noise.base.progress import say, track
 from noise.diagnosis.cases.draw import SHARED
-from noise.training.causes.build import known_cases
-from noise.training.causes.fit import train_posterior
-
-SEEDS = ("400000:402000",)
-"""Of cases, from each first one up to but not including the last; those below are for tests."""
+from noise.training.causes.store import CHUNK, draw_into
 
 
 def main() -> int:
-    """Draw, train, save."""
+    """Draw, or train and save."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument(
-        "--seeds", nargs="+", default=SEEDS, metavar="FIRST:LAST", type=_range,
-        help=f"one case a seed (default: {' '.join(SEEDS)}); those of the shipped posterior are "
-        "in its card",
+    commands = parser.add_subparsers(dest="command", required=True)
+    drawing = commands.add_parser("draw", help="simulate cases whose causes are known, into files")
+    drawing.add_argument(
+        "--seeds", required=True, metavar="FIRST:LAST", type=_range,
+        help="one case a seed; those below 400000 are for tests, those of the shipped posterior "
+        "are in its card",
     )  # fmt: skip
-    parser.add_argument("--seed", type=int, default=0, help="of the trees")
-    parser.add_argument("--workers", type=int, default=1, help="processes")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
+    drawing.add_argument("--workers", type=int, default=1, help="processes")
+    drawing.add_argument("--out", type=Path, required=True, metavar="FOLDER")
     options = parser.parse_args()
-    seeds = [_range(text) if isinstance(text, str) else text for text in options.seeds]
-    drawn = chain.from_iterable(known_cases(each, options.workers) for each in seeds)
-    cases = list(track(drawn, "drawing", total=sum(map(len, seeds)), unit="case"))
-    posterior = train_posterior(cases, seed=options.seed)
-    card = {**posterior.card, "seeds": [f"{each.start}:{each.stop}" for each in seeds]}
-    replace(posterior, card=card).save(options.out)
+    try:
+        return _draw(options)
+    except ParameterError as error:
+        say(f"error: {error}")
+        return 2
+
+
+def _draw(options: argparse.Namespace) -> int:
+    paths = draw_into(options.out, options.seeds, options.workers)
+    for _ in track(paths, "drawing", total=-(-len(options.seeds) // CHUNK), unit="file"):
+        pass
     print(options.out)
     return 0
 

@@ -64,11 +64,13 @@ _STIFFNESS = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """A case whose cause is known, and the number of its rig."""
+    """A case whose cause is known: its rig, in what its bench is not quiet, and its seed."""
 
     table: CaseTable
     truth: Truth
     rig: int = 0
+    departures: tuple[str, ...] = ()
+    seed: int = 0
 
 
 def train_posterior(

@@ -1,0 +1,185 @@
+"""Hypotheses fitted, the likeliest first, until what is left unfitted is unlikely.
+
+Each fit changes the odds of its hypothesis by what it closes; then all are as probable as they have
+become, and the likeliest of those not yet fitted is next.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.causes.joint import marginals, normalised
+from noise.diagnosis.causes.verdict import ALONE
+from noise.diagnosis.fit.closing import CLOSABLE, rms
+from noise.diagnosis.fit.closing_odds import differing, load_closing_odds
+from noise.diagnosis.fit.fit_effect import fit_effect
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from noise.diagnosis.causes.joint import Hypothesis
+    from noise.diagnosis.findings import StageFinding
+    from noise.diagnosis.fit.case_comparison import CaseComparison
+    from noise.diagnosis.fit.fit_parameters import Fitted
+
+__all__ = ["CaseFits", "HypothesisFit", "fit_hypotheses", "updated"]
+
+_MOST = 5
+"""Fits of a diagnosis, those of the user's own effects not counted."""
+
+_ENOUGH = 0.9
+"""Probability of what was fitted, or needs no fit, from which on no more is fitted."""
+
+_NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *(frozenset({name}) for name in ALONE))
+
+
+@dataclass(frozen=True, eq=False)
+class HypothesisFit:
+    """A set of effects as fitted together.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The likeliest first.
+    fitted : Fitted
+    squared : ndarray, shape (n_recordings,)
+        What is left of each recording, in squared floors [-].
+    """
+
+    names: tuple[str, ...]
+    fitted: Fitted
+    squared: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class CaseFits:
+    """Fits of a case.
+
+    Parameters
+    ----------
+    comparison : CaseComparison
+    fitted_to, held : tuple of int
+        Recordings, as `noise.diagnosis.fit.fit_parameters.split` divides them.
+    alone : Fitted
+        The parameters without any effect.
+    before, recalibrated : ndarray, shape (n_recordings,)
+        Squared distance of each recording from the rig as its file has it, and with parameters
+        alone, in squared floors [-].
+    of : mapping of frozenset of str to HypothesisFit
+    """
+
+    comparison: CaseComparison
+    fitted_to: tuple[int, ...]
+    held: tuple[int, ...]
+    alone: Fitted
+    before: NDArray[np.float64]
+    recalibrated: NDArray[np.float64]
+    of: Mapping[Hypothesis, HypothesisFit]
+
+    def held_out(self, squared: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return those of recordings that no fit has seen, in the same unit [-]."""
+        return squared[list(self.held)]
+
+    def closing(self) -> list[Hypothesis]:
+        """Return hypotheses that close some of what parameters leave, or all that there is.
+
+        That is on recordings that no fit has seen.
+        """
+        left = rms(self.held_out(self.recalibrated))
+        gaps = {h: rms(self.held_out(fit.squared)) for h, fit in self.of.items()}
+        return [h for h, gap in gaps.items() if gap < left or gap <= 1.0 + CLOSABLE]
+
+
+def fit_hypotheses(
+    fits: CaseFits,
+    hypotheses: Mapping[Hypothesis, float],
+    always: Sequence[str],
+    stages: Mapping[str, StageFinding],
+    seed: int = 0,
+    tell: Callable[[str], None] = lambda _text: None,
+) -> CaseFits:
+    """Fit the likeliest hypotheses.
+
+    Parameters
+    ----------
+    fits : CaseFits
+        Of parameters alone.
+    hypotheses : mapping of frozenset of str to float
+        Their probabilities before any fit [-].
+    always : sequence of str
+        Effects that are fitted whatever their probability.
+    stages : mapping of str to StageFinding
+    seed : int
+    tell : callable
+        Told what is being done.
+    """
+    single = marginals(hypotheses)
+
+    def with_fit(fits: CaseFits, hypothesis: Hypothesis) -> CaseFits:
+        names = tuple(sorted(hypothesis, key=lambda name: (-single.get(name, 0.0), name)))
+        tell(f"fitting {' and '.join(names)}")
+        fitted = fit_effect(fits.comparison, fits.fitted_to, names, fits.alone.model, seed)
+        after = fits.comparison.squared(fitted.model, range(len(fits.before)))
+        # A model that breaks down on recordings that it has not seen closes nothing there.
+        after = np.where(np.isfinite(after), after, np.maximum(fits.before, fits.recalibrated))
+        return replace(fits, of={**fits.of, hypothesis: HypothesisFit(names, fitted, after)})
+
+    for name in always:
+        fits = with_fit(fits, frozenset({name}))
+    for _ in range(_MOST):
+        now = updated(hypotheses, fits, stages)
+        unfitted = {h: p for h, p in now.items() if h not in fits.of and h not in _NO_FIT}
+        if sum(unfitted.values()) < 1.0 - _ENOUGH:
+            break
+        fits = with_fit(fits, max(unfitted, key=lambda hypothesis: unfitted[hypothesis]))
+    return fits
+
+
+def updated(
+    hypotheses: Mapping[Hypothesis, float],
+    fits: CaseFits,
+    stages: Mapping[str, StageFinding],
+) -> dict[Hypothesis, float]:
+    """Probabilities of hypotheses once some of them are fitted.
+
+    Parameters
+    ----------
+    hypotheses : mapping of frozenset of str to float
+        Their probabilities before any fit [-].
+    fits : CaseFits
+    stages : mapping of str to StageFinding
+
+    Returns
+    -------
+    dict of frozenset of str to float
+        The likeliest first; they sum to 1 [-].
+    """
+    odds, library = load_closing_odds(), fits.comparison.library
+    gap, left = rms(fits.before), rms(fits.recalibrated)
+    gaps = {hypothesis: rms(fit.squared) for hypothesis, fit in fits.of.items()}
+    looked = {name: differing(stage) for name, stage in stages.items()}
+
+    def ratio(hypothesis: Hypothesis) -> float:
+        if not hypothesis:
+            return odds.of_none(gap)
+        if hypothesis == {"parameters"}:
+            return odds.of_parameters(gap, left)
+        if hypothesis == {"unknown"}:
+            return 0.0
+        if hypothesis not in gaps:  # with more beside it, what closes would close as well
+            return max([0.0, *(ratio(other) for other in gaps if other < hypothesis)])
+        acting = [looked.get(library[name].stage.value) for name in hypothesis]
+        return odds.of_effects(
+            left,
+            gaps[hypothesis],
+            [gap for other, gap in gaps.items() if other < hypothesis],
+            [stage for stage in acting if stage is not None],
+        )
+
+    return normalised({h: p * math.exp(ratio(h)) for h, p in hypotheses.items()})

@@ -1,0 +1,118 @@
+"""Hypotheses judged by their fits: which is the likeliest once it is known what each closes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from noise.diagnosis.causes.joint import marginals, normalised
+from noise.diagnosis.causes.verdict import likeliest
+from noise.diagnosis.first_answer import known_effects
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.fit_parameters import fit_parameters, split
+from noise.diagnosis.fit.hypothesis_fits import CaseFits, fit_hypotheses, updated
+from sim.constant_version import irregular_effects
+from sim.effects import EFFECTS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from noise.diagnosis.case import Case
+    from noise.diagnosis.causes.joint import Hypothesis
+    from noise.diagnosis.causes.posterior import Posterior
+    from noise.diagnosis.findings import StageFinding
+    from noise.diagnosis.first_answer import FirstAnswer
+    from sim.effects.effect import Effect
+
+__all__ = ["Judged", "judge"]
+
+_UNSEEN = 0.1
+"""Probability before any fit of an effect that the posterior knows nothing of [-]; assumed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What the fits of a case say.
+
+    Parameters
+    ----------
+    comparison : CaseComparison
+    held : tuple of int
+        Recordings that no fit has seen.
+    fits : CaseFits, optional
+        None where nothing was fitted.
+    hypotheses : mapping of frozenset of str to float
+        Their probabilities, the likeliest first [-].
+    probabilities : mapping of str to float
+        Of the causes [-].
+    verdict : tuple of str
+    """
+
+    comparison: CaseComparison
+    held: tuple[int, ...]
+    fits: CaseFits | None
+    hypotheses: Mapping[Hypothesis, float]
+    probabilities: Mapping[str, float]
+    verdict: tuple[str, ...]
+
+
+def judge(
+    case: Case,
+    first: FirstAnswer,
+    stages: Mapping[str, StageFinding],
+    posterior: Posterior,
+    library: Mapping[str, Effect],
+    seed: int,
+    tell: Callable[[str], None],
+) -> Judged:
+    """Fit the likeliest hypotheses of a case, and say which is the likeliest then.
+
+    Where the first answer finds nothing to explain, the user's own effects alone are fitted, of
+    which it knows nothing.
+
+    Parameters
+    ----------
+    case : Case
+    first : FirstAnswer
+    stages : mapping of str to StageFinding
+    posterior : Posterior
+    library : mapping of str to Effect
+    seed : int
+    tell : callable
+        Told what is being done.
+    """
+    comparison = CaseComparison(
+        case.rig, case.recordings, library, first.table, posterior.names, posterior.scale
+    )
+    fitted_to, held = map(tuple, split([r.condition for r in case.recordings]))
+    known = known_effects(case.rig, library)
+    always = [name for name in library if name not in EFFECTS and name not in known]
+    if first.verdict:
+        always += [spec.name for spec in irregular_effects(case.rig, library)]
+    elif not always:
+        return Judged(comparison, held, None, first.hypotheses, first.probabilities, ())
+    tell("recalibrating the parameters")
+    alone, whole = fit_parameters(comparison, fitted_to), range(len(case.recordings))
+    before, recalibrated = (comparison.squared(m, whole) for m in (Model(), alone.model))
+    asked = _with_unseen(first.hypotheses, always)
+    if not first.verdict:  # what the posterior knows of is not there
+        asked = normalised({h: p for h, p in asked.items() if not h or h <= set(always)})
+    fits = CaseFits(comparison, fitted_to, held, alone, before, recalibrated, {})
+    fits = fit_hypotheses(fits, asked, always, stages, seed, tell)
+    hypotheses = updated(asked, fits, stages)
+    verdict = likeliest(hypotheses, fits.closing())
+    probabilities = first.probabilities
+    if first.verdict or verdict:
+        single = marginals(hypotheses)
+        probabilities = {n: single.get(n, 0.0) for n in {**first.probabilities, **single}}
+    return Judged(comparison, held, fits, hypotheses, probabilities, verdict)
+
+
+def _with_unseen(
+    hypotheses: Mapping[Hypothesis, float], names: Sequence[str]
+) -> dict[Hypothesis, float]:
+    """Give effects that the posterior knows nothing of a chance, each alone."""
+    least = {frozenset({name}): _UNSEEN for name in names}
+    return normalised(
+        dict(hypotheses) | {h: max(p, hypotheses.get(h, 0.0)) for h, p in least.items()}
+    )
