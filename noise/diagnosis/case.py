@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
-from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.preparation.prepare import prepared
+from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from models.rig import Rig
 
 __all__ = ["Case", "read_case", "usable"]
-
-SHORTEST = LEAD + TAIL + 0.1
-"""Shorter recordings show too few cycles [s]."""
 
 LEAST_RATE = 8e3
 """[Hz]"""
@@ -130,8 +127,9 @@ def usable(recording: Recording, rig: Rig) -> Recording:
         raise ParameterError(f"has no channel of {', '.join(KINDS)}")
     if recording.rate < LEAST_RATE:
         raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
-    if recording.duration < SHORTEST:
-        raise ParameterError(f"lasts {recording.duration:.3g} s; {SHORTEST:.3g} s at least")
+    least = shortest(recording.rate)
+    if recording.duration < least:
+        raise ParameterError(f"lasts {recording.duration:.3g} s; {least:.3g} s at least")
     condition = recording.condition
     speed = condition.speed
     row = recording.first("angle")

@@ -19,7 +19,6 @@ from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
-from noise.diagnosis.evidence.sensor_noise import noise_remarks
 from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.gap.signature import KINDS
@@ -234,7 +233,6 @@ def _notes(case: Case) -> tuple[str, ...]:
     elif len(different) == len(case.recordings):
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
     notes += case.notes
-    notes += noise_remarks(case.rig.sensors, kinds)
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
     return tuple(notes)

@@ -7,7 +7,8 @@ from hypothesis import given, strategies as st
 from models.condition import FIXED
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes import local_cases as local
-from noise.diagnosis.causes.hypotheses import joint_probabilities, local_answer, marginals
+from noise.diagnosis.causes.hypotheses import local_answer
+from noise.diagnosis.causes.joint import joint_probabilities, marginals
 from noise.diagnosis.causes.local_cache import LocalCache
 from noise.diagnosis.causes.local_model import fit_local_model
 from noise.diagnosis.causes.posterior import CAUSES, load_posterior

@@ -147,7 +147,7 @@ _PARAMETERS: dict[str, dict[str, Draw]] = {
     },
     "slip_pulse": {
         "amplitude": _times(800.0),
-        "threshold": lambda _strength, rng: float(rng.choice([0.0, 0.0, 1.0, 3.0])),
+        "threshold": lambda _strength, rng: float(rng.choice([0.0, 0.0, 0.3, 1.0])),
         "duration": _log(1.5e-5, 6e-4),
     },
     "speed_fluctuation": {

@@ -1,10 +1,4 @@
-"""Hypotheses: which set of causes is at work, told by the joint probability of each set.
-
-A hypothesis is a frozenset: empty where nothing is missing, ``{"parameters"}``, ``{"unknown"}``, or
-up to three effects. The first answer takes the posterior's probabilities of the causes for
-independent evidence; the local one has cases of this rig simulated under each hypothesis that is
-still likely, and asks which of them the recordings look like.
-"""
+"""Hypotheses judged by cases of this very rig, simulated under each that is still likely."""
 
 from __future__ import annotations
 
@@ -15,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.diagnosis.cases.truth import KINDS
+from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
 from noise.diagnosis.causes.local_cases import bench_of, local_cases
 from noise.diagnosis.causes.local_model import fit_local_model
 from sim.effects import EFFECTS
@@ -29,9 +24,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.evidence.summary import CaseTable
     from sim.effects.effect import Effect
 
-__all__ = ["Hypothesis", "joint_probabilities", "local_answer", "marginals"]
-
-Hypothesis = frozenset[str]
+__all__ = ["local_answer"]
 
 NONE: Hypothesis = frozenset()
 ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
@@ -43,72 +36,8 @@ SHORTLIST = 8
 _IN_TRIPLES = 5
 """The likeliest effects, of which triples are made."""
 
-_EXCLUSIVE = ("none", "parameters", "unknown")
 
 _KIND_OF_SIZE = {1: "one", 2: "pair", 3: "triple"}
-
-_LEAST = 1e-4
-"""Probabilities are held this far from 0 and 1 [-]: no library is large enough to tell more."""
-
-
-def joint_probabilities(probabilities: Mapping[str, float]) -> dict[Hypothesis, float]:
-    """Probability of each hypothesis from those of the causes one by one.
-
-    Parameters
-    ----------
-    probabilities : mapping of str to float
-        Of every cause being at work, ``none``, ``parameters`` and ``unknown`` among them [-].
-
-    Returns
-    -------
-    dict of frozenset of str to float
-        The likeliest first; they sum to 1 [-].
-
-    Examples
-    --------
-    >>> p = {"none": 0.0, "parameters": 0.1, "unknown": 0.0, "clipping": 0.9, "mains_hum": 0.7}
-    >>> sorted(next(iter(joint_probabilities(p))))
-    ['clipping', 'mains_hum']
-    """
-    odds = {cause: _odds(p) for cause, p in probabilities.items() if p > 0.0}
-    effects = [cause for cause in odds if cause not in _EXCLUSIVE]
-    weights = {
-        frozenset(members): math.prod(odds[member] for member in members)
-        for size in _KIND_OF_SIZE
-        for members in combinations(effects, size)
-    }
-    weights[NONE] = odds.get("none", 0.0)
-    return _normalised(weights | {alone: odds.get(min(alone), 0.0) for alone in ALONE})
-
-
-def _odds(p: float) -> float:
-    held = min(max(p, _LEAST), 1.0 - _LEAST)
-    return held / (1.0 - held)
-
-
-def marginals(joint: Mapping[Hypothesis, float]) -> dict[str, float]:
-    """Probability of each cause being at work.
-
-    Parameters
-    ----------
-    joint : mapping of frozenset of str to float
-        Of the hypotheses [-].
-
-    Returns
-    -------
-    dict of str to float
-        By cause, ``none`` among them [-].
-
-    Examples
-    --------
-    >>> marginals({frozenset(): 0.1, frozenset({"a"}): 0.5, frozenset({"a", "b"}): 0.4})
-    {'none': 0.1, 'a': 0.9, 'b': 0.4}
-    """
-    found: dict[str, float] = {}
-    for hypothesis, p in joint.items():
-        for cause in sorted(hypothesis or {"none"}):
-            found[cause] = found.get(cause, 0.0) + p
-    return found
 
 
 def local_answer(
@@ -169,7 +98,7 @@ def local_answer(
     covered = sum(first.get(hypothesis, 0.0) for hypothesis in hypotheses)
     weights *= covered / weights.sum()
     rest = {hypothesis: p for hypothesis, p in first.items() if hypothesis not in hypotheses}
-    return _normalised({**dict(zip(hypotheses, weights.tolist(), strict=True)), **rest})
+    return normalised({**dict(zip(hypotheses, weights.tolist(), strict=True)), **rest})
 
 
 def _hypotheses(effects: Sequence[str]) -> tuple[Hypothesis, ...]:
@@ -219,9 +148,3 @@ def _in_a_turn(hypothesis: Hypothesis) -> int:
 
 _TURNS_OF_A_TRIPLE = 3
 """Triples, of which there are many and hardly any come true, take turns."""
-
-
-def _normalised(weights: Mapping[Hypothesis, float]) -> dict[Hypothesis, float]:
-    whole = sum(weights.values())
-    ranked = sorted(weights.items(), key=lambda entry: -entry[1])
-    return {hypothesis: weight / whole for hypothesis, weight in ranked}

@@ -20,12 +20,14 @@ from models.condition import known_condition
 from models.errors import ParameterError
 from noise.diagnosis.cases.draw import active_effect, draw_offsets, unknown_effect
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
+from noise.diagnosis.cases.structures import draw_structure
 from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS
 from noise.diagnosis.cases.variants.common import log_uniform
 from noise.diagnosis.causes.local_cache import LocalCache
 from noise.diagnosis.evidence.summary import CaseTable, case_table, summary
 from noise.diagnosis.simulated.repeats import Scatter, record, run_signals
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
+from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.timing import DIAGNOSIS
@@ -51,7 +53,7 @@ LONGEST = 1.0
 WEAKEST = 0.1
 """Least strength of an effect: weaker ones are mostly not seen, and so tell nothing."""
 
-_INACCURACY = 0.01
+_INACCURACY = 0.003
 """Relative standard deviation of the rig file's own numbers; assumed."""
 
 _OWN_STRENGTHS = (0.3, 10.0)
@@ -242,10 +244,20 @@ class _Paths:
         at = (run.condition.interference, run.condition.support_stiffness)
         rate = DIAGNOSIS.rate(run.rate)
         if (*at, rate) not in self._known:
-            self._known[*at, rate] = chain_of(
-                self._rig, *at, self.transfer_functions.at(*at), rate, impacts=True
-            )
+            paths = chain_of(self._rig, *at, self.transfer_functions.at(*at), rate, impacts=True)
+            self._known[*at, rate] = self._struck(paths, at)
         return self._known[*at, rate]
+
+    def _struck(self, paths: ImpulseResponses, at: tuple[float, float]) -> ImpulseResponses:
+        """Have pulses heard where the model of the rig has no way for them: its clamp is bolted."""
+        if paths.pulse_to_acceleration.any():
+            return paths
+        rng = np.random.default_rng(0)
+        drawn = draw_structure(lumped_bushing(self._rig, *at), rng).response(paths.rate)
+        return replace(
+            paths, pulse_to_acceleration=drawn.pulse_to_acceleration,
+            pulse_to_pressure=drawn.pulse_to_pressure,
+        )  # fmt: skip
 
 
 def _table(

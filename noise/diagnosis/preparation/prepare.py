@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.evidence.sensor_noise import with_estimated_noise
+from noise.diagnosis.preparation.measured_speed import at_measured_speeds
+from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
+from noise.diagnosis.preparation.settled_part import settled_parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -67,4 +69,7 @@ def prepared(rig: Rig, recordings: Sequence[Recording]) -> Prepared:
     >>> prepared(load_material_rig("fluorocarbon-thesis"), [run]).recordings[0].duration
     0.5
     """
-    return Prepared(with_estimated_noise(rig, recordings), tuple(recordings))
+    parts, cut, left_out = settled_parts(recordings)
+    timed, turned = at_measured_speeds(parts)
+    seen, sensed = with_seen_sensors(rig, timed)
+    return Prepared(seen, timed, (*cut, *turned, *sensed), left_out)

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from models.errors import ParameterError
-from noise.base.progress import say, track
+from noise.base.atomic import check_target
+from noise.base.progress import counted, say, track
 from noise.diagnosis.cases.draw import SHARED
-from noise.training.causes.store import CHUNK, draw_into
+from noise.training.causes.fit import train_posterior
+from noise.training.causes.report import is_kept, report, with_forms
+from noise.training.causes.store import CHUNK, draw_into, load_cases
 
 
 def main() -> int:
@@ -23,9 +27,22 @@ def main() -> int:
     )  # fmt: skip
     drawing.add_argument("--workers", type=int, default=1, help="processes")
     drawing.add_argument("--out", type=Path, required=True, metavar="FOLDER")
+    training = commands.add_parser("train", help="train the posterior on cases that were drawn")
+    training.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
+    training.add_argument("--seed", type=int, default=0, help="of the trees")
+    training.add_argument(
+        "--leave-out", nargs="+", default=(), metavar="FORM",
+        help="forms of effects (FORM, EFFECT:FORM or EFFECT) that are kept from training",
+    )  # fmt: skip
+    training.add_argument(
+        "--report",
+        action="store_true",
+        help="keep a tenth of the rigs from training, and say how they are answered",
+    )
+    training.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
     options = parser.parse_args()
     try:
-        return _draw(options)
+        return _draw(options) if options.command == "draw" else _train(options)
     except ParameterError as error:
         say(f"error: {error}")
         return 2
@@ -36,6 +53,25 @@ def _draw(options: argparse.Namespace) -> int:
     for _ in track(paths, "drawing", total=-(-len(options.seeds) // CHUNK), unit="file"):
         pass
     print(options.out)
+    return 0
+
+
+def _train(options: argparse.Namespace) -> int:
+    check_target(options.out)
+    cases = load_cases(options.folder)
+    kept = [case for case in cases if options.report and is_kept(case)]
+    left_out = [case for case in cases if with_forms(case, options.leave_out)]
+    aside = {case.seed for case in (*kept, *left_out)}
+    learned = [case for case in cases if case.seed not in aside]
+    say(f"training on {counted(len(learned), 'case')}")
+    posterior = train_posterior(learned, seed=options.seed)
+    seeds = f"{learned[0].seed}:{learned[-1].seed + 1}"
+    card = {**posterior.card, "seeds": seeds, "left out": list(options.leave_out)}
+    replace(posterior, card=card).save(options.out)
+    print(options.out)
+    if options.report or options.leave_out:
+        out = {case.seed for case in left_out}
+        print(report(posterior, [case for case in kept if case.seed not in out], left_out))
     return 0
 
 

@@ -97,7 +97,7 @@ def _gear_mesh(a: float, _torque: float, _stiffness: float, rng: Rng) -> Effect:
 
 def _bearing(a: float, _torque: float, _stiffness: float, rng: Rng) -> Effect:
     """Roll over a dent: impacts so often a turn, each of which rings."""
-    order = log_uniform(rng, 5.0, 120.0)
+    order = log_uniform(rng, 40.0, 500.0)
     tones, decay = log_uniforms(rng, 800.0, 9000.0, 2), log_uniform(rng, 3e-4, 4e-3)
 
     def wave(turns: Array, rate: float, rng: Rng) -> Array:

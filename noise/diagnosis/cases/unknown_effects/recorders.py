@@ -115,7 +115,7 @@ def _aliased(a: float, _torque: float, _stiffness: float, rng: Rng) -> Effect:
 def _fading_resonance(a: float, _torque: float, _stiffness: float, rng: Rng) -> Effect:
     """Ring along at some times and not at others: a cover that lifts, a cable that touches."""
     frequency, damping = log_uniform(rng, 200.0, 8000.0), log_uniform(rng, 0.005, 0.05)
-    corner, peak = log_uniform(rng, 1.0, 15.0), log_uniform(rng, 4.0, 20.0)
+    corner, peak = log_uniform(rng, 1.0, 15.0), log_uniform(rng, 10.0, 80.0)
     names = ("acceleration", "pressure") if rng.random() < 0.4 else ("pressure",)
 
     def change(signals: Signals, rate: float, rng: Rng) -> Signals:

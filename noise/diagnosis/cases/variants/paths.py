@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.ndimage import map_coordinates
-from scipy.signal import lfilter
 
 from sim.chain import HIGHEST_SHARE, padded_sum, resonance
 
@@ -54,18 +53,35 @@ def waveguide(rate: float, first: float, reflection: float, dullness: float) -> 
     array([0.  , 0.  , 0.  , 0.  , 0.5 , 0.  , 0.  , 0.  , 0.25])
     """
     way = max(2, round(rate / first))
-    passes = np.log(1e-4) / np.log(abs(reflection))
-    unit = np.zeros(int(min(passes * way + way, max(_LONGEST * rate, 3 * way))))
-    unit[0] = 1.0
-    echo = np.zeros(way + 2)
-    echo[way - 1 :] = reflection * np.array([0.5 * dullness, 1.0 - dullness, 0.5 * dullness])
-    denominator = -echo
-    denominator[0] += 1.0
-    return np.asarray(lfilter(echo, denominator, unit))
+    passes = int(np.log(1e-4) / np.log(abs(reflection)))
+    n = int(min(passes * way + way, max(_LONGEST * rate, 3 * way)))
+    echoes = np.zeros(n)
+    echo = reflection * np.array([0.5 * dullness, 1.0 - dullness, 0.5 * dullness])
+    wave = echo
+    for middle in range(way, n, way):
+        half = wave.size // 2
+        stop = min(middle + half + 1, n)
+        echoes[middle - half : stop] += wave[: stop - middle + half]
+        wave = np.convolve(wave, echo)
+        if wave.size > 2 * way - 3:  # its far tails are as good as nothing
+            wave = wave[1:-1]
+    return echoes
 
 
 def rings(rate: float, modes: Sequence[Mode]) -> Array:
-    """Sum of resonances of unit peak times their strength, impulse response of shape (n,) [-].
+    """Sum of resonances of unit peak times their strength.
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+    modes : sequence of (float, float, float)
+        Frequency [Hz], damping ratio [-], strength with its sense [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Impulse response [-].
 
     Examples
     --------
@@ -83,7 +99,19 @@ def rings(rate: float, modes: Sequence[Mode]) -> Array:
 
 
 def shifted(response: Array, factor: float) -> Array:
-    """Move all modes of an impulse response, shape (n,), by a factor of frequency [-].
+    """Move all modes of an impulse response.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    factor : float
+        Of their frequencies [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [as `response`]
 
     Examples
     --------
@@ -98,17 +126,60 @@ def shifted(response: Array, factor: float) -> Array:
 
 
 def damped(response: Array, rate: float, decay: float) -> Array:
-    """Let an impulse response, shape (n,) at a rate [Hz], decay faster by so much [1/s]."""
+    """Let an impulse response decay faster.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    rate : float
+        Sampling rate [Hz].
+    decay : float
+        By so much [1/s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [as `response`]
+    """
     return np.asarray(response * np.exp(-decay / rate * np.arange(response.size)))
 
 
 def split(response: Array, rate: float, apart: float) -> Array:
-    """Split each mode of an impulse response, shape (n,), into two so far apart [Hz]."""
+    """Split each mode of an impulse response into two.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    rate : float
+        Sampling rate [Hz].
+    apart : float
+        How far the two lie apart [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [as `response`]
+    """
     return np.asarray(response * np.cos(np.pi * apart / rate * np.arange(response.size)))
 
 
 def band_level(response: Array, rate: float) -> float:
-    """Root mean square of what an impulse response, shape (n,), passes from 200 to 6000 Hz."""
+    """Root mean square of what an impulse response passes from 200 to 6000 Hz.
+
+    Parameters
+    ----------
+    response : ndarray, shape (n,)
+        [any]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    float
+        [as `response`]
+    """
     passed = np.abs(np.fft.rfft(response, max(response.size, 2048)))
     frequency = np.fft.rfftfreq(max(response.size, 2048), 1.0 / rate)
     inside = (frequency >= _BAND[0]) & (frequency <= _BAND[1])

@@ -48,7 +48,7 @@ def _impacts(
     late by so much at most [s], with a chance, where the slip breaks loose, where it is caught (1),
     or both (0.5).
     """
-    threshold, seed = float(rng.choice([0.0, 0.0, 1.0, 3.0])), int(rng.integers(2**31))
+    threshold, seed = float(rng.choice([0.0, 0.0, 0.3, 1.0])), int(rng.integers(2**31))
 
     def force(motion: Motion) -> Array:
         struck = np.zeros_like(motion.torque)
