@@ -99,7 +99,8 @@ def _stands_for_torque(recording: Recording, rig: Rig) -> str:
         if row is not None:
             x = np.asarray(recording.samples[row], dtype=np.float64)
             mean, spread = abs(float(x.mean())), float(x.std())
-            ramp = abs(float(x[-1] - x[0])) > 2.5 * spread
+            n = max(1, x.size // 10)
+            ramp = abs(float(x[-n:].mean() - x[:n].mean())) > 2.5 * spread
             if kinetic / 2.0 < mean < 3.0 * kinetic and spread < 0.5 * mean and not ramp:
                 found.append(kind)
     return found[0] if found and "torque" not in found else ""
