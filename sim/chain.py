@@ -7,11 +7,12 @@ order. They draw their random numbers from a stream of their own, for the same r
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import bilinear, fftconvolve, lfilter
+from scipy.signal import fftconvolve, lfilter
 
 from models.structure.modal import DECAY_EXPONENT
 
@@ -96,11 +97,18 @@ def resonance(
     10.0
     """
     share = frequency / rate
-    b, a = bilinear(numerator, [1.0, 2.0 * damping_ratio, 1.0], fs=0.5 / np.tan(np.pi * share))
+    c = 1.0 / math.tan(math.pi * share)
+    b, a = _bilinear(numerator, c), _bilinear((1.0, 2.0 * damping_ratio, 1.0), c)
     dying = DECAY_EXPONENT / (2.0 * np.pi * share * damping_ratio)
     unit = np.zeros(int(min(dying, _LONGEST * rate)) + 2)
     unit[0] = 1.0
     return np.asarray(lfilter(b, a, unit))
+
+
+def _bilinear(p: Sequence[float], c: float) -> list[float]:
+    """Polynomial of second order in s, times (z + 1)^2, for s = c (z - 1) / (z + 1)."""
+    high, middle, low = p[0] * c * c, p[1] * c, p[2]
+    return [high + middle + low, 2.0 * (low - high), high - middle + low]
 
 
 def padded_sum(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:

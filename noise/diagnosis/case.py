@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
-from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
-from noise.diagnosis.evidence.sensor_noise import with_estimated_noise
+from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
+from noise.diagnosis.preparation.prepare import prepared
+from noise.diagnosis.preparation.settled_part import SHORTEST
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from models.rig import Rig
 
 __all__ = ["Case", "read_case", "usable"]
-
-SHORTEST = LEAD + TAIL + 0.1
-"""Shorter recordings show too few cycles [s]."""
 
 LEAST_RATE = 8e3
 """[Hz]"""
@@ -40,18 +38,25 @@ class Case:
     Parameters
     ----------
     rig : Rig
-        With the noise of its sensors, where that is to be taken from the recordings.
+        With its sensors as the recordings show them, where its file does not state them.
     names : tuple of str
         Of the files.
     recordings : tuple of Recording
+        As `noise.diagnosis.preparation.prepare.prepared` gives them.
     refused : tuple of (str, str)
         Name and reason of what was left out.
+    notes : tuple of str
+        What was done to the recordings, a line each.
+    faults : tuple of str
+        Channels that are dead, and left out, or clip, one line each.
     """
 
     rig: Rig
     names: tuple[str, ...]
     recordings: tuple[Recording, ...]
     refused: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
 
 
 def read_case(paths: Sequence[Path], rig: Rig) -> Case:
@@ -86,8 +91,20 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         raise ParameterError(
             f"{', '.join(str(path) for path in paths)}: no recording that can be diagnosed{reason}"
         )
-    seen = with_estimated_noise(rig, recordings)
-    return Case(seen, tuple(names), tuple(recordings), tuple(refused))
+    faults = clipped_channels(recordings, rig)
+    sounding = without_dead_channels(names, recordings)
+    if any(recording is not None for recording in sounding.recordings):  # else the check says it
+        faults = [*sounding.findings, *faults]
+        pairs = list(zip(names, sounding.recordings, strict=True))
+        refused += [(name, "all its channels are dead") for name, left in pairs if left is None]
+        names = [name for name, left in pairs if left is not None]
+        recordings = [left for _, left in pairs if left is not None]
+    ready = prepared(rig, recordings)
+    refused += [(names[i], reason) for i, reason in ready.left_out.items()]
+    kept = tuple(name for i, name in enumerate(names) if i not in ready.left_out)
+    return Case(
+        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, faults=tuple(faults)
+    )
 
 
 def usable(recording: Recording, rig: Rig) -> Recording:

@@ -19,7 +19,6 @@ from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
-from noise.diagnosis.evidence.sensor_noise import noise_remarks
 from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.gap.signature import KINDS
@@ -124,6 +123,7 @@ def _stated(
         p_value=first.gap.p_value,
         seconds=0.0,
         notes=(
+            *case.faults,
             *map(_listed, first.suspected),
             *_notes(case),
             *first.unlearned,
@@ -135,6 +135,7 @@ def _stated(
             for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)
         ),
         agreement=_agreement(case, first.gap),
+        faults=case.faults,
     )
 
 
@@ -168,8 +169,9 @@ def _unlike(
         floor=1.0,
         p_value=unknown,
         seconds=seconds,
-        notes=(*found, *_notes(case), *case_remarks(case, library)),
+        notes=(*found, *case.faults, *_notes(case), *case_remarks(case, library)),
         bench=found,
+        faults=case.faults,
     )
 
 
@@ -230,7 +232,7 @@ def _notes(case: Case) -> tuple[str, ...]:
         )
     elif len(different) == len(case.recordings):
         notes.append("no condition was recorded twice: how much repeats differ is assumed (2 %)")
-    notes += noise_remarks(case.rig.sensors, kinds)
+    notes += case.notes
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
     return tuple(notes)

@@ -72,6 +72,8 @@ class Diagnosis:
     bench : tuple of str
         Why the recordings cannot be of the rig as it is described, one line each; nothing else was
         then looked for, and the verdict is ``("unknown",)``.
+    faults : tuple of str
+        Channels that are dead, and were left out, or clip, one line each.
 
     Examples
     --------
@@ -103,6 +105,7 @@ class Diagnosis:
     agreement: tuple[Agreement, ...] = ()
     remainder: Remainder | None = None
     bench: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
 
     @property
     def improved(self) -> Rig | None:

@@ -93,6 +93,7 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
             "band_hz": [_rounded(f, 1) for f in diagnosis.remainder.band],
         },
         "bench": list(diagnosis.bench),
+        "faults": list(diagnosis.faults),
         "notes": list(diagnosis.notes),
         "seconds": _rounded(diagnosis.seconds, 1),
     }  # fmt: skip
@@ -162,6 +163,7 @@ def from_json(data: Mapping[str, Any]) -> Diagnosis:
         agreement=tuple(map(_agreement_from, data.get("agreement") or ())),
         remainder=_remainder_from(data.get("remainder")),
         bench=tuple(map(str, data.get("bench") or ())),
+        faults=tuple(map(str, data.get("faults") or ())),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
+from noise.diagnosis.evidence.bench_context import CONTEXT
 from noise.diagnosis.evidence.evidence import MISSING, PARTS, evidence, evidence_names, scale_of
 from tests.helpers.small_rigs import table_of
 
@@ -62,7 +63,7 @@ def test_the_order_of_columns_does_not_count():
 def test_what_a_case_does_not_show_is_missing_and_columns_nobody_asked_for_are_passed_over():
     table = table_of(("contact_peak", "of_tomorrow"), [[3.0, 9.0], [3.0, 9.0]])
     row = evidence(table, NAMES, SCALE)
-    for part in ("middle", "spread", "largest", "with_speed", "as_is", "repeats"):
+    for part in ("middle", "typical", "spread", "largest", "with_speed", "as_is", "repeats"):
         assert _part(row, part, "torque_offset") == np.float32(MISSING)
     assert _part(row, "as_is", "contact_peak") == 3.0
 
@@ -77,23 +78,49 @@ def test_each_part_says_what_its_name_says():
     assert _part(row, "largest", "pressure_gain_4") == 4.0
     assert _part(row, "with_speed", "pressure_gain_4") == pytest.approx(4.0)
     assert _part(row, "with_speed", "contact_peak") == pytest.approx(0.0)
-    assert row[-2:] == pytest.approx([4, table.rate])
-    assert len(row) == len(PARTS) * len(NAMES) + 2
+    assert row[len(PARTS) * len(NAMES) :][:3] == pytest.approx([4, table.rate, 4])
+    assert len(row) == (len(PARTS) + 1) * len(NAMES) + len(CONTEXT) + 3
 
 
 def test_repeats_that_differ_are_told_from_conditions_that_differ():
     apart = [[0.0] * 3, [6.0] * 3, [0.0] * 3, [6.0] * 3]
-    repeated = evidence(table_of(NAMES, apart, speeds=[1, 1, 2, 2]), NAMES, SCALE)
-    conditions = evidence(table_of(NAMES, apart, speeds=[1, 2, 1, 2]), NAMES, SCALE)
+    repeated, conditions = (
+        evidence(table_of(NAMES, apart, scatter=0.0, speeds=speeds), NAMES, SCALE)
+        for speeds in ([1, 1, 2, 2], [1, 2, 1, 2])
+    )
     assert _part(repeated, "repeats", "contact_peak") == pytest.approx(6.0)
     assert _part(conditions, "repeats", "contact_peak") == pytest.approx(0.0)
 
 
-def test_the_scale_is_the_scatter_of_cases_without_a_cause():
+def test_the_scale_is_what_cases_without_a_cause_scatter_by_beyond_their_repeats():
     rng = np.random.default_rng(1)
     sizes = np.array([0.5, 3.0, 20.0])
-    tables = [table_of(NAMES, sizes * rng.normal(size=(5, 3))) for _ in range(200)]
-    assert scale_of(tables, NAMES) == pytest.approx(sizes, rel=0.12)
+    for scatter in (0.0, 0.4):
+        tables = [
+            table_of(NAMES, sizes * rng.normal(size=(5, 3)), scatter=scatter) for _ in range(200)
+        ]
+        beyond = np.sqrt(sizes**2 - scatter**2)
+        assert scale_of(tables, NAMES) == pytest.approx(beyond, rel=0.15)
     some = scale_of(tables, (*NAMES, "of_nobody"))
     assert np.isfinite(some).all()
     assert (some > 0).all()
+
+
+def test_a_difference_counts_less_on_a_bench_whose_repeats_differ_more():
+    measured = np.full((4, 3), 3.0)
+    quiet, rough = (
+        evidence(table_of(NAMES, measured, scatter=scatter), NAMES, SCALE) for scatter in (0.0, 5.0)
+    )
+    for part in ("typical", "sure", "largest"):
+        assert _part(rough, part, "contact_peak") < 0.3 * _part(quiet, part, "contact_peak")
+    for part in ("as_is", "middle"):
+        assert _part(rough, part, "contact_peak") == _part(quiet, part, "contact_peak") == 3.0
+
+
+def test_a_case_says_what_bench_it_is_from():
+    table = table_of(NAMES, np.zeros((4, 3)), speeds=[1.0, 1.0, 2.0, 3.0])
+    row = evidence(replace(table, bench={"seconds": 2.5, "torque_noise": -0.3}), NAMES, SCALE)
+    said = dict(zip(evidence_names(NAMES), row.tolist(), strict=True))
+    assert (said["seconds"], said["conditions"]) == (2.5, 3.0)
+    assert said["torque_noise"] == pytest.approx(-0.3)
+    assert said["angle_noise"] == MISSING

@@ -15,14 +15,11 @@ from noise.cli import main
 from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.unlearned import unlearned_sensors
 from noise.diagnosis.causes.verdict import needs_explaining
-from noise.diagnosis.evidence.sensor_noise import (
-    estimated_noise,
-    noise_remarks,
-    with_estimated_noise,
-)
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.gap.floor import case_gap
 from noise.diagnosis.gap.signature import NAMES
+from noise.diagnosis.preparation.sensor_noise import estimated_noise
+from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.nominal import nominal_recordings
 from noise.diagnosis.simulated.repeats import Scatter
@@ -126,7 +123,7 @@ def test_the_command_names_no_cause_and_says_what_its_causes_were_learned_with(c
     found = json.loads(capsys.readouterr().out)
     assert found["verdict"] == []
     (note,) = (note for note in found["notes"] if "learned with better sensors" in note)
-    assert "noise and rounding of torque 0.023 N m (at most 0.008)" in note
+    assert "noise and rounding of acceleration 0.45 m/s^2 (at most 0.18)" in note
     assert "a filter at 4000 Hz (torque, acceleration, pressure, angle)" in note
 
 
@@ -145,8 +142,7 @@ def test_noise_from_recordings_is_found_and_told(tmp_path):
         assert sensors.of(kind).noise == pytest.approx(level, rel=0.1)
     assert sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
     assert sensors.of("torque").bits == 12
-    said = " ".join(noise_remarks(sensors, ("torque", "acceleration", "pressure", "angle")))
-    assert "noise of the sensors, from the quietest tenth of the recordings: torque 0." in said
+    assert "noise of the sensors, by the recordings: torque 0." in " ".join(case.notes)
 
 
 def test_a_sound_without_pause_tells_no_noise():
@@ -154,10 +150,10 @@ def test_a_sound_without_pause_tells_no_noise():
         load_material_rig("fluorocarbon"), 2.5, interference=0.381e-3, seconds=0.5
     ).recording
     assert estimated_noise([creak], "acceleration") is None
-    rig = replace(RIG, sensors=Sensors(noise_from_recordings=True))
-    kept = with_estimated_noise(rig, [creak]).sensors
-    assert kept.of("acceleration").noise is None
-    assert kept.of("angle").noise == pytest.approx(1e-4, rel=0.1)
+    seen, notes = with_seen_sensors(RIG, [creak])
+    assert seen.sensors.of("acceleration").noise is None
+    assert seen.sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
+    assert any("cannot be told" in note and "acceleration" in note for note in notes)
 
 
 def test_good_sensors_are_those_the_causes_were_learned_with():

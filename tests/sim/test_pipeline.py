@@ -76,8 +76,8 @@ def test_a_motion_in_parts_is_the_motion():
     [
         (SIMULATION, 30e3, 90e3, 0.5),
         (SIMULATION, 25.6e3, 102.4e3, 0.5),
-        (DIAGNOSIS, 30e3, 90e3, 0.35),
-        (DIAGNOSIS, 25.6e3, 76.8e3, 0.35),
+        (DIAGNOSIS, 30e3, 90e3, 0.25),
+        (DIAGNOSIS, 25.6e3, 76.8e3, 0.25),
         (SCREENING, 30e3, 30e3, 0.6),
     ],
 )
@@ -89,4 +89,4 @@ def test_presets_are_what_shipped_models_have_seen(timing, rate, fine, settling)
 def test_a_repeat_is_planned_as_the_diagnosis_has_it():
     at = KnownCondition(1.0, *AT.values())
     plan = plan_repeat(RIG, at, (), rate=DIAGNOSIS.rate(25.6e3), seconds=0.4)
-    assert (plan.n_settling, plan.n_kept) == (26880, 30720)
+    assert (plan.n_settling, plan.n_kept) == (19200, 30720)

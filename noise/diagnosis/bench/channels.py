@@ -1,4 +1,4 @@
-"""Channels that are dead, swapped, in another unit, turned, or run backwards.
+"""Channels that are swapped, in another unit, turned, or run backwards.
 
 Every threshold lies between what effects do and what a wrong bench does. A torque keeps between a
 sixth and six times its size whatever is missing in the contact, a path's gain between a thirtieth
@@ -20,14 +20,19 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.bench.levels import Levels
+    from noise.diagnosis.bench.levels import Levels, PathFit
 
-__all__ = ["backwards", "dead_channels", "swapped_channels", "turned_channels", "wrong_units"]
+__all__ = ["backwards", "swapped_channels", "turned_channels", "wrong_units"]
 
 _UNITS = {"torque": "N m", "acceleration": "m/s^2", "pressure": "Pa", "angle": "rad"}
 
+_OUTPUTS = ("acceleration", "pressure")
+
 _TORQUE = (1.0 / 6.0, 6.0)
 """Mean torque over the kinetic torque of the fit, whatever is missing [-]."""
+
+_FAR = ("N mm", "kN m")
+"""Units of torque that no rig is taken for, even where only its kind is known."""
 
 _GAIN = (1.0 / 30.0, 30.0)
 """Gain of a path over the rig's, whatever is missing [-]."""
@@ -43,30 +48,18 @@ _STEADY = 0.3, 0.7
 """Difference of logarithms from the middle of the recordings within which a factor that is a unit's
 lies, in what share of them [-]; clipping and impacts change from one condition to the next."""
 
+_STRENGTH = 0.1, 0.15, 0.8
+"""The same of the strength alone, where a channel follows no prediction: difference from the unit's
+factor, from the middle, and share of the recordings [-]."""
+
+_SWINGING_WELL = 0.05
+"""Swing over the kinetic torque from which strength is no noise [-]."""
+
 _AGAINST = 0.9
 """Correlation from which a channel is the torque's with its sign turned [-]."""
 
 _RISING = 0.5
 """Skewness of the torque's rate from which it rises fast and falls slowly [-]."""
-
-
-def dead_channels(names: Sequence[str], recordings: Sequence[Recording]) -> Iterator[str]:
-    """Say which channels never change."""
-    found: dict[str, list[tuple[str, float]]] = {}
-    for name, recording in zip(names, recordings, strict=True):
-        for channel, x in zip(recording.channels, recording.samples, strict=True):
-            if channel.kind in _UNITS and float(np.ptp(x)) == 0.0:
-                found.setdefault(channel.name, []).append((name, float(x[0])))
-    for dead, where in found.items():
-        values = {value for _, value in where}
-        value = f"at {values.pop():g}" if len(values) == 1 else "at some value"
-        yield f"channel {dead} is dead: it stays {value} in {_among(where, recordings)}"
-
-
-def _among(where: Sequence[tuple[str, float]], recordings: Sequence[Recording]) -> str:
-    if len(where) == len(recordings):
-        return "all recordings"
-    return ", ".join(name for name, _ in where)
 
 
 def swapped_channels(recordings: Sequence[Recording], rig: Rig, levels: Sequence[Levels]) -> str:
@@ -112,27 +105,88 @@ def _stands_for_torque(recording: Recording, rig: Rig) -> str:
     return found[0] if found and "torque" not in found else ""
 
 
-def wrong_units(levels: Sequence[Levels]) -> Iterator[str]:
-    """Say which channels read a factor too much or too little."""
+def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str]:
+    """Say which channels read a factor too much or too little.
+
+    Parameters
+    ----------
+    levels : sequence of Levels
+    alike : float
+        How many times the kinetic torque may differ from the rig's, of a unit that is thousands of
+        times another [-]: more where the rig is not known yet.
+
+    Yields
+    ------
+    str
+    """
     torque = [abs(one.torque) for one in levels if one.torque is not None]
     scale = 1.0
     if torque:
         factor = float(np.median(torque))
-        unit = unit_of("torque", factor)
+        unit = unit_of("torque", factor) or _far_unit(factor, alike) or _torque_of_paths(levels)
         if not _TORQUE[0] < factor < _TORQUE[1]:
             yield _unit_words("torque", unit, factor, "the kinetic torque of the rig file")
             scale = factor if unit else 1.0
-    for kind in ("acceleration", "pressure"):
+    for kind in _OUTPUTS:
+        unit, factor = _unit_of_path(kind, levels, scale)
         fits = [p for one in _slipping(levels, scale) if (p := one.paths.get((kind, kind)))]
-        if not fits:
-            continue
-        gains = scale * np.array([max(fit.gain, 1e-12) for fit in fits])
-        factor, alike = float(np.median(gains)), float(np.median([abs(f.alike) for f in fits]))
-        steady = np.mean(np.abs(np.log(gains / factor)) < _STEADY[0]) >= _STEADY[1]
-        unit = unit_of(kind, factor) if alike > _ALIKE and steady else ""
-        follows = float(np.median([fit.explained for fit in fits])) > 0.5
+        follows = bool(fits) and float(np.median([fit.explained for fit in fits])) > 0.5
+        if not unit and follows:
+            factor = scale * float(np.median([fit.gain for fit in fits]))
         if unit or (follows and not _GAIN[0] < factor < _GAIN[1]):
             yield _unit_words(kind, unit, factor, "what the torque makes of it on this rig")
+
+
+def _far_unit(factor: float, alike: float) -> str:
+    unit = unit_of("torque", factor, math.log(alike) + 1e-9)
+    return unit if unit in _FAR else ""
+
+
+def _torque_of_paths(levels: Sequence[Levels]) -> str:
+    """Return the unit of a torque from which both other channels follow too weakly or strongly."""
+    gains = [
+        [fit.gain for one in levels if (fit := one.paths.get((kind, kind))) and _clear(fit)]
+        for kind in _OUTPUTS
+    ]
+    if not all(gains):
+        return ""
+    middle = [-math.log(float(np.median(each))) for each in gains]
+    if abs(middle[0] - middle[1]) > _STEADY[0]:
+        return ""
+    return unit_of("torque", math.exp(sum(middle) / 2.0))
+
+
+def _clear(fit: PathFit) -> bool:
+    return min(fit.explained, abs(fit.alike)) > _ALIKE
+
+
+def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[str, float]:
+    """Return the unit and the factor of a channel that has another at every condition."""
+    having = [(one, p) for one in levels if (p := one.paths.get((kind, kind)))]
+    least = min(2, len(having))
+    clear = {k: {i: f.gain for i, one in enumerate(levels)
+                 if (f := one.paths.get((k, k))) and _clear(f)}
+             for k in _OUTPUTS}  # fmt: skip
+    own = clear[kind]
+    gains = [scale * np.array(list(own.values()))]
+    (beside,) = (clear[k] for k in _OUTPUTS if k != kind)
+    both = [i for i in own if i in beside]
+    if both and abs(math.log(scale * float(np.median([beside[i] for i in both])))) < math.log(3.0):
+        gains.append(np.array([own[i] / beside[i] for i in both]))  # whatever the torque reads
+    for each in gains:
+        if each.size >= least > 0:
+            factor = float(np.median(each))
+            steady = np.mean(np.abs(np.log(each / factor)) < _STEADY[0]) >= _STEADY[1]
+            if steady and (unit := unit_of(kind, factor)):
+                return unit, factor
+    swinging = [fit for one, fit in having if one.swing > _SWINGING_WELL * scale]
+    if len(swinging) >= max(least, 1) + (len(having) > 2):
+        strengths = scale * np.array([max(fit.strength, 1e-12) for fit in swinging])
+        factor = float(np.median(strengths))
+        steady = np.mean(np.abs(np.log(strengths / factor)) < _STRENGTH[1]) >= _STRENGTH[2]
+        if steady and (unit := unit_of(kind, factor, _STRENGTH[0])):
+            return unit, factor
+    return "", 1.0
 
 
 def _unit_words(kind: str, unit: str, factor: float, against: str) -> str:
@@ -148,7 +202,7 @@ def turned_channels(levels: Sequence[Levels]) -> Iterator[str]:
     if torque and np.median(torque) < -_TORQUE[0]:
         yield "channel torque has its sign turned: it drives the rotation that it should brake"
         return
-    for kind in ("acceleration", "pressure"):
+    for kind in _OUTPUTS:
         alike = [p.alike for one in _slipping(levels) if (p := one.paths.get((kind, kind)))]
         if len(alike) > 2 and max(alike) < -_AGAINST:
             yield f"channel {kind} has its sign turned against what the torque makes of it"

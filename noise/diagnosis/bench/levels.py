@@ -40,6 +40,9 @@ _LENGTH = 2048
 _LEAD, _TAIL = 0.08, 0.01
 """Left out at the ends, where the structure rings from before and nothing follows [s]."""
 
+_HEARD = 1e-3
+"""Share of the strongest line's power from which a prediction has a frequency [-]."""
+
 _LONGEST_DELAY = 2.5e-3
 """Between channels, up to which signals are laid upon each other [s]."""
 
@@ -56,11 +59,15 @@ class PathFit:
         Share of its power that is coherent [-].
     alike : float
         Correlation with the prediction as it stands, at the best delay [-].
+    strength : float
+        Of its amplitude over the prediction's, the middle one of the frequencies that the
+        prediction has; noise adds to it, and delays and cut peaks do not change it [-].
     """
 
     gain: float
     explained: float
     alike: float
+    strength: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +173,9 @@ def path_fit(predicted: NDArray[np.float64], measured: NDArray[np.float64], rate
     tiny = 1e-300
     coherent = float((np.abs(pm) ** 2 / (pp + tiny)).sum())
     gain = math.sqrt(coherent / (float(pp.sum()) + tiny))
-    return PathFit(gain, coherent / (float(mm.sum()) + tiny), _alike(p, m, rate))
+    heard = pp > _HEARD * float(pp.max())
+    strength = math.sqrt(float(np.median(mm[heard] / (pp[heard] + tiny)))) if pp.any() else 0.0
+    return PathFit(gain, coherent / (float(mm.sum()) + tiny), _alike(p, m, rate), strength)
 
 
 def _alike(p: NDArray[np.float64], m: NDArray[np.float64], rate: float) -> float:

@@ -22,7 +22,7 @@ _UNITS = {
 """By channel: how many times too large a value in the unit reads."""
 
 
-def unit_of(kind: str, factor: float) -> str:
+def unit_of(kind: str, factor: float, within: float = _EXACT) -> str:
     """Return the wrong unit that makes a quantity read so many times too large; empty if none.
 
     Parameters
@@ -31,6 +31,8 @@ def unit_of(kind: str, factor: float) -> str:
         Of the channel, or ``speed`` for the one that is stated.
     factor : float
         [-]
+    within : float
+        Difference of logarithms [-].
 
     Examples
     --------
@@ -41,7 +43,7 @@ def unit_of(kind: str, factor: float) -> str:
         return ""
     found = {abs(math.log(factor / f)): unit for f, unit in _UNITS[kind].items()}
     nearest = min(found)
-    return found[nearest] if nearest <= _EXACT else ""
+    return found[nearest] if nearest <= within else ""
 
 
 def factor_words(factor: float) -> str:

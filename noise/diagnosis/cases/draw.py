@@ -15,31 +15,46 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, rfft
 
+from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
+from models.sensors import Sensors
+from noise.diagnosis.cases.benches import NOISE_DRAWN
 from noise.diagnosis.cases.rigs import OFFSETS, draw_setting, with_offsets
+from noise.diagnosis.cases.starts import draw_start
 from noise.diagnosis.cases.strengths import drawn_effect
-from noise.diagnosis.cases.structures import draw_structure
-from noise.diagnosis.cases.truth import KINDS, Truth
+from noise.diagnosis.cases.structures import THESIS, draw_structure, draw_trade
+from noise.diagnosis.cases.truth import KINDS, Truth, seen_through
 from noise.diagnosis.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.diagnosis.cases.variants import draw_variant
-from noise.diagnosis.simulated.repeats import CHANNELS, Scatter, run_signals
-from sim.acquisition import Acquisition, decimate
+from noise.diagnosis.simulated.repeats import (
+    CHANNELS,
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    repeat_motion,
+)
+from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
+from sim.chain import changed_chain
+from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
-from sim.timing import DIAGNOSIS
+from sim.effects.effect import activated
+from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
+from sim.timing import LEARNING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from models.condition import KnownCondition
     from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Rig
+    from models.rig import Fit, Rig
     from noise.diagnosis.cases.rigs import Setting
     from sim.effects.effect import ActiveEffect
 
-__all__ = ["NOISE_DRAWN", "SHARED", "DrawnCase", "draw_case"]
+__all__ = [
+    "SHARED", "DrawnCase", "active_effect", "draw_case", "draw_offsets", "unknown_effect",
+]  # fmt: skip
 
 SHARED = 4
 """Cases of one rig."""
@@ -47,11 +62,17 @@ SHARED = 4
 WEAKEST = 0.02
 """Least strength of an effect that is drawn."""
 
-NOISE_DRAWN = (0.7, 1.6)
-"""Between which the noise of a case's sensors lies, times that of `sim.acquisition`."""
-
 _VARIANTS = 0.65
 """Share of the effects that have none of the simulator's own forms."""
+
+_IRREGULAR = 0.25
+"""Share of the cases with effects that have more of an irregularity that the rig file lists."""
+
+_TORQUE_PER_K, _STIFFNESS_PER_K = -0.005, -0.003
+"""By what a rubber whose file states no dependence differs when it is warmer."""
+
+_SLOW = 3.0
+"""Of coloured noise and of drift, over the white noise of a good sensor at most [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,79 +84,166 @@ class DrawnCase:
     rig : Rig
         As its file has it, responses measured.
     recordings : tuple of Recording
+        As a user would bring them, with what their sidecars say.
     truth : Truth
+    departures : tuple of str
+        In what its bench is not quiet.
     """
 
     rig: Rig
     recordings: tuple[Recording, ...]
     truth: Truth
+    departures: tuple[str, ...] = ()
 
 
 def draw_case(seed: int) -> DrawnCase:
     """Draw a case; the same seed gives the same case.
 
+    Raises
+    ------
+    ParameterError
+        It cannot be simulated.
+
     Examples
     --------
     >>> case = draw_case(5)
-    >>> 4 <= len(case.recordings) <= 9, case.recordings[0].channel_names
+    >>> 2 <= len(case.recordings) <= 9, case.recordings[0].channel_names
     (True, ('torque', 'acceleration', 'pressure', 'angle'))
     """
-    setting, plain = _drawn_rig(seed // SHARED)
+    drawn = _drawn_rig(seed // SHARED)
+    setting = drawn.setting
     rng = np.random.default_rng([1, seed])
     truth, effects = _draw_cause(setting.rig, rng)
     chain_seed = int(rng.integers(2**31))
-    louder = {
-        name: level * rng.uniform(*NOISE_DRAWN) for name, level in Acquisition().noise.items()
-    }
+    acting: list[set[str]] = [set() for _ in effects]
     recordings = tuple(
-        _record(
-            setting, condition, effects, dict(truth.offsets), plain[condition.support_stiffness],
-            chain_seed, louder, rng,
-        )
-        for condition in setting.conditions
+        _record(drawn, place, effects, truth, chain_seed, acting, rng)
+        for place in range(len(setting.conditions))
+    )
+    return DrawnCase(
+        setting.rig, recordings, seen_through(truth, acting, recordings[0].channel_names),
+        setting.bench.departures,
     )  # fmt: skip
-    return DrawnCase(setting.rig, recordings, truth)
+
+
+@dataclass(frozen=True, eq=False)
+class _DrawnRig:
+    """A rig with measured responses; what it truly is, at the rate of the simulation."""
+
+    setting: Setting
+    plain: Mapping[float, ImpulseResponses]
+    speeds: tuple[float, ...]
+    warmer: Rig
 
 
 @lru_cache(maxsize=1)
-def _drawn_rig(number: int) -> tuple[Setting, dict[float, ImpulseResponses]]:
-    """Draw a rig with measured responses, and the true ones at the rate of the simulation."""
+def _drawn_rig(number: int) -> _DrawnRig:
     rng = np.random.default_rng([0, number])
     setting = draw_setting(rng)
+    rig, bench = setting.rig, setting.bench
+    trade = draw_trade(rng) if bench.departures else THESIS
+    supports = sorted({c.support_stiffness for c in setting.conditions})
+    middle = rig.fits[len(rig.fits) // 2].interference
     structures = {
-        support: draw_structure(lumped_bushing(setting.rig, 0.279e-3, support), rng)
-        for support in sorted({c.support_stiffness for c in setting.conditions})
+        support: draw_structure(lumped_bushing(rig, middle, support), rng, trade)
+        for support in supports
     }
-    measured = tuple(s.measured(support, rng) for support, s in structures.items())
-    fine = DIAGNOSIS.rate(setting.rate)
-    return (
-        replace(setting, rig=replace(setting.rig, measured=measured)),
-        {support: s.response(fine) for support, s in structures.items()},
+    poor = bench.responses == "poor"
+    measured = tuple(s.measured(support, rng, poor=poor) for support, s in structures.items())
+    known = replace(rig, measured=measured)
+    fine = LEARNING.rate(bench.rate)
+    plain = {support: s.response(fine) for support, s in structures.items()}
+    listed = activated(rig.effects, EFFECTS)
+    if any(one.effect.force or one.effect.chain for one in listed):
+        # What the file says of blows in the anchors is right, and so is what it lists.
+        plain = {
+            support: changed_chain(
+                _with_pulses(response, known, middle, support), listed, np.random.default_rng(0)
+            )
+            for support, response in plain.items()
+        }
+    wrong = {c: 1.0 + bench.wrong_speed * float(rng.uniform(-1.0, 1.0)) for c in setting.conditions}
+    if rng.random() < 0.5:  # a tachometer that is off, rather than readings
+        wrong = dict.fromkeys(wrong, next(iter(wrong.values())))
+    speeds = tuple(wrong[c] * c.speed for c in setting.conditions)
+    return _DrawnRig(replace(setting, rig=known), plain, speeds, _warmer(known, bench.warmer))
+
+
+def _with_pulses(
+    plain: ImpulseResponses, rig: Rig, interference: float, support_stiffness: float
+) -> ImpulseResponses:
+    unmeasured = replace(rig, measured=())
+    modelled = impulse_responses(unmeasured, interference, support_stiffness, plain.rate)
+    return replace(
+        plain,
+        pulse_to_acceleration=modelled.pulse_to_acceleration,
+        pulse_to_pressure=modelled.pulse_to_pressure,
+    )
+
+
+def _warmer(rig: Rig, warmer: float) -> Rig:
+    """Return a rig that is warmer than stated; where the file says what that does, it is as it is.
+
+    `warmer` is in kelvin [K].
+    """
+    if rig.temperature is not None:
+        return rig
+    torque = 1.0 + _TORQUE_PER_K * warmer
+    stiffness = 1.0 + _STIFFNESS_PER_K * warmer
+    return with_offsets(
+        rig,
+        {"elastomer_stiffness": stiffness, "critical_torque": torque, "kinetic_torque": torque},
     )
 
 
 def _draw_cause(rig: Rig, rng: np.random.Generator) -> tuple[Truth, list[ActiveEffect]]:
     kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
     if kind == "parameters":
-        sign = float(rng.choice([-1.0, 1.0]))
-        names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
-        offsets = tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
-        return Truth(kind, offsets=offsets), []
+        return Truth(kind, offsets=draw_offsets(rng)), []
     if kind == "unknown":
         name, strength = str(rng.choice(list(UNKNOWN_EFFECTS))), _strength(rng)
-        middle = rig.fit(0.279e-3)
-        unknown_effect = draw_unknown_effect(
-            name, strength, middle.kinetic_torque, middle.elastomer_stiffness, rng
-        )
-        return Truth(kind, (name,), ("plain",), (strength,)), [unknown_effect.active({})]
+        unknown = unknown_effect(name, strength, rig.fit(0.279e-3), rng)
+        return Truth(kind, (name,), ("plain",), (strength,)), [unknown]
+    # Of what the rig file lists nothing is missing, but of an irregularity there may be more.
+    more = [spec.name for spec in irregular_effects(rig)]
+    listed = {spec.name for spec in rig.effects} - set(more)
+    offered = sorted(set(EFFECTS) - listed - _without_effect(rig))
     count = {"one": 1, "pair": 2, "triple": 3}.get(kind, 0)
-    names = rng.choice(sorted(EFFECTS), count, replace=False).tolist()
+    names = rng.choice(offered, count, replace=False).tolist()
+    if names and more and not set(more) & set(names) and rng.random() < _IRREGULAR:
+        names[0] = str(rng.choice(more))
     strengths = tuple(_strength(rng) for _ in names)
-    effects = [_drawn_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
+    effects = [active_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
     return Truth(kind, tuple(names), tuple(e.form for e in effects), strengths), effects
 
 
-def _drawn_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+def _without_effect(rig: Rig) -> set[str]:
+    """Return effects that are nothing with the friction law of a rig, as other laws are."""
+    nothing = set()
+    if rig.friction.name != "coulomb":
+        nothing.add("partial_slip")  # such a contact creeps anyway
+    if rig.friction.name == "viscous" or all(
+        fit.critical_torque <= fit.kinetic_torque for fit in rig.fits
+    ):
+        nothing |= {"critical_torque_scatter", "static_ageing"}  # nothing breaks
+    return nothing
+
+
+def draw_offsets(rng: np.random.Generator) -> tuple[tuple[str, float], ...]:
+    """Draw one or two parameters that are off, and by what factor [-]."""
+    sign = float(rng.choice([-1.0, 1.0]))
+    names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
+    return tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
+
+
+def unknown_effect(name: str, strength: float, fit: Fit, rng: np.random.Generator) -> ActiveEffect:
+    """Draw an effect of `UNKNOWN_EFFECTS`, of a strength from 0 to 1 [-], on a rig's fit."""
+    drawn = draw_unknown_effect(name, strength, fit.kinetic_torque, fit.elastomer_stiffness, rng)
+    return drawn.active({})
+
+
+def active_effect(name: str, strength: float, rng: np.random.Generator) -> ActiveEffect:
+    """Draw an effect of the contract, of a strength from 0 to 1 [-], in any form."""
     spec = drawn_effect(name, strength, rng)
     if rng.random() < _VARIANTS:
         return draw_variant(name, strength, rng).active({})
@@ -143,52 +251,84 @@ def _drawn_effect(name: str, strength: float, rng: np.random.Generator) -> Activ
 
 
 def _record(
-    setting: Setting,
-    condition: KnownCondition,
-    effects: list[ActiveEffect],
-    offsets: Mapping[str, float],
-    plain: ImpulseResponses,
+    drawn: _DrawnRig,
+    place: int,
+    effects: Sequence[ActiveEffect],
+    truth: Truth,
     chain_seed: int,
-    noise: Mapping[str, float],
+    acting: Sequence[set[str]],
     rng: np.random.Generator,
 ) -> Recording:
-    scatter, chance = Scatter(), np.random.default_rng(int(rng.integers(2**31)))
-    signals = run_signals(
-        with_offsets(setting.rig, offsets), condition, effects, plain, setting.seconds, chance,
-        chain_seed=chain_seed,
-    )  # fmt: skip
-    decimation = DIAGNOSIS.decimation(setting.rate)
-    samples = [
-        _sampled(
-            signals[name], decimation, noise[name], 0.0 if name == "angle" else scatter.gain, chance
-        )
-        for name in CHANNELS
-    ]
-    return Recording(
-        np.stack(samples), setting.rate, tuple(Channel(name) for name in CHANNELS), condition
-    )
+    """Run and record a condition, and note in what channels each effect acts."""
+    chance = np.random.default_rng(int(rng.integers(2**31)))
+    setting, bench = drawn.setting, drawn.setting.bench
+    stated = setting.conditions[place]
+    true = replace(stated, speed=drawn.speeds[place], temperature=23.0 + bench.warmer)
+    fine = LEARNING.rate(bench.rate)
+    listed = activated(setting.rig.effects, EFFECTS)
+    rig = with_offsets(drawn.warmer, dict(truth.offsets))
+    once, at = perturb_run(rig, true, Scatter(), chance, support=True)
+    plan = plan_repeat(once, at, (*listed, *effects), rate=fine, seconds=bench.seconds)
+    if bench.start:
+        shaft, before = draw_start(bench.start, at.speed, bench.seconds, LEARNING.settling, chance)
+        plan = replace(plan, shaft=shaft, n_settling=round(before * fine))
+    motion = repeat_motion(plan, chance)
+    paths, stream = drawn.plain[stated.support_stiffness], np.random.default_rng(chain_seed)
+    for channels, effect in zip(acting, effects, strict=True):
+        changed = changed_chain(paths, [effect], stream)
+        channels |= _heard_in(effect, paths, changed)
+        paths = changed
+    sound = radiate_motion(motion, paths, plan.effects)
+    signals = sensor_signals(motion, sound, plan.n_settling)
+    signals = apply_sensor_effects(signals, listed, fine, chance)
+    for channels, effect in zip(acting, effects, strict=True):
+        read = apply_sensor_effects(signals, [effect], fine, chance)
+        channels |= {k for k, x in read.items() if not np.array_equal(x, signals[k])}
+        signals = read
+    kinds = ("torque", "angle") if bench.responses == "none" else CHANNELS
+    decimation = LEARNING.decimation(bench.rate)
+    samples = [_sampled(signals[k], decimation, k, setting.sensors, chance) for k in kinds]
+    return Recording(np.stack(samples), bench.rate, tuple(map(Channel, kinds)), stated)
+
+
+def _heard_in(effect: ActiveEffect, before: ImpulseResponses, after: ImpulseResponses) -> set[str]:
+    """Return the channels in which an effect on motion, force or chain can be seen."""
+    acts = effect.effect
+    if acts.contact is not None or acts.drive is not None:
+        return set(CHANNELS)
+    if acts.force is not None:
+        return {"acceleration", "pressure"}
+    return {
+        channel
+        for channel in ("acceleration", "pressure")
+        for path in (f"torque_to_{channel}", f"pulse_to_{channel}")
+        if not np.array_equal(getattr(before, path), getattr(after, path))
+    }
 
 
 def _sampled(
     signal: NDArray[np.float64],
     decimation: int,
-    noise: float,
-    gain: float,
+    kind: str,
+    sensors: Sensors,
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
-    """Decimate, and add white noise, a coloured one and a drift."""
+    """Decimate, add white noise, a coloured one and a drift, and convert."""
     x = decimate(signal, decimation)
+    sensor = sensors.of(kind)
     colour, ramp = _unsteady(x.size)
     slow = irfft(rfft(rng.standard_normal(x.size)) / colour, x.size, overwrite_x=True)
     drift = rng.standard_normal()
-    slow *= rng.uniform(0.0, 3.0)
-    slow += (drift * rng.uniform(0.0, 3.0)) * ramp
-    loud = noise * float(np.exp(0.1 * rng.standard_normal()))
-    sensitivity = 1.0 + gain * rng.standard_normal()
-    slow += rng.standard_normal(x.size)
-    slow *= loud
-    slow += sensitivity * x
-    return np.asarray(slow)
+    slow *= rng.uniform(0.0, _SLOW)
+    slow += (drift * rng.uniform(0.0, _SLOW)) * ramp
+    white = (sensor.noise or 0.0) * float(np.exp(0.1 * rng.standard_normal()))
+    # Amplifiers that hiss more do not drift more.
+    slow *= min(white, NOISE_DRAWN[1] * Acquisition().noise[kind])
+    gain = 0.0 if kind == "angle" else Scatter().gain
+    slow += (1.0 + gain * rng.standard_normal()) * x
+    slow += white * rng.standard_normal(x.size)
+    through = Sensors({kind: replace(sensor, noise=0.0)})
+    return digitise(slow, kind, Acquisition(sensors=through), rng)
 
 
 @lru_cache(maxsize=4)

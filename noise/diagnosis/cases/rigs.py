@@ -6,14 +6,23 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from models.condition import FIXED, KnownCondition
-from models.rig import Fit, LawSpec, Rig
+from models.rig import Fit, LawSpec
 from models.rig_files.rig_file import load_material_rig
+from models.sensors import Sensors
+from noise.diagnosis.cases.benches import Bench, draw_bench
+from noise.diagnosis.cases.laws import MATERIALS, draw_law, scaled_law
+from sim.constant_version import constant_version
+from sim.motion import simulate_motion
+from sim.shaft import ConstantSpeed
+from sim.timing import DIAGNOSIS, REGIME_RATE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
+
+    import numpy as np
+
+    from models.rig import Rig
 
 __all__ = ["OFFSETS", "Setting", "draw_setting", "with_offsets"]
 
@@ -28,16 +37,31 @@ _FITS = {0.178e-3: (430.0, 5.35, 4.0), 0.279e-3: (665.0, 10.7, 8.0), 0.381e-3: (
 _CREEPING = {0.178e-3: 3.0, 0.279e-3: 4.5, 0.381e-3: 8.0}
 """Speed up to which each fit sticks and slips [rad/s]; most recordings lie below it."""
 
+_ELSEWHERE = 12.0
+"""That of the fits of other materials."""
+
 _DAMPING = {2214.0: 0.105, 3745.0: 0.085, FIXED: 0.085}
 """Of each support [Nm s/rad]."""
 
-_RATES = (25_600, 30_000, 32_000, 44_100, 48_000, 51_200)
-_LENGTHS = (0.4, 0.5, 0.6, 0.8, 1.0)
 _DESIGN_SPREAD = 0.08
 """Relative standard deviation of a rig's numbers from those of the thesis."""
 
+_STEEPER = (1.0, 2.2)
+"""By what the drop of torque is larger where the contact is elastic, which takes a part of it."""
+
+_STATED_SCATTER = 0.3
+"""Share of the rigs with a law of their own that state a scatter of the critical torque."""
+
 _FASTEST = 10.0
 _SLOWEST = 0.6
+
+_SIMULATED = {True: 6.5, False: 4.2}
+"""Seconds that the recordings of a case may last together, settling included, before conditions are
+made fewer: where the law is the constant one, and where it is not."""
+
+_TRIES, _LOOKED_AT, _A_WHILE, _LEAST_SWING = 4, 2, 0.2, 0.01
+"""Draws of a law until a rig vibrates, conditions at which that is seen, for how long [s], and the
+torque's standard deviation over its mean [-]: nobody brings many rigs that are silent."""
 
 
 @dataclass(frozen=True)
@@ -49,51 +73,43 @@ class Setting:
     rig : Rig
         As its file has it.
     conditions : tuple of KnownCondition
-        One a recording; two are there twice.
-    rate, seconds : float
-        [Hz], [s]
+        What is stated of the recordings, one each.
+    bench : Bench
+    sensors : Sensors
+        Through which it is recorded, whether the file says so or not.
     """
 
     rig: Rig
     conditions: tuple[KnownCondition, ...]
-    rate: float
-    seconds: float
+    bench: Bench
+    sensors: Sensors
 
 
 def draw_setting(rng: np.random.Generator) -> Setting:
-    """Draw a rig about the thesis's, and four to nine recordings.
+    """Draw a bench, a rig, and two to nine recordings.
 
     Examples
     --------
+    >>> import numpy as np
     >>> setting = draw_setting(np.random.default_rng(0))
-    >>> 4 <= len(setting.conditions) <= 9
+    >>> 2 <= len(setting.conditions) <= 9
     True
     """
-    wide = np.exp(_DESIGN_SPREAD * rng.standard_normal(3 * len(_FITS) + len(_DAMPING)))
-    damping = {support: c * float(wide[9 + i]) for i, (support, c) in enumerate(_DAMPING.items())}
-    fits = []
-    for i, (interference, (stiffness, critical, kinetic)) in enumerate(_FITS.items()):
-        torque = float(wide[3 + i])
-        fits.append(
-            Fit(
-                interference,
-                stiffness * float(wide[i]),
-                critical * torque,
-                kinetic * torque,
-                damping,
-            )
-        )
-    shipped = load_material_rig("fluorocarbon-thesis")
-    rig = replace(
-        shipped,
-        elastomer_inertia=float(wide[6]) / 65000.0,
-        clamp_inertia=float(wide[7]) / 1200.0,
-        fits=tuple(fits),
-        friction=LawSpec("coulomb", {}),
-        elastomer_damping_share=0.5,
-        effects=(),
-    )
-    return Setting(rig, _conditions(rng), float(rng.choice(_RATES)), float(rng.choice(_LENGTHS)))
+    bench = draw_bench(rng)
+    rig = _rig(bench, rng)
+    conditions = _conditions(rig, bench, rng)
+    if bench.law and bench.law not in MATERIALS:
+        for _ in range(_TRIES):
+            if _vibrates(rig, conditions[:_LOOKED_AT]):
+                break
+            rig = replace(rig, friction=_law(draw_law(bench.law, rng), bench))
+    largest = {
+        "torque": 2.0 * max(fit.critical_torque for fit in rig.fits),
+        "angle": 1.3 * bench.seconds * max(c.speed for c in conditions),
+    }
+    sensors = bench.sensors(largest)
+    stated = sensors if bench.stated else Sensors(noise_from_recordings=True)
+    return Setting(replace(rig, sensors=stated), conditions, bench, sensors)
 
 
 def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
@@ -126,23 +142,105 @@ def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
     )
 
 
-def _conditions(rng: np.random.Generator) -> tuple[KnownCondition, ...]:
-    different = int(rng.integers(2, 8))
-    supports = rng.choice(list(_DAMPING), rng.integers(1, 3), replace=False).tolist()
-    fits = rng.choice(list(_FITS), rng.integers(1, 4), replace=False).tolist()
+def _rig(bench: Bench, rng: np.random.Generator) -> Rig:
+    """Draw a rig about the thesis's, or about a material's, as large as its bench says."""
+    thesis = load_material_rig("fluorocarbon-thesis")
+    if bench.law in MATERIALS:
+        plain = load_material_rig(bench.law)
+        if rng.random() < 0.4:
+            plain = constant_version(plain)
+    else:
+        steeper = float(rng.uniform(*_STEEPER)) if bench.law else 1.0
+        fits = tuple(
+            Fit(interference, stiffness, kinetic + steeper * (critical - kinetic), kinetic,
+                _DAMPING)
+            for interference, (stiffness, critical, kinetic) in _FITS.items()
+        )  # fmt: skip
+        law = draw_law(bench.law, rng) if bench.law else LawSpec("coulomb", {})
+        plain = replace(thesis, fits=fits, friction=law, elastomer_damping_share=0.5, effects=())
+        if bench.law and rng.random() < _STATED_SCATTER:
+            scatter = float(rng.uniform(0.1, 0.4))
+            plain = replace(plain, effects=(
+                LawSpec("critical_torque_scatter", {"form": "uniform", "scatter": scatter}),
+            ))  # fmt: skip
+    if bench.law:
+        plain = replace(plain, friction=_law(plain.friction, bench))
+    known = {spec.name for spec in plain.effects}
+    return replace(
+        plain,
+        elastomer_inertia=_about(bench.sizes["elastomer_inertia"] / 65000.0, rng),
+        clamp_inertia=_about(bench.sizes["clamp_inertia"] / 1200.0, rng),
+        fits=tuple(_sized(fit, bench, rng) for fit in plain.fits),
+        effects=(*plain.effects, *(spec for spec in bench.listed if spec.name not in known)),
+    )
+
+
+def _law(law: LawSpec, bench: Bench) -> LawSpec:
+    return scaled_law(law, angle=bench.angle, time=bench.time, torque=bench.sizes["torque"])
+
+
+def _vibrates(rig: Rig, conditions: Sequence[KnownCondition]) -> bool:
+    """Whether a rig does anything but slide evenly at one of its conditions."""
+    for c in conditions:
+        motion = simulate_motion(
+            rig, ConstantSpeed(c.speed), interference=c.interference,
+            support_stiffness=c.support_stiffness, seconds=_A_WHILE, rate=REGIME_RATE, effects=(),
+            tolerance=DIAGNOSIS.tolerance,
+        )  # fmt: skip
+        late = motion.torque[motion.torque.size // 2 :]
+        if late.std() > _LEAST_SWING * abs(late.mean()):
+            return True
+    return False
+
+
+def _sized(fit: Fit, bench: Bench, rng: np.random.Generator) -> Fit:
+    """Return a fit of a rig of another size, about which its numbers scatter."""
+    size = bench.sizes
+    inertia = math.sqrt(size["elastomer_inertia"] * size["clamp_inertia"])
+    damping = math.sqrt(size["elastomer_stiffness"] * inertia)
+    torque = _about(size["torque"], rng)
+    return replace(
+        fit,
+        elastomer_stiffness=_about(fit.elastomer_stiffness * size["elastomer_stiffness"], rng),
+        critical_torque=fit.critical_torque * torque,
+        kinetic_torque=fit.kinetic_torque * torque,
+        damping={
+            _support(support, bench): _about(c * damping, rng) for support, c in fit.damping.items()
+        },
+    )
+
+
+def _about(value: float, rng: np.random.Generator) -> float:
+    return value * math.exp(_DESIGN_SPREAD * float(rng.standard_normal()))
+
+
+def _support(support: float, bench: Bench) -> float:
+    """Return the stiffness of a support on a bench of another size; a bolted clamp stays so."""
+    return float(round(support * bench.sizes["support"])) if support != FIXED else FIXED
+
+
+def _conditions(rig: Rig, bench: Bench, rng: np.random.Generator) -> tuple[KnownCondition, ...]:
+    again = 2 if bench.repeats else 0
+    most = int(_SIMULATED[not bench.law] / (bench.seconds + DIAGNOSIS.settling)) - again
+    different = min(int(rng.integers(2, 8)), max(most, 2))
+    known = sorted(rig.fits[0].damping)
+    supports = rng.choice(known, rng.integers(1, 3), replace=False).tolist()
+    interferences = [fit.interference for fit in rig.fits]
+    count = min(int(rng.integers(1, 4)), len(interferences))
+    fits = rng.choice(interferences, count, replace=False).tolist()
     found: list[KnownCondition] = []
     while len(found) < different:
         fit = fits[int(rng.integers(len(fits)))]
-        fastest = _CREEPING[fit] if rng.random() < 0.9 else _FASTEST
-        speed = math.exp(rng.uniform(math.log(_SLOWEST), math.log(fastest)))
+        creeping = _CREEPING.get(fit, _ELSEWHERE)
+        fastest = creeping if rng.random() < 0.9 else max(_FASTEST, creeping)
+        speed = bench.pace * math.exp(rng.uniform(math.log(_SLOWEST), math.log(fastest)))
         condition = KnownCondition(
-            speed=round(speed, 1),
+            speed=float(f"{speed:.2g}"),
             interference=fit,
             support_stiffness=supports[int(rng.integers(len(supports)))],
-            material="fluorocarbon",
+            material=rig.material,
             temperature=23.0,
         )
         if condition not in found:
             found.append(condition)
-    again = [found[i] for i in rng.choice(different, 2, replace=False)]
-    return tuple(found + again)
+    return tuple(found + [found[i] for i in rng.choice(different, again, replace=False)])

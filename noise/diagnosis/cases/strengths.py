@@ -46,7 +46,7 @@ def drawn_effect(name: str, strength: float, rng: np.random.Generator) -> LawSpe
     --------
     >>> import numpy as np
     >>> drawn_effect("critical_torque_scatter", 0.5, np.random.default_rng(0)).parameters["scatter"]
-    0.25
+    0.4
     """
     values: dict[str, float | str] = {"form": str(rng.choice(EFFECTS[name].forms))}
     # A mount is mostly that of the accelerometer; this is drawn before its resonance.
@@ -98,71 +98,71 @@ _ON_CHANNELS = ("channel_delay", "clipping", "gain_error", "mount_resonance")
 
 _PARAMETERS: dict[str, dict[str, Draw]] = {
     "amplitude_softening": {
-        "share": _times(0.6), "twist": _log(4e-4, 6e-3), "averaging_time": _log(0.02, 0.2),
+        "share": _times(0.78), "twist": _log(2e-4, 8e-3), "averaging_time": _log(0.01, 0.5),
     },
     "background_noise": {
-        "amount": _STRENGTH, "pressure_level": _level(0.3), "angle": _ZERO,
-        "acceleration": _even(0.2, 1.0, 8.0), "torque": _even(0.2, 1.0, 0.15),
+        "amount": _STRENGTH, "pressure_level": _level(1.0), "angle": _ZERO,
+        "acceleration": _log(2.5, 25.0), "torque": _log(0.04, 0.4),
     },
     "beam_modes": {
-        "amount": _STRENGTH, "frequency": _log(350.0, 6000.0), "constant": _log(8.0, 40.0),
-        "damping_ratio": _log(0.004, 0.04), "anchor_mass": _log(0.005, 0.08),
+        "amount": _STRENGTH, "frequency": _log(200.0, 9000.0), "constant": _log(8.0, 100.0),
+        "damping_ratio": _log(0.003, 0.06), "anchor_mass": _log(0.005, 0.15),
     },
     "channel_delay": {
-        "delay": lambda strength, rng: strength * log_uniform(rng, 5e-4, 3e-3),
+        "delay": lambda strength, rng: strength * log_uniform(rng, 5e-4, 1.5e-2),
         "bandwidth": _log(3.0, 80.0), "angle": _ZERO,
     },
-    "clipping": {"amount": _times(0.75)},
-    "critical_torque_scatter": {"scatter": _times(0.5), "correlation": _even(0.2, 0.9)},
+    "clipping": {"amount": _times(0.9)},
+    "critical_torque_scatter": {"scatter": _times(0.8), "correlation": _even(0.2, 0.95)},
     "frictional_heating": {
-        "softening": _times(0.02), "resistance": _log(0.3, 2.0), "area": _log(3e-4, 1e-3),
+        "softening": _times(0.04), "resistance": _log(0.3, 4.0), "area": _log(2e-4, 1e-3),
         "time_constant": _log(0.03, 1.0), "floor": _even(0.3, 0.7),
     },
     "gain_error": {
-        "error": lambda strength, rng: float(rng.choice([-0.5, 0.8])) * strength,
-        "corner": _log(150.0, 3000.0), "angle": _ZERO,
+        "error": lambda strength, rng: float(rng.choice([-0.85, 2.0])) * strength,
+        "corner": _log(100.0, 5000.0), "angle": _ZERO,
     },
     "mains_hum": {
-        "amount": _STRENGTH, "pressure_level": _level(0.25), "angle": _ZERO,
+        "amount": _STRENGTH, "pressure_level": _level(0.8), "angle": _ZERO,
         "frequency": lambda _strength, rng: (
             float(rng.choice([50.0, 60.0])) * (1.0 + 2e-3 * float(rng.standard_normal()))
         ),
-        "acceleration": _even(0.2, 1.0, 6.0), "torque": _even(0.2, 1.0, 0.3),
+        "acceleration": _log(1.8, 18.0), "torque": _log(0.08, 0.8),
     },
     "mount_resonance": {
-        "amount": _STRENGTH, "frequency": _log(900.0, 9000.0), "damping_ratio": _log(0.015, 0.15),
+        "amount": _STRENGTH, "frequency": _log(400.0, 12e3), "damping_ratio": _log(0.01, 0.3),
     },
-    "partial_slip": {"share": _times(0.92), "exponent": _log(1.2, 12.0)},
+    "partial_slip": {"share": _times(0.95), "exponent": _log(1.0, 15.0)},
     "plate_modes": {
-        "amount": _times(2.0), "frequency": _log(150.0, 3000.0),
-        "damping_ratio": _log(0.006, 0.15), "spacing": _log(150.0, 1500.0),
+        "amount": _times(8.0), "frequency": _log(100.0, 6000.0),
+        "damping_ratio": _log(0.004, 0.2), "spacing": _log(150.0, 3000.0),
     },
     "room_reflections": {
-        "amount": _times(4.0), "distance": _even(0.3, 1.0), "length": _even(3.0, 12.0),
-        "width": _even(2.5, 9.0), "height": _even(2.3, 5.0), "reverberation_time": _log(0.1, 1.2),
+        "amount": _times(8.0), "distance": _even(0.2, 1.2), "length": _even(3.0, 12.0),
+        "width": _even(2.5, 9.0), "height": _even(2.3, 5.0), "reverberation_time": _log(0.1, 1.5),
     },
     "shaft_compliance": {
-        "compliance": _times(8e-4), "inertia": _log(3e-5, 2e-4),
-        "damping_ratio": _log(0.01, 0.2), "reference_torque": _log(5.0, 30.0),
+        "compliance": _times(2.5e-3), "inertia": _log(3e-5, 1e-3),
+        "damping_ratio": _log(0.005, 0.5), "reference_torque": _log(5.0, 30.0),
     },
     "slip_pulse": {
-        "amplitude": _times(250.0),
-        "threshold": lambda _strength, rng: float(rng.choice([0.0, 0.0, 1.0, 3.0])),
-        "duration": _log(2e-5, 2.5e-4),
+        "amplitude": _times(800.0),
+        "threshold": lambda _strength, rng: float(rng.choice([0.0, 0.0, 0.3, 1.0])),
+        "duration": _log(1.5e-5, 6e-4),
     },
     "speed_fluctuation": {
-        "depth": _times(0.25), "frequency": _log(3.0, 45.0), "bandwidth": _log(3.0, 60.0),
+        "depth": _times(0.3), "frequency": _log(2.0, 100.0), "bandwidth": _log(2.0, 80.0),
     },
-    "static_ageing": {"share": _times(0.97), "ageing_time": _log(5e-4, 2e-2)},
+    "static_ageing": {"share": _times(0.97), "ageing_time": _log(1e-3, 0.1)},
     "transfer_film": {
-        "coverage": _STRENGTH, "torque_ratio": _even(1.4, 3.0), "drop_left": _even(0.1, 0.5),
-        "roughness": _even(0.5, 1.0, 0.05), "growth_angle": _log(0.2, 3.0), "formed": _ZERO,
+        "coverage": _STRENGTH, "torque_ratio": _log(1.3, 4.0), "drop_left": _even(0.05, 0.7),
+        "roughness": _log(0.005, 0.1), "growth_angle": _log(0.05, 3.0), "formed": _ZERO,
     },
-    "velocity_strengthening": {"gain": _times(0.5), "speed": _log(5.0, 20.0)},
-    "velocity_weakening": {"share": _times(0.5), "speed": _log(2.0, 20.0)},
+    "velocity_strengthening": {"gain": _times(1.5), "speed": _log(8.0, 40.0)},
+    "velocity_weakening": {"share": _times(0.85), "speed": _log(0.8, 50.0)},
     "viscoelastic_stiffness": {
-        "stiffening": _times(0.9), "relaxation_time": _log(5e-5, 1e-2), "spread": _even(2.0, 8.0),
-        "exponent": _even(0.1, 0.4),
+        "stiffening": _times(3.0), "relaxation_time": _log(3e-5, 0.1), "spread": _even(2.0, 8.0),
+        "exponent": _even(0.1, 0.6),
     },
 }  # fmt: skip
 """Draws of each effect's parameters, in the order in which they are made."""

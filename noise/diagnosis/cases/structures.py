@@ -18,15 +18,54 @@ if TYPE_CHECKING:
 
     from sim.bushing import LumpedBushing
 
-__all__ = ["Structure", "draw_structure"]
+__all__ = ["Structure", "Trade", "draw_structure", "draw_trade"]
 
 _LINES = np.arange(10.0, 10_001.0, 2.5)
 """Of the hammer test [Hz]."""
 
 _IMPACTS = 32
+"""Of a good hammer test."""
+
+_FEW_IMPACTS = (3, 9)
+_POOR_COHERENCE = (0.85, 0.97)
+_WRONG_GAIN = 0.06
+"""Of a poor one: impacts, coherence, and relative error of each channel's gain at most [-]."""
+
 _SOUND_SPEED = 343.0
 _LONGEST = 0.25
 """Impulse responses are followed so long [s]."""
+
+
+@dataclass(frozen=True)
+class Trade:
+    """What stands behind a clamp, by trade.
+
+    Parameters
+    ----------
+    share : float
+        How often it is met, besides that of the thesis [-].
+    modes : tuple of int
+        Fewest of what sounds, and one more than the most.
+    damping_ratios : tuple of float
+        Between which theirs lie [-].
+    loud : float
+        Their modal constants over those of the thesis's plate [-].
+    """
+
+    share: float
+    modes: tuple[int, int]
+    damping_ratios: tuple[float, float]
+    loud: float
+
+
+THESIS = Trade(0.5, (12, 40), (0.008, 0.035), 1.0)
+
+TRADES = (
+    THESIS,
+    Trade(0.2, (3, 12), (0.004, 0.03), 0.6),  # a heavy plate, or a block
+    Trade(0.2, (40, 80), (0.003, 0.02), 1.5),  # sheet metal
+    Trade(0.1, (2, 5), (0.02, 0.1), 0.15),  # hardly anything but the clamp
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,13 +127,15 @@ class Structure:
             pressure = pressure + self.clamp_to_pressure * late * turning
         return acceleration, pressure
 
-    def measured(self, support_stiffness: float, rng: np.random.Generator) -> MeasuredResponse:
+    def measured(
+        self, support_stiffness: float, rng: np.random.Generator, *, poor: bool = False
+    ) -> MeasuredResponse:
         """Return the responses to the torque as a hammer test of a support [Nm/rad] finds them."""
-        acceleration, pressure = (_as_measured(h, rng) for h in self.from_torque(_LINES))
+        acceleration, pressure = (_as_measured(h, rng, poor) for h in self.from_torque(_LINES))
         return MeasuredResponse(
             support_stiffness,
-            TransferFunction(_LINES, acceleration, None, "N m", "m/s^2", "torque_to_acceleration"),
-            TransferFunction(_LINES, pressure, None, "N m", "Pa", "torque_to_pressure"),
+            TransferFunction(_LINES, *acceleration, "N m", "m/s^2", "torque_to_acceleration"),
+            TransferFunction(_LINES, *pressure, "N m", "Pa", "torque_to_pressure"),
         )
 
     def response(self, rate: float) -> ImpulseResponses:
@@ -116,11 +157,19 @@ class Structure:
         )  # fmt: skip
 
 
-def draw_structure(bushing: LumpedBushing, rng: np.random.Generator) -> Structure:
+def draw_trade(rng: np.random.Generator) -> Trade:
+    """Draw what stands behind a clamp."""
+    share = np.array([trade.share for trade in TRADES])
+    return TRADES[int(rng.choice(len(TRADES), p=share / share.sum()))]
+
+
+def draw_structure(
+    bushing: LumpedBushing, rng: np.random.Generator, trade: Trade = THESIS
+) -> Structure:
     """Draw the structure of a support; stiffer beams ring higher, a bolted clamp hardly moves."""
     fixed = bushing.clamp_is_fixed
     stiffer = 1.0 if fixed else (bushing.support_stiffness / 2214.0) ** 0.67
-    n_beams, n_plate = int(rng.integers(2, 7)), int(rng.integers(12, 40))
+    n_beams, n_plate = int(rng.integers(2, 7)), int(rng.integers(*trade.modes))
     beams = np.array(
         [
             stiffer * _log_uniform(rng, 500.0, 7500.0, n_beams),
@@ -136,10 +185,10 @@ def draw_structure(bushing: LumpedBushing, rng: np.random.Generator) -> Structur
             rng.uniform(0.4, 2.5, n),
         ]
         beams = np.concatenate([beams, np.array(low)], axis=1)
-    loud = 0.012 * float(_log_uniform(rng, 0.4, 2.5, 1)[0])
+    loud = 0.012 * trade.loud * float(_log_uniform(rng, 0.4, 2.5, 1)[0])
     plate = [
         _log_uniform(rng, 110.0, 12e3, n_plate),
-        rng.uniform(0.008, 0.035, n_plate),
+        rng.uniform(*trade.damping_ratios, n_plate),
         loud * rng.standard_normal(n_plate),
     ]
     anchors = [
@@ -167,16 +216,21 @@ def _modes(frequency: NDArray[np.float64], modes: NDArray[np.float64]) -> NDArra
 
 
 def _as_measured(
-    response: NDArray[np.complex128], rng: np.random.Generator
-) -> NDArray[np.complex128]:
+    response: NDArray[np.complex128], rng: np.random.Generator, poor: bool
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
     """Add the scatter of an average over impacts, whose coherence falls with what is passed."""
     size = np.abs(response)
     floor = 0.006 * float(np.median(size)) * (1.0 + (30.0 / _LINES) ** 2)
     noise = (floor / size) ** 2 + 1e-3 * (1.0 + (_LINES / 6e3) ** 4)
+    impacts, gain = _IMPACTS, 1.0
+    if poor:
+        noise += 1.0 / float(rng.uniform(*_POOR_COHERENCE)) - 1.0
+        impacts = int(rng.integers(*_FEW_IMPACTS))
+        gain += float(rng.uniform(-_WRONG_GAIN, _WRONG_GAIN))
     coherence = 1.0 / (1.0 + np.minimum(noise, 9.0))
-    spread = size * np.sqrt((1.0 - coherence) / (2.0 * _IMPACTS * coherence))
+    spread = size * np.sqrt((1.0 - coherence) / (2.0 * impacts * coherence))
     error = rng.standard_normal((2, _LINES.size)) * spread / math.sqrt(2.0)
-    return np.asarray(response + error[0] + 1j * error[1])
+    return np.asarray(gain * (response + error[0] + 1j * error[1])), coherence
 
 
 def _log_uniform(rng: np.random.Generator, low: float, high: float, n: int) -> NDArray[np.float64]:

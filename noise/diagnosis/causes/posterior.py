@@ -78,9 +78,13 @@ class Posterior:
 
     def probabilities(self, table: CaseTable) -> dict[str, float]:
         """Probability of each of `CAUSES` being at work."""
-        row = evidence(table, self.names, self.scale).astype(np.float64)
-        p = calibrated(self.trees.scores(row[None, self.columns]), self.weights)[0]
+        p = calibrated(self.log_odds(table)[None], self.weights)[0]
         return dict(zip(CAUSES, p.tolist(), strict=True))
+
+    def log_odds(self, table: CaseTable) -> NDArray[np.float64]:
+        """Return what the trees say of each of `CAUSES`, not calibrated, shape (n_causes,) [-]."""
+        row = evidence(table, self.names, self.scale).astype(np.float64)
+        return np.asarray(self.trees.scores(row[None, self.columns])[0])
 
     def save(self, path: str | Path) -> None:
         """Write it into an NPZ file, whole or not at all.

@@ -1,8 +1,9 @@
 """Sensors that the shipped models of causes have not seen, and what that costs.
 
-The models learned from recordings through good sensors, a little noisier or quieter than those of
-`sim.acquisition`. Against repeats that are simulated through a rig's own sensors a gap stays what
-it is, whatever the sensors; the probabilities of causes do not.
+The models learned from recordings through sensors up to `NOISIEST` times as noisy as the good ones
+of `sim.acquisition`, and through converters as coarse as the thesis's. Against repeats that are
+simulated through a rig's own sensors a gap stays what it is, whatever the sensors; the
+probabilities of causes do not.
 """
 
 from __future__ import annotations
@@ -11,9 +12,8 @@ import math
 from typing import TYPE_CHECKING
 
 from models.recording import CHANNEL_UNITS
-from noise.diagnosis.cases.draw import NOISE_DRAWN
 from noise.diagnosis.evidence.channel_summary import USABLE
-from sim.acquisition import Acquisition
+from sim.acquisition import THESIS_CONVERTER, Acquisition
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.sensors import Sensors
 
-__all__ = ["unlearned_sensors"]
+__all__ = ["NOISIEST", "unlearned_sensors"]
+
+NOISIEST = 6.0
+"""Noise of the sensors that were learned with, over that of good ones at most [-]."""
 
 
 def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tuple[str, ...]:
@@ -53,10 +56,9 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
     full: list[str] = []
     filtered: dict[float, list[str]] = {}
     for kind in dict.fromkeys(c.kind for r in recordings for c in r.channels if c.kind in usual):
-        sensor, most = sensors.of(kind), NOISE_DRAWN[1] * usual[kind]
-        level = math.hypot(
-            usual[kind] if sensor.noise is None else sensor.noise, sensor.step / math.sqrt(12.0)
-        )
+        sensor = sensors.of(kind)
+        level = _level(usual[kind] if sensor.noise is None else sensor.noise, sensor.step)
+        most = _level(NOISIEST * usual[kind], THESIS_CONVERTER.of(kind).step)
         rows = [(r, row) for r in recordings if (row := r.first(kind)) is not None]
         if level > most:
             rough.append(f"{kind} {level:.2g} {CHANNEL_UNITS[kind]} (at most {most:.2g})")
@@ -76,3 +78,8 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
         "probabilities are less sure here, and none is named within what repeats through the same "
         "sensors differ by",
     )
+
+
+def _level(noise: float, step: float) -> float:
+    """Add noise and rounding, as standard deviations [unit of the channel]."""
+    return math.hypot(noise, step / math.sqrt(12.0))

@@ -13,7 +13,7 @@ from models.compilation import COMPILED, PART
 
 __all__ = [
     "band_power_sums", "describe_distribution", "detrend_and_window", "line_ratios",
-    "power_quantiles", "quantile_in_place",
+    "power_quantiles", "quantile_in_place", "thin_out",
 ]  # fmt: skip
 
 _FAST = {"reassoc", "contract", "nsz"}
@@ -86,6 +86,31 @@ def detrend_and_window(x, window, windowed) -> None:
     slope = moment / max(n * (float(n) * n - 1.0) / 12.0, 1e-300)
     for i in range(n):
         windowed[i] = (x[i] - mean - slope * (i - middle)) * window[i]
+
+
+@njit(fastmath=_FAST, cache=True, **COMPILED)
+def thin_out(x, every, slow) -> None:
+    """Average a signal over triangles that overlap by half.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [any unit]
+    every : int
+        Samples from triangle to triangle.
+    slow : ndarray, shape (n // every - 1,), filled in
+        [unit of the signal]
+    """
+    before = 0.0
+    for i in range(slow.size + 1):
+        rising, falling = 0.0, 0.0
+        for k in range(every):
+            value = x[i * every + k]
+            rising += (k + 0.5) * value
+            falling += (every - k - 0.5) * value
+        if i > 0:
+            slow[i - 1] = (before + falling) / (every * every)
+        before = rising
 
 
 @njit(**PART)

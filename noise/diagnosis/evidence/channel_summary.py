@@ -19,6 +19,7 @@ from noise.diagnosis.evidence.channel_kernel import (
     detrend_and_window,
     line_ratios,
     power_quantiles,
+    thin_out,
 )
 
 if TYPE_CHECKING:
@@ -61,6 +62,9 @@ _QUIET = 0.1
 
 _MAINS = (50, 60)
 """[Hz]"""
+
+_HUM_RATE = 4e3
+"""Sampling rate at which their harmonics are looked for, at least [Hz]."""
 
 _SPEED_LIMIT = 60.0
 """The shaft's speed follows its angle up to so many hertz, half as much again fading."""
@@ -142,11 +146,13 @@ def hum_summary(x: NDArray[np.float64], rate: float) -> Numbers:
     >>> found["hum_50"] > found["hum_60"]
     True
     """
-    n = x.size
-    windowed = np.empty(n)
-    detrend_and_window(x, _hanning(n), windowed)
-    lines, first, last = _hum_lines(rate / n)
     # Harmonics lie in the lowest bins; of the others no power is asked.
+    every = max(1, int(rate / _HUM_RATE))
+    n = x.size // every - 1
+    slow, windowed = np.empty(n), np.empty(n)
+    thin_out(x, every, slow)
+    detrend_and_window(slow, _hanning(n), windowed)
+    lines, first, last = _hum_lines(rate / every / n)
     spectrum = rfft(windowed)[: int(lines.max()) + 13]
     power = spectrum.real**2 + spectrum.imag**2
     best = first + int(np.argmax(power[first : last + 1]))

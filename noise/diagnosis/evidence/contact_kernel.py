@@ -13,7 +13,8 @@ from models.compilation import COMPILED, PART
 from noise.diagnosis.evidence.channel_kernel import quantile_in_place
 
 __all__ = [
-    "describe_slips", "gather_rings", "gather_slipping", "gather_sticking", "mean_cycle",
+    "describe_rows", "describe_slips", "gather_rings", "gather_slipping", "gather_sticking",
+    "mean_cycle",
 ]  # fmt: skip
 
 
@@ -241,3 +242,33 @@ def gather_rings(signals, first, last, rows, sums):
                 rows[j, begin + i] = signal[first[k] + i] - total / m
         n += m
     return n
+
+
+@njit(cache=True, **COMPILED)
+def describe_rows(rows, scratch, found) -> None:
+    """Describe how the values of each row are distributed.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (n_rows, n)
+        [any units]
+    scratch : ndarray, shape (n,)
+        [any unit]
+    found : ndarray, shape (n_rows, 6), filled in
+        Mean, standard deviation, least value, tenth, middle and ninetieth percentile [units of the
+        rows].
+    """
+    n = rows.shape[1]
+    for j in range(rows.shape[0]):
+        total, second, least = 0.0, 0.0, rows[j, 0]
+        for i in range(n):
+            scratch[i] = rows[j, i]
+            total += rows[j, i]
+            least = min(least, rows[j, i])
+        mean = total / n
+        for i in range(n):
+            second += (rows[j, i] - mean) ** 2
+        found[j, 0], found[j, 1], found[j, 2] = mean, (second / n) ** 0.5, least
+        found[j, 3] = quantile_in_place(scratch, n, 0.1)
+        found[j, 4] = quantile_in_place(scratch, n, 0.5)
+        found[j, 5] = quantile_in_place(scratch, n, 0.9)

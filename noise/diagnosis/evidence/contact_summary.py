@@ -20,8 +20,11 @@ import numpy as np
 
 from features.kernels.slip_speeds import in_intervals, slip_intervals
 from noise.diagnosis.evidence.channel_kernel import describe_distribution
-from noise.diagnosis.evidence.channel_summary import quantile
-from noise.diagnosis.evidence.contact_kernel import describe_slips, gather_sticking
+from noise.diagnosis.evidence.contact_kernel import (
+    describe_rows,
+    describe_slips,
+    gather_sticking,
+)
 from noise.diagnosis.evidence.slip_summary import cycle_shape, torque_by_speed
 
 if TYPE_CHECKING:
@@ -198,29 +201,34 @@ def _cycles(
     time = starts / rate
     interval, duration = np.diff(time), (ends - starts) / rate
     stuck = np.maximum(starts[1:] - ends[:-1], 1) / rate
+    whole, between = np.empty((5, 6)), np.empty((2, 6))
+    describe_rows(np.stack([*slips, duration]), np.empty(n_slips), whole)
+    describe_rows(np.stack([interval, stuck]), np.empty(n_slips - 1), between)
+    of_peak, of_trough, of_fastest, of_sliding, of_duration = whole.tolist()
+    of_interval, of_stuck = between.tolist()
     numbers = {
-        "peak": quantile(peak, 0.5),
-        "peak_spread": float(peak.std()),
-        "peak_range": quantile(peak, 0.9) - quantile(peak, 0.1),
-        "peak_least": float(peak.min()),
-        "trough": quantile(trough, 0.5),
-        "trough_spread": float(trough.std()),
-        "fastest": quantile(fastest, 0.5),
-        "fastest_spread": float(fastest.std()),
-        "kinetic": quantile(sliding, 0.5),
-        "kinetic_spread": float(sliding.std()),
-        "interval": math.log(quantile(interval, 0.5)),
-        "interval_spread": float(interval.std() / interval.mean()),
-        "duration": math.log(quantile(duration, 0.5)),
-        "duration_spread": float(duration.std() / duration.mean()),
-        "time_stuck": math.log(quantile(stuck, 0.5)),
+        "peak": of_peak[4],
+        "peak_spread": of_peak[1],
+        "peak_range": of_peak[5] - of_peak[3],
+        "peak_least": of_peak[2],
+        "trough": of_trough[4],
+        "trough_spread": of_trough[1],
+        "fastest": of_fastest[4],
+        "fastest_spread": of_fastest[1],
+        "kinetic": of_sliding[4],
+        "kinetic_spread": of_sliding[1],
+        "interval": math.log(of_interval[4]),
+        "interval_spread": of_interval[1] / of_interval[0],
+        "duration": math.log(of_duration[4]),
+        "duration_spread": of_duration[1] / of_duration[0],
+        "time_stuck": math.log(of_stuck[4]),
         "fastest_drift": _slope(time, fastest) * float(time.std()),
     }
     if n_slips >= 8:
         age, when = np.log(stuck), time[1:] - time[1:].mean()
         a = np.stack([np.ones_like(age), age - age.mean(), when], axis=1)
-        on_age = np.linalg.lstsq(a, peak[1:], rcond=1e-6)[0]
-        of_sliding = np.linalg.lstsq(a, sliding[1:], rcond=1e-6)[0]
+        of_both = np.linalg.lstsq(a, np.stack([peak[1:], sliding[1:]], axis=1), rcond=1e-6)[0]
+        on_age, drift = of_both[:, 0], float(of_both[2, 1])
         spread_in_time = 2.0 * float(when.std())
         numbers |= {
             "peak_memory": _correlation(peak[1:], peak[:-1]),
@@ -228,7 +236,7 @@ def _cycles(
             "peak_by_age": float(on_age[1]) * min(float(age.std()), 1.0),
             "peak_drift": float(on_age[2]) * spread_in_time,
             "peak_left": float(np.std(peak[1:] - a @ on_age)),
-            "kinetic_drift": float(of_sliding[2]) * spread_in_time,
+            "kinetic_drift": drift * spread_in_time,
             "peak_with_kinetic": _correlation(peak, sliding),
         }
     return numbers

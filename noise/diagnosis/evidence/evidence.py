@@ -1,18 +1,24 @@
 """A case as one row of numbers, from which the posterior is computed.
 
-Each number of a recording becomes its difference from the rig file's simulation, in units of the
-scatter that repeats have (`scale`, from cases without a cause). Over the recordings of a case six
-things count: how large the difference is in the middle, how sure it is, how it spreads, where it
-is largest, whether it grows with speed, and how much repeats of one condition differ.
+Each number of a recording becomes its difference from the rig file's simulation, in units of what
+it scatters by on this bench: what simulated repeats differ by (over all conditions of the case,
+since a few of one say little), and what gains and hammer tests of quiet benches add to that
+(`scale`). Over the recordings of a case these things count: how large the difference is in the
+middle, in its own unit and in that, how sure it is, how it spreads, where it is largest, whether it
+grows with speed, and how much repeats of one condition differ; beside them what was measured, and
+what bench it was.
 """
 
 from __future__ import annotations
 
 import itertools
 import warnings
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from noise.diagnosis.evidence.bench_context import CONTEXT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +35,8 @@ __all__ = [
 PARTS = ("middle", "sure", "spread", "largest", "with_speed", "repeats", "as_is")
 """Of each number's differences over the recordings of a case, in the order of the row."""
 
+_COUNTS = ("recordings", "rate", "conditions")
+
 MISSING = -999.0
 """Stands for what a case does not show; a tree splits it off."""
 
@@ -38,6 +46,9 @@ LARGEST = 1e4
 _LEAST_SCALE = 1e-3
 _LEAST_SHARE = 1e-2
 """A number that hardly scatters has at least this share of its size as its scale."""
+
+_OWN = 1.0 / 3.0
+"""How much the scatter at a recording's own condition counts, beside that at all conditions."""
 
 
 def evidence_names(names: Sequence[str]) -> tuple[str, ...]:
@@ -51,14 +62,16 @@ def evidence_names(names: Sequence[str]) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        Part and number, part by part; then how many recordings there are and their rate.
+        Part and number, part by part; how many recordings and conditions there are, and their
+        rate; the bench; and the typical size of each number's difference.
 
     Examples
     --------
     >>> evidence_names(["torque_offset"])[0]
     'middle:torque_offset'
     """
-    return (*(f"{part}:{name}" for part in PARTS for name in names), "recordings", "rate")
+    parts = (f"{part}:{name}" for part in PARTS for name in names)
+    return (*parts, *_COUNTS, *CONTEXT, *(f"typical:{name}" for name in names))
 
 
 def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64], ...]:
@@ -83,44 +96,51 @@ def aligned(table: CaseTable, names: Sequence[str]) -> tuple[NDArray[np.float64]
     >>> aligned(table, ["b", "a"])[0].tolist()
     [[nan, 1.0]]
     """
-    place = {name: i for i, name in enumerate(table.names)}
-    found = [place.get(name, -1) for name in names]
-    known = np.array(found) >= 0
-    columns = np.array(found)[known]
+    columns = _columns(table.names, tuple(names))
+    known = columns >= 0
 
     def chosen(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-        filled = np.full((len(rows), len(found)), np.nan)
-        filled[:, known] = rows[:, columns]
+        filled = np.full((len(rows), columns.size), np.nan)
+        filled[:, known] = rows[:, columns[known]]
         return filled
 
     return chosen(table.measured), chosen(table.nominal), chosen(table.scatter)
 
 
+@lru_cache(maxsize=64)
+def _columns(of_table: tuple[str, ...], names: tuple[str, ...]) -> NDArray[np.int64]:
+    """Return where names stand in a table; -1 where it has none of that name."""
+    place = {name: i for i, name in enumerate(of_table)}
+    return np.array([place.get(name, -1) for name in names], dtype=np.int64)
+
+
 def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> NDArray[np.float64]:
-    """Scatter of each number about its nominal value.
+    """Scatter of each number about its nominal value that simulated repeats do not have.
 
     Parameters
     ----------
     tables : sequence of CaseTable
-        Cases without a cause.
+        Cases without a cause, of quiet benches: what noise does on others, repeats have as well.
     names : sequence of str
 
     Returns
     -------
     ndarray, shape (n_names,)
-        Half of what lies between the 16th and the 84th percentile [unit of the number].
+        Half of what lies between the 16th and the 84th percentile, less what repeats differ by
+        [unit of the number].
     """
-    away, levels = [], []
-    for table in tables:
-        measured, nominal, _ = aligned(table, names)
-        away.append(measured - nominal)
-        levels.append(measured)
+    found = [aligned(table, names) for table in tables]
+    away = np.concatenate([measured - nominal for measured, nominal, _ in found])
+    levels = np.concatenate([measured for measured, _, _ in found])
+    repeats = np.concatenate([_pooled(scatter) for _, _, scatter in found])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that no case has
-        low, high = np.nanpercentile(np.concatenate(away), [16.0, 84.0], axis=0)
-        typical = np.nanmedian(np.abs(np.concatenate(levels)), axis=0)
+        low, high = np.nanpercentile(away, [16.0, 84.0], axis=0)
+        typical = np.nanmedian(np.abs(levels), axis=0)
+        expected = np.nanmedian(repeats, axis=0)
+    beyond = np.maximum((0.5 * (high - low)) ** 2 - np.nan_to_num(expected) ** 2, 0.0)
     least = _LEAST_SHARE * np.nan_to_num(typical, nan=1.0) + _LEAST_SCALE
-    return np.asarray(np.maximum(np.nan_to_num(0.5 * (high - low), nan=1.0), least))
+    return np.asarray(np.maximum(np.nan_to_num(np.sqrt(beyond), nan=1.0), least))
 
 
 def evidence(
@@ -139,27 +159,32 @@ def evidence(
     Returns
     -------
     ndarray of float32, shape (n_columns,)
-        By `evidence_names`; `MISSING` where undefined; differences over scatter [-].
+        By `evidence_names`; `MISSING` where undefined; differences over scatter [-], but
+        ``middle`` and ``as_is`` in the unit of the number.
     """
-    measured, nominal, _ = aligned(table, names)
+    measured, nominal, scatter = aligned(table, names)
     away = measured - nominal
-    z = deviations(table, names, scale)
+    expected = np.sqrt(_pooled(scatter) ** 2 + scale**2)
+    z = away / expected
     speed = np.array([c.speed for c in table.conditions], dtype=np.float64)
     fast, slow = speed >= np.median(speed), speed <= np.median(speed)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # numbers that no recording has
-        size = np.where(np.isfinite(z), np.abs(z), -1.0)
-        largest = np.take_along_axis(z, size.argmax(axis=0)[None], axis=0)[0]
+    size = np.where(np.isfinite(z), np.abs(z), -1.0)
+    largest = np.take_along_axis(z, size.argmax(axis=0)[None], axis=0)[0]
+    groups = _conditions(table)
+    with np.errstate(invalid="ignore", over="ignore"):  # numbers without bounds
         parts = [
-            np.nanmedian(away, axis=0),
+            _middle(away),
             standard_errors(z),
-            np.nanstd(z, axis=0),
+            np.sqrt(_mean(np.square(z - _mean(z)))),
             largest,
-            np.nanmean(z[fast], axis=0) - np.nanmean(z[slow], axis=0),
-            _between_repeats(table, measured) / scale,
-            np.nanmedian(measured, axis=0),
+            _mean(z[fast]) - _mean(z[slow]),
+            _between_repeats(groups, measured / expected),
+            _middle(measured),
         ]
-    row = np.concatenate([*parts, [len(measured), table.rate]])
+        typical = _middle(z)
+    bench = [table.bench.get(name, np.nan) for name in CONTEXT]
+    counts = [len(measured), table.rate, len(groups)]
+    row = np.concatenate([*parts, counts, bench, typical])
     row = np.nan_to_num(row, nan=MISSING, posinf=LARGEST, neginf=-LARGEST)
     return np.asarray(np.clip(row, -LARGEST, LARGEST * 100.0), dtype=np.float32)
 
@@ -167,7 +192,7 @@ def evidence(
 def deviations(
     table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Differences of a case from its nominal numbers, over the scatter of repeats.
+    """Differences of a case from its nominal numbers, over what they scatter by.
 
     Parameters
     ----------
@@ -183,9 +208,7 @@ def deviations(
         In standard deviations [-]; NaN where a number is unknown.
     """
     measured, nominal, scatter = aligned(table, names)
-    return np.asarray(
-        (measured - nominal) / np.sqrt(np.nan_to_num(scatter, nan=0.0) ** 2 + scale**2)
-    )
+    return np.asarray((measured - nominal) / np.sqrt(_pooled(scatter) ** 2 + scale**2))
 
 
 def standard_errors(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -210,16 +233,46 @@ def standard_errors(deviation: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.nansum(deviation, axis=0) / np.sqrt(np.maximum(count, 1)))
 
 
-def _between_repeats(table: CaseTable, measured: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Root mean square difference of recordings of one condition."""
+def _pooled(scatter: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scatter of repeats, drawn towards that over all recordings of a case; 0 where unknown."""
+    square = np.square(scatter)
+    everywhere = np.nan_to_num(_mean(square))
+    own = np.where(np.isnan(square), everywhere, square)
+    return np.asarray(np.sqrt(_OWN * own + (1.0 - _OWN) * everywhere))
+
+
+def _mean(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of each column over what is known; NaN where nothing is."""
+    known = ~np.isnan(rows)
+    count = known.sum(axis=0)
+    total = np.where(known, rows, 0.0).sum(axis=0)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def _middle(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Median of each column over what is known; NaN where nothing is."""
+    ordered = np.sort(rows, axis=0)  # what is unknown comes last
+    count = (~np.isnan(rows)).sum(axis=0)
+    low, high = np.maximum(count - 1, 0) // 2, count // 2
+    high = np.minimum(high, len(rows) - 1)
+    column = np.arange(rows.shape[1])
+    return np.asarray(0.5 * (ordered[low, column] + ordered[high, column]))
+
+
+def _conditions(table: CaseTable) -> list[list[int]]:
+    """Return the recordings of each condition."""
     groups: dict[tuple[float | None, ...], list[int]] = {}
     for i, c in enumerate(table.conditions):
         groups.setdefault((c.speed, c.interference, c.support_stiffness), []).append(i)
-    differences = [
-        measured[i] - measured[j]
-        for group in groups.values()
-        for i, j in itertools.combinations(group, 2)
-    ]
-    if not differences:
-        return np.full(measured.shape[1], np.nan)
-    return np.asarray(np.sqrt(np.nanmean(np.square(differences), axis=0)))
+    return list(groups.values())
+
+
+def _between_repeats(
+    groups: Sequence[Sequence[int]], values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Root mean square difference of recordings of one condition."""
+    pairs = [pair for group in groups for pair in itertools.combinations(group, 2)]
+    if not pairs:
+        return np.full(values.shape[1], np.nan)
+    one, other = np.array(pairs).T
+    return np.asarray(np.sqrt(_mean(np.square(values[one] - values[other]))))

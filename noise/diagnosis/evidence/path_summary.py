@@ -36,8 +36,8 @@ _LEAD, _TAIL = 0.08, 0.01
 """Left out at the ends, where the structure rings from before and nothing follows [s]."""
 
 _LONGEST_DELAY = 2.5e-3
-_FINE = 16
-"""The delay is found to so many parts of a sample."""
+_COARSE, _FINE = 4, 16
+"""The delay is looked for, and found, to so many parts of a sample."""
 
 _REFERENCE_BAND = (80.0, 6000.0)
 """In which gain and delay are those of the whole channel [Hz]."""
@@ -185,11 +185,7 @@ def _transfer(
     gain = float((weight * magnitude).sum()) / total
     phases = np.zeros(n_bins, complex)
     phases[inside] = weight * h / np.maximum(absolute, 1e-30)
-    length = _FINE * size
-    correlation = irfft(phases, length) * (0.5 * length / total)
-    most = int(_LONGEST_DELAY * rate * _FINE)
-    correlation = np.concatenate([correlation[-most:], correlation[: most + 1]])
-    best = int(np.argmax(correlation))
+    delay, match = _strongest(phases, inside, int(_LONGEST_DELAY * rate))
     impulse = np.zeros(n_bins, complex)
     impulse[inside] = h * np.sqrt(weight / (weight.max() + 1e-30)) * taper
     answer = irfft(impulse)
@@ -204,13 +200,39 @@ def _transfer(
         "gain_spread": math.sqrt(float((weight * (magnitude - gain) ** 2).sum()) / total),
         "tilt": float((weight * octaves * magnitude).sum())
         / max(float((weight * octaves**2).sum()), 1e-12),
-        "delay": 1e6 * (best - most) / (_FINE * rate),
-        "phase_match": float(correlation[best]),
+        "delay": 1e6 * delay / rate,
+        "phase_match": match / total,
         "ring_early": between(6e-4, 2e-3),
         "ring_middle": between(2e-3, 6e-3),
         "ring_late": between(6e-3, 20e-3),
         "ring_before": math.log(float(energy[-int(0.02 * rate) :].sum()) / whole + 1e-6),
     } | _echo(answer, rate)
+
+
+def _strongest(spectrum: NDArray[np.complex128], inside: slice, most: int) -> tuple[float, float]:
+    """Find where one side of a spectrum adds up to most, within so many samples of the start.
+
+    Returns
+    -------
+    place, value : float
+        To `_FINE` parts of a sample [-]; real part of the sum [unit of the spectrum].
+    """
+    size, reach = 2 * (spectrum.size - 1), _COARSE * most
+    coarse = irfft(spectrum, _COARSE * size)
+    about = int(np.argmax(np.concatenate([coarse[-reach:], coarse[: reach + 1]]))) - reach
+    place = about / _COARSE
+    turn = np.exp(2j * np.pi / size * place * np.arange(inside.start, inside.stop))
+    fine = ((spectrum[inside] * turn) @ _turns(size, inside.start, inside.stop)).real
+    best = int(np.argmax(fine))
+    return place + (best - fine.size // 2) / _FINE, float(fine[best])
+
+
+@lru_cache(maxsize=8)
+def _turns(size: int, first: int, last: int) -> NDArray[np.complex128]:
+    """By what lines turn over the fine parts of a sample next to a coarse one."""
+    around = _FINE // _COARSE
+    parts = np.arange(-around, around + 1) / _FINE
+    return np.asarray(np.exp(2j * np.pi / size * np.outer(np.arange(first, last), parts)))
 
 
 @lru_cache(maxsize=8)

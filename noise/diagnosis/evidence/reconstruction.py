@@ -37,6 +37,9 @@ LEAD = 0.06
 TAIL = 0.01
 """Left out at the end, where the band limit has nothing to look at [s]."""
 
+_LEAST_RATE = 24e3
+"""To which a motion is thinned out, above twice the end of the band limit [Hz]."""
+
 _WAY_BACK = 0.25
 """In which a signal is led back to where it began, as a transform has it do [s]."""
 
@@ -48,7 +51,7 @@ class Reconstruction:
     Parameters
     ----------
     rate : float
-        [Hz]
+        [Hz], that of the recording or a half or quarter of it.
     start : float
         Time of the first sample within the recording [s].
     torque, friction_torque : ndarray, shape (n,)
@@ -120,16 +123,18 @@ def reconstruct(
     if spectrum is None:
         spectrum = closed_spectrum(torque, rate)
     length = closed_length(n, rate)
-    kept = slice(round(LEAD * rate), n - round(TAIL * rate))
-    filters = _filters(length, rate, bushing)
-    bins = spectrum[: filters.shape[1]].copy()
-    bins[0] -= mean * length
-    spectra = np.zeros((len(filters), length // 2 + 1), np.complex128)
+    every = _thinning(length, rate)
+    rate /= every
+    kept = slice(round(LEAD * rate), n // every - round(TAIL * rate))
+    filters = _filters(length, rate * every, bushing)
+    bins = spectrum[: filters.shape[1]] / every
+    bins[0] -= mean * (length // every)
+    spectra = np.zeros((len(filters), length // every // 2 + 1), np.complex128)
     np.multiply(filters, bins, out=spectra[:, : bins.size])
-    rows = irfft(spectra, length, axis=1, overwrite_x=True)[:, kept]
+    rows = irfft(spectra, length // every, axis=1, overwrite_x=True)[:, kept]
     torques, inertial, torque_rate, creep, by_stiffness, by_damping, *of_clamp = rows
     clamp_speed, by_clamp = of_clamp or np.zeros((2, torques.size))
-    speed = shaft_speed[kept]
+    speed = shaft_speed[::every][kept]
     smooth = torques + mean
     return Reconstruction(
         rate=rate,
@@ -144,6 +149,11 @@ def reconstruct(
         by_damping=by_damping,
         by_clamp=by_clamp,
     )
+
+
+def _thinning(length: int, rate: float) -> int:
+    """Of how many samples one is enough for what the band limit leaves."""
+    return next(k for k in (4, 2, 1) if k == 1 or (rate >= k * _LEAST_RATE and length % k == 0))
 
 
 @lru_cache(maxsize=6)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
+from noise.diagnosis.evidence.bench_context import bench_context
 from noise.diagnosis.evidence.channel_summary import (
     angle_summary,
     band_levels,
@@ -65,6 +66,8 @@ class CaseTable:
     conditions : tuple of Condition
     rate : float
         Sampling rate of the recordings [Hz].
+    bench : mapping of str to float
+        As `noise.diagnosis.evidence.bench_context.bench_context` gives it.
     """
 
     names: tuple[str, ...]
@@ -73,6 +76,7 @@ class CaseTable:
     scatter: NDArray[np.float64]
     conditions: tuple[Condition, ...]
     rate: float
+    bench: Mapping[str, float] = field(default_factory=dict)
 
 
 def summary(
@@ -120,7 +124,7 @@ def summary(
     found = reconstruct(turn * torque, speed, rate, bushing, turn * spectrum)
     fit = rig.fit(condition.interference)
     numbers |= _named("contact", contact_summary(found, fit, wanted))
-    slips = slip_starts(found, wanted)[0] / rate + found.start
+    slips = slip_starts(found, wanted)[0] / found.rate + found.start
     residuals = {}
     paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
     for kind, expected in predict_outputs(spectrum, torque.size, rate, paths).items():
@@ -211,6 +215,7 @@ def case_table(
         table(spreads),
         tuple(recording.condition for recording in recordings),
         recordings[0].rate,
+        bench_context(rig, recordings),
     )
 
 
@@ -233,14 +238,20 @@ def same_channels(repeat: Recording, recording: Recording) -> Recording:
 
 
 def _moments(repeats: list[Numbers]) -> tuple[Numbers, Numbers]:
-    mean, spread = {}, {}
-    for name in {name for numbers in repeats for name in numbers}:
-        values = np.array([numbers[name] for numbers in repeats if name in numbers])
-        values = values[np.isfinite(values)]
-        if values.size:
-            mean[name] = float(values.mean())
-            spread[name] = float(values.std(ddof=1)) if values.size > 1 else math.nan
-    return mean, spread
+    names = list(dict.fromkeys(name for numbers in repeats for name in numbers))
+    values = np.array([[numbers.get(name, math.nan) for name in names] for numbers in repeats])
+    known = np.isfinite(values)
+    count = known.sum(axis=0)
+    mean = np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1)
+    square = np.where(known, values - mean, 0.0) ** 2
+    spread = np.sqrt(square.sum(axis=0) / np.maximum(count - 1, 1))
+    spread[count < 2] = math.nan
+    found = count > 0
+    names = [name for name, it_is in zip(names, found.tolist(), strict=True) if it_is]
+    return (
+        dict(zip(names, mean[found].tolist(), strict=True)),
+        dict(zip(names, spread[found].tolist(), strict=True)),
+    )
 
 
 def _named(kind: str, numbers: Numbers) -> Numbers:

@@ -19,7 +19,13 @@ from models.sensors import Sensor
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
 from noise.diagnosis.simulated.nominal import condition_key
-from noise.diagnosis.simulated.repeats import Scatter, perturb_run, plan_repeat, record
+from noise.diagnosis.simulated.repeats import (
+    Scatter,
+    perturb_run,
+    plan_repeat,
+    record,
+    repeat_motion,
+)
 from noise.diagnosis.simulated.transfer_functions import (
     TransferFunctionCache,
     chain_of,
@@ -28,7 +34,7 @@ from noise.diagnosis.simulated.transfer_functions import (
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
-from sim.pipeline import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
+from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
 from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
@@ -221,7 +227,7 @@ class ModelRuns:
             )  # fmt: skip
             plan = plan_repeat(once, at, on_motion, rate=fine, seconds=template.duration)
             motion = self._motions.get(
-                of_motion, lambda: run_motion(plan, np.random.default_rng([seed, 1]))
+                of_motion, lambda: repeat_motion(plan, np.random.default_rng([seed, 1]))
             )
             paths = self._paths(plan, impacts=bool(on_paths))
             changed = changed_chain(paths, on_paths, np.random.default_rng(0))

@@ -21,18 +21,20 @@ from noise.diagnosis.simulated.repeats import (
     perturb_run,
     plan_repeat,
     record,
+    repeat_motion,
 )
 from noise.diagnosis.simulated.transfer_functions import (
     chain_of,
     predict_outputs,
     shift_clamp_mode,
+    with_clamp_shifted,
 )
 from sim.acquisition import decimate_sensed
 from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.pipeline import apply_sensor_effects, radiate_motion, run_motion, sensor_signals
+from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
 from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
@@ -113,7 +115,7 @@ def nominal_recordings(
         rng = np.random.default_rng(seed)
         once, found = perturb_run(rig, condition, scatter, rng)
         plan = plan_repeat(once, found, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
-        motion = run_motion(replace(plan, n_settling=0, n_kept=n), rng)
+        motion = repeat_motion(replace(plan, n_settling=0, n_kept=n), rng)
         # What a sensor's filter does to a sound, it does to the torque that makes it.
         by_filter = {
             corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
@@ -123,13 +125,11 @@ def nominal_recordings(
         lumped = lumped_bushing(once, *at)
         outputs: dict[str, NDArray[np.float64]] = {}
         for corner in {corners[name] for name in _OUTPUTS}:
-            paths = {
-                name: shift_clamp_mode(transfer_functions[name], bushing, lumped)
-                for name in _OUTPUTS
-                if corners[name] == corner
-            }
+            paths = {n: transfer_functions[n] for n in _OUTPUTS if corners[n] == corner}
             torque = _steadied(by_filter[corner], kept, rate)
-            spectrum = closed_spectrum(torque, rate)
+            spectrum = with_clamp_shifted(
+                closed_spectrum(torque, rate), torque.size, rate, bushing, lumped
+            )
             outputs |= predict_outputs(spectrum, torque.size, rate, paths)
         signals = {
             "torque": by_filter[corners["torque"]][kept],
@@ -208,7 +208,7 @@ def _with_effects(
     paths = chain_of(rig, *at, shifted, fine, impacts=impacts)
     paths = changed_chain(paths, effects, np.random.default_rng(0))  # one structure for all runs
     plan = plan_repeat(once, found, effects, rate=fine, seconds=seconds)
-    motion = run_motion(plan, rng)
+    motion = repeat_motion(plan, rng)
     signals = sensor_signals(motion, radiate_motion(motion, paths, effects), plan.n_settling)
     signals = apply_sensor_effects(signals, effects, fine, rng)
     return record(

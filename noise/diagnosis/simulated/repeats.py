@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Fit, Rig
     from sim.effects.effect import ActiveEffect
+    from sim.motion import Motion
 
 __all__ = [
     "CHANNELS",
@@ -41,6 +42,7 @@ __all__ = [
     "perturb_run",
     "plan_repeat",
     "record",
+    "repeat_motion",
     "run_signals",
 ]
 
@@ -187,7 +189,7 @@ def plan_repeat(
     >>> at = KnownCondition(5.0, 0.279e-3, 2214.0)
     >>> plan = plan_repeat(load_material_rig("PDMS"), at, (), rate=DIAGNOSIS.rate(30e3), seconds=1)
     >>> plan.rate, plan.n_settling, plan.n_kept
-    (90000.0, 31500, 90000)
+    (90000.0, 22500, 90000)
     """
     ambient = at_temperature(rig, condition.temperature)
     return Plan(
@@ -200,6 +202,11 @@ def plan_repeat(
         n_settling=round(DIAGNOSIS.settling * rate),
         n_kept=round(seconds * rate),
     )
+
+
+def repeat_motion(plan: Plan, rng: np.random.Generator) -> Motion:
+    """Simulate the motion of a run as exactly as a comparison needs; `rng` as of `run_motion`."""
+    return run_motion(plan, rng, tolerance=DIAGNOSIS.tolerance)
 
 
 def run_signals(
@@ -241,7 +248,7 @@ def run_signals(
     """
     once, at = perturb_run(rig, condition, scatter or Scatter(), rng, support=True)
     plan = plan_repeat(once, at, effects, rate=chain.rate, seconds=seconds)
-    motion = run_motion(plan, rng)
+    motion = repeat_motion(plan, rng)
     changed = changed_chain(chain, effects, np.random.default_rng(chain_seed))
     sound = radiate_motion(motion, changed, effects)
     signals = sensor_signals(motion, sound, plan.n_settling)

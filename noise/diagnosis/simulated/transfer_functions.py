@@ -44,6 +44,7 @@ __all__ = [
     "shift_clamp_mode",
     "torque_transfer_functions",
     "with_chain_effects",
+    "with_clamp_shifted",
 ]
 
 _LONGEST = 0.25
@@ -297,12 +298,46 @@ def shift_clamp_mode(
     """
     if nominal.clamp_is_fixed:
         return transfer
-    s = 2j * np.pi * transfer.frequencies
+    shift = _clamp_shift(transfer.frequencies, nominal, scattered)
+    return replace(transfer, response=transfer.response * shift)
+
+
+def with_clamp_shifted(
+    spectrum: NDArray[np.complex128],
+    n: int,
+    rate: float,
+    nominal: LumpedBushing,
+    scattered: LumpedBushing,
+) -> NDArray[np.complex128]:
+    """Change a torque such that what it makes has the clamp's mode as `shift_clamp_mode` moves it.
+
+    Parameters
+    ----------
+    spectrum, n, rate
+        As `predict_outputs` takes them.
+    nominal, scattered : LumpedBushing
+        As of `shift_clamp_mode`.
+
+    Returns
+    -------
+    ndarray of complex
+        As long as `spectrum` [Nm].
+    """
+    if nominal.clamp_is_fixed:
+        return spectrum
+    lines = np.asarray(np.fft.rfftfreq(closed_length(n, rate), 1.0 / rate), np.float64)
+    return spectrum * _clamp_shift(lines, nominal, scattered)
+
+
+def _clamp_shift(
+    frequencies: NDArray[np.float64], nominal: LumpedBushing, scattered: LumpedBushing
+) -> NDArray[np.complex128]:
+    s = 2j * np.pi * frequencies
     of_nominal, of_scattered = (
-        b.support_stiffness + b.support_damping * s + b.clamp_inertia * s * s
+        b.support_stiffness + s * (b.support_damping + s * b.clamp_inertia)
         for b in (nominal, scattered)
     )
-    return replace(transfer, response=transfer.response * of_nominal / of_scattered)
+    return np.asarray(of_nominal / of_scattered)
 
 
 def chain_of(
@@ -338,7 +373,9 @@ def chain_of(
     torque_to = {name: impulse_response(h, rate, n) for name, h in transfer_functions.items()}
     struck = sounding = np.zeros(1)
     if impacts:
-        modelled = impulse_responses(rig, interference, support_stiffness, rate)
+        # What a torque makes is known, and costs much where it was measured.
+        unmeasured = replace(rig, measured=())
+        modelled = impulse_responses(unmeasured, interference, support_stiffness, rate)
         struck, sounding = modelled.pulse_to_acceleration, modelled.pulse_to_pressure
     return ImpulseResponses(
         rate, torque_to["acceleration"], torque_to["pressure"], struck, sounding

@@ -51,7 +51,7 @@ def answer(diagnosis: Diagnosis) -> list[str]:
     Whether the rig file describes the rig, the verdict, where, what is left, what cannot be told
     apart.
 
-    Of recordings that cannot be of their rig, why not.
+    Before all, which channels are dead or clip; of recordings that cannot be of their rig, why not.
 
     Examples
     --------
@@ -60,10 +60,11 @@ def answer(diagnosis: Diagnosis) -> list[str]:
     ['Recordings and simulation differ no more than repeats do: there is nothing to explain (gap
       0.9, floor 1, p = 0.60).']
     """
+    found = [f"{text[0].upper()}{text[1:]}." for text in (*diagnosis.bench, *diagnosis.faults)]
     if diagnosis.bench:
-        found = [f"{text[0].upper()}{text[1:]}." for text in diagnosis.bench]
         return [*found, "No cause is looked for before that is put right."]
     sentences = [
+        *found,
         agreement_sentence(diagnosis),
         verdict_sentence(diagnosis),
         location_sentence(diagnosis),

@@ -1,40 +1,77 @@
-"""``python -m noise.training.causes``: draw cases and train the cause posterior on them."""
+"""``python -m noise.training.causes``: draw cases, and train the cause posterior on them."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from itertools import chain
 from pathlib import Path
 
-from noise.base.progress import track
+from models.errors import ParameterError
+from noise.base.atomic import check_target
+from noise.base.progress import counted, say, track
 from noise.diagnosis.cases.draw import SHARED
-from noise.training.causes.build import known_cases
 from noise.training.causes.fit import train_posterior
-
-SEEDS = ("400000:402000",)
-"""Of cases, from each first one up to but not including the last; those below are for tests."""
+from noise.training.causes.report import is_kept, report, with_forms
+from noise.training.causes.store import CHUNK, draw_into, load_cases
 
 
 def main() -> int:
-    """Draw, train, save."""
+    """Draw, or train and save."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument(
-        "--seeds", nargs="+", default=SEEDS, metavar="FIRST:LAST", type=_range,
-        help=f"one case a seed (default: {' '.join(SEEDS)}); those of the shipped posterior are "
-        "in its card",
+    commands = parser.add_subparsers(dest="command", required=True)
+    drawing = commands.add_parser("draw", help="simulate cases whose causes are known, into files")
+    drawing.add_argument(
+        "--seeds", required=True, metavar="FIRST:LAST", type=_range,
+        help="one case a seed; those below 400000 are for tests, those of the shipped posterior "
+        "are in its card",
     )  # fmt: skip
-    parser.add_argument("--seed", type=int, default=0, help="of the trees")
-    parser.add_argument("--workers", type=int, default=1, help="processes")
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
+    drawing.add_argument("--workers", type=int, default=1, help="processes")
+    drawing.add_argument("--out", type=Path, required=True, metavar="FOLDER")
+    training = commands.add_parser("train", help="train the posterior on cases that were drawn")
+    training.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
+    training.add_argument("--seed", type=int, default=0, help="of the trees")
+    training.add_argument(
+        "--leave-out", nargs="+", default=(), metavar="FORM",
+        help="forms of effects (FORM, EFFECT:FORM or EFFECT) that are kept from training",
+    )  # fmt: skip
+    training.add_argument(
+        "--report",
+        action="store_true",
+        help="keep a tenth of the rigs from training, and say how they are answered",
+    )
+    training.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
     options = parser.parse_args()
-    seeds = [_range(text) if isinstance(text, str) else text for text in options.seeds]
-    drawn = chain.from_iterable(known_cases(each, options.workers) for each in seeds)
-    cases = list(track(drawn, "drawing", total=sum(map(len, seeds)), unit="case"))
-    posterior = train_posterior(cases, seed=options.seed)
-    card = {**posterior.card, "seeds": [f"{each.start}:{each.stop}" for each in seeds]}
+    try:
+        return _draw(options) if options.command == "draw" else _train(options)
+    except ParameterError as error:
+        say(f"error: {error}")
+        return 2
+
+
+def _draw(options: argparse.Namespace) -> int:
+    paths = draw_into(options.out, options.seeds, options.workers)
+    for _ in track(paths, "drawing", total=-(-len(options.seeds) // CHUNK), unit="file"):
+        pass
+    print(options.out)
+    return 0
+
+
+def _train(options: argparse.Namespace) -> int:
+    check_target(options.out)
+    cases = load_cases(options.folder)
+    kept = [case for case in cases if options.report and is_kept(case)]
+    left_out = [case for case in cases if with_forms(case, options.leave_out)]
+    aside = {case.seed for case in (*kept, *left_out)}
+    learned = [case for case in cases if case.seed not in aside]
+    say(f"training on {counted(len(learned), 'case')}")
+    posterior = train_posterior(learned, seed=options.seed)
+    seeds = f"{learned[0].seed}:{learned[-1].seed + 1}"
+    card = {**posterior.card, "seeds": seeds, "left out": list(options.leave_out)}
     replace(posterior, card=card).save(options.out)
     print(options.out)
+    if options.report or options.leave_out:
+        out = {case.seed for case in left_out}
+        print(report(posterior, [case for case in kept if case.seed not in out], left_out))
     return 0
 
 

@@ -1,15 +1,25 @@
-"""Training cases: drawn, simulated, and each summarised as a user's case would be."""
+"""Training cases: drawn, simulated, and each summarised as a user's case would be.
+
+What takes time are simulated repeats of the rig as its file has it. The cases of a rig share them
+where they would differ by less than chance: where the noise of sensors was estimated about alike,
+and the speeds that the angle tells.
+"""
 
 from __future__ import annotations
 
+import math
+import warnings
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from joblib import Parallel, delayed
 
-from models.errors import ParameterError
+from models.errors import BushingNoiseError
+from noise.base.progress import say
 from noise.diagnosis.cases.draw import SHARED, draw_case
 from noise.diagnosis.evidence.summary import NominalNumbers, case_table
+from noise.diagnosis.preparation.prepare import prepared
 from noise.training.causes.fit import Known, with_rows
 
 if TYPE_CHECKING:
@@ -17,8 +27,22 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from models.recording import Recording
+    from models.rig import Rig
+    from models.sensors import Sensors
+    from noise.diagnosis.cases.draw import DrawnCase
+    from noise.diagnosis.evidence.summary import CaseTable
 
 __all__ = ["known_cases", "known_cases_of_a_rig"]
+
+_SAME_NOISE, _SAME_SPEED = 0.2, 5e-3
+"""Relative differences up to which estimates are taken for the same."""
+
+_FEWEST = 2
+"""Recordings of a case."""
+
+_STEP = 0.1
+"""Grid of the lengths of recordings whose start was left out [s]."""
 
 
 def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
@@ -30,16 +54,37 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
     >>> all(case.table.measured.shape == case.table.nominal.shape for case in cases)
     True
     """
-    nominal, known = None, []
+    shared: list[_Shared] = []
+    known = []
     for seed in seeds:
         try:
-            case = draw_case(seed)
-            nominal = nominal or NominalNumbers(case.rig)
-            table = with_rows(case_table(case.recordings, case.rig, nominal=nominal), _single)
-            known.append(Known(table, case.truth, seed // SHARED))
-        except ParameterError:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # a response that ends early says so in each case
+                case = draw_case(seed)
+                table = _table(case, shared)
+        except BushingNoiseError:
             continue
+        except Exception as error:  # one case is no reason to lose all others
+            say(f"case {seed} is left out: {type(error).__name__}: {error}")
+            continue
+        if table is not None:
+            single = with_rows(table, _single)
+            known.append(Known(single, case.truth, seed // SHARED, case.departures, seed))
     return known
+
+
+def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
+    """Summarise a case as a user's would be, with repeats of earlier ones where these serve."""
+    ready = prepared(case.rig, case.recordings)
+    recordings = [_trimmed(r, case.recordings[0].duration) for r in ready.recordings]
+    if len(recordings) < _FEWEST:
+        return None
+    repeats = next((s for s in shared if s.serves(ready.rig)), None)
+    if repeats is None:
+        repeats = _Shared(NominalNumbers(ready.rig))
+        shared.append(repeats)
+    alike = [repeats.at_known_speed(recording) for recording in recordings]
+    return case_table(alike, repeats.nominal.rig, nominal=repeats.nominal)
 
 
 def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
@@ -49,6 +94,58 @@ def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
         delayed(known_cases_of_a_rig)(rig) for rig in rigs
     )
     return (case for cases in drawn for case in cases)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shared:
+    """Repeats that several cases of a rig share, and the speeds that they were simulated at."""
+
+    nominal: NominalNumbers
+    speeds: dict[tuple[object, ...], list[float]] = field(default_factory=dict)
+
+    def serves(self, rig: Rig) -> bool:
+        """Whether a rig is the same but for estimates that hardly differ."""
+        mine, other = self.nominal.rig, rig
+        return replace(other, sensors=mine.sensors) == mine and _alike(mine.sensors, other.sensors)
+
+    def at_known_speed(self, recording: Recording) -> Recording:
+        """Return a recording at the speed of repeats that are there already, if one is near."""
+        c = recording.condition
+        speed = c.speed
+        if speed is None:
+            return recording
+        known = self.speeds.setdefault((c.interference, c.support_stiffness), [])
+        near = min(known, key=lambda v: abs(v - speed), default=math.inf)
+        if abs(near - speed) > _SAME_SPEED * abs(speed):
+            known.append(speed)
+            return recording
+        return replace(recording, condition=replace(c, speed=near))
+
+
+def _alike(one: Sensors, other: Sensors) -> bool:
+    if one.by_kind.keys() != other.by_kind.keys():
+        return False
+    for kind, a in one.by_kind.items():
+        b = other.by_kind[kind]
+        if replace(a, noise=b.noise) != b or (a.noise is None) != (b.noise is None):
+            return False
+        if a.noise is not None and b.noise is not None:
+            least = 0.1 * a.step  # less than that is lost in the rounding
+            if not math.isclose(a.noise, b.noise, rel_tol=_SAME_NOISE, abs_tol=least):
+                return False
+    return True
+
+
+def _trimmed(recording: Recording, whole: float) -> Recording:
+    """Shorten a recording that was cut, so that others of its condition are as long.
+
+    `whole` is the length of what is not cut [s].
+    """
+    seconds = math.floor(recording.duration / _STEP) * _STEP
+    if recording.duration >= whole or seconds <= 0.0:
+        return recording
+    n = round(seconds * recording.rate)
+    return replace(recording, samples=recording.samples[:, :n])
 
 
 def _single(x: NDArray[np.float64]) -> NDArray[np.float64]:

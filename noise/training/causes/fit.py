@@ -1,10 +1,10 @@
 """Training of the cause posterior on simulated cases.
 
 The cases of four rigs of five grow the trees, those of the fifth calibrate the probabilities and
-set the alarm; what is scored shares no draw with either. Each case is learned again from some of
-its recordings, since what is true of all of them is true of fewer, and what the trees make of the
-one recording that is left out is chance. A part is learned with channels taken away, so that fewer
-signals are answered less surely rather than wrongly.
+set the alarm, over benches of all kinds; what is scored shares no draw with either. Each case is
+learned again from some of its recordings, since what is true of all of them is true of fewer, and
+what the trees make of the one recording that is left out is chance. A part is learned with channels
+taken away, so that fewer signals are answered less surely rather than wrongly.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.diagnosis.cases.truth import seen_through
 from noise.diagnosis.causes.location import null_maxima
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.evidence import evidence, scale_of
+from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.trees import boosted_trees, boosting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -31,7 +33,10 @@ if TYPE_CHECKING:
 __all__ = ["Known", "train_posterior"]
 
 N_ROUNDS = 200
-N_TREES = 120
+N_TREES = 80
+N_LOOKED_AT = 10_000
+"""Trees, and cases at most, from which it is seen what columns tell anything."""
+
 N_COLUMNS = 700
 """Of the evidence that are kept: what tells nothing only blurs."""
 
@@ -43,10 +48,13 @@ _CERTAIN = 6.0
 FALSE_ALARMS = 0.007
 """Share of cases without a cause that may raise the alarm, at the setting."""
 
-N_SUBSETS = 3
+N_SUBSETS = 2
 """Times that each case is learned again from some of its recordings."""
 
 _FEWEST_RECORDINGS = 3
+
+_FEWEST_QUIET = 30
+"""Cases of quiet benches without a cause, from which scatter is told; of all benches otherwise."""
 
 _POOR_SHARE = 0.3
 """Share of the cases that are learned again with channels missing."""
@@ -64,11 +72,13 @@ _STIFFNESS = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """A case whose cause is known, and the number of its rig."""
+    """A case whose cause is known: its rig, in what its bench is not quiet, and its seed."""
 
     table: CaseTable
     truth: Truth
     rig: int = 0
+    departures: tuple[str, ...] = ()
+    seed: int = 0
 
 
 def train_posterior(
@@ -86,21 +96,20 @@ def train_posterior(
     -------
     Posterior
     """
-    names = sorted({name for case in cases for name in case.table.names})
-    without_cause = [case.table for case in cases if case.truth.kind == "none"]
-    scale = scale_of(without_cause, names)
+    names = tuple(sorted({name for case in cases for name in case.table.names}))
+    without_cause = [case for case in cases if case.truth.kind == "none"]
+    quiet = [case.table for case in without_cause if not case.departures]
+    nulls = [case.table for case in without_cause]
+    scale = scale_of(quiet if len(quiet) >= _FEWEST_QUIET else nulls, names)
     rng = np.random.default_rng(seed)
     # Every fifth rig is kept from the trees, to calibrate what they say.
     kept = np.unique([case.rig for case in cases], return_inverse=True)[1] % KEPT_EVERY == 0
     whole = [case for case, keep in zip(cases, kept, strict=True) if not keep]
-    grown = [*whole, *(with_fewer(case, rng) for _ in range(N_SUBSETS) for case in whole)]
-    grown += [
-        with_channels(case, _POOR[int(rng.integers(len(_POOR)))])
-        for case in whole
-        if rng.random() < _POOR_SHARE
+    grown = [
+        (evidence(case.table, names, scale), causes_of(case.truth)) for case in _copies(whole, rng)
     ]
-    x = np.array([evidence(case.table, names, scale) for case in grown])
-    y = np.array([causes_of(case.truth) for case in grown])
+    x, y = (np.array(each) for each in zip(*grown, strict=True))
+    del grown
     columns = _telling_columns(x, y, seed)
     trees = _boosted(x[:, columns], y, n_rounds, seed)
     unseen = [case for case, keep in zip(cases, kept, strict=True) if keep]
@@ -111,13 +120,13 @@ def train_posterior(
     without = truths[:, CAUSES.index("none")] == 1
     alarm = float(np.quantile(calibrated(odds, weights)[without, -1], FALSE_ALARMS))
     return Posterior(
-        names=tuple(names),
+        names=names,
         scale=scale,
         columns=columns,
         trees=trees,
         weights=weights,
         alarm=min(alarm, 0.5),
-        null=null_maxima(without_cause, names, scale),
+        null=null_maxima(nulls, names, scale),
         card={"seed": seed, "cases": len(cases), "rounds": n_rounds},
     )
 
@@ -126,9 +135,10 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
     """Columns that a forest of all causes splits by most."""
     from sklearn.ensemble import ExtraTreesClassifier
 
+    some = np.random.default_rng(seed).permutation(len(x))[:N_LOOKED_AT]
     forest = ExtraTreesClassifier(
         N_TREES, min_samples_leaf=2, max_features=0.1, n_jobs=-1, random_state=seed
-    ).fit(x, y)
+    ).fit(x[some], y[some])
     most = np.argsort(-forest.feature_importances_, kind="stable")[:N_COLUMNS]
     return np.sort(most).astype(np.int64)
 
@@ -161,6 +171,16 @@ def _boosted(
     return replace(trees, base=base, classes=np.array(met, dtype=np.int16)[trees.classes])
 
 
+def _copies(cases: Sequence[Known], rng: np.random.Generator) -> Iterator[Known]:
+    """Give each case, and as it would be with fewer recordings or channels."""
+    for case in cases:
+        yield case
+        for _ in range(N_SUBSETS):
+            yield with_fewer(case, rng)
+        if rng.random() < _POOR_SHARE:
+            yield with_channels(case, _POOR[int(rng.integers(len(_POOR)))])
+
+
 def causes_of(truth: Truth) -> NDArray[np.int64]:
     """Which of `CAUSES` are at work."""
     exclusive = truth.kind in ("none", "parameters", "unknown")
@@ -171,15 +191,22 @@ def causes_of(truth: Truth) -> NDArray[np.int64]:
 def with_channels(case: Known, channels: Sequence[str]) -> Known:
     """Return a case as it would be had only some channels been recorded.
 
-    What is derived from a torque goes with it, what compares two channels with either.
+    What is derived from a torque goes with it, what compares two channels with either; an effect
+    that acts in none of the channels is gone.
     """
-    table = case.table
+    table, truth = case.table, case.truth
     kept = np.array([_is_known(name, channels) for name in table.names])
 
     def without(rows: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(kept, rows, np.nan)
 
-    return replace(case, table=with_rows(table, without))
+    lost = {f"{kind}_{what}" for kind in CHANNELS for what in ("noise", "step")} - {
+        f"{kind}_{what}" for kind in channels for what in ("noise", "step")
+    }
+    bench = {name: value for name, value in table.bench.items() if name not in lost}
+    if truth.channels:
+        truth = seen_through(truth, truth.channels, channels)
+    return replace(case, table=replace(with_rows(table, without), bench=bench), truth=truth)
 
 
 def with_fewer(case: Known, rng: np.random.Generator) -> Known:

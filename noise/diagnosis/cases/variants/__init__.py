@@ -9,19 +9,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.cases.variants.disturbance import HUM, NOISE
+from noise.diagnosis.cases.variants.beams import BEAMS
+from noise.diagnosis.cases.variants.delay import DELAY
+from noise.diagnosis.cases.variants.disturbance import NOISE
 from noise.diagnosis.cases.variants.drive import FLUCTUATION, SHAFT
 from noise.diagnosis.cases.variants.elastomer import SOFTENING, VISCOELASTICITY
-from noise.diagnosis.cases.variants.friction import (
-    AGEING,
-    CREEP,
-    SCATTER,
-    STRENGTHENING,
-    WEAKENING,
-)
-from noise.diagnosis.cases.variants.measurement import CLIPPING, DELAY, GAIN, MOUNT
-from noise.diagnosis.cases.variants.radiation import PLATE, ROOM
-from noise.diagnosis.cases.variants.structure import BEAMS, PULSES
+from noise.diagnosis.cases.variants.gain import GAIN
+from noise.diagnosis.cases.variants.hum import HUM
+from noise.diagnosis.cases.variants.mount import MOUNT
+from noise.diagnosis.cases.variants.overloads import CLIPPING
+from noise.diagnosis.cases.variants.plate import PLATE
+from noise.diagnosis.cases.variants.pulses import PULSES
+from noise.diagnosis.cases.variants.room import ROOM
+from noise.diagnosis.cases.variants.scatter import SCATTER
+from noise.diagnosis.cases.variants.speed_dependence import STRENGTHENING, WEAKENING
+from noise.diagnosis.cases.variants.stick import AGEING, CREEP
 from noise.diagnosis.cases.variants.surface import FILM, HEAT
 
 if TYPE_CHECKING:

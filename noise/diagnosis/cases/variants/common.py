@@ -129,6 +129,17 @@ def on_sensors(
     return _variant(name, form, strength, sensors=sensors)
 
 
+def on_signals(
+    name: str, form: str, strength: float, change: Callable[[Signals, float, Rng], Signals]
+) -> Effect:
+    """Make an effect that changes all signals at once: ``change(signals, rate, rng)``."""
+
+    def sensors(signals: Signals, rate: float, _form: str, _values: Any, rng: Rng) -> Signals:
+        return change(signals, rate, rng) if strength > 0.0 else signals
+
+    return _variant(name, form, strength, sensors=sensors)
+
+
 def draw_shares(
     rng: Rng, names: tuple[str, ...] = SENSED, *, signed: bool = False
 ) -> dict[str, float]:
@@ -185,6 +196,13 @@ def wander(rng: Rng, n: int, rate: float, corner: float) -> Array:
     settling = round(min(2.0 * rate / corner, 4.0 * n))
     time_series = lfilter(b, a, rng.standard_normal(n + settling))[settling:]
     return np.asarray(time_series * math.sqrt(0.5 * rate / (1.11 * corner)))
+
+
+def slowly(rng: Rng, n: int, rate: float, corner: float) -> Array:
+    """Draw as `wander` does, at the price of few samples where the corner lies far below `rate`."""
+    coarse = max(1, int(rate / (20.0 * corner)))
+    slow = wander(rng, n // coarse + 2, rate / coarse, corner)
+    return np.interp(np.arange(n), coarse * np.arange(slow.size), slow)
 
 
 def telegraph(rng: Rng, n: int, rate: float, often: float) -> Array:

@@ -1,7 +1,8 @@
-"""Further forms of noise and hum on the channels."""
+"""Further forms of random noise on the channels."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,44 +14,58 @@ from noise.diagnosis.cases.variants.common import (
     Recipe,
     Rng,
     log_uniform,
-    on_sensors,
+    log_uniforms,
+    on_signals,
     telegraph,
     wander,
 )  # fmt: skip
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from sim.effects.effect import Effect, Signals
 
-    from sim.effects.effect import Effect
+__all__ = ["NOISE", "adds"]
 
-__all__ = ["HUM", "NOISE"]
+TimeSeries = Callable[[int, float, Rng], Array]
+
+_LEVELS = (0.4, 25.0, 1.0)
+"""Of torque, acceleration and pressure at strength 1, at most [Nm], [m/s2], [Pa]."""
 
 
-def _adds(
-    name: str,
-    form: str,
-    a: float,
-    rng: Rng,
-    levels: tuple[float, float, float],
-    time_series: Callable[[int, float, Rng], Array],
-) -> Effect:
-    """Add a time series of rms 1 times a level to all channels, or to one or two of them."""
-    sizes = np.array(levels) * rng.uniform(0.2, 1.0, 3)
+def adds(
+    name: str, form: str, a: float, rng: Rng, levels: tuple[float, float, float],
+    time_series: TimeSeries, *, together: bool = False, uneven: float = 0.0,
+) -> Effect:  # fmt: skip
+    """Add a time series of rms 1 times a level to all channels, or to one or two of them.
+
+    The same to all of them where they are disturbed together; louder in some runs than in others by
+    so much (logarithmic).
+    """
+    sizes = np.array(levels) * np.exp(rng.uniform(np.log(0.1), 0.0, 3))
     if rng.random() < 0.4:
         sizes[rng.choice(3, int(rng.integers(1, 3)), replace=False)] = 0.0
-    shares = dict(zip(SENSED, (a * sizes).tolist(), strict=True))
+    shares = {k: s for k, s in zip(SENSED, (a * sizes).tolist(), strict=True) if s > 0.0}
 
-    def change(x: Array, level: float, rate: float, rng: Rng) -> Array:
-        added = time_series(x.size, rate, rng)
-        return np.asarray(x + level * added / (float(np.sqrt(np.mean(added**2))) + 1e-30))
+    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
+        louder = float(np.exp(uneven * np.clip(rng.standard_normal(), -2.0, 2.0)))
+        added: Array | None = None
+        changed = dict(signals)
+        for channel in (c for c in SENSED if c in shares and c in signals):
+            if added is None or not together:
+                added = time_series(signals[channel].size, rate, rng)
+                added = added / (float(np.sqrt(np.mean(added**2))) + 1e-30)
+            changed[channel] = signals[channel] + louder * shares[channel] * added
+        return changed
 
-    return on_sensors(name, form, a, shares, change)
+    return on_signals(name, form, a, change)
 
 
 def _noisy(
-    form: str, a: float, rng: Rng, time_series: Callable[[int, float, Rng], Array]
-) -> Effect:
-    return _adds("background_noise", form, a, rng, (0.15, 8.0, 0.3), time_series)
+    form: str, a: float, rng: Rng, time_series: TimeSeries, *, together: bool = False,
+    uneven: float = 0.0,
+) -> Effect:  # fmt: skip
+    return adds(
+        "background_noise", form, a, rng, _LEVELS, time_series, together=together, uneven=uneven
+    )
 
 
 def _coloured(n: int, rate: float, rng: Rng, exponent: float) -> Array:
@@ -117,73 +132,84 @@ def _swelling(a: float, rng: Rng) -> Effect:
     return _noisy("swelling", a, rng, time_series)
 
 
-def _hums(
-    form: str,
-    a: float,
-    rng: Rng,
-    wave: Callable[[Array, float, Rng], Array],
-    *,
-    wobble: float = 0.0,
-    depth: float = 0.0,
-) -> Effect:
-    """Add a wave over the periods passed; frequency and level may wander."""
-    frequency = float(rng.choice([50.0, 60.0])) * (1.0 + 2e-3 * float(rng.standard_normal()))
-    corner = log_uniform(rng, 1.0, 15.0)
+def _colour(a: float, rng: Rng) -> Effect:
+    """Fall by any power of frequency, from white beyond brown."""
+    exponent = float(rng.uniform(-1.0, 3.0))
+    return _noisy("colour", a, rng, lambda n, rate, rng: _coloured(n, rate, rng, exponent))
+
+
+def _together(a: float, rng: Rng) -> Effect:
+    """Come from one source into all channels."""
+    exponent = float(rng.uniform(0.0, 2.0))
+    return _noisy("together", a, rng, lambda n, rate, rng: _coloured(n, rate, rng, exponent),
+                  together=True)  # fmt: skip
+
+
+def _some_runs(a: float, rng: Rng) -> Effect:
+    """Be louder in some recordings than in others: a door, a compressor that starts."""
+    exponent, uneven = float(rng.uniform(0.0, 2.0)), float(rng.uniform(0.5, 1.5))
+    return _noisy("some_runs", a, rng, lambda n, rate, rng: _coloured(n, rate, rng, exponent),
+                  uneven=uneven)  # fmt: skip
+
+
+def _machine(a: float, rng: Rng) -> Effect:
+    """Hum, whine and rush as a fan or a pump does: orders of a speed over coloured noise."""
+    turning, blades = log_uniform(rng, 8.0, 100.0), int(rng.integers(3, 14))
+    exponent, tonal = float(rng.uniform(0.5, 2.0)), log_uniform(rng, 0.5, 8.0)
+    orders = np.array([1, 2, blades, 2 * blades, 3 * blades])
+    sizes = rng.exponential(1.0, orders.size)
 
     def time_series(n: int, rate: float, rng: Rng) -> Array:
-        time = np.arange(n) / rate
-        phases = rng.random(3)
-        turns = (
-            frequency * time + phases[0] + wobble * np.sin(2 * np.pi * (corner * time + phases[1]))
+        turn = turning * (1.0 + 0.01 * rng.standard_normal()) * np.arange(n) / rate
+        rush = _coloured(n, rate, rng, exponent)
+        tones = sum(
+            s * np.sin(2.0 * np.pi * (k * turn + rng.random()))
+            for k, s in zip(orders.tolist(), sizes.tolist(), strict=True)
         )
-        level = 1.0 + depth * np.sin(2 * np.pi * (0.7 * corner * time + phases[2]))
-        return np.asarray(level * wave(turns, rate, rng))
+        return np.asarray(rush / rush.std() + tonal / np.sqrt(orders.size) * tones)
 
-    return _adds("mains_hum", form, a, rng, (0.3, 6.0, 0.25), time_series)
-
-
-def _partials(rng: Rng) -> Callable[[Array, float, Rng], Array]:
-    """Draw a wave of few harmonics."""
-    orders = np.unique(rng.integers(1, 12, int(rng.integers(1, 7))))
-    sizes = rng.exponential(1.0, orders.size) / np.sqrt(orders)
-    phases = rng.random(orders.size)
-
-    def wave(turns: Array, _rate: float, _rng: Rng) -> Array:
-        parts = zip(orders.tolist(), sizes.tolist(), phases.tolist(), strict=True)
-        return np.asarray(sum(c * np.sin(2 * np.pi * (k * turns + p)) for k, c, p in parts))
-
-    return wave
+    return _noisy("machine", a, rng, time_series)
 
 
-def _hum_modulated(a: float, rng: Rng) -> Effect:
-    return _hums("modulated", a, rng, _partials(rng), depth=float(rng.uniform(0.4, 1.2)))
+def _popcorn(a: float, rng: Rng) -> Effect:
+    """Jump between two levels by chance, as poor contacts and old transistors do."""
+    often = log_uniform(rng, 5.0, 500.0)
+    return _noisy("popcorn", a, rng, lambda n, rate, rng: telegraph(rng, n, rate, often))
 
 
-def _hum_wobbling(a: float, rng: Rng) -> Effect:
-    return _hums("wobbling", a, rng, _partials(rng), wobble=float(rng.uniform(0.05, 0.4)))
+def _spoken(a: float, rng: Rng) -> Effect:
+    """Swell in syllables and sound in a few bands, as speech in the room does."""
+    bands, pace = log_uniforms(rng, 200.0, 3500.0, 3), log_uniform(rng, 2.0, 8.0)
+
+    def time_series(n: int, rate: float, rng: Rng) -> Array:
+        frequency = np.maximum(np.fft.rfftfreq(n, 1.0 / rate), 1.0)
+        gain = np.exp(-0.5 * (np.log2(frequency[:, None] / bands) / 0.25) ** 2).sum(axis=1)
+        voice = np.fft.irfft(gain * np.fft.rfft(rng.standard_normal(n)), n)
+        syllables = np.sin(np.pi * (pace * np.arange(n) / rate + rng.random())) ** 2
+        return np.asarray((0.05 + syllables) * voice)
+
+    return _noisy("speech", a, rng, time_series)
 
 
-def _hum_drawn(a: float, rng: Rng) -> Effect:
-    return _hums("drawn_harmonics", a, rng, _partials(rng))
+def _following(a: float, rng: Rng) -> Effect:
+    """Rise with the signal itself: rough contact of a slip ring, a noise of modulation."""
+    levels, exponent = rng.uniform(0.1, 1.0, 3), float(rng.uniform(0.0, 1.0))
+    shares = dict(zip(SENSED, (0.7 * a * levels).tolist(), strict=True))
+
+    def change(signals: Signals, rate: float, rng: Rng) -> Signals:
+        return {
+            channel: x + shares[channel] * np.abs(x - x.mean()) * (
+                (z := _coloured(x.size, rate, rng, exponent)) / z.std())
+            if channel in shares else x
+            for channel, x in signals.items()
+        }  # fmt: skip
+
+    return on_signals("background_noise", "following", a, change)
 
 
-def _hum_cut(a: float, rng: Rng) -> Effect:
-    """Cut the phase: the sine begins late in each half-wave."""
-    late = float(rng.uniform(0.1, 0.9))
-    return _hums(
-        "phase_cut", a, rng,
-        lambda turns, _rate, _rng: np.where((2 * turns) % 1.0 > late, np.sin(2 * np.pi * turns), 0),
-    )  # fmt: skip
-
-
-def _hum_broken(a: float, rng: Rng) -> Effect:
-    often, wave = log_uniform(rng, 3.0, 25.0), _partials(rng)
-
-    def broken(turns: Array, rate: float, rng: Rng) -> Array:
-        return wave(turns, rate, rng) * (0.05 + (telegraph(rng, turns.size, rate, often) > 0.0))
-
-    return _hums("intermittent", a, rng, broken)
-
-
-NOISE: tuple[Recipe, ...] = (_bursts, _clicks, _band, _swelling)
-HUM: tuple[Recipe, ...] = (_hum_modulated, _hum_wobbling, _hum_drawn, _hum_cut, _hum_broken)
+# Colours: Voss and Clarke 1978; popcorn: Hsu et al. 1970; bursts and clicks: Middleton 1977; the
+# others are what laboratories hear.
+NOISE: tuple[Recipe, ...] = (
+    _bursts, _clicks, _band, _swelling, _colour, _together, _some_runs, _machine, _popcorn, _spoken,
+    _following,
+)  # fmt: skip

@@ -27,12 +27,12 @@ from sim.contact import (
     SHAFT_TORQUE,
     SLIDING_SPEED,
     STICK_TIME,
-    STICKS,
     STIFFNESS,
     TIME,
     TORQUE,
     TWIST,
     TWIST_RATE,
+    slipless,
 )
 
 __all__ = [
@@ -47,6 +47,9 @@ __all__ = [
     "rate_dependence_hook",
     "softening_hook",
 ]  # fmt: skip
+
+_MOST_CREEP = 0.95
+"""Share of the shaft's speed."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -98,33 +101,52 @@ def rate_dependence_hook(context, values, state, state_rates, contact) -> None:
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def ageing_hook(context, values, state, state_rates, contact) -> None:
-    """Critical torque over age: share, time, angle of renewal; curve over x / (1 + x)."""
+    """Torques over age.
+
+    Share, time, angle of renewal, what of the curve the plain torque is, whether the whole critical
+    torque ages rather than the drop, whether slips renew in part only, share of the kinetic torque
+    that ages along; curve over x / (1 + x).
+    """
     own_age = max(state[0], 0.0)
-    unslipped = context[STICKS] == 0.0 and context[STICK_TIME] == context[TIME]
-    age = own_age if unslipped else max(context[STICK_TIME], 0.0)
+    own = values[5] != 0.0 or slipless(context)
+    age = own_age if own else max(context[STICK_TIME], 0.0)
     renewal = 1.0 - abs(context[SLIDING_SPEED]) * own_age / values[2]
-    state_rates[0] = renewal if unslipped else 0.0
+    state_rates[0] = renewal if own else 0.0
     x = age / values[1]
-    grown = _curve(values, 3, x / (1.0 + x))
-    contact[CRITICAL] -= values[0] * (1.0 - grown) * (contact[CRITICAL] - contact[KINETIC])
+    gained = values[0] * (_curve(values, 7, x / (1.0 + x)) - values[3])
+    aged = contact[CRITICAL] - (0.0 if values[4] != 0.0 else contact[KINETIC])
+    contact[KINETIC] *= 1.0 + gained * values[6]
+    contact[CRITICAL] = max(contact[CRITICAL] + gained * aged, contact[KINETIC])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def creep_hook(context, values, state, state_rates, contact) -> None:
-    """Creep over torque: share, lag; curve over the torque's share of the critical one."""
+    """Creep over torque.
+
+    Share, lag, speed of the creep itself (0 where it is a share of the shaft's), time in stick over
+    which it fades (0 for none), share of the drop that is lost; curve over the torque's share of
+    the critical one.
+    """
+    contact[CRITICAL] -= values[4] * (contact[CRITICAL] - contact[KINETIC])
     r = min(abs(context[TORQUE]) / contact[CRITICAL], 1.0)
-    f = _curve(values, 2, r)
+    f = _curve(values, 5, r)
     if values[1] > 0.0:
         state_rates[0] = (f - state[0]) / values[1]
         f = min(max(state[0], 0.0), 1.0)
     if context[TORQUE] * context[SHAFT_SPEED] > 0.0:
-        contact[CREEP] += values[0] * f * (1.0 - contact[CREEP])
+        if values[3] > 0.0:
+            f /= 1.0 + max(context[STICK_TIME], 0.0) / values[3]
+        share = values[0] * f
+        if values[2] > 0.0:
+            share = min(share * values[2] / abs(context[SHAFT_SPEED]), _MOST_CREEP)
+        contact[CREEP] += share * (1.0 - contact[CREEP])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def patch_hook(context, values, state, state_rates, contact) -> None:
-    """Drop over the shaft's angle: points a radian; a periodic table of factors."""
-    share = max(_periodic(values, 1, context[SHAFT_ANGLE] * values[0]), 0.0)
+    """Drop over angle or time: points a radian or second, whether over time; factors."""
+    along = context[TIME] if values[1] != 0.0 else context[SHAFT_ANGLE]
+    share = max(_periodic(values, 2, along * values[0]), 0.0)
     contact[CRITICAL] = contact[KINETIC] + share * (contact[CRITICAL] - contact[KINETIC])
 
 
@@ -147,7 +169,8 @@ def film_hook(context, values, state, state_rates, contact) -> None:
     drop = (contact[CRITICAL] - contact[KINETIC]) * (1.0 - film * (1.0 - values[2]))
     along = context[SHAFT_ANGLE] if values[6] != 0.0 else context[TIME]
     rough = _periodic(values, 9 + int(values[8]), along * values[7])
-    contact[KINETIC] *= (1.0 + film * (values[1] - 1.0)) * (1.0 + film * values[3] * rough)
+    uneven = max(1.0 + film * values[3] * rough, 0.05)
+    contact[KINETIC] *= (1.0 + film * (values[1] - 1.0)) * uneven
     contact[CRITICAL] = contact[KINETIC] + drop
 
 
@@ -156,23 +179,25 @@ def heating_hook(context, values, state, state_rates, contact) -> None:
     """Torque over heat.
 
     Share lost, rise [K] over which, whether heat passes from one capacity to the next, their
-    number, weights and rates; curve over x / (1 + x).
+    number, shares of it that kinetic torque, critical torque and stiffness lose; weights and rates;
+    curve over x / (1 + x).
     """
     n = int(values[3])
     rise = 0.0
     for i in range(n):
         rise = state[i] if values[2] != 0.0 else rise + state[i]
     x = max(rise, 0.0) / values[1]
-    factor = 1.0 - values[0] * _curve(values, 4 + 2 * n, x / (1.0 + x))
-    contact[KINETIC] *= factor
-    contact[CRITICAL] *= factor
+    lost = values[0] * _curve(values, 7 + 2 * n, x / (1.0 + x))
+    contact[KINETIC] *= 1.0 - lost * values[4]
+    contact[CRITICAL] = max(contact[CRITICAL] * (1.0 - lost * values[5]), contact[KINETIC])
+    contact[STIFFNESS] *= 1.0 - lost * values[6]
     power = contact[KINETIC] * abs(context[SLIDING_SPEED])
     for i in range(n):
-        rate = values[4 + n + i]
+        rate = values[7 + n + i]
         if values[2] != 0.0 and i > 0:
             state_rates[i] = rate * (state[i - 1] - state[i])
         else:
-            state_rates[i] = values[4 + i] * power - rate * state[i]
+            state_rates[i] = values[7 + i] * power - rate * state[i]
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
@@ -211,23 +236,24 @@ def bristle_hook(context, values, state, state_rates, contact) -> None:
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
 def dashpot_hook(context, values, state, state_rates, contact) -> None:
-    """Branches with a dashpot that is not linear.
+    """Branches beside or instead of the spring.
 
-    Number, whether it thins (1) or thickens (0), twist; shares and rates.
+    Number, whether their dashpots thicken (0), thin (1) or are linear (2), twist over which, share
+    of the spring that they replace; shares and rates.
     """
     n = int(values[0])
     share = 0.0
     for i in range(n):
         stretch = context[TWIST] - state[i]
-        share += values[3 + i] * stretch
+        share += values[4 + i] * stretch
         y = min(abs(stretch) / values[2], 4.0)
         faster = 1.0
         if values[1] == 0.0:
             faster = 1.0 / (1.0 + y)
-        elif y > 1e-6:
+        elif values[1] == 1.0 and y > 1e-6:
             faster = math.sinh(y) / y
-        state_rates[i] = stretch * values[3 + n + i] * faster
-    contact[ELASTOMER_TORQUE] += contact[STIFFNESS] * share
+        state_rates[i] = stretch * values[4 + n + i] * faster
+    contact[ELASTOMER_TORQUE] += contact[STIFFNESS] * (share - values[3] * context[TWIST])
 
 
 @njit(HOOK_SIGNATURE, cache=True, error_model="numpy")
@@ -235,11 +261,13 @@ def compliance_hook(context, values, state, state_rates, contact) -> None:
     """Shaft that yields.
 
     Inertia (0 for a rigid one), stiffness, share that softens, share that is cubic, lag over which,
-    damping, dry torque, lag over which that builds up, share of a Maxwell branch and its rate.
+    damping, dry torque, lag over which that builds up, share of a Maxwell branch and its rate,
+    play to each side.
     """
     if values[0] == 0.0:
         return
     lag, rate = context[SHAFT_LAG], context[SHAFT_LAG_RATE]
+    lag -= min(max(lag, -values[10]), values[10])
     y = (lag / values[4]) ** 2
     spring = values[1] * lag * (1.0 - values[2] * y / (1.0 + y) + values[3] * (y - 1.0))
     bent = state[0]

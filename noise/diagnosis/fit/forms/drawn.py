@@ -12,6 +12,7 @@ from noise.diagnosis.fit.forms.form import Form
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from noise.diagnosis.cases.variants.common import Recipe
     from sim.effects.effect import Effect
 
 __all__ = ["drawn_forms"]
@@ -41,12 +42,12 @@ def drawn_forms(name: str, count: int, seed: int) -> list[Form]:
     """
     if name not in VARIANTS:
         return []
-    return [_form(name, i, seed) for i in range(count)]
-
-
-def _form(name: str, number: int, seed: int) -> Form:
     recipes = VARIANTS[name]
-    recipe = recipes[number % len(recipes)]
+    order = np.random.default_rng(seed).permutation(len(recipes))
+    return [_form(name, recipes[order[i % order.size]], i, seed) for i in range(count)]
+
+
+def _form(name: str, recipe: Recipe, number: int, seed: int) -> Form:
     made: dict[float, Effect] = {}
 
     def make(values: Mapping[str, float]) -> Effect:

@@ -1,0 +1,231 @@
+"""Benches as users have them: in what they are unlike a quiet one, though nothing is the matter.
+
+A bench is drawn without knowing the cause. Three in ten are quiet and of the thesis's size; the
+others depart from that in several ways at once, over ranges wider than those of any bench that is
+known.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from models.sensors import Sensor, Sensors
+from noise.diagnosis.cases.laws import OWN_LAWS
+from noise.diagnosis.cases.starts import STARTS
+from noise.diagnosis.cases.strengths import drawn_effect
+from noise.diagnosis.cases.variants.common import log_uniform
+from sim.acquisition import THESIS_CONVERTER, Acquisition
+from sim.effects import EFFECTS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from models.rig import LawSpec
+
+__all__ = ["DEPARTURES", "NOISE_DRAWN", "SIZES", "Bench", "draw_bench"]
+
+NOISE_DRAWN = (0.7, 1.6)
+"""Between which the noise of a quiet bench's sensors lies, times that of `sim.acquisition`."""
+
+SIZES = ("elastomer_inertia", "clamp_inertia", "elastomer_stiffness", "torque", "support")
+"""What a bench of another size has more or less of, each by itself."""
+
+_QUIET = 0.3
+"""Share of the benches."""
+
+_OWN_LAW = 0.7
+"""Share of the others whose law is not the constant one."""
+
+_HOW_MANY = (0.12, 0.3, 0.28, 0.2, 0.1)
+"""Shares of benches with none, one, two ... departures besides the law."""
+
+_RATES = (25_600, 30_000, 32_000, 44_100, 48_000, 51_200)
+_ALL_RATES = (12_000, 16_000, 20_000, 22_050, *_RATES, 65_536, 96_000)
+_LENGTHS = (0.4, 0.5, 0.6, 0.8, 1.0)
+_SHORTEST, _LONGEST, _RARELY = 0.3, 5.0, 4.0
+"""Of records [s]; the larger the last, the rarer the long ones."""
+
+_LONGEST_OF_LAWS = {True: 1.6, False: 0.7}
+"""Where the law is not the constant one, whose motion costs ten times as much [s]: of benches with
+records of other lengths, and of the others."""
+
+_NOISE = (0.2, 6.0)
+_BITS = (12, 16)
+_LARGEST = 3.4
+"""Factor on a size."""
+
+_WRONG_SPEED, _WARMER = 0.04, 6.0
+"""Largest relative error of stated speeds, and of the temperature [K]."""
+
+_LISTED = (0.05, 0.6)
+"""Strengths of what a rig file lists."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """One bench.
+
+    Parameters
+    ----------
+    departures : tuple of str
+        In what it is not quiet: ``laws``, or of `DEPARTURES`.
+    rate, seconds : float
+        Of its recordings [Hz], [s].
+    noise : mapping of str to float
+        Standard deviation of white noise by channel [unit of the channel].
+    bits : int
+        Of a converter; 0 where samples have no steps.
+    ranges : float
+        Of that converter, over the thesis's [-].
+    stated : bool
+        Whether the rig file states noise and converter.
+    law : str
+        Of `noise.diagnosis.cases.laws.OWN_LAWS`; empty for the constant one.
+    sizes : mapping of str to float
+        Factors from the thesis's rig, by `SIZES` [-].
+    listed : tuple of LawSpec
+        Effects that the rig file lists besides those of its material.
+    repeats : bool
+        Whether two conditions are recorded twice.
+    wrong_speed : float
+        Relative error of stated speeds, at most [-].
+    warmer : float
+        Than stated [K].
+    responses : str
+        How the hammer test was: ``good``, ``poor`` or ``none``.
+    start : str
+        Of `noise.diagnosis.cases.starts.STARTS`; empty where recordings are settled.
+    """
+
+    departures: tuple[str, ...] = ()
+    rate: float = 30e3
+    seconds: float = 0.5
+    noise: Mapping[str, float] = field(default_factory=lambda: dict(Acquisition().noise))
+    bits: int = 0
+    ranges: float = 1.0
+    stated: bool = False
+    law: str = ""
+    sizes: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(SIZES, 1.0))
+    listed: tuple[LawSpec, ...] = ()
+    repeats: bool = True
+    wrong_speed: float = 0.0
+    warmer: float = 0.0
+    responses: str = "good"
+    start: str = ""
+
+    @property
+    def angle(self) -> float:
+        """Factor on twists [-]."""
+        return self.sizes["torque"] / self.sizes["elastomer_stiffness"]
+
+    @property
+    def time(self) -> float:
+        """Factor on how long a slip lasts [-]."""
+        return math.sqrt(self.sizes["elastomer_inertia"] / self.sizes["elastomer_stiffness"])
+
+    @property
+    def pace(self) -> float:
+        """Factor on the speeds at which such a rig does the same [-]."""
+        return self.angle / self.time
+
+    def sensors(self, largest: Mapping[str, float]) -> Sensors:
+        """Return what it records through.
+
+        Parameters
+        ----------
+        largest : mapping of str to float
+            Values to expect by channel; its converter's range is doubled until it holds them [unit
+            of the channel].
+        """
+
+        def sensor(kind: str, noise: float) -> Sensor:
+            if not self.bits:
+                return Sensor(noise)
+            usual = self.ranges * (THESIS_CONVERTER.of(kind).full_scale or 1.0)
+            doubled = math.ceil(math.log2(max(largest.get(kind, 0.0) / usual, 1.0)))
+            return Sensor(noise, full_scale=usual * 2.0**doubled, bits=self.bits)
+
+        return Sensors({kind: sensor(kind, noise) for kind, noise in self.noise.items()})
+
+
+def draw_bench(rng: np.random.Generator) -> Bench:
+    """Draw a bench.
+
+    Examples
+    --------
+    >>> bench = draw_bench(np.random.default_rng(0))
+    >>> bool(bench.law) == ("laws" in bench.departures)
+    True
+    """
+    usual = Acquisition().noise
+    bench = Bench(
+        rate=float(rng.choice(_RATES)),
+        seconds=float(rng.choice(_LENGTHS)),
+        noise={kind: level * float(rng.uniform(*NOISE_DRAWN)) for kind, level in usual.items()},
+        stated=bool(rng.random() < 0.5),
+    )
+    if rng.random() < _QUIET:
+        return bench
+    met: list[str] = []
+    if rng.random() < _OWN_LAW:
+        met.append("laws")
+    count = max(int(rng.choice(len(_HOW_MANY), p=_HOW_MANY)), 1 - len(met))
+    often = np.array([share for share, _ in DEPARTURES.values()])
+    met += rng.choice(list(DEPARTURES), count, replace=False, p=often / often.sum()).tolist()
+    if "laws" in met:
+        bench = replace(bench, law=_one(OWN_LAWS, rng))
+    for name, (_, draw) in DEPARTURES.items():
+        if name in met:
+            bench = replace(bench, **draw(rng))
+    longest = _LONGEST_OF_LAWS["records" in met] if bench.law else _LONGEST
+    return replace(bench, departures=tuple(met), seconds=min(bench.seconds, longest))
+
+
+def _sensors(rng: np.random.Generator) -> dict[str, Any]:
+    return {
+        "noise": {k: x * log_uniform(rng, *_NOISE) for k, x in Acquisition().noise.items()},
+        "bits": int(rng.integers(_BITS[0], _BITS[1] + 1)) if rng.random() < 0.55 else 0,
+        "ranges": log_uniform(rng, 0.5, 2.0),
+    }
+
+
+def _records(rng: np.random.Generator) -> dict[str, Any]:
+    long = math.log(_LONGEST / _SHORTEST) * float(rng.random()) ** _RARELY
+    return {"rate": float(rng.choice(_ALL_RATES)), "seconds": round(_SHORTEST * math.exp(long), 2)}
+
+
+def _sizes(rng: np.random.Generator) -> dict[str, Any]:
+    return {"sizes": {name: log_uniform(rng, 1.0 / _LARGEST, _LARGEST) for name in SIZES}}
+
+
+def _listed(rng: np.random.Generator) -> dict[str, Any]:
+    names = rng.choice(sorted(EFFECTS), int(rng.integers(1, 3)), replace=False).tolist()
+    drawn = (drawn_effect(name, log_uniform(rng, *_LISTED), rng) for name in names)
+    return {"listed": tuple(drawn)}
+
+
+def _conditions(rng: np.random.Generator) -> dict[str, Any]:
+    return {"wrong_speed": _WRONG_SPEED, "warmer": float(rng.uniform(-_WARMER, _WARMER))}
+
+
+DEPARTURES: Mapping[str, tuple[float, Callable[[np.random.Generator], dict[str, Any]]]] = {
+    "sensors": (2.2, _sensors),
+    "records": (1.2, _records),
+    "sizes": (1.2, _sizes),
+    "listed": (0.9, _listed),
+    "single": (1.1, lambda _rng: {"repeats": False}),
+    "conditions": (1.1, _conditions),
+    "responses": (1.1, lambda rng: {"responses": "poor" if rng.random() < 0.67 else "none"}),
+    "starts": (1.2, lambda rng: {"start": str(rng.choice(list(STARTS)))}),
+}
+"""Ways besides the friction law in which a bench is not quiet: how often each is met, and what it
+changes."""
+
+
+def _one(shares: Mapping[str, float], rng: np.random.Generator) -> str:
+    share = np.array(list(shares.values()))
+    return str(rng.choice(list(shares), p=share / share.sum()))

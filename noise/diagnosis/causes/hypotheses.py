@@ -1,0 +1,150 @@
+"""Hypotheses judged by cases of this very rig, simulated under each that is still likely."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations, count, islice
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.cases.truth import KINDS
+from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
+from noise.diagnosis.causes.local_cases import bench_of, local_cases
+from noise.diagnosis.causes.local_model import fit_local_model
+from sim.effects import EFFECTS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from noise.diagnosis.case import Case
+    from noise.diagnosis.causes.posterior import Posterior
+    from noise.diagnosis.evidence.summary import CaseTable
+    from sim.effects.effect import Effect
+
+__all__ = ["local_answer"]
+
+NONE: Hypothesis = frozenset()
+ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
+"""Hypotheses that are no set of effects."""
+
+SHORTLIST = 8
+"""Effects that local cases are made of; those hold both of a pair in five cases of six."""
+
+_IN_TRIPLES = 5
+"""The likeliest effects, of which triples are made."""
+
+
+_KIND_OF_SIZE = {1: "one", 2: "pair", 3: "triple"}
+
+
+def local_answer(
+    case: Case,
+    table: CaseTable,
+    posterior: Posterior,
+    first: Mapping[Hypothesis, float],
+    *,
+    library: Mapping[str, Effect] = EFFECTS,
+    n_cases: int = 240,
+    budget_seconds: float = 30.0,
+    workers: int = 2,
+    seed: int = 0,
+) -> dict[Hypothesis, float]:
+    """Probability of each hypothesis, judged by cases simulated of this rig at these conditions.
+
+    Parameters
+    ----------
+    case : Case
+    table : CaseTable
+        Of its recordings.
+    posterior : Posterior
+    first : mapping of frozenset of str to float
+        As `joint_probabilities` gives it [-].
+    library : mapping of str to Effect
+        Effects that may be missing; those of the user's own are always in question.
+    n_cases : int
+    budget_seconds : float
+        After which no further case is begun [s]; the answer is from those that there are.
+    workers : int
+        Processes.
+    seed : int
+        Of the cases.
+
+    Returns
+    -------
+    dict of frozenset of str to float
+        The likeliest first; they sum to 1 [-]. What was not simulated keeps the probability that
+        it had.
+    """
+    single = marginals(first)
+    effects = sorted((c for c in single if c in EFFECTS), key=lambda c: -single[c])
+    listed = {spec.name for spec in case.rig.effects}
+    own = [name for name in library if name not in EFFECTS and name not in listed]
+    hypotheses = _hypotheses([*effects[:SHORTLIST], *own])
+    bench = bench_of(case, table, library=library, seed=seed)
+    cases = local_cases(
+        bench, posterior, _wanted(hypotheses, n_cases), library=library,
+        budget_seconds=budget_seconds, workers=workers, seed=seed,
+    )  # fmt: skip
+    if not cases:
+        return dict(first)
+    model = fit_local_model(
+        np.array([one.odds for one in cases]), [one.hypothesis for one in cases], hypotheses
+    )
+    likelihoods = np.exp(model.log_likelihoods(posterior.log_odds(bench.table)))
+    weights = likelihoods * _prior(hypotheses, len(effects) + len(own))
+    covered = sum(first.get(hypothesis, 0.0) for hypothesis in hypotheses)
+    weights *= covered / weights.sum()
+    rest = {hypothesis: p for hypothesis, p in first.items() if hypothesis not in hypotheses}
+    return normalised({**dict(zip(hypotheses, weights.tolist(), strict=True)), **rest})
+
+
+def _hypotheses(effects: Sequence[str]) -> tuple[Hypothesis, ...]:
+    triples = combinations(effects[:_IN_TRIPLES], 3)
+    sets = (*combinations(effects, 1), *combinations(effects, 2), *triples)
+    return (NONE, *ALONE, *map(frozenset, sets))
+
+
+def _prior(hypotheses: Sequence[Hypothesis], n_effects: int) -> NDArray[np.float64]:
+    """Share of each hypothesis among cases as they are drawn [-]."""
+
+    def share(hypothesis: Hypothesis) -> float:
+        if hypothesis in ALONE:
+            return KINDS[min(hypothesis)]
+        if not hypothesis:
+            return KINDS["none"]
+        size = len(hypothesis)
+        return KINDS[_KIND_OF_SIZE[size]] / math.comb(n_effects, size)
+
+    return np.array([share(hypothesis) for hypothesis in hypotheses])
+
+
+def _wanted(hypotheses: Sequence[Hypothesis], n_cases: int) -> list[tuple[Hypothesis, int]]:
+    """Cause and number of each case, in rounds, so that any number of them is even-handed."""
+
+    def jobs() -> Iterator[tuple[Hypothesis, int]]:
+        for turn in count():
+            for place, hypothesis in enumerate(hypotheses):
+                if len(hypothesis) == 3 and (place + turn) % _TURNS_OF_A_TRIPLE:
+                    continue
+                many = _in_a_turn(hypothesis)
+                yield from ((hypothesis, turn * many + i) for i in range(many))
+
+    return list(islice(jobs(), n_cases))
+
+
+def _in_a_turn(hypothesis: Hypothesis) -> int:
+    """Count the cases of a hypothesis in a turn; more where the posterior has no name for it."""
+    if hypothesis == NONE or hypothesis == ALONE[0]:
+        return 4
+    if hypothesis == ALONE[1]:
+        return 6
+    if len(hypothesis) == 1:
+        return 2 if hypothesis <= EFFECTS.keys() else 6
+    return 1
+
+
+_TURNS_OF_A_TRIPLE = 3
+"""Triples, of which there are many and hardly any come true, take turns."""

@@ -1,0 +1,121 @@
+"""The noise of sensors, estimated from recordings of a rig at work.
+
+A recording has no silence, but high above what the rig sounds at there is little else than noise
+for a few milliseconds between slips: of all short segments the quietest, in the quietest bands, in
+the quietest recordings. What bands and conditions share there is white and the sensor's.
+
+What is given up: hiss that fills all recordings alike and is no louder than a poor sensor's counts
+as the sensor's, so that white background noise is missed up to `LOUDEST` times the noise of good
+sensors. Louder, coloured, and louder in some recordings than in others it is no sensor's, and stays
+what the simulation lacks. A noise well below the step of the converter cannot be told, and changes
+little there.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.stats import gamma
+
+from features.kernels.segments import segment_spectra
+from noise.diagnosis.evidence.channel_summary import USABLE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from models.condition import Condition
+    from models.recording import Recording
+
+__all__ = ["LOUDEST", "estimated_noise"]
+
+LOUDEST = 8.0
+"""Noise over that of the good sensors of `sim.acquisition`, beyond which it is no sensor's [-]; for
+a torque about three times the rounding of the thesis's converter."""
+
+
+_LENGTH = 128
+"""Of a segment [samples]; a few milliseconds."""
+
+_BANDS, _LOWEST, _LOWEST_SHARE = 4, 500.0, 0.18
+"""From the larger of a frequency [Hz] and of a share of the rate [-], up to `USABLE`."""
+
+_QUIETEST = (0.05, 0.2)
+"""Shares of the segments, the quietest, of which either may be free of signals."""
+
+_OVERLAP = 1.94
+"""Neighbouring lines of a Hann window that count as one independent line."""
+
+_FEWEST = 20
+"""Segments to tell it from."""
+
+_ALIKE, _ALIKE_CONDITIONS = 1.5, 1.8
+"""White noise is the floor of two bands, and of two conditions where there are two, since
+repeats sound alike: so many times
+the power of the lower at most [-]."""
+
+_ABOVE_STEP = 0.4
+"""Of a converter's step, below which white noise cannot be told from its rounding [-]."""
+
+
+def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.0) -> float | None:
+    """Estimate the noise of the sensor of a kind of channel.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        In physical units.
+    kind : str
+    step : float
+        Of the converter, whose rounding does not count [unit of the channel].
+
+    Returns
+    -------
+    float, optional
+        Standard deviation of white noise over the whole band [unit of the channel]; None where the
+        recordings are too short, have no such channel, or share no floor that is white.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> noise = 0.02 * np.random.default_rng(0).standard_normal((1, 60_000))
+    >>> tone = np.sin(2 * np.pi * 440 * np.arange(60_000) / 30e3)
+    >>> run = Recording(tone + noise, 30e3, (Channel("torque"),))
+    >>> round(estimated_noise([run], "torque"), 3)
+    0.02
+    """
+    floors: dict[Condition, list[float]] = {}
+    for recording in recordings:
+        row = recording.first(kind)
+        found = None if row is None else _floors(recording.samples[row], recording.rate)
+        if found is not None:
+            lower, higher = found
+            white = higher <= _ALIKE * lower
+            power = lower + higher if white else np.inf
+            floors.setdefault(recording.condition, []).append(power)
+    levels = np.sort([min(of_condition) for of_condition in floors.values()])[:2]
+    if not levels.size or not levels[-1] <= _ALIKE_CONDITIONS * levels[0] < np.inf:
+        return None
+    level = float(np.sqrt(0.5 * levels.mean()))
+    if level < _ABOVE_STEP * step:
+        return None
+    return float(np.sqrt(max(level**2 - step**2 / 12.0, 0.0)))
+
+
+def _floors(x: NDArray[np.float64], rate: float) -> tuple[float, float] | None:
+    """Power of the two quietest bands of a signal [unit^2]."""
+    t = np.arange(x.size)
+    x = x - (x[0] + (x[-1] - x[0]) / max(x.size - 1, 1) * t)  # a shaft turns all the time
+    if x.size < _LENGTH * (_FEWEST + 1) // 2:
+        return None
+    first = int(np.ceil(max(_LOWEST / rate, _LOWEST_SHARE) * _LENGTH))
+    lines = np.abs(segment_spectra(x, _LENGTH)[:, first : int(USABLE * _LENGTH) + 1]) ** 2
+    width = lines.shape[1] // _BANDS
+    bands = lines[:, lines.shape[1] - width * _BANDS :].reshape(len(lines), _BANDS, width)
+    free = width / _OVERLAP
+    share = gamma.ppf(_QUIETEST, free) / free
+    quiet = np.quantile(bands.mean(axis=2), _QUIETEST, axis=0) / share[:, None]
+    lowest = np.sort(quiet.min(axis=0))
+    return float(lowest[0]), float(lowest[1])

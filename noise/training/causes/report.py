@@ -1,0 +1,126 @@
+"""What a cause posterior makes of drawn cases that it has not seen, by kind of bench."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.diagnosis.causes.joint import joint_probabilities
+from noise.diagnosis.causes.verdict import likeliest, needs_explaining
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Sequence
+
+    from noise.diagnosis.causes.posterior import Posterior
+    from noise.training.causes.fit import Known
+
+__all__ = ["KEPT_FOR_REPORT", "is_kept", "report", "with_forms"]
+
+KEPT_FOR_REPORT = 10
+"""One rig of so many is kept from training altogether where a report is asked for."""
+
+PLAIN = 0.15
+"""Strength of an effect from which on it counts as plain [-]; what can be seen is not measured."""
+
+_Answer = tuple["Known", tuple[str, ...]]
+
+
+def is_kept(case: Known) -> bool:
+    """Whether a case is of a rig that is kept for the report."""
+    return case.rig % KEPT_FOR_REPORT == KEPT_FOR_REPORT - 1
+
+
+def with_forms(case: Known, forms: Collection[str]) -> bool:
+    """Whether a case has an effect in one of some forms.
+
+    Parameters
+    ----------
+    case : Known
+    forms : collection of str
+        Names of forms, ``effect:form`` or of whole effects.
+    """
+    truth = case.truth
+    named = {f"{name}:{form}" for name, form in zip(truth.effects, truth.forms, strict=True)}
+    return bool(set(forms) & {*named, *truth.effects, *truth.forms})
+
+
+def report(posterior: Posterior, cases: Sequence[Known], left_out: Sequence[Known] = ()) -> str:
+    """Score the first look, without gap and fits.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    cases : sequence of Known
+        That it has not seen.
+    left_out : sequence of Known
+        With forms that were never drawn in training.
+
+    Returns
+    -------
+    str
+        A table, one row for each kind of bench; then one for each form that was left out.
+    """
+
+    def answered(some: Sequence[Known]) -> list[_Answer]:
+        return [(case, _verdict(posterior, case)) for case in some]
+
+    answers = answered(cases)
+    kinds = sorted({name for case in cases for name in case.departures})
+    rows = [("all", answers), ("quiet", [a for a in answers if not a[0].departures])]
+    rows += [(kind, [a for a in answers if kind in a[0].departures]) for kind in kinds]
+    lines = [f"{'bench':12}" + "".join(f"{name:>22}" for name in _SCORES)]
+    lines += [f"{name:12}" + "".join(_score(some, *of) for of in _SCORES.values())
+              for name, some in rows]  # fmt: skip
+    of_form: dict[str, list[_Answer]] = {}
+    for case, verdict in answered([c for c in left_out if c.truth.kind in ("one", "unknown")]):
+        form = f"{case.truth.effects[0]}:{case.truth.forms[0]}"
+        of_form.setdefault(form, []).append((case, verdict))
+    plain = {form: [a for a in some if _plain(a[0])] for form, some in sorted(of_form.items())}
+    lines += [
+        f"a form never drawn, {form}: first in {sum(map(_is_first, some))} of {len(some)} plain, "
+        f"unknown in {sum(verdict == ('unknown',) for _, verdict in some)}"
+        for form, some in plain.items()
+    ]
+    return "\n".join(lines)
+
+
+def _verdict(posterior: Posterior, case: Known) -> tuple[str, ...]:
+    probabilities = posterior.probabilities(case.table)
+    if not needs_explaining(probabilities["none"], posterior.alarm):
+        return ()
+    return likeliest({h: p for h, p in joint_probabilities(probabilities).items() if h})
+
+
+def _score(
+    answers: Sequence[_Answer], counts: Callable[[Known], bool], right: Callable[[_Answer], bool]
+) -> str:
+    some = [answer for answer in answers if counts(answer[0])]
+    share = np.mean([right(answer) for answer in some]) if some else np.nan
+    return f"{share:14.3f} ({len(some):4d}) "
+
+
+def _plain(case: Known) -> bool:
+    return all(a >= PLAIN for a in case.truth.strengths)
+
+
+def _is_first(answer: _Answer) -> bool:
+    case, verdict = answer
+    return verdict[:1] == (case.truth.effects or (case.truth.kind,))[:1]
+
+
+def _of(kind: str) -> Callable[[Known], bool]:
+    return lambda case: case.truth.kind == kind and _plain(case)
+
+
+_SCORES: dict[str, tuple[Callable[[Known], bool], Callable[[_Answer], bool]]] = {
+    "false alarms": (_of("none"), lambda answer: bool(answer[1])),
+    "plain detected": (
+        lambda case: case.truth.kind != "none" and _plain(case), lambda answer: bool(answer[1]),
+    ),
+    "right first": (_of("one"), _is_first),
+    "parameters": (_of("parameters"), lambda answer: answer[1] == ("parameters",)),
+    "exact pair": (_of("pair"), lambda answer: set(answer[1]) == set(answer[0].truth.effects)),
+    "unknown": (_of("unknown"), lambda answer: answer[1] == ("unknown",)),
+}  # fmt: skip
+"""By name: which cases count, and what is right."""

@@ -1,0 +1,199 @@
+"""Recordings are made ready: what is settled stays, a start goes, and sensors are as they show."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from models.condition import KnownCondition
+from models.recording import Channel, Recording
+from models.sensors import Sensor, Sensors
+from noise.diagnosis.preparation.converter_step import converter_step
+from noise.diagnosis.preparation.measured_speed import at_measured_speeds
+from noise.diagnosis.preparation.prepare import prepared
+from noise.diagnosis.preparation.sensor_noise import LOUDEST, estimated_noise
+from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
+from noise.diagnosis.preparation.settled_part import SHORTEST, settled_parts, start_of
+from sim.acquisition import Acquisition
+from tests.helpers.small_rigs import RIG
+
+RATE = 30e3
+TIME = np.arange(24_000) / RATE
+USUAL = Acquisition().noise
+
+
+def turning(factor, speed=2.0, *, noise=1e-4, step=0.0, seed=0, **more):
+    """A shaft whose speed is a factor of what was set, over time."""
+    angle = np.cumsum(speed * factor) / RATE
+    angle = angle - angle[0] + noise * np.random.default_rng(seed).standard_normal(angle.size)
+    angle = step * np.round(angle / step) if step else angle
+    at = KnownCondition(speed, 0.279e-3, 2214.0)
+    return Recording(angle[None], RATE, (Channel("angle"),), at, **more)
+
+
+def stick_slip(scale=5.0, seed=0, seconds=0.8):
+    """A torque that rises steadily and falls at once, as of a shaft that sticks and slips."""
+    t = np.arange(round(seconds * RATE)) / RATE
+    return 10.0 - 2.0 + 4.0 * np.mod(t * scale * (1.0 + 1e-3 * seed), 1.0)
+
+
+def through(x, kind="torque", noise=0.0, step=0.0, seed=0):
+    """A signal through a sensor, kept in 32 bits."""
+    x = x + noise * np.random.default_rng(seed).standard_normal(x.size)
+    x = step * np.round(x / step) if step else x
+    at = KnownCondition(2.0, 0.279e-3, 2214.0)
+    samples = x.astype(np.float32).astype(np.float64)[None]
+    return Recording(samples, RATE, (Channel(kind),), at)
+
+
+STARTS = {
+    "rest": lambda size: np.minimum(TIME / (0.02 + 0.04 * size), 1.0),
+    "run_up": lambda size: 0.4 + 0.6 * np.minimum(TIME / (0.15 + 0.25 * size), 1.0),
+    "swing": lambda size: (
+        1.0 + (0.2 + 0.2 * size) * np.exp(-TIME / 0.05) * np.sin(2 * np.pi * 8.0 * TIME)
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STARTS)
+@pytest.mark.parametrize("sensor", [(1e-4, 0.0), (4e-4, 0.0), (1e-4, 6e-3)])
+@given(size=st.floats(0.0, 1.0), speed=st.floats(0.6, 10.0), back=st.booleans())
+def test_what_is_left_turns_evenly(name, sensor, size, speed, back):
+    factor = STARTS[name](size)
+    noise, step = sensor
+    run = turning(factor, -speed if back else speed, noise=noise, step=step)
+    start = start_of(run)
+    if name != "rest" or step == 0.0:  # a ramp of less than a step does not show in the angle
+        assert start > 0.0
+    if start:
+        assert np.abs(factor[round(start * RATE) :] - 1.0).max() < 0.05
+        assert start < 0.6
+
+
+@given(
+    depth=st.floats(0.0, 0.3),
+    frequency=st.floats(3.0, 60.0),
+    phase=st.floats(0.0, 6.3),
+    speed=st.floats(0.6, 10.0),
+)
+def test_a_speed_that_swings_all_the_time_stays_to_the_bit(depth, frequency, phase, speed):
+    factor = 1.0 + depth * np.sin(2.0 * np.pi * frequency * TIME + phase)
+    run = turning(factor, speed)
+    parts, notes, refused = settled_parts([run])
+    assert parts[0] is run
+    assert not notes
+    assert not refused
+
+
+def test_a_dip_in_the_middle_is_no_start():
+    dip = 1.0 - 0.3 * np.exp(-(((TIME - 0.3) / 0.02) ** 2))
+    assert start_of(turning(dip)) == 0.0
+
+
+def test_a_torque_that_rises_from_zero_tells_a_start_without_an_angle():
+    torque = stick_slip(60.0) * np.minimum(TIME / 0.02, 1.0)
+    assert 0.01 < start_of(through(torque, noise=0.005)) < 0.03
+    assert start_of(through(stick_slip(60.0), noise=0.005)) == 0.0
+
+
+def test_repeats_of_a_condition_keep_one_length_and_end_with_the_recording():
+    runs = [turning(STARTS["run_up"](size), name=f"run{size}") for size in (0.2, 0.5)]
+    parts, notes, _ = settled_parts(runs)
+    assert parts[0].samples.shape == parts[1].samples.shape
+    for run, part in zip(runs, parts, strict=True):
+        left = run.samples[0, -part.samples.shape[1] :]
+        assert part.samples[0] == pytest.approx(left - left[0], abs=1e-12)
+    assert len(notes) == 2
+    assert all("comes to its speed" in note for note in notes)
+
+
+def test_a_start_that_leaves_too_little_is_refused_unless_all_would_be():
+    short = round((SHORTEST + 0.1) * RATE)
+    late = turning(np.minimum(TIME / 0.13, 1.0))
+    late = replace(late, samples=late.samples[:, :short])
+    even = turning(np.ones(24_000))
+    parts, _, refused = settled_parts([late, even])
+    assert list(refused) == [0]
+    assert "comes to its speed only" in refused[0]
+    assert parts[0] is even
+    parts, notes, refused = settled_parts([late])
+    assert not refused
+    assert parts[0].duration == pytest.approx(SHORTEST, abs=1e-3)
+    assert "too little is left" in notes[0]
+
+
+@given(off=st.floats(-0.03, 0.03), step=st.sampled_from([0.0, 6e-3]))
+def test_repeats_get_the_mean_speed_of_their_angles(off, step):
+    runs = [turning((1.0 + off) * np.full(24_000, f), step=step) for f in (0.998, 1.002)]
+    timed, notes = at_measured_speeds(runs)
+    assert timed[0].condition == timed[1].condition
+    assert timed[0].condition.speed == pytest.approx(2.0 * (1.0 + off), rel=2e-3)
+    assert bool(notes) == (abs(timed[0].condition.speed / 2.0 - 1.0) > 0.005)
+
+
+def test_a_speed_that_is_quite_another_stays_to_be_complained_of():
+    run = turning(np.full(24_000, 3.0))
+    assert at_measured_speeds([run]) == ((run,), ())
+
+
+@given(
+    bits=st.integers(12, 16),
+    span=st.floats(5.0, 200.0),
+    noise=st.floats(0.1, 3.0),
+    seed=st.integers(0, 99),
+)
+def test_a_converters_step_is_found_to_a_ten_thousandth(bits, span, noise, seed):
+    step = 2.0 * span / 2.0**bits
+    sound = 0.4 * span * np.sin(2.0 * np.pi * 137.0 * TIME)
+    runs = [through(sound, noise=noise * step, step=step, seed=seed + i) for i in range(2)]
+    assert converter_step(runs, "torque") == pytest.approx(step, rel=1e-4)
+
+
+def test_samples_without_a_converter_have_no_step():
+    assert converter_step([through(stick_slip(60.0), noise=0.005)], "torque") == 0.0
+    assert converter_step([through(np.full(24_000, 3.0))], "torque") == 0.0
+
+
+@given(
+    times=st.floats(0.3, 4.0),
+    step=st.sampled_from([0.0, 0.5, 2.0]),
+    slips=st.floats(20.0, 100.0),
+    kind=st.sampled_from(sorted(USUAL)),
+)
+def test_noise_is_found_between_slips(times, step, slips, kind):
+    level = times * USUAL[kind]
+    size = 1000.0 * USUAL[kind] / 4.0
+    runs = [
+        through(size * stick_slip(slips, i), kind, level, step * level, seed=i) for i in range(3)
+    ]
+    found = estimated_noise(runs, kind, step * level)
+    assert found == pytest.approx(level, rel=0.25)
+
+
+def test_a_hiss_that_is_no_sensors_stays_a_difference():
+    quiet, loud = USUAL["pressure"], 2.0 * LOUDEST * USUAL["pressure"]
+    one_loud = [
+        through(np.zeros(24_000), "pressure", x, seed=i) for i, x in enumerate((loud, quiet, quiet))
+    ]
+    seen, _ = with_seen_sensors(RIG, one_loud)
+    assert seen.sensors.of("pressure").noise == pytest.approx(quiet, rel=0.15)
+    all_loud = [through(np.zeros(24_000), "pressure", loud, seed=i) for i in range(3)]
+    seen, notes = with_seen_sensors(RIG, all_loud)
+    assert seen.sensors.of("pressure").noise is None
+    assert any("taken for a difference" in note for note in notes)
+
+
+def test_what_a_rig_file_states_of_a_sensor_stays():
+    stated = Sensor(noise=0.02, full_scale=102.5, bits=12)
+    rig = replace(RIG, sensors=Sensors({"torque": stated}))
+    seen, notes = with_seen_sensors(rig, [through(stick_slip(60.0), noise=0.005, step=0.01)])
+    assert seen.sensors.of("torque") == stated
+    assert notes == ()
+
+
+def test_a_settled_case_with_good_sensors_is_itself():
+    even = turning(np.ones(24_000))
+    ready = prepared(RIG, [even])
+    assert ready.recordings[0].samples is even.samples
+    assert ready.left_out == {}
