@@ -8,9 +8,11 @@ model can do; a score with as many scattered repeats as tell the floor.
 from __future__ import annotations
 
 import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 from copy import copy
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -23,9 +25,10 @@ from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import Scatter
+from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -38,8 +41,22 @@ if TYPE_CHECKING:
 
 __all__ = ["CaseComparison", "Model"]
 
+T = TypeVar("T")
+
 N_REPEATS = 12
-"""Simulated repeats that tell what repeats differ by, and where a model lies."""
+"""Simulated repeats that tell what repeats differ by."""
+
+_N_OF_MODEL = 6
+"""The first of these, that tell where a model lies."""
+
+_BRIEF = 0.5
+"""Runs without scatter are no longer than this [s]."""
+
+_SLOW = ("frictional_heating", "transfer_film")
+"""Effects that need as long as was recorded to show; so may those of users."""
+
+_THREADS = 2
+"""Processors that are used at once, where there are as many."""
 
 _LEAST_SEED = 100
 """Of the repeats; below are the seeds of single runs."""
@@ -91,17 +108,22 @@ class CaseComparison:
     signatures: list[NDArray[np.float64]] = field(init=False)
     references: list[Reference] = field(init=False)
     runs: ModelRuns = field(init=False)
+    _threads: int = field(init=False)
+    _briefly: list[Recording] = field(init=False)
     _signed: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
     _numbers: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         self.runs = ModelRuns(self.rig, self.library, self.forms)
+        self._threads = min(_THREADS, os.cpu_count() or 1)
+        self._briefly = [_brief(recording) for recording in self.recordings]
         self.signatures = [signature(recording) for recording in self.recordings]
         self.references = self._references()
 
     def _references(self) -> list[Reference]:
         repeats = {
-            condition_key(r): list(self._repeats(self.about, r)) for r in reversed(self.recordings)
+            condition_key(r): list(self._repeats(self.about, r, N_REPEATS))
+            for r in reversed(self.recordings)
         }
         return references_of(self.recordings, self.signatures, repeats)[0]
 
@@ -147,8 +169,8 @@ class CaseComparison:
             if model == self.about:
                 found.append(reference.deviation(self.signatures[i]))
                 continue
-            repeats = self._repeats(model, self.recordings[i])
-            own = repeats.std(axis=0, ddof=1) * math.sqrt(1.0 + 1.0 / N_REPEATS)
+            repeats = self._repeats(model, self.recordings[i], _N_OF_MODEL)
+            own = repeats.std(axis=0, ddof=1) * math.sqrt(1.0 + 1.0 / len(repeats))
             scale = np.clip(own, reference.scale, _WIDEST * reference.scale)
             found.append((self.signatures[i] - repeats.mean(axis=0)) / scale)
         return found
@@ -195,14 +217,22 @@ class CaseComparison:
         ndarray, shape (n_chosen,)
             In standard deviations of repeats [-]; infinite where the model cannot be simulated.
         """
-        found = np.full(len(chosen), np.inf)
-        for k, i in enumerate(chosen):
-            try:
-                away = self._away(model, i, single_run=single_run)
-            except ParameterError:
-                return found
-            found[k] = math.sqrt(float(np.nanmean(group_costs(away))))
-        return found
+
+        def misfit(place: int) -> float:
+            away = self._away(model, place, single_run=single_run)
+            return math.sqrt(float(np.nanmean(group_costs(away))))
+
+        try:
+            return np.array(self._each(misfit, chosen))
+        except ParameterError:
+            return np.full(len(chosen), np.inf)
+
+    def _each(self, make: Callable[[int], T], given: Sequence[int]) -> list[T]:
+        """Make something of each of what is given, several at once."""
+        if self._threads < 2 or len(given) < 2:
+            return [make(one) for one in given]
+        with ThreadPoolExecutor(self._threads) as pool:
+            return list(pool.map(make, given))
 
     def residual_signature(self, model: Model, place: int) -> NDArray[np.float64]:
         """Tell what the squared misfit of a recording is the sum of the squares of.
@@ -227,15 +257,19 @@ class CaseComparison:
 
     def _away(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
         reference = self.references[place]
-        plain = self._middle(self.about, place, single_run=True)
-        middle = self._middle(model, place, single_run=single_run)
+        names = [spec.name for spec in model.effects]
+        briefly = not any(name in _SLOW or name not in EFFECTS for name in names)
+        template = (self._briefly if briefly else self.recordings)[place]
+        plain = self._middle(self.about, template, single_run=True)
+        middle = self._middle(model, template, single_run=single_run)
         off = np.clip(reference.mean - plain, -reference.scale, reference.scale)
         away: NDArray[np.float64] = (self.signatures[place] - middle - off) / reference.scale
         return away
 
-    def _middle(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
+    def _middle(
+        self, model: Model, template: Recording, *, single_run: bool
+    ) -> NDArray[np.float64]:
         """Signature of a model without scatter."""
-        template = self.recordings[place]
         by_chance = any(spec.name in _BY_CHANCE for spec in model.effects)
         seeds = _SEEDS if by_chance and not single_run else _SEEDS[:1]
         key = (repr(model), condition_key(template), len(seeds))
@@ -271,11 +305,19 @@ class CaseComparison:
             rows.append(np.tanh(z / _SATURATION))
         return np.array(rows)
 
-    def _repeats(self, model: Model, template: Recording) -> NDArray[np.float64]:
-        """Signatures of a model's scattered repeats, shape (n_repeats, n_values)."""
-        key = (repr(model), condition_key(template))
-        if key not in self._signed:
-            seeds = range(_LEAST_SEED, _LEAST_SEED + N_REPEATS)
-            runs = [signature(self.simulated(model, template, seed)) for seed in seeds]
-            self._signed[key] = np.array(runs)
-        return self._signed[key]
+    def _repeats(self, model: Model, template: Recording, n: int) -> NDArray[np.float64]:
+        """Signatures of a model's first scattered repeats, shape (n, n_values)."""
+        key = (repr(model), condition_key(template), "repeats")
+        known = self._signed.get(key)
+        if known is None or len(known) < n:
+            seeds = range(_LEAST_SEED + (0 if known is None else len(known)), _LEAST_SEED + n)
+            more = self._each(lambda seed: signature(self.simulated(model, template, seed)), seeds)
+            known = np.array(more if known is None else [*known, *more])
+            self._signed[key] = known
+        return known[:n]
+
+
+def _brief(recording: Recording) -> Recording:
+    """Return a recording no longer than runs that are compared with it without scatter."""
+    n = min(recording.samples.shape[1], round(_BRIEF * recording.rate))
+    return replace(recording, samples=recording.samples[:, :n])

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -113,10 +114,9 @@ def fit_effect(
         for place in range(len(names)):
             best = _refined(comparison, few, best, place)
     fitted = fit_parameters(comparison, chosen, best, rounds=_ROUNDS)
-    fitted = replace(fitted, model=_settled(comparison, few[:_LOOKED], fitted.model))
-    return replace(
-        fitted, spread=(*fitted.spread, *_strength_spread(comparison, few, fitted.model))
-    )
+    model = _settled(comparison, few[:_LOOKED], fitted.model)
+    strength = partial(_strength_spread, comparison, few, model)
+    return replace(fitted, model=model, spreads=(*fitted.spreads, strength))
 
 
 def _added(

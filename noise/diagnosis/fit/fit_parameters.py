@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,7 +54,7 @@ _UNSURE = 0.1
 """By how much the mean distance of a few repeats is off by chance; assumed."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fitted:
     """A model, what it leaves on the recordings it was fitted to, and how well it is known.
 
@@ -62,13 +63,18 @@ class Fitted:
     model : Model
     cost : float
         Mean distance of the recordings, and the prior, in floors [-].
-    spread : tuple of float
-        Standard deviation of the logarithm of each offset, and then of the effect's strength.
+    spreads : tuple of callable
+        That tell `spread` in parts; only of the few models that are told is it asked.
     """
 
     model: Model
     cost: float
-    spread: tuple[float, ...] = ()
+    spreads: tuple[Callable[[], tuple[float, ...]], ...] = ()
+
+    @cached_property
+    def spread(self) -> tuple[float, ...]:
+        """Standard deviation of the logarithm of each offset, and then of the effect's strength."""
+        return tuple(spread for part in self.spreads for spread in part())
 
 
 def split(conditions: Sequence[Condition]) -> tuple[list[int], list[int]]:
@@ -148,7 +154,8 @@ def fitted_with_spreads(comparison: CaseComparison, few: Sequence[int], model: M
         return offset_cost(comparison, few, replace(model, offsets=tuple(x.tolist())))
 
     x = np.array(model.offsets)
-    return Fitted(model, cost(x), spreads(cost, x, np.full(len(OFFSETS), _LOOK), PRIOR))
+    look = np.full(len(OFFSETS), _LOOK)
+    return Fitted(model, cost(x), (partial(spreads, cost, x, look, PRIOR),))
 
 
 def spreads(

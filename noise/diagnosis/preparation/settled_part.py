@@ -10,12 +10,14 @@ as much as a fine one.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.condition import known_condition
+from noise.diagnosis.evidence.channel_summary import segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 
 if TYPE_CHECKING:
@@ -25,10 +27,14 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
 
-__all__ = ["SHORTEST", "settled_parts", "start_of"]
+__all__ = ["settled_parts", "shortest", "start_of"]
 
-SHORTEST = LEAD + TAIL + 0.1
+_SHORTEST = LEAD + TAIL + 0.1
 """Shorter recordings show too few cycles [s]."""
+
+_PATH_ENDS = 0.09
+"""Without its ends a recording has at least one segment of the spectra of
+`noise.diagnosis.evidence.path_summary` [s]."""
 
 RINGING = 0.06
 """In which a clamp that rings has come to rest after the speed has [s]: three time constants of the
@@ -60,6 +66,22 @@ _LENGTHS = 0.05
 
 _SHORTENED = 0.5
 """Share that a recording keeps at least where it is shortened to the length of its repeat."""
+
+
+def shortest(rate: float) -> float:
+    """Return how long a recording is at least that can be compared [s].
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+
+    Examples
+    --------
+    >>> round(shortest(30e3), 2), round(shortest(12e3), 2)
+    (0.17, 0.26)
+    """
+    return max(_SHORTEST, _PATH_ENDS + segment_frequency(rate)[0] / rate)
 
 
 def settled_parts(
@@ -95,9 +117,9 @@ def settled_parts(
     starts = [start_of(recording) for recording in recordings]
     refused = {
         i: f"the shaft comes to its speed only {start:.2g} s after the beginning, and "
-        f"{SHORTEST:.2g} s at least must be left"
+        f"{shortest(recording.rate):.2g} s at least must be left"
         for i, (start, recording) in enumerate(zip(starts, recordings, strict=True))
-        if start > recording.duration - SHORTEST
+        if start > recording.duration - shortest(recording.rate)
     }
     too_short = len(refused) == len(recordings)
     if too_short:
@@ -203,7 +225,7 @@ def _n_kept(recording: Recording, start: float) -> int:
         return n
     left = recording.duration - start
     rounded = _LENGTHS * float(np.floor((left - RINGING) / _LENGTHS + 1e-6))
-    return min(n, round(max(rounded, SHORTEST) * recording.rate))
+    return min(n, math.ceil(max(rounded, shortest(recording.rate)) * recording.rate))
 
 
 def _repeats(recordings: Sequence[Recording], kept: Sequence[int]) -> list[list[int]]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import partial
+from threading import Lock
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
@@ -56,8 +57,17 @@ T = TypeVar("T")
 
 _EXACT = Scatter(0.0, 0.0, 0.0)
 
+_COARSE = 2e-5
+"""Error of a step of runs without scatter [-]: they are compared with each other."""
+
 _CACHED = 24
-"""Motions that are kept; one of a second at 90 kHz takes six megabytes."""
+"""Responses and signals that are kept."""
+
+_SIGNATURES = 4000
+"""Of channels that are kept."""
+
+_ROOM = 3e8
+"""Of the motions that are kept; what is heard of one of a second at 90 kHz takes 1.4e6 [byte]."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +121,9 @@ class ModelRuns:
     _responses: _Cache[ImpulseResponses] = field(init=False, default_factory=lambda: _Cache())
     _motions: _Cache[Motion] = field(init=False, default_factory=lambda: _Cache())
     _signals: _Cache[Signals] = field(init=False, default_factory=lambda: _Cache())
-    _parts: _Cache[NDArray[np.float64]] = field(init=False, default_factory=lambda: _Cache())
+    _parts: _Cache[NDArray[np.float64]] = field(
+        init=False, default_factory=lambda: _Cache(_SIGNATURES)
+    )
 
     def __post_init__(self) -> None:
         self.transfer_functions = TransferFunctionCache(self.rig, self.library)
@@ -215,8 +227,9 @@ class ModelRuns:
         on_motion = [
             a for a in effects if a.effect.contact is not None or a.effect.drive is not None
         ]
+        whole = any(a.effect.force is not None for a in on_paths)
         at_rest = (condition_key(template), template.condition.temperature)
-        of_motion = (at_rest, seed, scatter, model.offsets, _key(on_motion))
+        of_motion = (at_rest, seed, scatter, model.offsets, _key(on_motion), whole)
         key = (*of_motion, _key(on_paths))
 
         def radiated() -> Signals:
@@ -226,9 +239,15 @@ class ModelRuns:
                 np.random.default_rng([seed, 0]),
             )  # fmt: skip
             plan = plan_repeat(once, at, on_motion, rate=fine, seconds=template.duration)
-            motion = self._motions.get(
-                of_motion, lambda: repeat_motion(plan, np.random.default_rng([seed, 1]))
-            )
+            tolerance = _COARSE if scatter == _EXACT else None
+
+            def moved() -> Motion:
+                motion = repeat_motion(plan, np.random.default_rng([seed, 1]), tolerance)
+                return motion if whole else _sensed_of(motion)
+
+            arrays = 9 if whole else 2
+            self._motions.most = int(_ROOM / (8 * arrays * (plan.n_settling + plan.n_kept)))
+            motion = self._motions.get(of_motion, moved)
             paths = self._paths(plan, impacts=bool(on_paths))
             changed = changed_chain(paths, on_paths, np.random.default_rng(0))
             sound = radiate_motion(motion, changed, on_paths)
@@ -250,20 +269,37 @@ class ModelRuns:
         return self._responses.get((*at, plan.rate, impacts, repr(lumped)), made)
 
 
-class _Cache(Generic[T]):
-    """What was made last, by what it was made of."""
+def _sensed_of(motion: Motion) -> Motion:
+    """Return a motion without what is neither sensed nor makes a sound; that is zero."""
+    nothing = np.broadcast_to(0.0, motion.torque.shape)
+    sensed = {"torque": motion.torque.copy(), "shaft_angle": motion.shaft_angle}
+    return replace(motion, **(dict.fromkeys(_UNSENSED, nothing) | sensed))
 
-    def __init__(self) -> None:
+
+_UNSENSED = (
+    "friction_torque", "shaft_speed", "interface_angle", "interface_speed", "clamp_angle",
+    "clamp_speed",
+)  # fmt: skip
+
+
+class _Cache(Generic[T]):
+    """What was made last, by what it was made of; several threads may ask for it."""
+
+    def __init__(self, most: int = _CACHED) -> None:
         self._made: dict[object, T] = {}
+        self.most, self._lock = most, Lock()
 
     def get(self, key: object, make: Callable[[], T]) -> T:
         """Return what was made under a key, or make it."""
-        if key not in self._made:
-            made = make()
-            while len(self._made) >= _CACHED:
+        with self._lock:
+            if key in self._made:
+                return self._made[key]
+        made = make()
+        with self._lock:
+            while len(self._made) >= max(self.most, 1):
                 self._made.pop(next(iter(self._made)))
             self._made[key] = made
-        return self._made[key]
+        return made
 
 
 def _key(effects: Sequence[ActiveEffect]) -> tuple[object, ...]:

@@ -204,9 +204,18 @@ def plan_repeat(
     )
 
 
-def repeat_motion(plan: Plan, rng: np.random.Generator) -> Motion:
-    """Simulate the motion of a run as exactly as a comparison needs; `rng` as of `run_motion`."""
-    return run_motion(plan, rng, tolerance=DIAGNOSIS.tolerance)
+def repeat_motion(plan: Plan, rng: np.random.Generator, tolerance: float | None = None) -> Motion:
+    """Simulate the motion of a run as exactly as a comparison needs.
+
+    Parameters
+    ----------
+    plan : Plan
+    rng : numpy.random.Generator
+        As of `run_motion`.
+    tolerance : float, optional
+        As of `run_motion`, by default that of `sim.timing.DIAGNOSIS` [-].
+    """
+    return run_motion(plan, rng, tolerance=tolerance or DIAGNOSIS.tolerance)
 
 
 def run_signals(

@@ -21,6 +21,7 @@ from noise.diagnosis.cases.draw import SHARED, draw_case
 from noise.diagnosis.evidence.summary import NominalNumbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
 from noise.training.causes.fit import Known, with_rows
+from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -40,9 +41,6 @@ _SAME_NOISE, _SAME_SPEED = 0.2, 5e-3
 
 _FEWEST = 2
 """Recordings of a case."""
-
-_STEP = 0.1
-"""Grid of the lengths of recordings whose start was left out [s]."""
 
 
 def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
@@ -76,14 +74,13 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
 def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
     """Summarise a case as a user's would be, with repeats of earlier ones where these serve."""
     ready = prepared(case.rig, case.recordings)
-    recordings = [_trimmed(r, case.recordings[0].duration) for r in ready.recordings]
-    if len(recordings) < _FEWEST:
+    if len(ready.recordings) < _FEWEST:
         return None
     repeats = next((s for s in shared if s.serves(ready.rig)), None)
     if repeats is None:
         repeats = _Shared(NominalNumbers(ready.rig))
         shared.append(repeats)
-    alike = [repeats.at_known_speed(recording) for recording in recordings]
+    alike = [repeats.at_known_speed(recording) for recording in ready.recordings]
     return case_table(alike, repeats.nominal.rig, nominal=repeats.nominal)
 
 
@@ -123,29 +120,16 @@ class _Shared:
 
 
 def _alike(one: Sensors, other: Sensors) -> bool:
-    if one.by_kind.keys() != other.by_kind.keys():
-        return False
-    for kind, a in one.by_kind.items():
-        b = other.by_kind[kind]
-        if replace(a, noise=b.noise) != b or (a.noise is None) != (b.noise is None):
+    """Whether sensors are the same but for estimates of noise and steps that hardly differ."""
+    for kind, usual in Acquisition().noise.items():
+        a, b = one.of(kind), other.of(kind)
+        if (a.bits, a.antialias) != (b.bits, b.antialias) or not math.isclose(a.step, b.step):
             return False
-        if a.noise is not None and b.noise is not None:
-            least = 0.1 * a.step  # less than that is lost in the rounding
-            if not math.isclose(a.noise, b.noise, rel_tol=_SAME_NOISE, abs_tol=least):
-                return False
+        levels = [usual if sensor.noise is None else sensor.noise for sensor in (a, b)]
+        least = 0.1 * a.step  # less than that is lost in the rounding
+        if not math.isclose(*levels, rel_tol=_SAME_NOISE, abs_tol=least):
+            return False
     return True
-
-
-def _trimmed(recording: Recording, whole: float) -> Recording:
-    """Shorten a recording that was cut, so that others of its condition are as long.
-
-    `whole` is the length of what is not cut [s].
-    """
-    seconds = math.floor(recording.duration / _STEP) * _STEP
-    if recording.duration >= whole or seconds <= 0.0:
-        return recording
-    n = round(seconds * recording.rate)
-    return replace(recording, samples=recording.samples[:, :n])
 
 
 def _single(x: NDArray[np.float64]) -> NDArray[np.float64]:
