@@ -9,7 +9,7 @@ from models.condition import KnownCondition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
 from noise.diagnosis.preparation.prepare import prepared
-from noise.diagnosis.preparation.settled_part import SHORTEST
+from noise.diagnosis.preparation.settled_part import shortest
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
@@ -127,8 +127,9 @@ def usable(recording: Recording, rig: Rig) -> Recording:
         raise ParameterError(f"has no channel of {', '.join(KINDS)}")
     if recording.rate < LEAST_RATE:
         raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
-    if recording.duration < SHORTEST:
-        raise ParameterError(f"lasts {recording.duration:.3g} s; {SHORTEST:.3g} s at least")
+    least = shortest(recording.rate)
+    if recording.duration < least:
+        raise ParameterError(f"lasts {recording.duration:.3g} s; {least:.3g} s at least")
     condition = recording.condition
     speed = condition.speed
     row = recording.first("angle")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.plausible import rig_remarks
 from models.rig_files.rig_text import rig_text
+from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again
 from noise.identification.evidence import table_evidence, with_evidence
@@ -78,6 +79,8 @@ def identify_rig(
     if not measurements.used:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in measurements.refused)
         raise ParameterError(f"no recording that a rig can be identified from: {reasons}")
+    if units := unit_findings([one.recording for one in measurements.used], beforehand.rig):
+        raise ParameterError(f"{'; '.join(units)}; put units right in the sidecars")
     tell = progress or (lambda _text: None)
     seen = []
     for one in measurements.used:

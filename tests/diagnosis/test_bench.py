@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_files.rig_file import load_material_rig, load_rig
 from noise.diagnosis.bench.check import bench_findings
-from noise.diagnosis.case import Case
+from noise.diagnosis.case import Case, read_case
 from noise.diagnosis.diagnose import diagnose_case
 from noise.diagnosis.outcome_json import as_json, from_json
+from noise.diagnosis.run import diagnose
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
 from sim.run import simulate
-from tests.helpers.small_rigs import RIG, at, only, run
+from tests.helpers.small_rigs import RIG, at, only, run, write_case
 from tests.helpers.wrong_benches import WRONG_BENCHES
 
 SPEEDS = (1.0, 1.6, 1.6, 2.5, 3.5)
@@ -72,7 +74,7 @@ def test_a_shaft_that_turns_backwards_is_no_wrong_bench():
     assert bench_findings(_case(recordings)) == ()
 
 
-@pytest.mark.parametrize("name", ["fluorocarbon", "PDMS", "natural-rubber"])
+@pytest.mark.parametrize("name", ["fluorocarbon", "PDMS", "natural-rubber", "natural-rubber-film"])
 def test_another_material_is_told(name):
     other = load_material_rig(name)
     fit = min(other.fits, key=lambda fit: abs(fit.interference - 0.279e-3)).interference
@@ -94,3 +96,75 @@ def test_what_is_wrong_comes_first_and_is_kept(right):
     assert as_json(told)["notes"][0] == words
     assert answer(told)[0] == f"C{words[1:]}."
     assert headline(from_json(as_json(told))) == "Not this rig as it is described"
+
+
+def _filled(recording, channel, value):
+    samples = np.array(recording.samples)
+    samples[recording.channel_names.index(channel)] = value
+    return replace(recording, samples=samples)
+
+
+@pytest.mark.parametrize(
+    ("channel", "value", "at_value"), [("pressure", 0.0, "0"), ("torque", 3.0, "3")]
+)
+def test_a_dead_channel_is_left_out_and_said_first(right, tmp_path, channel, value, at_value):
+    data, rig = write_case(tmp_path, [_filled(one, channel, value) for one in right[:3]])
+    told = diagnose(data, rig, quick=True)
+    words = f"channel {channel} is dead: it stays at {at_value} in all recordings"
+    assert told.faults == (words,)
+    assert told.notes[0] == words
+    assert answer(told)[0] == f"C{words[1:]}."
+    assert not told.bench
+    assert from_json(as_json(told)).faults == told.faults
+    assert math.isfinite(told.gap)
+
+
+def test_a_channel_that_is_dead_in_one_recording_is_left_out_there(right, tmp_path):
+    some = [_filled(right[0], "acceleration", 1.0), *right[1:3]]
+    data, rig = write_case(tmp_path, some)
+    case = read_case([data], load_rig(rig))
+    assert ["acceleration" in one for one in case.recordings] == [False, True, True]
+    (words,) = case.faults
+    assert words.endswith("in run01.wav")
+    assert math.isfinite(diagnose(data, rig, quick=True).gap)
+
+
+def test_a_channel_at_rest_within_a_converters_bit_is_not_dead(right, tmp_path):
+    """Where nothing swings, a coarse converter gives one value."""
+    smooth = _filled(right[0], "torque", 8.3)
+    data, rig = write_case(tmp_path, [_filled(smooth, "acceleration", 0.0), *right[1:3]])
+    assert read_case([data], load_rig(rig)).faults == ()
+
+
+def test_dead_channels_alone_are_no_rig(right, tmp_path):
+    data, rig = write_case(tmp_path, [replace(one, samples=0.0 * one.samples) for one in right])
+    told = diagnose(data, rig, quick=True)
+    assert told.verdict == ("unknown",)
+    assert len(told.bench) == 4
+
+
+def test_a_range_that_the_torque_reaches_is_told(right, tmp_path):
+    most = max(float(one["torque"].max()) for one in right[:3])
+    range_ = 0.97 * most
+    cut = []
+    for one in right[:3]:
+        samples = np.array(one.samples)
+        row = one.channel_names.index("torque")
+        samples[row] = np.minimum(samples[row], range_)
+        cut.append(replace(one, samples=samples))
+    data, rig = write_case(tmp_path, cut)
+    assert read_case([data], load_rig(rig)).faults == (f"channel torque clips at {range_:.3g} N m",)
+    data, rig = write_case(tmp_path / "whole", right[:3])
+    assert read_case([data], load_rig(rig)).faults == ()
+
+
+def test_a_unit_is_told_though_the_torque_reads_otherwise_at_each_condition(right):
+    """The torque's own fault is none of the acceleration's: what both outputs share says so."""
+    case = []
+    for one, gain in zip(right, (0.6, 1.0, 0.5, 0.8, 1.5), strict=True):
+        scales = {"torque": gain, "acceleration": 1.0 / 9.80665}
+        factors = [scales.get(name, 1.0) for name in one.channel_names]
+        case.append(replace(one, samples=np.array(factors)[:, None] * one.samples))
+    assert bench_findings(_case(case)) == (
+        "channel acceleration looks like g, not m/s^2 (factor 9.8)",
+    )

@@ -9,12 +9,14 @@ from hypothesis import given, strategies as st
 from models.condition import KnownCondition
 from models.recording import Channel, Recording
 from models.sensors import Sensor, Sensors
+from noise.diagnosis.evidence.path_summary import path_summary
 from noise.diagnosis.preparation.converter_step import converter_step
 from noise.diagnosis.preparation.measured_speed import at_measured_speeds
 from noise.diagnosis.preparation.prepare import prepared
 from noise.diagnosis.preparation.sensor_noise import LOUDEST, estimated_noise
 from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
-from noise.diagnosis.preparation.settled_part import SHORTEST, settled_parts, start_of
+from noise.diagnosis.preparation.settled_part import settled_parts, shortest
+from noise.diagnosis.preparation.start import start_of
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG
 
@@ -93,7 +95,7 @@ def test_a_dip_in_the_middle_is_no_start():
 
 def test_a_torque_that_rises_from_zero_tells_a_start_without_an_angle():
     torque = stick_slip(60.0) * np.minimum(TIME / 0.02, 1.0)
-    assert 0.01 < start_of(through(torque, noise=0.005)) < 0.03
+    assert 0.01 < start_of(through(torque, noise=0.005)) < 0.05
     assert start_of(through(stick_slip(60.0), noise=0.005)) == 0.0
 
 
@@ -109,7 +111,7 @@ def test_repeats_of_a_condition_keep_one_length_and_end_with_the_recording():
 
 
 def test_a_start_that_leaves_too_little_is_refused_unless_all_would_be():
-    short = round((SHORTEST + 0.1) * RATE)
+    short = round((shortest(RATE) + 0.1) * RATE)
     late = turning(np.minimum(TIME / 0.13, 1.0))
     late = replace(late, samples=late.samples[:, :short])
     even = turning(np.ones(24_000))
@@ -119,8 +121,15 @@ def test_a_start_that_leaves_too_little_is_refused_unless_all_would_be():
     assert parts[0] is even
     parts, notes, refused = settled_parts([late])
     assert not refused
-    assert parts[0].duration == pytest.approx(SHORTEST, abs=1e-3)
+    assert parts[0].duration == pytest.approx(shortest(RATE), abs=1e-3)
     assert "too little is left" in notes[0]
+
+
+@pytest.mark.parametrize("rate", [8e3, 12e3, 16e3, 25.6e3, 30e3, 44.1e3, 48e3, 51.2e3, 96e3])
+def test_what_is_long_enough_has_a_spectrum(rate):
+    sound = np.random.default_rng(0).standard_normal(int(np.ceil(shortest(rate) * rate)))
+    numbers, _ = path_summary(sound, 2.0 * sound, rate, np.empty(0))
+    assert numbers["gain"] == pytest.approx(np.log(2.0), rel=1e-6)
 
 
 @given(off=st.floats(-0.03, 0.03), step=st.sampled_from([0.0, 6e-3]))
@@ -197,3 +206,10 @@ def test_a_settled_case_with_good_sensors_is_itself():
     ready = prepared(RIG, [even])
     assert ready.recordings[0].samples is even.samples
     assert ready.left_out == {}
+
+
+@given(size=st.floats(0.0, 1.0), slips=st.floats(40.0, 150.0))
+def test_a_run_up_shows_in_how_fast_a_torque_rises(size, slips):
+    turned = np.cumsum(STARTS["run_up"](size)) / RATE
+    run = through(8.0 + 4.0 * np.mod(slips * turned, 1.0), noise=0.005)
+    assert start_of(run) == pytest.approx(0.15 + 0.25 * size, abs=0.05)

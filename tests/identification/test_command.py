@@ -116,3 +116,29 @@ def test_a_table_beside_recordings_joins_them_and_is_held_against_the_rig(folder
     said, elsewhere = (value for _, value in found.measured)
     assert said == pytest.approx(found.number("elastomer_stiffness").value)
     assert np.isnan(elsewhere)  # no recording was made with that interference
+
+
+@pytest.mark.parametrize(
+    ("channel", "factor", "words"),
+    [
+        ("torque", 1e3, "channel torque looks like N mm, not N m"),
+        ("torque", 1e-3, "channel torque looks like kN m, not N m"),
+    ],
+)
+def test_another_unit_is_refused_before_anything_is_fitted(
+    folder, tmp_path, capsys, channel, factor, words
+):
+    import soundfile
+
+    wrong = tmp_path / "wrong"
+    shutil.copytree(folder, wrong)
+    (wrong / "slowly.wav").unlink()
+    for path in wrong.glob("run*.wav"):
+        samples, rate = soundfile.read(path, always_2d=True)
+        named = [
+            one["name"] for one in json.loads(path.with_suffix(".json").read_text())["channels"]
+        ]
+        samples[:, named.index(channel)] *= factor
+        soundfile.write(path, samples, rate, subtype="FLOAT")
+    assert main(["identify", str(wrong), "--rig", str(folder / "known.toml")]) != 0
+    assert words in capsys.readouterr().err

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from models.rig import Rig
-    from noise.diagnosis.bench.levels import Levels
+    from noise.diagnosis.bench.levels import Levels, PathFit
 
 __all__ = ["backwards", "swapped_channels", "turned_channels", "wrong_units"]
 
@@ -30,6 +30,9 @@ _OUTPUTS = ("acceleration", "pressure")
 
 _TORQUE = (1.0 / 6.0, 6.0)
 """Mean torque over the kinetic torque of the fit, whatever is missing [-]."""
+
+_FAR = ("N mm", "kN m")
+"""Units of torque that no rig is taken for, even where only its kind is known."""
 
 _GAIN = (1.0 / 30.0, 30.0)
 """Gain of a path over the rig's, whatever is missing [-]."""
@@ -96,19 +99,32 @@ def _stands_for_torque(recording: Recording, rig: Rig) -> str:
         if row is not None:
             x = np.asarray(recording.samples[row], dtype=np.float64)
             mean, spread = abs(float(x.mean())), float(x.std())
-            ramp = abs(float(x[-1] - x[0])) > 2.5 * spread
+            n = max(1, x.size // 10)
+            ramp = abs(float(x[-n:].mean() - x[:n].mean())) > 2.5 * spread
             if kinetic / 2.0 < mean < 3.0 * kinetic and spread < 0.5 * mean and not ramp:
                 found.append(kind)
     return found[0] if found and "torque" not in found else ""
 
 
-def wrong_units(levels: Sequence[Levels]) -> Iterator[str]:
-    """Say which channels read a factor too much or too little."""
+def wrong_units(levels: Sequence[Levels], *, alike: float = 1.0) -> Iterator[str]:
+    """Say which channels read a factor too much or too little.
+
+    Parameters
+    ----------
+    levels : sequence of Levels
+    alike : float
+        How many times the kinetic torque may differ from the rig's, of a unit that is thousands of
+        times another [-]: more where the rig is not known yet.
+
+    Yields
+    ------
+    str
+    """
     torque = [abs(one.torque) for one in levels if one.torque is not None]
     scale = 1.0
     if torque:
         factor = float(np.median(torque))
-        unit = unit_of("torque", factor)
+        unit = unit_of("torque", factor) or _far_unit(factor, alike) or _torque_of_paths(levels)
         if not _TORQUE[0] < factor < _TORQUE[1]:
             yield _unit_words("torque", unit, factor, "the kinetic torque of the rig file")
             scale = factor if unit else 1.0
@@ -122,12 +138,35 @@ def wrong_units(levels: Sequence[Levels]) -> Iterator[str]:
             yield _unit_words(kind, unit, factor, "what the torque makes of it on this rig")
 
 
+def _far_unit(factor: float, alike: float) -> str:
+    unit = unit_of("torque", factor, math.log(alike) + 1e-9)
+    return unit if unit in _FAR else ""
+
+
+def _torque_of_paths(levels: Sequence[Levels]) -> str:
+    """Return the unit of a torque from which both other channels follow too weakly or strongly."""
+    gains = [
+        [fit.gain for one in levels if (fit := one.paths.get((kind, kind))) and _clear(fit)]
+        for kind in _OUTPUTS
+    ]
+    if not all(gains):
+        return ""
+    middle = [-math.log(float(np.median(each))) for each in gains]
+    if abs(middle[0] - middle[1]) > _STEADY[0]:
+        return ""
+    return unit_of("torque", math.exp(sum(middle) / 2.0))
+
+
+def _clear(fit: PathFit) -> bool:
+    return min(fit.explained, abs(fit.alike)) > _ALIKE
+
+
 def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[str, float]:
     """Return the unit and the factor of a channel that has another at every condition."""
     having = [(one, p) for one in levels if (p := one.paths.get((kind, kind)))]
     least = min(2, len(having))
     clear = {k: {i: f.gain for i, one in enumerate(levels)
-                 if (f := one.paths.get((k, k))) and min(f.explained, abs(f.alike)) > _ALIKE}
+                 if (f := one.paths.get((k, k))) and _clear(f)}
              for k in _OUTPUTS}  # fmt: skip
     own = clear[kind]
     gains = [scale * np.array(list(own.values()))]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from models.errors import BushingNoiseError
 from noise.diagnosis.bench.channels import (
     backwards,
     swapped_channels,
@@ -21,12 +22,17 @@ from noise.diagnosis.bench.materials import another_level, another_material
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from models.recording import Recording
+    from models.rig import Rig
     from noise.diagnosis.case import Case
     from sim.effects.effect import Effect
 
-__all__ = ["bench_findings"]
+__all__ = ["bench_findings", "unit_findings"]
+
+_ANY_RIG = 3.0
+"""Times that the torque of a rig may differ from another's of its kind [-]."""
 
 
 def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> tuple[str, ...]:
@@ -59,3 +65,26 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
     level = another_level(levels)
     other = level or another_material(case, cache, library)
     return (other,) if other else ()
+
+
+def unit_findings(recordings: Sequence[Recording], rig: Rig) -> tuple[str, ...]:
+    """Say which channels are in another unit, of a rig of which only the kind is known.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        With known conditions.
+    rig : Rig
+        One of its kind, as that which an identification starts from.
+
+    Returns
+    -------
+    tuple of str
+        One line each; empty where none is, and where the rig cannot tell.
+    """
+    cache = TransferFunctionCache(rig)
+    try:
+        levels = [levels_of(recording, rig, cache) for recording in recordings]
+    except BushingNoiseError:  # a support that this rig has not
+        return ()
+    return tuple(text for text in wrong_units(levels, alike=_ANY_RIG) if " looks like " in text)

@@ -47,7 +47,7 @@ def local_answer(
     first: Mapping[Hypothesis, float],
     *,
     library: Mapping[str, Effect] = EFFECTS,
-    n_cases: int = 240,
+    n_cases: int = 120,
     budget_seconds: float = 30.0,
     workers: int = 2,
     seed: int = 0,
@@ -82,7 +82,8 @@ def local_answer(
     effects = sorted((c for c in single if c in EFFECTS), key=lambda c: -single[c])
     listed = {spec.name for spec in case.rig.effects}
     own = [name for name in library if name not in EFFECTS and name not in listed]
-    hypotheses = _hypotheses([*effects[:SHORTLIST], *own])
+    chosen = [*effects[:SHORTLIST], *own]
+    hypotheses = _hypotheses(chosen)
     bench = bench_of(case, table, library=library, seed=seed)
     cases = local_cases(
         bench, posterior, _wanted(hypotheses, n_cases), library=library,
@@ -94,7 +95,7 @@ def local_answer(
         np.array([one.odds for one in cases]), [one.hypothesis for one in cases], hypotheses
     )
     likelihoods = np.exp(model.log_likelihoods(posterior.log_odds(bench.table)))
-    weights = likelihoods * _prior(hypotheses, len(effects) + len(own))
+    weights = likelihoods * _prior(hypotheses, len(chosen))
     covered = sum(first.get(hypothesis, 0.0) for hypothesis in hypotheses)
     weights *= covered / weights.sum()
     rest = {hypothesis: p for hypothesis, p in first.items() if hypothesis not in hypotheses}
@@ -108,7 +109,7 @@ def _hypotheses(effects: Sequence[str]) -> tuple[Hypothesis, ...]:
 
 
 def _prior(hypotheses: Sequence[Hypothesis], n_effects: int) -> NDArray[np.float64]:
-    """Share of each hypothesis among cases as they are drawn [-]."""
+    """Share of each hypothesis among cases as they are drawn, were there only these effects [-]."""
 
     def share(hypothesis: Hypothesis) -> float:
         if hypothesis in ALONE:

@@ -75,7 +75,8 @@ def path_summary(
     -------
     numbers : dict of str to float
         By name, those of a band with its number; ratios and coherences as logarithms [-], ``delay``
-        in microseconds, ``*_at`` as logarithms of seconds or hertz.
+        in microseconds, ``*_at`` as logarithms of seconds or hertz; none of a recording that is
+        shorter than the segments by which bands are told.
     residual : ndarray, shape (n_kept,)
         Measured less predicted, without its ends [unit of the channel].
 
@@ -90,6 +91,8 @@ def path_summary(
     p, m = predicted[ends], measured[ends]
     residual = m - p
     size, frequency = segment_frequency(rate)
+    if p.size < size:
+        return {}, residual
     of_p, of_m = segment_spectra(p, size), segment_spectra(m, size)
     powers, pm = np.empty((3, frequency.size)), np.empty(frequency.size, np.complex128)
     cross_powers(of_p, of_m, powers, pm)
@@ -114,7 +117,7 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
     Returns
     -------
     dict of str to float
-        Logarithms of coherences [-].
+        Logarithms of coherences [-]; none of residuals that are shorter than a segment.
 
     Examples
     --------
@@ -123,6 +126,8 @@ def common_residual(one: NDArray[np.float64], other: NDArray[np.float64], rate: 
     True
     """
     size = 2048
+    if one.size < size:
+        return {}
     x, y = segment_spectra(one, size), segment_spectra(other, size)
     powers, xy = np.empty((3, x.shape[1])), np.empty(x.shape[1], np.complex128)
     cross_powers(x, y, powers, xy)

@@ -2,7 +2,7 @@
 
 A recording has no silence, but high above what the rig sounds at there is little else than noise
 for a few milliseconds between slips: of all short segments the quietest, in the quietest bands, in
-the quietest recordings. What bands and recordings share there is white and the sensor's.
+the quietest recordings. What bands and conditions share there is white and the sensor's.
 
 What is given up: hiss that fills all recordings alike and is no louder than a poor sensor's counts
 as the sensor's, so that white background noise is missed up to `LOUDEST` times the noise of good
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from models.condition import Condition
     from models.recording import Recording
 
 __all__ = ["LOUDEST", "estimated_noise"]
@@ -50,8 +51,9 @@ _OVERLAP = 1.94
 _FEWEST = 20
 """Segments to tell it from."""
 
-_ALIKE, _ALIKE_RECORDINGS = 1.5, 1.8
-"""White noise is the floor of two bands, and of two recordings where there are two: so many times
+_ALIKE, _ALIKE_CONDITIONS = 1.5, 1.8
+"""White noise is the floor of two bands, and of two conditions where there are two, since
+repeats sound alike: so many times
 the power of the lower at most [-]."""
 
 _ABOVE_STEP = 0.4
@@ -84,13 +86,17 @@ def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.
     >>> round(estimated_noise([run], "torque"), 3)
     0.02
     """
-    rows = [(r, row) for r in recordings if (row := r.first(kind)) is not None]
-    floors = [_floors(recording.samples[row], recording.rate) for recording, row in rows]
-    told = [found for found in floors if found is not None]
-    if not told:
-        return None
-    levels = np.sort([lower + higher for lower, higher in told if higher <= _ALIKE * lower])[:2]
-    if levels.size < min(len(told), 2) or levels[-1] > _ALIKE_RECORDINGS * levels[0]:
+    floors: dict[Condition, list[float]] = {}
+    for recording in recordings:
+        row = recording.first(kind)
+        found = None if row is None else _floors(recording.samples[row], recording.rate)
+        if found is not None:
+            lower, higher = found
+            white = higher <= _ALIKE * lower
+            power = lower + higher if white else np.inf
+            floors.setdefault(recording.condition, []).append(power)
+    levels = np.sort([min(of_condition) for of_condition in floors.values()])[:2]
+    if not levels.size or not levels[-1] <= _ALIKE_CONDITIONS * levels[0] < np.inf:
         return None
     level = float(np.sqrt(0.5 * levels.mean()))
     if level < _ABOVE_STEP * step:

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from joblib import Parallel, delayed
 
+from models.condition import known_condition
 from models.errors import BushingNoiseError
 from noise.base.progress import say
 from noise.diagnosis.cases.draw import SHARED, draw_case
 from noise.diagnosis.evidence.summary import NominalNumbers, case_table
 from noise.diagnosis.preparation.prepare import prepared
 from noise.training.causes.fit import Known, with_rows
+from sim.acquisition import Acquisition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -31,18 +33,15 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from models.sensors import Sensors
     from noise.diagnosis.cases.draw import DrawnCase
-    from noise.diagnosis.evidence.summary import CaseTable
+    from noise.diagnosis.evidence.summary import CaseTable, Numbers
 
 __all__ = ["known_cases", "known_cases_of_a_rig"]
 
-_SAME_NOISE, _SAME_SPEED = 0.2, 5e-3
+_SAME_NOISE, _SAME_SPEED = 0.2, 8e-3
 """Relative differences up to which estimates are taken for the same."""
 
 _FEWEST = 2
 """Recordings of a case."""
-
-_STEP = 0.1
-"""Grid of the lengths of recordings whose start was left out [s]."""
 
 
 def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
@@ -76,15 +75,13 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
 def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
     """Summarise a case as a user's would be, with repeats of earlier ones where these serve."""
     ready = prepared(case.rig, case.recordings)
-    recordings = [_trimmed(r, case.recordings[0].duration) for r in ready.recordings]
-    if len(recordings) < _FEWEST:
+    if len(ready.recordings) < _FEWEST:
         return None
     repeats = next((s for s in shared if s.serves(ready.rig)), None)
     if repeats is None:
-        repeats = _Shared(NominalNumbers(ready.rig))
+        repeats = _Shared(ready.rig)
         shared.append(repeats)
-    alike = [repeats.at_known_speed(recording) for recording in recordings]
-    return case_table(alike, repeats.nominal.rig, nominal=repeats.nominal)
+    return case_table(ready.recordings, repeats.rig, nominal=repeats)
 
 
 def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
@@ -97,55 +94,38 @@ def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Shared:
+class _Shared(NominalNumbers):
     """Repeats that several cases of a rig share, and the speeds that they were simulated at."""
 
-    nominal: NominalNumbers
     speeds: dict[tuple[object, ...], list[float]] = field(default_factory=dict)
 
     def serves(self, rig: Rig) -> bool:
         """Whether a rig is the same but for estimates that hardly differ."""
-        mine, other = self.nominal.rig, rig
-        return replace(other, sensors=mine.sensors) == mine and _alike(mine.sensors, other.sensors)
+        same = replace(rig, sensors=self.rig.sensors) == self.rig
+        return same and _alike(self.rig.sensors, rig.sensors)
 
-    def at_known_speed(self, recording: Recording) -> Recording:
-        """Return a recording at the speed of repeats that are there already, if one is near."""
-        c = recording.condition
-        speed = c.speed
-        if speed is None:
-            return recording
+    def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
+        """Mean and standard deviation of repeats, at a speed that is there if one is near."""
+        c = known_condition(recording.condition)
         known = self.speeds.setdefault((c.interference, c.support_stiffness), [])
-        near = min(known, key=lambda v: abs(v - speed), default=math.inf)
-        if abs(near - speed) > _SAME_SPEED * abs(speed):
-            known.append(speed)
-            return recording
-        return replace(recording, condition=replace(c, speed=near))
+        near = min(known, key=lambda v: abs(v - c.speed), default=math.inf)
+        if abs(near - c.speed) > _SAME_SPEED * abs(c.speed):
+            known.append(c.speed)
+            near = c.speed
+        return super().moments(replace(recording, condition=replace(c, speed=near)))
 
 
 def _alike(one: Sensors, other: Sensors) -> bool:
-    if one.by_kind.keys() != other.by_kind.keys():
-        return False
-    for kind, a in one.by_kind.items():
-        b = other.by_kind[kind]
-        if replace(a, noise=b.noise) != b or (a.noise is None) != (b.noise is None):
+    """Whether sensors are the same but for estimates of noise and steps that hardly differ."""
+    for kind, usual in Acquisition().noise.items():
+        a, b = one.of(kind), other.of(kind)
+        if (a.bits, a.antialias) != (b.bits, b.antialias) or not math.isclose(a.step, b.step):
             return False
-        if a.noise is not None and b.noise is not None:
-            least = 0.1 * a.step  # less than that is lost in the rounding
-            if not math.isclose(a.noise, b.noise, rel_tol=_SAME_NOISE, abs_tol=least):
-                return False
+        levels = [usual if sensor.noise is None else sensor.noise for sensor in (a, b)]
+        least = 0.1 * a.step  # less than that is lost in the rounding
+        if not math.isclose(*levels, rel_tol=_SAME_NOISE, abs_tol=least):
+            return False
     return True
-
-
-def _trimmed(recording: Recording, whole: float) -> Recording:
-    """Shorten a recording that was cut, so that others of its condition are as long.
-
-    `whole` is the length of what is not cut [s].
-    """
-    seconds = math.floor(recording.duration / _STEP) * _STEP
-    if recording.duration >= whole or seconds <= 0.0:
-        return recording
-    n = round(seconds * recording.rate)
-    return replace(recording, samples=recording.samples[:, :n])
 
 
 def _single(x: NDArray[np.float64]) -> NDArray[np.float64]:

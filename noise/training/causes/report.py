@@ -86,10 +86,10 @@ def report(posterior: Posterior, cases: Sequence[Known], left_out: Sequence[Know
 
 
 def _verdict(posterior: Posterior, case: Known) -> tuple[str, ...]:
-    probabilities = posterior.probabilities(case.table)
-    if not needs_explaining(probabilities["none"], posterior.alarm):
+    p = posterior.probabilities(case.table)
+    if not needs_explaining(p["none"], posterior.alarm):
         return ()
-    return likeliest({h: p for h, p in joint_probabilities(probabilities).items() if h})
+    return likeliest({h: x for h, x in joint_probabilities(p).items() if h})
 
 
 def _score(

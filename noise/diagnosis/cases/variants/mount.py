@@ -40,11 +40,16 @@ def _filtered(x: Array, b: Array, c: Array) -> Array:
     return np.asarray(lfilter(b, c, x, zi=lfilter_zi(b, c) * x[0])[0])
 
 
-def _moving(x: Array, rate: float, frequency: float, damping: float) -> Array:
-    """Relative motion of a mode below its base, of gain 1 far above."""
+def _mode(x: Array, rate: float, frequency: float, damping: float, numerator: list[float]) -> Array:
+    """Filter by a mode, with a numerator in falling powers of s / omega."""
     share = min(frequency / rate, 0.45)
     tuned = 0.5 / math.tan(math.pi * share)
-    return _filtered(x, *bilinear([1.0, 0.0, 0.0], [1.0, 2.0 * damping, 1.0], fs=tuned))
+    return _filtered(x, *bilinear(numerator, [1.0, 2.0 * damping, 1.0], fs=tuned))
+
+
+def _moving(x: Array, rate: float, frequency: float, damping: float) -> Array:
+    """Relative motion of a mode below its base, of gain 1 far above."""
+    return _mode(x, rate, frequency, damping, [1.0, 0.0, 0.0])
 
 
 def _mount_several(a: float, rng: Rng) -> Effect:
@@ -75,10 +80,7 @@ def _mount_absorbing(a: float, rng: Rng) -> Effect:
     frequency, damping = log_uniform(rng, 900.0, 9000.0), log_uniform(rng, 0.1, 0.6)
 
     def lost(x: Array, rate: float) -> Array:
-        share = min(frequency / rate, 0.45)
-        tuned = 0.5 / math.tan(math.pi * share)
-        band = bilinear([0.0, 2.0 * damping, 0.0], [1.0, 2.0 * damping, 1.0], fs=tuned)
-        return _filtered(x, *band)
+        return _mode(x, rate, frequency, damping, [0.0, 2.0 * damping, 0.0])
 
     return _mounts("absorbing", a, rng, lost)
 
@@ -108,10 +110,7 @@ def _mount_peak(a: float, rng: Rng) -> Effect:
     peak = log_uniform(rng, 2.0, 15.0)
 
     def lost(x: Array, rate: float) -> Array:
-        share = min(frequency / rate, 0.45)
-        tuned = 0.5 / math.tan(math.pi * share)
-        band = bilinear([0.0, 2.0 * damping, 0.0], [1.0, 2.0 * damping, 1.0], fs=tuned)
-        return -peak * _filtered(x, *band)
+        return -peak * _mode(x, rate, frequency, damping, [0.0, 2.0 * damping, 0.0])
 
     return _mounts("peak", a, rng, lost)
 

@@ -88,8 +88,9 @@ def _film_smooth(a: float, rng: Rng) -> Effect:
 
 def _film_rough(a: float, rng: Rng) -> Effect:
     """Make friction random above all (Rabinowicz 1995, on galling films)."""
-    return _film("rough", a, rng, drawn_curve(rng), ratio=(0.8, 1.3), left=(0.5, 1.0),
-                 rough=(0.05, 0.3), fixed=bool(rng.integers(2)))  # fmt: skip
+    return _film(
+        "rough", a, rng, drawn_curve(rng), ratio=(0.8, 1.3), left=(0.5, 1.0), rough=(0.05, 0.3)
+    )
 
 
 def _film_lubricating(a: float, rng: Rng) -> Effect:
