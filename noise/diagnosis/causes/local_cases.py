@@ -278,9 +278,11 @@ def _table(
     rig, chain_seed = with_offsets(bench.rig, offsets), int(rng.integers(2**31))
     rows = []
     for run in bench.runs:
+        at = (run.condition.interference, run.condition.support_stiffness)
         signals = run_signals(
-            rig, run.condition, effects, paths.of(run), run.seconds, rng, chain_seed=chain_seed
-        )
+            rig, run.condition, effects, paths.of(run), run.seconds, rng, chain_seed=chain_seed,
+            transfer_functions=paths.transfer_functions.at(*at),
+        )  # fmt: skip
         made = record(
             signals, run.rate, run.condition, rng, Scatter(),
             decimation=LEARNING.decimation(run.rate), sensors=bench.rig.sensors,
