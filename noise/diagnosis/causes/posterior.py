@@ -33,7 +33,7 @@ CAUSES = (*sorted(EFFECTS), "parameters", "unknown", "none")
 """What can be the matter."""
 
 _KIND = ModelKind(
-    "cause posterior", 2, "python -m noise.training.causes --out",
+    "cause posterior", 2, "python -m noise.training.causes train FOLDER --out",
     ("noise.diagnosis", "causes.npz"),
 )  # fmt: skip
 

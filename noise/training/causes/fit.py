@@ -33,7 +33,7 @@ __all__ = ["Known", "null_scale", "train_posterior"]
 
 N_ROUNDS = 200
 N_TREES = 80
-N_LOOKED_AT = 10_000
+N_LOOKED_AT = 6000
 """Trees, and cases at most, from which it is seen what columns tell anything."""
 
 N_COLUMNS = 700
@@ -47,7 +47,7 @@ _CERTAIN = 6.0
 FALSE_ALARMS = 0.007
 """Share of cases without a cause that may raise the alarm, at the setting."""
 
-N_SUBSETS = 2
+N_SUBSETS = 1
 """Times that each case is learned again from some of its recordings."""
 
 _FEWEST_RECORDINGS = 3
