@@ -86,7 +86,7 @@ def diagnose_case(
         from noise.diagnosis.fit.judge import judge  # answer
 
         stages = stage_findings(first.table, posterior)
-        judged = judge(case, first, stages, posterior, library, seed, tell)
+        judged = judge(case, first, stages, library, seed, tell)
         answer = _stated(case, first, judged, posterior, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
     return replace(answer, seconds=time.perf_counter() - started)
