@@ -96,7 +96,7 @@ def diagnose_case(
                 )
             )
         stages = stage_findings(first.table, nulls)
-        judged = judge(case, first, stages, posterior, library, seed, tell)
+        judged = judge(case, first, stages, library, seed, tell)
         answer = _stated(case, first, judged, nulls, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
     return replace(answer, seconds=time.perf_counter() - started)

@@ -9,7 +9,7 @@ from noise.diagnosis.causes.joint import joint_probabilities, marginals
 from noise.diagnosis.causes.unlearned import unlearned_sensors
 from noise.diagnosis.causes.verdict import likeliest, needs_explaining
 from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.gap.floor import case_gap
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from sim.constant_version import constant_version
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ class FirstAnswer:
 
     Parameters
     ----------
-    table : CaseTable
+    comparison : CaseComparison
+        With the table of the recordings, and the repeats that the gap is measured by.
     gap : Gap
     hypotheses : mapping of frozenset of str to float
         Of each set of causes, the likeliest first [-].
@@ -50,13 +51,18 @@ class FirstAnswer:
         What is said of sensors that the probabilities were not learned with.
     """
 
-    table: CaseTable
+    comparison: CaseComparison
     gap: Gap
     hypotheses: Mapping[Hypothesis, float]
     probabilities: Mapping[str, float]
     verdict: tuple[str, ...]
     suspected: tuple[str, ...]
     unlearned: tuple[str, ...]
+
+    @property
+    def table(self) -> CaseTable:
+        """Numbers of the recordings, and of simulated repeats."""
+        return self.comparison.table
 
     def with_hypotheses(self, hypotheses: Mapping[Hypothesis, float]) -> FirstAnswer:
         """Return what is said of something to explain, with other probabilities of hypotheses."""
@@ -114,7 +120,10 @@ def first_answer(
     tell("comparing the recordings with the rig file")
     table = case_table(case.recordings, case.rig, library=library, seed=seed)
     tell("measuring the gap against simulated repeats")
-    gap = case_gap(case.recordings, case.rig, library=library, seed=seed)
+    comparison = CaseComparison(
+        case.rig, case.recordings, library, table, posterior.names, posterior.scale
+    )
+    gap = comparison.gap(seed)
     known = known_effects(case.rig, library)
     probabilities = dict(posterior.probabilities(table))
     again = {name: p for name, p in probabilities.items() if name in known}
@@ -122,7 +131,7 @@ def first_answer(
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
     unlearned = unlearned_sensors(case.rig.sensors, case.recordings)
     hypotheses = joint_probabilities(probabilities)
-    silent = FirstAnswer(table, gap, hypotheses, probabilities, (), (), unlearned)
+    silent = FirstAnswer(comparison, gap, hypotheses, probabilities, (), (), unlearned)
     if not needs_explaining(probabilities["none"], posterior.alarm, gap, learned=not unlearned):
         return silent
     suspected = tuple(name for name, p in again.items() if p >= _SUSPECTED)

@@ -20,7 +20,7 @@ from models.errors import ParameterError
 from noise.diagnosis.evidence.evidence import aligned
 from noise.diagnosis.evidence.summary import same_channels, summary
 from noise.diagnosis.gap.distance import group_costs, residual_parts
-from noise.diagnosis.gap.floor import references_of
+from noise.diagnosis.gap.floor import references_of, repeat_gap
 from noise.diagnosis.gap.signature import signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.nominal import condition_key
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from noise.diagnosis.evidence.summary import CaseTable
     from noise.diagnosis.fit.forms.form import Form
-    from noise.diagnosis.gap.distance import Reference
+    from noise.diagnosis.gap.distance import Gap, Reference
     from sim.effects.effect import Effect
 
 __all__ = ["CaseComparison", "Model"]
@@ -58,8 +58,8 @@ _SLOW = ("frictional_heating", "transfer_film")
 _THREADS = 2
 """Processors that are used at once, where there are as many."""
 
-_LEAST_SEED = 100
-"""Of the repeats; below are the seeds of single runs."""
+_SEED = 100
+"""Of the repeats; conditions share no repeat's rig, which would err in all of them alike."""
 
 _SATURATION = 4.0
 """Deviations beyond so many standard deviations hardly count in `CaseComparison.residuals`."""
@@ -110,6 +110,7 @@ class CaseComparison:
     runs: ModelRuns = field(init=False)
     _threads: int = field(init=False)
     _briefly: list[Recording] = field(init=False)
+    _seeds: dict[tuple[float, ...], list[int]] = field(init=False)
     _signed: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
     _numbers: dict[object, NDArray[np.float64]] = field(init=False, default_factory=dict)
 
@@ -117,15 +118,26 @@ class CaseComparison:
         self.runs = ModelRuns(self.rig, self.library, self.forms)
         self._threads = min(_THREADS, os.cpu_count() or 1)
         self._briefly = [_brief(recording) for recording in self.recordings]
+        keys = dict.fromkeys(map(condition_key, self.recordings))
+        self._seeds = {
+            key: np.random.SeedSequence([_SEED, place]).generate_state(N_REPEATS).tolist()
+            for place, key in enumerate(keys)
+        }
         self.signatures = [signature(recording) for recording in self.recordings]
         self.references = self._references()
 
     def _references(self) -> list[Reference]:
-        repeats = {
+        return references_of(self.recordings, self.signatures, self._all_repeats())[0]
+
+    def _all_repeats(self) -> dict[tuple[float, ...], list[NDArray[np.float64]]]:
+        return {
             condition_key(r): list(self._repeats(self.about, r, N_REPEATS))
             for r in reversed(self.recordings)
         }
-        return references_of(self.recordings, self.signatures, repeats)[0]
+
+    def gap(self, seed: int = 0) -> Gap:
+        """Gap between the recordings and the rig as its file has it, as `case_gap` has it."""
+        return repeat_gap(self.recordings, self._all_repeats(), least=0.0, seed=seed)
 
     def compared_about(self, model: Model) -> CaseComparison:
         """Return the same comparison in floors that the repeats of a model tell.
@@ -310,7 +322,7 @@ class CaseComparison:
         key = (repr(model), condition_key(template), "repeats")
         known = self._signed.get(key)
         if known is None or len(known) < n:
-            seeds = range(_LEAST_SEED + (0 if known is None else len(known)), _LEAST_SEED + n)
+            seeds = self._seeds[condition_key(template)][0 if known is None else len(known) : n]
             more = self._each(lambda seed: signature(self.simulated(model, template, seed)), seeds)
             known = np.array(more if known is None else [*known, *more])
             self._signed[key] = known

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from noise.diagnosis.causes.joint import marginals, normalised
 from noise.diagnosis.causes.verdict import likeliest
 from noise.diagnosis.first_answer import known_effects
-from noise.diagnosis.fit.case_comparison import CaseComparison, Model
+from noise.diagnosis.fit.case_comparison import Model
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
 from noise.diagnosis.fit.hypothesis_fits import CaseFits, fit_hypotheses, settled, updated
 from sim.constant_version import irregular_effects
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.joint import Hypothesis
-    from noise.diagnosis.causes.posterior import Posterior
     from noise.diagnosis.findings import StageFinding
     from noise.diagnosis.first_answer import FirstAnswer
+    from noise.diagnosis.fit.case_comparison import CaseComparison
     from sim.effects.effect import Effect
 
 __all__ = ["Judged", "judge"]
@@ -60,7 +60,6 @@ def judge(
     case: Case,
     first: FirstAnswer,
     stages: Mapping[str, StageFinding],
-    posterior: Posterior,
     library: Mapping[str, Effect],
     seed: int,
     tell: Callable[[str], None],
@@ -75,15 +74,12 @@ def judge(
     case : Case
     first : FirstAnswer
     stages : mapping of str to StageFinding
-    posterior : Posterior
     library : mapping of str to Effect
     seed : int
     tell : callable
         Told what is being done.
     """
-    comparison = CaseComparison(
-        case.rig, case.recordings, library, first.table, posterior.names, posterior.scale
-    )
+    comparison = first.comparison
     fitted_to, held = map(tuple, split([r.condition for r in case.recordings]))
     known = known_effects(case.rig, library)
     always = [name for name in library if name not in EFFECTS and name not in known]
