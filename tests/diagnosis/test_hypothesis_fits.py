@@ -13,7 +13,13 @@ from noise.diagnosis.causes.verdict import likeliest
 from noise.diagnosis.findings import StageFinding
 from noise.diagnosis.fit import hypothesis_fits
 from noise.diagnosis.fit.closing_odds import closed_of, load_closing_odds, room_of
-from noise.diagnosis.fit.hypothesis_fits import CaseFits, HypothesisFit, fit_hypotheses, updated
+from noise.diagnosis.fit.hypothesis_fits import (
+    CaseFits,
+    HypothesisFit,
+    fit_hypotheses,
+    settled,
+    updated,
+)
 from sim.effects import EFFECTS
 
 NAMES = ("partial_slip", "velocity_weakening", "background_noise")
@@ -114,9 +120,14 @@ def test_a_gap_as_of_repeats_speaks_for_nothing_being_the_matter():
     assert small > large
 
 
-def test_a_fit_that_makes_it_worse_on_recordings_that_it_has_not_seen_is_not_named():
+def test_a_fit_that_makes_it_worse_hands_its_chance_to_the_unknown():
     fits = fits_of(6.0, 5.0, partial_slip=5.5, velocity_weakening=3.0)
-    assert fits.closing() == [frozenset({"velocity_weakening"})]
+    before = chances(partial_slip=0.6, velocity_weakening=0.1, unknown=0.1)
+    now = settled(before, fits)
+    assert likeliest(now, fits.of) == ("unknown",)
+    idle, unknown = frozenset({"partial_slip"}), frozenset({"unknown"})
+    assert now[unknown] == pytest.approx(before[unknown] + before[idle])
+    assert sum(now.values()) == pytest.approx(1.0)
 
 
 @pytest.fixture

@@ -59,8 +59,8 @@ def _null(index, seed, folder, brief):
         design = replace(design, conditions=design.conditions[:3], seconds=0.4)
     off = frozenset(form.effect for form, _ in design.forms)
     write_case(run_case(design, off, plain=True), folder, None)
-    rig = load_rig(folder / "rig.toml")
-    return read_case([folder], rig).recordings, rig
+    case = read_case([folder], load_rig(folder / "rig.toml"))
+    return case.recordings, case.rig
 
 
 def _p_values(count, seed, tmp_path, *, brief):

@@ -160,8 +160,8 @@ def test_over_fits_and_supports_the_second_rig_lies_within_the_floor_of_sim(tmp_
     same = {"conditions": conditions, "seconds": 0.5, "rate": 30_000, "forms": (), "offsets": {}}
     design = _Exact(**{f.name: getattr(drawn, f.name) for f in fields(drawn)} | same)
     write_case(run_case(design), tmp_path / "case", None)
-    rig = load_rig(tmp_path / "case" / "rig.toml")
-    gap = case_gap(read_case([tmp_path / "case"], rig).recordings, rig)
+    case = read_case([tmp_path / "case"], load_rig(tmp_path / "case" / "rig.toml"))
+    gap = case_gap(case.recordings, case.rig)
     assert gap.distance < 1.2
     assert gap.p_value > 0.05
 

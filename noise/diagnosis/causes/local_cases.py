@@ -30,7 +30,7 @@ from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, 
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
-from sim.timing import DIAGNOSIS
+from sim.timing import LEARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -242,7 +242,7 @@ class _Paths:
     def of(self, run: Run) -> ImpulseResponses:
         """Return the impulse responses at the condition and rate of a run."""
         at = (run.condition.interference, run.condition.support_stiffness)
-        rate = DIAGNOSIS.rate(run.rate)
+        rate = LEARNING.rate(run.rate)
         if (*at, rate) not in self._known:
             paths = chain_of(self._rig, *at, self.transfer_functions.at(*at), rate, impacts=True)
             self._known[*at, rate] = self._struck(paths, at)
@@ -278,12 +278,14 @@ def _table(
     rig, chain_seed = with_offsets(bench.rig, offsets), int(rng.integers(2**31))
     rows = []
     for run in bench.runs:
+        at = (run.condition.interference, run.condition.support_stiffness)
         signals = run_signals(
-            rig, run.condition, effects, paths.of(run), run.seconds, rng, chain_seed=chain_seed
-        )
+            rig, run.condition, effects, paths.of(run), run.seconds, rng, chain_seed=chain_seed,
+            transfer_functions=paths.transfer_functions.at(*at),
+        )  # fmt: skip
         made = record(
             signals, run.rate, run.condition, rng, Scatter(),
-            decimation=DIAGNOSIS.decimation(run.rate), sensors=bench.rig.sensors,
+            decimation=LEARNING.decimation(run.rate), sensors=bench.rig.sensors,
         )  # fmt: skip
         made = _with_kinds(made, run.kinds)
         rows.append(summary(made, bench.rig, paths.transfer_functions.whole(made)))

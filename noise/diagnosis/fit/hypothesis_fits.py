@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.fit.case_comparison import CaseComparison
     from noise.diagnosis.fit.fit_parameters import Fitted
 
-__all__ = ["CaseFits", "HypothesisFit", "fit_hypotheses", "updated"]
+__all__ = ["CaseFits", "HypothesisFit", "fit_hypotheses", "settled", "updated"]
 
 _MOST = 5
 """Fits of a diagnosis, those of the user's own effects not counted."""
@@ -83,17 +83,32 @@ class CaseFits:
     of: Mapping[Hypothesis, HypothesisFit]
 
     def held_out(self, squared: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return those of recordings that no fit has seen, in the same unit [-]."""
+        """Return what belongs to recordings that no fit has seen.
+
+        Parameters
+        ----------
+        squared : ndarray, shape (n_recordings,)
+            [-]
+
+        Returns
+        -------
+        ndarray, shape (n_held,)
+            [-]
+        """
         return squared[list(self.held)]
 
-    def closing(self) -> list[Hypothesis]:
-        """Return hypotheses that close some of what parameters leave, or all that there is.
+    def closes(self, hypothesis: Hypothesis) -> bool:
+        """Tell whether a fit leaves less than parameters do, or nothing to close.
 
-        That is on recordings that no fit has seen.
+        Either on recordings that no fit has seen, or on all of them.
         """
-        left = rms(self.held_out(self.recalibrated))
-        gaps = {h: rms(self.held_out(fit.squared)) for h, fit in self.of.items()}
-        return [h for h, gap in gaps.items() if gap < left or gap <= 1.0 + CLOSABLE]
+        after = self.of[hypothesis].squared
+        left = rms(self.held_out(after))
+        return (
+            left < rms(self.held_out(self.recalibrated))
+            or left <= 1.0 + CLOSABLE
+            or rms(after) < rms(self.recalibrated)
+        )
 
 
 def fit_hypotheses(
@@ -139,6 +154,27 @@ def fit_hypotheses(
             break
         fits = with_fit(fits, max(unfitted, key=lambda hypothesis: unfitted[hypothesis]))
     return fits
+
+
+def settled(hypotheses: Mapping[Hypothesis, float], fits: CaseFits) -> dict[Hypothesis, float]:
+    """Hand what speaks for sets of effects whose fits close nothing to the unknown.
+
+    Parameters
+    ----------
+    hypotheses : mapping of frozenset of str to float
+        As `updated` has them [-].
+    fits : CaseFits
+
+    Returns
+    -------
+    dict of frozenset of str to float
+        The likeliest first; they sum to 1 [-].
+    """
+    idle = {h for h in fits.of if not fits.closes(h)}
+    left = {h: p for h, p in hypotheses.items() if h not in idle}
+    unknown = frozenset({"unknown"})
+    lost = sum(hypotheses.get(h, 0.0) for h in idle)
+    return normalised(left | {unknown: left.get(unknown, 0.0) + lost})
 
 
 def updated(

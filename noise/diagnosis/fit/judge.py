@@ -10,7 +10,7 @@ from noise.diagnosis.causes.verdict import likeliest
 from noise.diagnosis.first_answer import known_effects
 from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
-from noise.diagnosis.fit.hypothesis_fits import CaseFits, fit_hypotheses, updated
+from noise.diagnosis.fit.hypothesis_fits import CaseFits, fit_hypotheses, settled, updated
 from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
 
@@ -99,8 +99,8 @@ def judge(
         asked = normalised({h: p for h, p in asked.items() if not h or h <= set(always)})
     fits = CaseFits(comparison, fitted_to, held, alone, before, recalibrated, {})
     fits = fit_hypotheses(fits, asked, always, stages, seed, tell)
-    hypotheses = updated(asked, fits, stages)
-    verdict = likeliest(hypotheses, fits.closing())
+    hypotheses = settled(updated(asked, fits, stages), fits)
+    verdict = likeliest(hypotheses, fits.of)
     probabilities = first.probabilities
     if first.verdict or verdict:
         single = marginals(hypotheses)

@@ -1,7 +1,8 @@
 """What is done to recordings and to the rig before they are compared.
 
-In order: the start is left out, the speed is what the angle says, and the noise and the resolution
-of sensors are taken from the recordings, where the rig file does not state them.
+In order: the start is left out, the speed is what the angle says, the noise and the resolution of
+sensors are taken from the recordings, where the rig file does not state them, and of recordings
+that are long or finely sampled a part is looked at.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.preparation.bounded import bounded
 from noise.diagnosis.preparation.measured_speed import at_measured_speeds
 from noise.diagnosis.preparation.sensors_seen import with_seen_sensors
 from noise.diagnosis.preparation.settled_part import settled_parts
@@ -72,4 +74,5 @@ def prepared(rig: Rig, recordings: Sequence[Recording]) -> Prepared:
     parts, cut, left_out = settled_parts(recordings)
     timed, turned = at_measured_speeds(parts)
     seen, sensed = with_seen_sensors(rig, timed)
-    return Prepared(seen, timed, (*cut, *turned, *sensed), left_out)
+    thinned, kept, shortened = bounded(seen, timed)
+    return Prepared(thinned, kept, (*cut, *turned, *sensed, *shortened), left_out)

@@ -1,11 +1,7 @@
 """The settled part of recordings: a start from rest, a run-up or a swing of the drive is left out.
 
-A start is a deviation of the speed from what it is later that is there at the beginning, ends, and
-is several times larger than whatever the speed does afterwards. A speed that fluctuates all the
-time therefore stays as it is, and so does a short dip in the middle. The shaft's angle tells it;
-where there is none, a torque that rises from zero tells a start from rest, and the rate of slips
-the rest. The angle is read where it crosses the steps of its converter, so that a coarse one tells
-as much as a fine one.
+What is settled stays to the bit. What is left of the rest has one of a few lengths, so that what is
+simulated for one recording serves for others, and repeats of a condition stay comparable.
 """
 
 from __future__ import annotations
@@ -19,15 +15,14 @@ import numpy as np
 from models.condition import known_condition
 from noise.diagnosis.evidence.channel_summary import segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
+from noise.diagnosis.preparation.start import start_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from models.recording import Recording
 
-__all__ = ["settled_parts", "shortest", "start_of"]
+__all__ = ["settled_parts", "shortest"]
 
 _SHORTEST = LEAD + TAIL + 0.1
 """Shorter recordings show too few cycles [s]."""
@@ -39,27 +34,6 @@ _PATH_ENDS = 0.09
 RINGING = 0.06
 """In which a clamp that rings has come to rest after the speed has [s]: three time constants of the
 thesis's, 2 J_C / c."""
-
-_BLOCK, _LAG = 5e-3, 2
-"""Of which an angle is averaged [s], and blocks to either side that a speed is the slope of."""
-
-_LATE = 0.6
-"""Share of a recording after which a start is over [-]."""
-
-_EARLY = 0.08
-"""Within which a start shows [s]; a quarter of the slowest swing of a controller and more."""
-
-_SMALLEST, _LARGER = 0.04, 4.0
-"""Deviation of the speed that is a start [-], and how many times what comes after it at least."""
-
-_OVER = 0.012
-"""Deviation of the speed that is none any more [-]."""
-
-_FEWEST_LEVELS = 8
-"""Of an angle that is read between them."""
-
-_FROM_ZERO = 0.25
-"""Share of its lowest torque later at which the torque of a shaft that starts from rest begins."""
 
 _LENGTHS = 0.05
 """Parts have lengths in such steps [s]: what is simulated for one then serves for others."""
@@ -144,78 +118,6 @@ def settled_parts(
             name = recording.name or f"recording {i + 1}"
             notes.append(f"{name}: the first {first / recording.rate:.2g} s, {why}, were left out")
     return tuple(parts), tuple(notes), refused
-
-
-def start_of(recording: Recording) -> float:
-    """Return when the shaft of a recording has come to its speed; 0 where it always has [s].
-
-    Examples
-    --------
-    >>> from models.recording import Channel, Recording
-    >>> even = np.linspace(0.0, 1.0, 30_000)[None]
-    >>> start_of(Recording(even, 30e3, (Channel("angle"),)))
-    0.0
-    """
-    row = recording.first("angle")
-    found = 0.0 if row is None else _start_by_angle(recording.samples[row], recording.rate)
-    row = recording.first("torque")
-    if row is not None:
-        found = max(found, _start_by_torque(recording.samples[row], recording.rate))
-    return found
-
-
-def _start_by_angle(angle: NDArray[np.float64], rate: float) -> float:
-    block = max(1, round(_BLOCK * rate))
-    n = angle.size // block
-    turned = angle * (1.0 if angle[-1] >= angle[0] else -1.0)
-    means = _continuous(turned)[: n * block].reshape(n, block).mean(axis=1)
-    if n < 8 * _LAG:
-        return 0.0
-    at = np.arange(n)
-    after, before = np.minimum(at + _LAG, n - 1), np.maximum(at - _LAG, 0)
-    speed = (means[after] - means[before]) / (after - before)
-    late = speed[round(_LATE * n) :].mean()
-    if late <= 0.0:
-        return 0.0
-    away = np.abs(speed / late - 1.0)
-    beyond = np.maximum.accumulate(away[::-1])[::-1]  # the largest from each block on
-    usual = beyond[round(_LATE * n)]
-    settled = int(np.argmax(beyond <= max(_OVER, 1.2 * usual)))
-    early = away[: max(1, round(_EARLY / _BLOCK))].max()
-    largest = away[:settled].max(initial=0.0)
-    limit = max(_SMALLEST, _LARGER * beyond[settled])
-    if settled == 0 or largest < limit or early < 0.5 * limit:
-        return 0.0
-    return min((settled + _LAG) * block, angle.size) / rate
-
-
-def _continuous(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angle between the steps of its converter: straight from where it crosses one to the next.
-
-    How many samples lie below a step is when it is crossed, however often noise makes it be.
-    """
-    levels, count = np.unique(angle, return_counts=True)
-    if levels.size > 0.5 * angle.size or levels.size < _FEWEST_LEVELS:
-        return angle
-    crossed = np.cumsum(count)[:-1] - 0.5
-    between = 0.5 * (levels[1:] + levels[:-1])
-    first, last = np.polyfit(crossed[:3], between[:3], 1), np.polyfit(crossed[-3:], between[-3:], 1)
-    at = np.arange(angle.size)
-    found = np.interp(at, crossed, between)
-    before, after = at < crossed[0], at > crossed[-1]
-    found[before], found[after] = np.polyval(first, at[before]), np.polyval(last, at[after])
-    return np.asarray(found)
-
-
-def _start_by_torque(torque: NDArray[np.float64], rate: float) -> float:
-    """When a torque that begins at zero has come to where it stays."""
-    turned = torque * (1.0 if torque.mean() >= 0.0 else -1.0)
-    late = turned[round(_LATE * turned.size) :]
-    lowest = float(np.quantile(late, 0.01))
-    n = max(1, round(1e-3 * rate))
-    if lowest <= 0.0 or np.abs(turned[:n]).mean() > _FROM_ZERO * lowest:
-        return 0.0
-    return float(np.argmax(turned >= lowest)) / rate
 
 
 def _n_kept(recording: Recording, start: float) -> int:

@@ -19,6 +19,7 @@ from models.condition import known_condition
 from models.sensors import Sensor
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.gap.signature import KINDS, channel_signature, joined_signature
+from noise.diagnosis.simulated.heard import chain_changes, heard_of, n_closed
 from noise.diagnosis.simulated.nominal import condition_key
 from noise.diagnosis.simulated.repeats import (
     Scatter,
@@ -27,15 +28,10 @@ from noise.diagnosis.simulated.repeats import (
     record,
     repeat_motion,
 )
-from noise.diagnosis.simulated.transfer_functions import (
-    TransferFunctionCache,
-    chain_of,
-    shift_clamp_mode,
-)
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, chain_of
 from sim.acquisition import Acquisition, decimate_sensed, digitise
-from sim.bushing import lumped_bushing
 from sim.chain import changed_chain
-from sim.pipeline import apply_sensor_effects, radiate_motion, sensor_signals
+from sim.pipeline import apply_sensor_effects, sensor_signals
 from sim.timing import DIAGNOSIS
 
 if TYPE_CHECKING:
@@ -51,9 +47,12 @@ if TYPE_CHECKING:
     from sim.motion import Motion
     from sim.pipeline import Plan
 
+    Changed = tuple[Mapping[str, NDArray[np.complex128]], ImpulseResponses | None]
+
 __all__ = ["Model", "ModelRuns", "with_effects"]
 
 T = TypeVar("T")
+
 
 _EXACT = Scatter(0.0, 0.0, 0.0)
 
@@ -119,6 +118,7 @@ class ModelRuns:
     forms: dict[tuple[str, str], Form]
     transfer_functions: TransferFunctionCache = field(init=False)
     _responses: _Cache[ImpulseResponses] = field(init=False, default_factory=lambda: _Cache())
+    _changed: _Cache[Changed] = field(init=False, default_factory=lambda: _Cache())
     _motions: _Cache[Motion] = field(init=False, default_factory=lambda: _Cache())
     _signals: _Cache[Signals] = field(init=False, default_factory=lambda: _Cache())
     _parts: _Cache[NDArray[np.float64]] = field(
@@ -248,25 +248,30 @@ class ModelRuns:
             arrays = 9 if whole else 2
             self._motions.most = int(_ROOM / (8 * arrays * (plan.n_settling + plan.n_kept)))
             motion = self._motions.get(of_motion, moved)
-            paths = self._paths(plan, impacts=bool(on_paths))
-            changed = changed_chain(paths, on_paths, np.random.default_rng(0))
-            sound = radiate_motion(motion, changed, on_paths)
+            changes, paths = self._changes(plan, on_paths)
+            at_condition = self.transfer_functions.at(plan.interference, plan.support_stiffness)
+            sound = heard_of(motion, plan, self.rig, at_condition, changes, paths, on_paths)
             return sensor_signals(motion, sound, plan.n_settling)
 
         return key, self._signals.get(key, radiated)
 
-    def _paths(self, plan: Plan, *, impacts: bool) -> ImpulseResponses:
-        """Impulse responses of the rig, the clamp's mode where a plan's rig has it."""
-        at = (plan.interference, plan.support_stiffness)
-        lumped = lumped_bushing(plan.rig, *at)
+    def _changes(self, plan: Plan, effects: Sequence[ActiveEffect]) -> Changed:
+        """Tell what effects change about the ways from the torque, and the ways of pulses."""
+        if not effects:
+            return {}, None
+        at, length = (plan.interference, plan.support_stiffness), n_closed(plan)
 
-        def made() -> ImpulseResponses:
-            plain = lumped_bushing(self.rig, *at)
-            nominal = self.transfer_functions.at(*at)
-            shifted = {name: shift_clamp_mode(h, plain, lumped) for name, h in nominal.items()}
-            return chain_of(self.rig, *at, shifted, plan.rate, impacts=impacts)
+        def made() -> Changed:
+            plain = self._responses.get(
+                (*at, plan.rate),
+                lambda: chain_of(
+                    self.rig, *at, self.transfer_functions.at(*at), plan.rate, impacts=True
+                ),
+            )
+            changed = changed_chain(plain, effects, np.random.default_rng(0))
+            return chain_changes(plain, changed, length), changed
 
-        return self._responses.get((*at, plan.rate, impacts, repr(lumped)), made)
+        return self._changed.get((*at, plan.rate, length, _key(effects)), made)
 
 
 def _sensed_of(motion: Motion) -> Motion:

@@ -15,6 +15,7 @@ import numpy as np
 from models.condition import known_condition
 from models.sensors import Sensor
 from noise.diagnosis.evidence.reconstruction import closed_spectrum
+from noise.diagnosis.simulated.heard import faded
 from noise.diagnosis.simulated.repeats import (
     CHANNELS,
     Scatter,
@@ -55,9 +56,6 @@ _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""
 
 _OUTPUTS = ("acceleration", "pressure")
-
-_FADE = 0.1
-"""In which a torque fades in and out [s], outside of the recording."""
 
 
 def nominal_recordings(
@@ -219,18 +217,4 @@ def _with_effects(
 
 def _steadied(torque: NDArray[np.float64], kept: slice, rate: float) -> NDArray[np.float64]:
     mean = torque[kept].mean()
-    return np.asarray(mean + _faded(torque - mean, rate))
-
-
-def _faded(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Fade in and out.
-
-    Errors of a measured response have it ring before and after whatever is sudden, for as long as
-    its lines are fine. What rings on from before a recording must be in it, but the start from rest
-    and the end of the simulation must not.
-    """
-    n = round(_FADE * rate)
-    slope = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, n))
-    gain = np.ones(signal.size)
-    gain[:n], gain[-n:] = slope, slope[::-1]
-    return np.asarray(signal * gain)
+    return np.asarray(mean + faded(torque - mean, rate))

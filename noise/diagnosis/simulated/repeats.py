@@ -16,6 +16,7 @@ import numpy as np
 
 from models.recording import Channel, Recording
 from models.sensors import Sensors
+from noise.diagnosis.simulated.heard import chain_changes, heard_of, n_closed
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.chain import changed_chain
 from sim.effects.effect import activated
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from models.condition import Condition, KnownCondition
     from models.radiation.impulse_responses import ImpulseResponses
     from models.rig import Fit, Rig
+    from models.transfer_functions.transfer_function import TransferFunction
     from sim.effects.effect import ActiveEffect
     from sim.motion import Motion
 
@@ -228,6 +230,7 @@ def run_signals(
     *,
     chain_seed: int = 0,
     scatter: Scatter | None = None,
+    transfer_functions: Mapping[str, TransferFunction] | None = None,
 ) -> dict[str, NDArray[np.float64]]:
     """Run a rig as one of its runs finds it.
 
@@ -244,6 +247,8 @@ def run_signals(
     chain_seed : int
         Of effects that change the chain by chance: one structure for all runs.
     scatter : Scatter, optional
+    transfer_functions : mapping of str to TransferFunction, optional
+        What the responses of `chain` were made of; where given the torque goes through these.
 
     Returns
     -------
@@ -259,7 +264,11 @@ def run_signals(
     plan = plan_repeat(once, at, effects, rate=chain.rate, seconds=seconds)
     motion = repeat_motion(plan, rng)
     changed = changed_chain(chain, effects, np.random.default_rng(chain_seed))
-    sound = radiate_motion(motion, changed, effects)
+    if transfer_functions is None:
+        sound = radiate_motion(motion, changed, effects)
+    else:
+        changes = chain_changes(chain, changed, n_closed(plan))
+        sound = heard_of(motion, plan, rig, transfer_functions, changes, changed, effects)
     signals = sensor_signals(motion, sound, plan.n_settling)
     return apply_sensor_effects(signals, effects, chain.rate, rng)
 

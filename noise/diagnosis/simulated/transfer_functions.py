@@ -220,6 +220,7 @@ def predict_outputs(
     n: int,
     rate: float,
     transfer_functions: Mapping[str, TransferFunction],
+    changes: Mapping[str, NDArray[np.complex128]] | None = None,
 ) -> dict[str, NDArray[np.float64]]:
     """Send a torque through several transfer functions, as `predict` does through one.
 
@@ -233,6 +234,8 @@ def predict_outputs(
         Sampling rate [Hz].
     transfer_functions : mapping of str to TransferFunction
         From N m.
+    changes : mapping of str to ndarray of complex, shape (n_lines,), optional
+        What is added to some of them, at the lines of `spectrum` [output unit per N m].
 
     Returns
     -------
@@ -248,10 +251,10 @@ def predict_outputs(
     >>> bool(np.allclose(found["pressure"], predict(tone, 8e3, double)))
     True
     """
-    length = closed_length(n, rate)
+    length, changes = closed_length(n, rate), changes or {}
     outputs = [
-        spectrum * _on_lines(_Same(transfer), length, rate)
-        for transfer in transfer_functions.values()
+        spectrum * (_on_lines(_Same(transfer), length, rate) + changes.get(name, 0.0))
+        for name, transfer in transfer_functions.items()
     ]
     rows = irfft(np.stack(outputs), length, axis=1)[:, :n] if outputs else ()
     return dict(zip(transfer_functions, rows, strict=True))
@@ -270,7 +273,7 @@ class _Same:
         return id(self.it)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def _on_lines(same: _Same, length: int, rate: float) -> NDArray[np.complex128]:
     """Response at the lines of a transform; the same few are asked for again and again."""
     frequencies = np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)

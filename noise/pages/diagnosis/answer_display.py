@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.text.found import finding_of, parameter_name, stage_of_effect
 from noise.diagnosis.text.sentences import closed_words
+from noise.diagnosis.text.verdict_sentences import is_named
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     STAGES,
@@ -134,7 +135,8 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
     [('drive', '1.04'), ('friction', 'not determined')]
     """
     boxes = []
-    acting = {name: stage_of_effect(diagnosis, name) for name in diagnosis.verdict}
+    named = diagnosis.verdict if is_named(diagnosis) else ()
+    acting = {name: stage_of_effect(diagnosis, name) for name in named}
     for name, what in STAGES.items():
         finding = diagnosis.stages.get(name)
         p_value = math.nan if finding is None else finding.p_value
@@ -277,7 +279,7 @@ def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
         stage="" if beside else stage_of_effect(diagnosis, name),
         probability=probability,
         chance=percent(probability),
-        named=name in diagnosis.verdict or (name == "none" and not diagnosis.verdict),
+        named=name in (diagnosis.verdict or ("none",)) and is_named(diagnosis),
         closed="" if beside else closed_words(finding),
         by_effect=percent(None if finding is None else finding.closed_by_effect),
         strength="" if beside or finding is None else _strength(finding),

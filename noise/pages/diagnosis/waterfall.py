@@ -104,6 +104,8 @@ def waterfall(diagnosis: Diagnosis) -> Waterfall | None:
     ):  # fmt: skip
         bars.append(_step(_effect_label(diagnosis, fitted), gap, fitted.gap_after))
         gap, closed = fitted.gap_after, closed_sentence(fitted)
+        if diagnosis.verdict == ("unknown",):
+            closed = closed.replace("The fit closes", "The best fit that was tried closes", 1)
     if len(bars) > 1:
         bars.append(Bar("what is left", 0.0, gap, "left", f"{gap:.2f}"))
     top = 1.04 * max(floor, *(bar.high for bar in bars))

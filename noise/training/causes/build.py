@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from joblib import Parallel, delayed
 
+from models.condition import known_condition
 from models.errors import BushingNoiseError
 from noise.base.progress import say
 from noise.diagnosis.cases.draw import SHARED, draw_case
@@ -32,11 +33,11 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from models.sensors import Sensors
     from noise.diagnosis.cases.draw import DrawnCase
-    from noise.diagnosis.evidence.summary import CaseTable
+    from noise.diagnosis.evidence.summary import CaseTable, Numbers
 
 __all__ = ["known_cases", "known_cases_of_a_rig"]
 
-_SAME_NOISE, _SAME_SPEED = 0.2, 5e-3
+_SAME_NOISE, _SAME_SPEED = 0.2, 8e-3
 """Relative differences up to which estimates are taken for the same."""
 
 _FEWEST = 2
@@ -78,10 +79,9 @@ def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
         return None
     repeats = next((s for s in shared if s.serves(ready.rig)), None)
     if repeats is None:
-        repeats = _Shared(NominalNumbers(ready.rig))
+        repeats = _Shared(ready.rig)
         shared.append(repeats)
-    alike = [repeats.at_known_speed(recording) for recording in ready.recordings]
-    return case_table(alike, repeats.nominal.rig, nominal=repeats.nominal)
+    return case_table(ready.recordings, repeats.rig, nominal=repeats)
 
 
 def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
@@ -94,29 +94,25 @@ def known_cases(seeds: range, workers: int = 1) -> Iterator[Known]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Shared:
+class _Shared(NominalNumbers):
     """Repeats that several cases of a rig share, and the speeds that they were simulated at."""
 
-    nominal: NominalNumbers
     speeds: dict[tuple[object, ...], list[float]] = field(default_factory=dict)
 
     def serves(self, rig: Rig) -> bool:
         """Whether a rig is the same but for estimates that hardly differ."""
-        mine, other = self.nominal.rig, rig
-        return replace(other, sensors=mine.sensors) == mine and _alike(mine.sensors, other.sensors)
+        same = replace(rig, sensors=self.rig.sensors) == self.rig
+        return same and _alike(self.rig.sensors, rig.sensors)
 
-    def at_known_speed(self, recording: Recording) -> Recording:
-        """Return a recording at the speed of repeats that are there already, if one is near."""
-        c = recording.condition
-        speed = c.speed
-        if speed is None:
-            return recording
+    def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
+        """Mean and standard deviation of repeats, at a speed that is there if one is near."""
+        c = known_condition(recording.condition)
         known = self.speeds.setdefault((c.interference, c.support_stiffness), [])
-        near = min(known, key=lambda v: abs(v - speed), default=math.inf)
-        if abs(near - speed) > _SAME_SPEED * abs(speed):
-            known.append(speed)
-            return recording
-        return replace(recording, condition=replace(c, speed=near))
+        near = min(known, key=lambda v: abs(v - c.speed), default=math.inf)
+        if abs(near - c.speed) > _SAME_SPEED * abs(c.speed):
+            known.append(c.speed)
+            near = c.speed
+        return super().moments(replace(recording, condition=replace(c, speed=near)))
 
 
 def _alike(one: Sensors, other: Sensors) -> bool:

@@ -31,8 +31,8 @@ def gap_from_rig_file(case: Case) -> float:
         warnings.simplefilter("ignore")  # of bands that a measured response does not reach
         folder = Path(away) / "case"
         write_case(case, folder, None)
-        rig = load_rig(folder / "rig.toml")
-        return case_gap(read_case([folder], rig).recordings, rig).distance
+        read = read_case([folder], load_rig(folder / "rig.toml"))
+        return case_gap(read.recordings, read.rig).distance
 
 
 def floors_of(answer: dict) -> dict:
