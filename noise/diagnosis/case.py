@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from models.condition import KnownCondition, same_support
+from models.condition import known_condition, same_support
 from models.errors import BushingNoiseError, ParameterError
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
+from noise.diagnosis.bench.units import length_unit
 from noise.diagnosis.preparation.prepare import prepared
 from noise.diagnosis.preparation.settled_part import shortest
+from noise.diagnosis.unstated.conditions import with_told_conditions
 from noise.recordings import find_recordings, read_recording
 
 if TYPE_CHECKING:
@@ -110,8 +112,8 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
 def usable(recording: Recording, rig: Rig) -> Recording:
     """Return a recording as the diagnosis can use it.
 
-    A speed that was not stated is taken from the angle; interference and support may be left out
-    where the rig has only one.
+    What its condition does not state is taken from angle and torque, where these tell it, and
+    interference and support where the rig has only one.
 
     Raises
     ------
@@ -130,42 +132,21 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     least = shortest(recording.rate)
     if recording.duration < least:
         raise ParameterError(f"lasts {recording.duration:.3g} s; {least:.3g} s at least")
-    condition = recording.condition
-    speed = condition.speed
-    row = recording.first("angle")
-    if speed is None and row is not None:
-        angle = recording.samples[row]
-        speed = float(angle[-1] - angle[0]) / recording.duration
-    if not speed:
-        raise ParameterError(
-            "states no speed and has no turning angle; give speed_rad_s under conditions of the "
-            "sidecar"
-        )
-    interference = condition.interference
-    if interference is None and len(rig.fits) == 1:
-        interference = rig.fits[0].interference
-    if interference is None:
-        raise ParameterError("states no interference_mm, and the rig file has several fits")
+    recording = with_told_conditions(recording, rig)
+    condition = known_condition(recording.condition)
+    interference, support = condition.interference, condition.support_stiffness
     low, high = rig.interference_range
     if not low * (1.0 - _SAME) <= interference <= high * (1.0 + _SAME):
+        unit = length_unit(interference, low, high)
+        asked = f"; is it in {unit}?" if unit else ""
         raise ParameterError(
             f"interference_mm = {1e3 * interference:g} lies outside the fits of the rig file, "
-            f"{1e3 * low:g} to {1e3 * high:g}"
+            f"{1e3 * low:g} to {1e3 * high:g}{asked}"
         )
-    support = condition.support_stiffness
-    if support is None and len(rig.measured) == 1:
-        support = rig.measured[0].support_stiffness
-    if support is None:
-        raise ParameterError("states no support_stiffness_Nm_rad, of which there may be several")
     known = [m.support_stiffness for m in rig.measured]
     if known and not any(same_support(support, k) for k in known):
         raise ParameterError(
             f"support_stiffness_Nm_rad = {support:g} has no measured_response in the rig file; "
             f"it has {', '.join(f'{k:g}' for k in known)}"
         )
-    return replace(
-        recording,
-        condition=KnownCondition(
-            speed, interference, support, condition.material, condition.temperature
-        ),
-    )
+    return replace(recording, condition=condition)

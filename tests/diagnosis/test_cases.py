@@ -115,9 +115,12 @@ def test_a_file_that_is_no_recording_is_refused_and_the_rest_diagnosed(
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda r: _without(only(r, "torque", "pressure"), speed=None), "speed_rad_s"),
+        (lambda r: _without(only(r, "pressure"), speed=None), "speed_rad_s"),
         (lambda r: _without(r, speed=0.0, support_stiffness=None), "speed"),
-        (lambda r: _without(r, support_stiffness=None), "support_stiffness_Nm_rad"),
+        (
+            lambda r: _without(only(r, "pressure"), support_stiffness=None),
+            "support_stiffness_Nm_rad",
+        ),
         (lambda r: only(r, "angle"), "no channel of torque"),
         (lambda r: replace(r, samples=r.samples[:, :1500]), "lasts"),
         (lambda r: replace(r, rate=4e3), "4000 Hz"),
@@ -136,8 +139,7 @@ def test_what_a_recording_lacks_is_said(recordings, change, said):
 
 def test_without_conditions_nothing_is_diagnosed(recordings, tmp_path, capsys):
     plain = [
-        _without(only(r, "torque", "pressure"), speed=None, interference=None,
-                 support_stiffness=None)
+        _without(only(r, "pressure"), speed=None, interference=None, support_stiffness=None)
         for r in recordings
     ]  # fmt: skip
     data, rig = write_case(tmp_path, plain)

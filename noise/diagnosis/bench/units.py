@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["factor_words", "unit_of"]
+__all__ = ["factor_words", "length_unit", "unit_of"]
 
 _EXACT = 0.16
 """Difference of logarithms up to which a factor is that of a unit [-]; gains err by as much."""
@@ -44,6 +44,30 @@ def unit_of(kind: str, factor: float, within: float = _EXACT) -> str:
     found = {abs(math.log(factor / f)): unit for f, unit in _UNITS[kind].items()}
     nearest = min(found)
     return found[nearest] if nearest <= within else ""
+
+
+def length_unit(stated: float, low: float, high: float) -> str:
+    """Return the unit in which a length was stated that is far from all that it can be.
+
+    Parameters
+    ----------
+    stated, low, high : float
+        The length, and between which it can be [m].
+
+    Returns
+    -------
+    str
+        Empty where no unit makes it one.
+
+    Examples
+    --------
+    >>> length_unit(0.279e-6, 0.178e-3, 0.381e-3), length_unit(0.5e-3, 0.178e-3, 0.381e-3)
+    ('m', '')
+    """
+    units = {"m": 1e3, "um": 1e-3, "inches": 25.4, "cm": 10.0}
+    return next(
+        (unit for unit, x in units.items() if low <= x * stated * 1.001 <= high * 1.002), ""
+    )
 
 
 def factor_words(factor: float) -> str:
