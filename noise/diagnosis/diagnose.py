@@ -44,6 +44,10 @@ _SHOWN = 5
 """Effects that are listed at least, and hypotheses."""
 
 
+_AS_REPEATS = 0.5
+"""p-value from which on a stage differs as repeats do."""
+
+
 def diagnose_case(
     case: Case,
     *,
@@ -114,6 +118,8 @@ def _stated(
     findings = stage_findings(first.table, nulls)
     ranked = [name for name in _ranked(probabilities) if name in library]
     stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
+    if stage is not None and findings[stage].p_value >= _AS_REPEATS:
+        stage = None  # it shows elsewhere
     place = locate(first.table, nulls, stage)
     return Diagnosis(
         verdict=verdict,

@@ -24,7 +24,7 @@ SHOWN_IN = {
     "friction": ("friction",),
     "structure": ("structure",),
     "radiation": ("radiation",),
-    "measurement": ("measurement", "structure", "radiation"),
+    "measurement": ("measurement", "friction", "structure", "radiation"),
 }
 """Stages that an effect of each stage may show in: a shaft's motion hangs together with the
 contact, and an error of a sensor looks like one of the way to it."""

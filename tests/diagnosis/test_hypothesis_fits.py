@@ -157,6 +157,13 @@ def test_the_likeliest_is_fitted_first_and_no_more_once_it_closes(closed):
     assert fitted == [frozenset({"partial_slip"})]
 
 
+def test_nothing_is_added_to_what_closes_all(closed):
+    closed[0][frozenset({"partial_slip"})] = 1.0
+    two = {"partial_slip_and_velocity_weakening": 0.25}
+    _, fitted = tried(closed, chances(partial_slip=0.65, unknown=0.05, **two))
+    assert fitted == [frozenset({"partial_slip"})]
+
+
 def test_others_are_fitted_where_the_likeliest_closes_nothing(closed):
     _, fitted = tried(closed, chances(partial_slip=0.6, velocity_weakening=0.3, unknown=0.04))
     assert fitted == [frozenset({"partial_slip"}), frozenset({"velocity_weakening"})]

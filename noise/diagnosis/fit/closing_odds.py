@@ -88,8 +88,11 @@ class ClosingOdds:
         total = weights["room"] * room_of(recalibrated)
         total += weights["closed"] * closed_of(recalibrated, after)
         total += weights["stage"] * (min(stages, default=1.0) - 1.0)
-        further = [weights["more"] + weights["closed"] * closed_of(g, after) for g in without_some]
-        return total + min([0.0, *further])
+        return total + min([0.0, *(self.of_more(gap, after) for gap in without_some)])
+
+    def of_more(self, before: float, after: float) -> float:
+        """Logarithm of the ratio [-], 0 at most, for more effects than leave a gap [floors]."""
+        return min(0.0, self.effects["more"] + self.effects["closed"] * closed_of(before, after))
 
 
 def room_of(gap: float) -> float:

@@ -37,6 +37,9 @@ _MOST = 5
 _ENOUGH = 0.9
 """Probability of what was fitted, or needs no fit, from which on no more is fitted."""
 
+_LIKELY = 0.05
+"""Probability of a hypothesis that is worth a fit."""
+
 _NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *(frozenset({name}) for name in ALONE))
 
 
@@ -151,9 +154,10 @@ def fit_hypotheses(
     for _ in range(_MOST):
         now = updated(hypotheses, fits, stages)
         unfitted = {h: p for h, p in now.items() if h not in fits.of and h not in _NO_FIT}
-        if sum(unfitted.values()) < 1.0 - _ENOUGH:
+        next_one = max(unfitted, key=lambda hypothesis: unfitted[hypothesis], default=frozenset())
+        if sum(unfitted.values()) < 1.0 - _ENOUGH or unfitted[next_one] < _LIKELY:
             break
-        fits = with_fit(fits, max(unfitted, key=lambda hypothesis: unfitted[hypothesis]))
+        fits = with_fit(fits, next_one)
     return fits
 
 
@@ -210,8 +214,9 @@ def updated(
             return odds.of_parameters(gap, left)
         if hypothesis == {"unknown"}:
             return 0.0
-        if hypothesis not in gaps:  # with more beside it, what closes would close as well
-            return max([0.0, *(ratio(other) for other in gaps if other < hypothesis)])
+        if hypothesis not in gaps:  # more beside what closes can close no more than that leaves
+            fewer = [other for other in gaps if other < hypothesis]
+            return max([0.0, *(ratio(other) + odds.of_more(gaps[other], 1.0) for other in fewer)])
         shown = [SHOWN_IN[library[name].stage.value] for name in hypothesis]
         return odds.of_effects(
             left,
