@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 __all__ = ["LONGEST", "Bench", "LocalCase", "Run", "bench_of", "local_cases"]
 
 LONGEST = 1.0
-"""Of a recording that is looked at [s]: longer ones are cut, since as much has to be simulated."""
+"""Of the end of a recording that is looked at [s]: as much has to be simulated many times."""
 
 WEAKEST = 0.1
 """Least strength of an effect: weaker ones are mostly not seen, and so tell nothing."""
@@ -347,7 +347,7 @@ def _cut(recording: Recording) -> Recording:
     n = round(LONGEST * recording.rate)
     if recording.samples.shape[1] <= n:
         return recording
-    return replace(recording, samples=recording.samples[:, :n])
+    return replace(recording, samples=recording.samples[:, -n:])
 
 
 def _with_kinds(recording: Recording, kinds: Sequence[str]) -> Recording:
