@@ -18,6 +18,7 @@ from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.causes.stage_nulls import load_stage_nulls
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
 from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import first_answer
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
+    from noise.diagnosis.causes.stage_nulls import StageNulls
     from noise.diagnosis.first_answer import FirstAnswer
     from noise.diagnosis.fit.judge import Judged
     from noise.diagnosis.gap.distance import Gap
@@ -77,17 +79,25 @@ def diagnose_case(
     found = bench_findings(case, library)
     if found:
         return _unlike(case, found, library, time.perf_counter() - started)
-    posterior = posterior or load_posterior()
+    posterior, nulls = posterior or load_posterior(), load_stage_nulls()
     first = first_answer(case, library, posterior, seed, tell)
     if quick:
-        answer = _stated(case, first, first, posterior, library)
+        answer = _stated(case, first, first, nulls, library)
     else:
+        from noise.diagnosis.causes.hypotheses import local_answer
         from noise.diagnosis.fit.fits import add_fits  # loads the classifier; no part of a quick
         from noise.diagnosis.fit.judge import judge  # answer
 
-        stages = stage_findings(first.table, posterior)
+        if first.verdict:
+            tell("simulating this rig with each likely cause")
+            first = first.with_hypotheses(
+                local_answer(
+                    case, first.table, posterior, first.hypotheses, library=library, seed=seed
+                )
+            )
+        stages = stage_findings(first.table, nulls)
         judged = judge(case, first, stages, library, seed, tell)
-        answer = _stated(case, first, judged, posterior, library)
+        answer = _stated(case, first, judged, nulls, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
     return replace(answer, seconds=time.perf_counter() - started)
 
@@ -96,15 +106,15 @@ def _stated(
     case: Case,
     first: FirstAnswer,
     judged: FirstAnswer | Judged,
-    posterior: Posterior,
+    nulls: StageNulls,
     library: Mapping[str, Effect],
 ) -> Diagnosis:
     """State a verdict: where it lies, what else it could be, what to measure next."""
     verdict, probabilities = judged.verdict, judged.probabilities
-    findings = stage_findings(first.table, posterior)
+    findings = stage_findings(first.table, nulls)
     ranked = [name for name in _ranked(probabilities) if name in library]
     stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
-    place = locate(first.table, posterior, stage)
+    place = locate(first.table, nulls, stage)
     return Diagnosis(
         verdict=verdict,
         equivalent=equivalent_pairs(ranked, probabilities, _kinds(case)),
@@ -129,7 +139,7 @@ def _stated(
             *first.unlearned,
             *case_remarks(case, library),
         ),
-        differences=differences(first.table, posterior),
+        differences=differences(first.table, nulls),
         hypotheses=tuple(
             HypothesisFinding(tuple(sorted(hypothesis)), p)
             for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from noise.diagnosis.causes.joint import joint_probabilities, marginals
@@ -64,6 +64,16 @@ class FirstAnswer:
         """Numbers of the recordings, and of simulated repeats."""
         return self.comparison.table
 
+    def with_hypotheses(self, hypotheses: Mapping[Hypothesis, float]) -> FirstAnswer:
+        """Return what is said of something to explain, with other probabilities of hypotheses."""
+        single = marginals(hypotheses)
+        return replace(
+            self,
+            hypotheses=hypotheses,
+            probabilities={n: single.get(n, 0.0) for n in {**self.probabilities, **single}},
+            verdict=likeliest({h: p for h, p in hypotheses.items() if h}),
+        )
+
 
 def known_effects(rig: Rig, library: Mapping[str, Effect]) -> set[str]:
     """Name the effects of a rig file that are not proposed again.
@@ -121,10 +131,8 @@ def first_answer(
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
     unlearned = unlearned_sensors(case.rig.sensors, case.recordings)
     hypotheses = joint_probabilities(probabilities)
-    verdict: tuple[str, ...] = ()
-    if needs_explaining(probabilities["none"], posterior.alarm, gap, learned=not unlearned):
-        verdict = likeliest({h: p for h, p in hypotheses.items() if h})
-        single = marginals(hypotheses)
-        probabilities = {name: single.get(name, 0.0) for name in probabilities}
-    suspected = tuple(name for name, p in again.items() if verdict and p >= _SUSPECTED)
-    return FirstAnswer(comparison, gap, hypotheses, probabilities, verdict, suspected, unlearned)
+    silent = FirstAnswer(comparison, gap, hypotheses, probabilities, (), (), unlearned)
+    if not needs_explaining(probabilities["none"], posterior.alarm, gap, learned=not unlearned):
+        return silent
+    suspected = tuple(name for name, p in again.items() if p >= _SUSPECTED)
+    return replace(silent, suspected=suspected).with_hypotheses(hypotheses)

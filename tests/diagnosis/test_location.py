@@ -7,23 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from noise.diagnosis.causes.location import (
+from noise.diagnosis.causes.location import differences, locate, stage_findings
+from noise.diagnosis.causes.stage_nulls import (
     STAGES,
-    differences,
-    locate,
-    null_maxima,
-    stage_findings,
+    learn_stage_nulls,
+    load_stage_nulls,
     stage_of,
 )
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
 from sim.effects import EFFECTS
-from tests.helpers.made_posteriors import MOVES, NAMES, made_posterior, made_table
+from tests.helpers.made_posteriors import MOVES, NAMES, made_nulls, made_table
 from tests.helpers.small_rigs import table_of
 
 
 @pytest.fixture(scope="module")
-def posterior():
-    return made_posterior()
+def nulls():
+    return made_nulls()
 
 
 def _table(changes, speeds=(1.0, 2.0, 3.0, 4.0)):
@@ -34,8 +33,8 @@ def _table(changes, speeds=(1.0, 2.0, 3.0, 4.0)):
 
 
 @pytest.mark.parametrize(("cause", "names"), MOVES.items())
-def test_the_stage_is_that_of_the_cause(posterior, cause, names):
-    findings = stage_findings(_table(dict.fromkeys(names, 15.0)), posterior)
+def test_the_stage_is_that_of_the_cause(nulls, cause, names):
+    findings = stage_findings(_table(dict.fromkeys(names, 15.0)), nulls)
     assert tuple(findings) == STAGES
     worst = max(findings, key=lambda stage: findings[stage].gap)
     assert worst == EFFECTS[cause].stage.value
@@ -44,9 +43,9 @@ def test_the_stage_is_that_of_the_cause(posterior, cause, names):
     assert sum(f.share for f in findings.values()) == pytest.approx(1.0)
 
 
-def test_without_a_difference_no_stage_stands_out(posterior):
+def test_without_a_difference_no_stage_stands_out(nulls):
     rng = np.random.default_rng(77)
-    p = [f.p_value for _ in range(40) for f in stage_findings(made_table(rng), posterior).values()]
+    p = [f.p_value for _ in range(40) for f in stage_findings(made_table(rng), nulls).values()]
     # five looks a case, all of them corrected: at most that share of cases below 0.2 or so
     assert np.mean(np.array(p).reshape(40, -1).min(axis=1) < 0.2) < 0.4
     assert max(p) <= 1.0
@@ -64,8 +63,8 @@ def test_without_a_difference_no_stage_stands_out(posterior):
         ("angle_speed_spread", ("angle",), None, "all"),
     ],
 )
-def test_channel_band_and_phase_are_those_of_the_number(posterior, name, channels, band, phase):
-    found = locate(_table({name: 20.0}), posterior)
+def test_channel_band_and_phase_are_those_of_the_number(nulls, name, channels, band, phase):
+    found = locate(_table({name: 20.0}), nulls)
     assert found.stage == stage_of(name)
     assert found.channels == channels
     assert band is None or found.band == pytest.approx(band)
@@ -73,35 +72,54 @@ def test_channel_band_and_phase_are_those_of_the_number(posterior, name, channel
     assert found.conditions == "all"
 
 
-def test_a_stage_that_is_named_is_looked_at_alone(posterior):
+def test_a_stage_that_is_named_is_looked_at_alone(nulls):
     table = _table({"pressure_gain_9": 30.0, "contact_creep_up_4": 10.0})
-    assert locate(table, posterior).stage == "radiation"
-    inside = locate(table, posterior, "friction")
+    assert locate(table, nulls).stage == "radiation"
+    inside = locate(table, nulls, "friction")
     assert (inside.stage, inside.channels, inside.phase) == ("friction", ("torque",), "stick")
 
 
-def test_what_shows_at_speed_alone_is_said_to(posterior):
+def test_what_shows_at_speed_alone_is_said_to(nulls):
     measured = np.random.default_rng(3).normal(size=(4, len(NAMES)))
     column = NAMES.index("contact_law_down_3")
     measured[:, column] = [0.1, -0.1, 30.0, 34.0]
     fast = table_of(NAMES, measured, speeds=[1.0, 2.0, 4.0, 5.0])
-    assert locate(fast, posterior).conditions == "speed_rad_s >= 3"
+    assert locate(fast, nulls).conditions == "speed_rad_s >= 3"
     slow = table_of(NAMES, measured, speeds=[5.0, 4.0, 2.0, 1.0])
-    assert locate(slow, posterior).conditions == "speed_rad_s < 3"
+    assert locate(slow, nulls).conditions == "speed_rad_s < 3"
 
 
 def test_the_null_is_the_largest_of_each_case_in_order():
     rng = np.random.default_rng(4)
     tables = [made_table(rng) for _ in range(30)]
-    null = null_maxima(tables, NAMES, np.ones(len(NAMES)))
-    assert null.shape == (30, len(STAGES))
-    assert (np.diff(null, axis=0) >= 0).all()
-    assert (null >= 0).all()
+    largest = learn_stage_nulls(tables, NAMES, np.ones(len(NAMES))).largest
+    assert largest.shape == (30, len(STAGES))
+    assert (np.diff(largest, axis=0) >= 0).all()
+    assert (largest >= 0).all()
 
 
-def test_a_stage_without_numbers_has_no_gap(posterior):
+def test_a_number_with_a_long_tail_does_not_hide_the_others_of_its_stage():
+    rng = np.random.default_rng(4)
+    tables = [made_table(rng) for _ in range(200)]
+    for table in tables[::8]:
+        table.measured[:, NAMES.index("pressure_top")] += 300.0
+    learned = learn_stage_nulls(tables, NAMES, np.ones(len(NAMES)))
+    assert (
+        stage_findings(_table({"acceleration_hum_50": 12.0}), learned)["measurement"].p_value < 0.05
+    )
+
+
+def test_what_stages_differ_by_comes_back_from_its_file(nulls, tmp_path):
+    nulls.save(tmp_path / "stages.npz")
+    back = load_stage_nulls(tmp_path / "stages.npz")
+    assert back.names == nulls.names
+    for name in ("scale", "tails", "largest"):
+        assert np.array_equal(getattr(back, name), getattr(nulls, name))
+
+
+def test_a_stage_without_numbers_has_no_gap(nulls):
     measured = np.random.default_rng(3).normal(size=(4, 2))
-    findings = stage_findings(table_of(("pressure_gain_9", "pressure_top"), measured), posterior)
+    findings = stage_findings(table_of(("pressure_gain_9", "pressure_top"), measured), nulls)
     assert findings["friction"].gap == 0.0
     assert findings["friction"].p_value == 1.0
     assert np.isfinite([f.gap for f in findings.values()]).all()
@@ -109,7 +127,7 @@ def test_a_stage_without_numbers_has_no_gap(posterior):
 
 def test_the_loudness_of_a_channel_is_no_error_of_its_way_where_the_torque_is_known():
     names = ("contact_peak", "pressure_band_4", "pressure_gain_4")
-    null = replace(made_posterior(), names=names, scale=np.ones(3))
+    null = replace(made_nulls(), names=names, scale=np.ones(3), tails=np.ones(3))
     measured = np.random.default_rng(3).normal(size=(4, 3))
     measured[:, :2] += 15.0
     assert stage_findings(table_of(names, measured), null)["radiation"].gap < 3.0
@@ -117,11 +135,11 @@ def test_the_loudness_of_a_channel_is_no_error_of_its_way_where_the_torque_is_kn
     assert stage_findings(deaf, null)["radiation"].gap > 10.0
 
 
-def test_a_gap_is_one_between_repeats_and_bounded_where_a_number_hardly_scatters(posterior):
+def test_a_gap_is_one_between_repeats_and_bounded_where_a_number_hardly_scatters(nulls):
     rng = np.random.default_rng(5)
-    gaps = [f.gap for _ in range(40) for f in stage_findings(made_table(rng), posterior).values()]
+    gaps = [f.gap for _ in range(40) for f in stage_findings(made_table(rng), nulls).values()]
     assert np.median([gap for gap in gaps if gap > 0.0]) == pytest.approx(1.0, abs=0.25)
-    findings = stage_findings(_table({"pressure_gain_9": 1e6}), posterior)
+    findings = stage_findings(_table({"pressure_gain_9": 1e6}), nulls)
     assert findings["radiation"].gap == 100.0
 
 
@@ -139,8 +157,8 @@ def test_every_number_has_a_stage(name, stage):
     assert stage_of(name) == stage
 
 
-def test_the_map_has_the_guilty_place_first_and_every_place_once(posterior):
-    places = differences(_table({"pressure_gain_9": 30.0}), posterior)
+def test_the_map_has_the_guilty_place_first_and_every_place_once(nulls):
+    places = differences(_table({"pressure_gain_9": 30.0}), nulls)
     keys = [(p.stage, p.channels, p.band, p.phase) for p in places]
     assert len(set(keys)) == len(keys)
     first = places[0]
@@ -151,7 +169,7 @@ def test_the_map_has_the_guilty_place_first_and_every_place_once(posterior):
     assert 0.0 < p_values[0] <= 1.0
 
 
-def test_without_a_cause_no_place_is_sure(posterior):
+def test_without_a_cause_no_place_is_sure(nulls):
     rng = np.random.default_rng(78)
-    least = [differences(made_table(rng), posterior)[0].p_value for _ in range(40)]
+    least = [differences(made_table(rng), nulls)[0].p_value for _ in range(40)]
     assert np.mean(np.array(least) < 0.2) < 0.4  # five stages' worth of looks, corrected

@@ -8,11 +8,13 @@ from functools import cache
 import numpy as np
 
 from noise.diagnosis.cases.truth import Truth
+from noise.diagnosis.causes.stage_nulls import learn_stage_nulls
+from noise.diagnosis.evidence.evidence import scale_of
 from noise.training.causes.fit import Known, train_posterior
 from sim.effects import EFFECTS
 from tests.helpers.small_rigs import table_of
 
-__all__ = ["MOVES", "NAMES", "made_cases", "made_posterior", "made_table"]
+__all__ = ["MOVES", "NAMES", "made_cases", "made_nulls", "made_posterior", "made_table"]
 
 _NAMES = (
     "angle_speed_spread", "contact_creep_up_4", "contact_law_down_3", "contact_peak_spread",
@@ -52,6 +54,14 @@ def made_cases(seed=0, each=10):
     for kind in _OTHER:
         cases += [Known(made_table(rng, kind), Truth(kind)) for _ in range(each)]
     return [replace(case, rig=i) for i, case in enumerate(cases)]
+
+
+@cache
+def made_nulls(seed=0, n=60):
+    """Learn what cases without a cause differ by."""
+    rng = np.random.default_rng(seed)
+    tables = [made_table(rng) for _ in range(n)]
+    return learn_stage_nulls(tables, NAMES, scale_of(tables, NAMES))
 
 
 @cache

@@ -15,7 +15,7 @@ from noise.diagnosis.causes.local_model import fit_local_model
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -32,6 +32,9 @@ ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"
 
 SHORTLIST = 8
 """Effects that local cases are made of; those hold both of a pair in five cases of six."""
+
+LEADERS = 2
+"""The likeliest effects, with and without which most cases are made."""
 
 _IN_TRIPLES = 5
 """The likeliest effects, of which triples are made."""
@@ -86,7 +89,7 @@ def local_answer(
     hypotheses = _hypotheses(chosen)
     bench = bench_of(case, table, library=library, seed=seed)
     cases = local_cases(
-        bench, posterior, _wanted(hypotheses, n_cases), library=library,
+        bench, posterior, _wanted(hypotheses, chosen[:LEADERS], n_cases), library=library,
         budget_seconds=budget_seconds, workers=workers, seed=seed,
     )  # fmt: skip
     if not cases:
@@ -94,8 +97,8 @@ def local_answer(
     model = fit_local_model(
         np.array([one.odds for one in cases]), [one.hypothesis for one in cases], hypotheses
     )
-    likelihoods = np.exp(model.log_likelihoods(posterior.log_odds(bench.table)))
-    weights = likelihoods * _prior(hypotheses, len(chosen))
+    scores = model.log_likelihoods(posterior.log_odds(bench.table))
+    weights = np.exp(scores - scores.max()) * _prior(hypotheses, len(chosen))
     covered = sum(first.get(hypothesis, 0.0) for hypothesis in hypotheses)
     weights *= covered / weights.sum()
     rest = {hypothesis: p for hypothesis, p in first.items() if hypothesis not in hypotheses}
@@ -122,30 +125,35 @@ def _prior(hypotheses: Sequence[Hypothesis], n_effects: int) -> NDArray[np.float
     return np.array([share(hypothesis) for hypothesis in hypotheses])
 
 
-def _wanted(hypotheses: Sequence[Hypothesis], n_cases: int) -> list[tuple[Hypothesis, int]]:
-    """Cause and number of each case, in rounds, so that any number of them is even-handed."""
+def _wanted(
+    hypotheses: Sequence[Hypothesis], leaders: Collection[str], n_cases: int
+) -> list[tuple[Hypothesis, int]]:
+    """Cause and number of each case, in turns, so that any number of them is balanced."""
 
     def jobs() -> Iterator[tuple[Hypothesis, int]]:
         for turn in count():
             for place, hypothesis in enumerate(hypotheses):
-                if len(hypothesis) == 3 and (place + turn) % _TURNS_OF_A_TRIPLE:
-                    continue
-                many = _in_a_turn(hypothesis)
-                yield from ((hypothesis, turn * many + i) for i in range(many))
+                often = _in_a_turn(hypothesis, leaders)
+                # Those that are rarer than turns are spread over them.
+                first, last = (
+                    math.floor(often * t + place / len(hypotheses)) for t in (turn, turn + 1)
+                )
+                yield from ((hypothesis, number) for number in range(first, last))
 
     return list(islice(jobs(), n_cases))
 
 
-def _in_a_turn(hypothesis: Hypothesis) -> int:
-    """Count the cases of a hypothesis in a turn; more where the posterior has no name for it."""
-    if hypothesis == NONE or hypothesis == ALONE[0]:
-        return 4
-    if hypothesis == ALONE[1]:
-        return 6
+def _in_a_turn(hypothesis: Hypothesis, leaders: Collection[str]) -> float:
+    """Count the cases of a hypothesis in a turn.
+
+    There are more where much hangs on it: of the likeliest effects and what may come with them, and
+    of what the posterior has no name for.
+    """
+    if hypothesis == NONE or hypothesis in ALONE:
+        return 6 if "unknown" in hypothesis else 4
+    led = len(hypothesis & set(leaders))
     if len(hypothesis) == 1:
-        return 2 if hypothesis <= EFFECTS.keys() else 6
-    return 1
-
-
-_TURNS_OF_A_TRIPLE = 3
-"""Triples, of which there are many and hardly any come true, take turns."""
+        return 4 if led else 2 if hypothesis <= EFFECTS.keys() else 6
+    if len(hypothesis) == 2:
+        return (0.34, 2, 3)[led]
+    return 0.34 if led == 2 else 0.1

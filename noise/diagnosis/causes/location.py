@@ -15,33 +15,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from noise.diagnosis.causes.stage_nulls import STAGES, largest_of, stage_of
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
-from noise.diagnosis.evidence.evidence import deviations, standard_errors
+from noise.diagnosis.evidence.evidence import deviations
 from noise.diagnosis.findings import LARGEST_GAP, Location, StageFinding
-from sim.effects.effect import Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
-    from noise.diagnosis.causes.posterior import Posterior
+    from noise.diagnosis.causes.stage_nulls import StageNulls
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = ["STAGES", "differences", "locate", "null_maxima", "stage_findings", "stage_of"]
-
-STAGES = tuple(stage.value for stage in Stage)
-"""In the order of the chain."""
-
-_HEALTH = (
-    "top", "bottom", "crest", "asymmetry", "flat", "dwell", "offset", "floor", "hum", "low_floor",
-    "high_floor", "delay", "phase_match", "raw",
-)  # fmt: skip
-"""Numbers that tell a sensor's fault rather than the rig's."""
-
-_OVERALL = ("band", "level", "raw", "skewness")
-"""Numbers that a channel has of all that comes before it: with a torque to compare with, they tell
-nothing of the channel's own stage."""
+__all__ = ["differences", "locate", "stage_findings"]
 
 _WHOLE_BAND = (0.0, 1800.0)
 """Of a difference that is in no band: where the contact's cycle lives [Hz]."""
@@ -55,53 +40,18 @@ _PHASES = {
 }
 
 
-def stage_of(name: str) -> str:
-    """Stage that a number tells of.
-
-    Examples
-    --------
-    >>> stage_of("contact_peak"), stage_of("pressure_gain_4"), stage_of("pressure_hum_50")
-    ('friction', 'radiation', 'measurement')
-    """
-    kind, _, what = name.partition("_")
-    if kind == "angle":
-        return "drive"
-    if what.startswith(_HEALTH):
-        return "measurement"
-    return {"acceleration": "structure", "pressure": "radiation", "common": "structure"}.get(
-        kind, "friction"
-    )
-
-
-def null_maxima(
-    tables: Sequence[CaseTable], names: Sequence[str], scale: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Largest differences of each stage in cases without a cause.
-
-    Returns
-    -------
-    ndarray, shape (n_cases, n_stages)
-        Each column rising, in standard errors [-].
-    """
-    stages = np.array([stage_of(name) for name in names])
-    sizes = [np.abs(_standard_errors(table, names, scale)) for table in tables]
-    return np.sort(
-        np.array([[_most(size[stages == stage]) for stage in STAGES] for size in sizes]), axis=0
-    )
-
-
-def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFinding]:
+def stage_findings(table: CaseTable, nulls: StageNulls) -> dict[str, StageFinding]:
     """How each stage differs.
 
     The gap is that of the number that differs most, over what is usual without a cause; the
     p-values are corrected for the looks within and between stages.
     """
-    size = np.abs(_standard_errors(table, posterior.names, posterior.scale))
-    stages = np.array([stage_of(name) for name in posterior.names])
+    size = nulls.sizes(table)
+    stages = np.array([stage_of(name) for name in nulls.names])
     found = {}
     for i, stage in enumerate(STAGES):
-        most = _most(size[stages == stage])
-        null = posterior.null[:, i]
+        most = largest_of(size[stages == stage])
+        null = nulls.largest[:, i]
         gap = most / max(float(np.median(null)), 1e-9)
         found[stage] = (min(gap, LARGEST_GAP), _p_value(most, null))
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
@@ -112,24 +62,24 @@ def stage_findings(table: CaseTable, posterior: Posterior) -> dict[str, StageFin
     }
 
 
-def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> Location:
+def locate(table: CaseTable, nulls: StageNulls, stage: str | None = None) -> Location:
     """Say where the difference is most certain.
 
     Parameters
     ----------
     table : CaseTable
-    posterior : Posterior
+    nulls : StageNulls
     stage : str, optional
         Where to look; by default the stage that differs most.
     """
-    findings = stage_findings(table, posterior)
+    findings = stage_findings(table, nulls)
     if stage is None:
         stage = max(findings, key=lambda name: findings[name].gap)
-    names = posterior.names
+    names = nulls.names
     inside = np.array([stage_of(name) == stage for name in names])
     if not inside.any():
         inside[:] = True
-    sizes = np.nan_to_num(np.abs(_standard_errors(table, names, posterior.scale)))
+    sizes = np.nan_to_num(nulls.sizes(table))
     size = np.where(inside, sizes, -1.0)
     strongest = np.argsort(size)[::-1][:12]
     strongest = strongest[size[strongest] >= 0.5 * size[strongest[0]]]
@@ -142,18 +92,18 @@ def locate(table: CaseTable, posterior: Posterior, stage: str | None = None) -> 
         channels=tuple(c for c in ("torque", "acceleration", "pressure", "angle") if c in channels),
         band=(low, high),
         phase=_phase(top),
-        conditions=_conditions(table, posterior, strongest),
+        conditions=_conditions(table, nulls, strongest),
         p_value=findings[stage].p_value,
     )
 
 
-def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
+def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
     """Look at every stage, channel, band and phase of the cycle.
 
     Parameters
     ----------
     table : CaseTable
-    posterior : Posterior
+    nulls : StageNulls
 
     Returns
     -------
@@ -161,8 +111,8 @@ def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
         The surest first. A p-value is that of the place's largest difference among the largest ones
         that whole stages have without a cause, so it is corrected for all looks.
     """
-    names = posterior.names
-    size = np.abs(_standard_errors(table, names, posterior.scale))
+    names = nulls.names
+    size = nulls.sizes(table)
     places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
     for i, name in enumerate(names):
         if np.isfinite(size[i]):
@@ -172,40 +122,19 @@ def differences(table: CaseTable, posterior: Posterior) -> tuple[Location, ...]:
     for (stage, channel, band, phase), numbers in places.items():
         largest = np.array(numbers)[np.argsort(-size[numbers])][:3]
         most = float(size[largest[0]])
-        null = posterior.null[:, STAGES.index(stage)]
+        null = nulls.largest[:, STAGES.index(stage)]
         place = Location(
-            stage, (channel,), band or _WHOLE_BAND, phase, _conditions(table, posterior, largest),
+            stage, (channel,), band or _WHOLE_BAND, phase, _conditions(table, nulls, largest),
             _p_value(most, null),
         )  # fmt: skip
         found.append((place.p_value, -most, place))
     return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
 
 
-def _standard_errors(
-    table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Mean difference of each number in units of its standard error; NaN where it tells nothing."""
-    z = deviations(table, names, scale)
-    errors = np.where(np.isfinite(z).any(axis=0), standard_errors(z), np.nan)
-    if any(name.startswith("contact") for name in table.names):
-        errors[[_is_overall(name) for name in names]] = np.nan
-    return np.asarray(errors)
-
-
-def _is_overall(name: str) -> bool:
-    kind, _, what = name.partition("_")
-    return kind in ("acceleration", "pressure") and what.startswith(_OVERALL)
-
-
 def _p_value(size: float, null: NDArray[np.float64]) -> float:
     """Probability of so large a difference without a cause, corrected for all stages [-]."""
     beyond = int(np.count_nonzero(null >= size))
     return min(1.0, len(STAGES) * (1.0 + beyond) / (len(null) + 1.0))
-
-
-def _most(sizes: NDArray[np.float64]) -> float:
-    known = sizes[np.isfinite(sizes)]
-    return float(known.max()) if known.size else 0.0
 
 
 def _channel(name: str) -> str:
@@ -231,12 +160,12 @@ def _phase(name: str) -> str:
     return next((phase for phase, heads in _PHASES.items() if what.startswith(heads)), "cycle")
 
 
-def _conditions(table: CaseTable, posterior: Posterior, strongest: NDArray[np.int64]) -> str:
+def _conditions(table: CaseTable, nulls: StageNulls, strongest: NDArray[np.int64]) -> str:
     """In which conditions it shows, if only fast or only slow ones."""
     speed = np.array([c.speed for c in table.conditions], dtype=np.float64)
     if np.unique(speed).size < 3:
         return "all"
-    z = np.abs(deviations(table, posterior.names, posterior.scale)[:, strongest])
+    z = np.abs(deviations(table, nulls.names, nulls.scale)[:, strongest])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         size = np.nanmean(z, axis=1)

@@ -33,11 +33,11 @@ CAUSES = (*sorted(EFFECTS), "parameters", "unknown", "none")
 """What can be the matter."""
 
 _KIND = ModelKind(
-    "cause posterior", 2, "python -m noise.training.causes --out",
+    "cause posterior", 2, "python -m noise.training.causes train FOLDER --out",
     ("noise.diagnosis", "causes.npz"),
 )  # fmt: skip
 
-_ARRAYS = ("scale", "weights", "null", "columns")
+_ARRAYS = ("scale", "weights", "columns")
 _LARGEST = 12.0
 """Of a logarithm of odds: no library is large enough to tell more."""
 
@@ -60,9 +60,6 @@ class Posterior:
         Of the calibration: constant, own odds, strongest other, none [-].
     alarm : float
         Probability [-] of ``none`` below which there is something to explain.
-    null : ndarray, shape (n_quantiles, n_stages)
-        Largest differences of each stage in cases without a cause, for p-values In standard errors
-        [-].
     card : mapping
         How it was made: seed, counts, scores.
     """
@@ -73,7 +70,6 @@ class Posterior:
     trees: BoostedTrees
     weights: NDArray[np.float64]
     alarm: float
-    null: NDArray[np.float64]
     card: Mapping[str, object]
 
     def probabilities(self, table: CaseTable) -> dict[str, float]:

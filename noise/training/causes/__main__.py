@@ -10,7 +10,8 @@ from models.errors import ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import counted, say, track
 from noise.diagnosis.cases.draw import SHARED
-from noise.training.causes.fit import train_posterior
+from noise.diagnosis.causes.stage_nulls import learn_stage_nulls
+from noise.training.causes.fit import null_scale, train_posterior
 from noise.training.causes.report import is_kept, report, with_forms
 from noise.training.causes.store import CHUNK, draw_into, load_cases
 
@@ -40,9 +41,14 @@ def main() -> int:
         help="keep a tenth of the rigs from training, and say how they are answered",
     )
     training.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
+    stages = commands.add_parser(
+        "stages", help="learn what stages differ by without a cause, from cases that were drawn"
+    )
+    stages.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
+    stages.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
     options = parser.parse_args()
     try:
-        return _draw(options) if options.command == "draw" else _train(options)
+        return {"draw": _draw, "train": _train, "stages": _learn_stages}[options.command](options)
     except ParameterError as error:
         say(f"error: {error}")
         return 2
@@ -72,6 +78,16 @@ def _train(options: argparse.Namespace) -> int:
     if options.report or options.leave_out:
         out = {case.seed for case in left_out}
         print(report(posterior, [case for case in kept if case.seed not in out], left_out))
+    return 0
+
+
+def _learn_stages(options: argparse.Namespace) -> int:
+    check_target(options.out)
+    nulls = [case for case in load_cases(options.folder) if case.truth.kind == "none"]
+    names = tuple(sorted({name for case in nulls for name in case.table.names}))
+    tables = [case.table for case in nulls]
+    learn_stage_nulls(tables, names, null_scale(nulls, names)).save(options.out)
+    print(options.out)
     return 0
 
 

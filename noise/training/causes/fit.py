@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.diagnosis.cases.truth import seen_through
-from noise.diagnosis.causes.location import null_maxima
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, calibrated, odds_features
 from noise.diagnosis.evidence.evidence import evidence, scale_of
 from noise.diagnosis.simulated.repeats import CHANNELS
@@ -30,11 +29,11 @@ if TYPE_CHECKING:
     from noise.diagnosis.cases.truth import Truth
     from noise.diagnosis.evidence.summary import CaseTable
 
-__all__ = ["Known", "train_posterior"]
+__all__ = ["Known", "null_scale", "train_posterior"]
 
 N_ROUNDS = 200
 N_TREES = 80
-N_LOOKED_AT = 10_000
+N_LOOKED_AT = 6000
 """Trees, and cases at most, from which it is seen what columns tell anything."""
 
 N_COLUMNS = 700
@@ -48,7 +47,7 @@ _CERTAIN = 6.0
 FALSE_ALARMS = 0.007
 """Share of cases without a cause that may raise the alarm, at the setting."""
 
-N_SUBSETS = 2
+N_SUBSETS = 1
 """Times that each case is learned again from some of its recordings."""
 
 _FEWEST_RECORDINGS = 3
@@ -97,10 +96,7 @@ def train_posterior(
     Posterior
     """
     names = tuple(sorted({name for case in cases for name in case.table.names}))
-    without_cause = [case for case in cases if case.truth.kind == "none"]
-    quiet = [case.table for case in without_cause if not case.departures]
-    nulls = [case.table for case in without_cause]
-    scale = scale_of(quiet if len(quiet) >= _FEWEST_QUIET else nulls, names)
+    scale = null_scale(cases, names)
     rng = np.random.default_rng(seed)
     # Every fifth rig is kept from the trees, to calibrate what they say.
     kept = np.unique([case.rig for case in cases], return_inverse=True)[1] % KEPT_EVERY == 0
@@ -126,9 +122,22 @@ def train_posterior(
         trees=trees,
         weights=weights,
         alarm=min(alarm, 0.5),
-        null=null_maxima(nulls, names, scale),
         card={"seed": seed, "cases": len(cases), "rounds": n_rounds},
     )
+
+
+def null_scale(cases: Sequence[Known], names: Sequence[str]) -> NDArray[np.float64]:
+    """Scatter of each number in cases without a cause, of quiet benches where there are enough.
+
+    Returns
+    -------
+    ndarray, shape (n_names,)
+        As of `noise.diagnosis.evidence.evidence.scale_of` [unit of the number].
+    """
+    without_cause = [case for case in cases if case.truth.kind == "none"]
+    quiet = [case for case in without_cause if not case.departures]
+    chosen = quiet if len(quiet) >= _FEWEST_QUIET else without_cause
+    return scale_of([case.table for case in chosen], names)
 
 
 def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) -> NDArray[np.int64]:

@@ -1,0 +1,188 @@
+"""What numbers and stages differ by where nothing is the matter, as simulated cases show it.
+
+A p-value of a stage is the share of cases without a cause in which its largest difference is as
+large. A few numbers have long tails in such cases, as what a converter's steps or a start do to
+them; so each number counts in units of what it seldom differs by, and none hides the others.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.base.model_file import ModelKind, load_model, save_model
+from noise.diagnosis.evidence.evidence import deviations, standard_errors
+from sim.effects.effect import Stage
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+    from typing import Any
+
+    from numpy.typing import NDArray
+
+    from noise.diagnosis.evidence.summary import CaseTable
+
+__all__ = [
+    "STAGES", "StageNulls", "largest_of", "learn_stage_nulls", "load_stage_nulls", "stage_of",
+]  # fmt: skip
+
+STAGES = tuple(stage.value for stage in Stage)
+"""In the order of the chain."""
+
+_KIND = ModelKind(
+    "stage nulls", 1, "python -m noise.training.causes stages FOLDER --out",
+    ("noise.diagnosis", "stages.npz"),
+)  # fmt: skip
+
+_ARRAYS = ("scale", "tails", "largest")
+
+_SELDOM = 0.98
+"""Share of cases without a cause in which a number differs by less than its tail."""
+
+_HEALTH = (
+    "top", "bottom", "crest", "asymmetry", "flat", "dwell", "offset", "floor", "hum", "low_floor",
+    "high_floor", "delay", "phase_match", "raw",
+)  # fmt: skip
+"""Numbers that tell a sensor's fault rather than the rig's."""
+
+_OVERALL = ("band", "level", "raw", "skewness")
+"""Numbers that a channel has of all that comes before it: with a torque to compare with, they tell
+nothing of the channel's own stage."""
+
+
+@dataclass(frozen=True, eq=False)
+class StageNulls:
+    """Differences in cases without a cause.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Numbers of a recording.
+    scale : ndarray, shape (n_names,)
+        Scatter of each without a cause [unit of the number].
+    tails : ndarray, shape (n_names,)
+        What each seldom differs by In standard errors [-].
+    largest : ndarray, shape (n_cases, n_stages)
+        Largest differences of each stage, each column rising, in `tails` [-].
+    """
+
+    names: tuple[str, ...]
+    scale: NDArray[np.float64]
+    tails: NDArray[np.float64]
+    largest: NDArray[np.float64]
+
+    def sizes(self, table: CaseTable) -> NDArray[np.float64]:
+        """Size of the mean difference of each number.
+
+        Parameters
+        ----------
+        table : CaseTable
+
+        Returns
+        -------
+        ndarray, shape (n_names,)
+            In `tails` [-]; NaN where it tells nothing.
+        """
+        return np.asarray(_errors(table, self.names, self.scale) / self.tails)
+
+    def save(self, path: str | Path) -> None:
+        """Write them into an NPZ file, whole or not at all.
+
+        Raises
+        ------
+        ParameterError
+            The file cannot be written.
+        """
+        arrays = {name: getattr(self, name) for name in _ARRAYS}
+        save_model(path, _KIND, {"names": self.names}, arrays)
+
+
+def load_stage_nulls(path: str | Path | None = None) -> StageNulls:
+    """Load what stages differ by, by default what is shipped.
+
+    Raises
+    ------
+    ParameterError
+        If the file is none that `StageNulls.save` wrote.
+    """
+    return load_model(path, _KIND, _built)
+
+
+def learn_stage_nulls(
+    tables: Sequence[CaseTable], names: Sequence[str], scale: NDArray[np.float64]
+) -> StageNulls:
+    """Learn from cases without a cause what they differ by.
+
+    Parameters
+    ----------
+    tables : sequence of CaseTable
+    names : sequence of str
+    scale : ndarray, shape (n_names,)
+        As of `StageNulls` [unit of the number].
+    """
+    errors = np.array([_errors(table, names, scale) for table in tables])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # numbers that no table has
+        tails = np.nan_to_num(np.nanquantile(errors, _SELDOM, axis=0), nan=1.0)
+    tails = np.maximum(tails, 1.0)
+    stages = np.array([stage_of(name) for name in names])
+    largest = [[largest_of(row[stages == stage]) for stage in STAGES] for row in errors / tails]
+    return StageNulls(tuple(names), scale, tails, np.sort(np.array(largest), axis=0))
+
+
+def largest_of(sizes: NDArray[np.float64]) -> float:
+    """Return the largest of those that are known, 0 where none is [-].
+
+    Parameters
+    ----------
+    sizes : ndarray, shape (n,)
+        [-]
+    """
+    known = sizes[np.isfinite(sizes)]
+    return float(known.max()) if known.size else 0.0
+
+
+def stage_of(name: str) -> str:
+    """Stage that a number tells of.
+
+    Examples
+    --------
+    >>> stage_of("contact_peak"), stage_of("pressure_gain_4"), stage_of("pressure_hum_50")
+    ('friction', 'radiation', 'measurement')
+    """
+    kind, _, what = name.partition("_")
+    if kind == "angle":
+        return "drive"
+    if what.startswith(_HEALTH):
+        return "measurement"
+    return {"acceleration": "structure", "pressure": "radiation", "common": "structure"}.get(
+        kind, "friction"
+    )
+
+
+def _errors(
+    table: CaseTable, names: Sequence[str], scale: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Size of each mean difference in standard errors; NaN where it tells nothing."""
+    z = deviations(table, names, scale)
+    errors = np.where(np.isfinite(z).any(axis=0), np.abs(standard_errors(z)), np.nan)
+    if any(name.startswith("contact") for name in table.names):
+        errors[[_is_overall(name) for name in names]] = np.nan
+    return np.asarray(errors)
+
+
+def _is_overall(name: str) -> bool:
+    kind, _, what = name.partition("_")
+    return kind in ("acceleration", "pressure") and what.startswith(_OVERALL)
+
+
+def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> StageNulls:
+    own = {name: arrays[name] for name in _ARRAYS}
+    n = len(header["names"])
+    if own["scale"].shape != (n,) or own["tails"].shape != (n,):
+        raise ValueError("its arrays do not fit together")
+    return StageNulls(names=tuple(header["names"]), **own)
