@@ -18,9 +18,6 @@ _SHOWN_BY = {
 }
 """Channels of which one is needed; all others show the other stages."""
 
-_OF_ONE_CHANNEL = {"mount_resonance": "acceleration"}
-"""Faults of a single sensor."""
-
 
 def unseen_causes(kinds: Collection[str]) -> frozenset[str]:
     """Name the effects that none of the recorded channels can show.
@@ -45,7 +42,7 @@ def unseen_causes(kinds: Collection[str]) -> frozenset[str]:
         name
         for name, effect in EFFECTS.items()
         if (needed := _SHOWN_BY.get(effect.stage)) is not None and not needed & set(kinds)
-    ) | {name for name, kind in _OF_ONE_CHANNEL.items() if kind not in kinds}
+    )
 
 
 def channel_costs(kinds: Collection[str]) -> list[str]:
@@ -59,8 +56,7 @@ def channel_costs(kinds: Collection[str]) -> list[str]:
     Examples
     --------
     >>> channel_costs({"torque", "pressure", "angle"})
-    ['no acceleration: structure and radiation cannot be told apart, and mount resonance not be
-      seen']
+    ['no acceleration: structure and radiation cannot be told apart']
     """
     missing = {"torque", "acceleration", "pressure", "angle"} - set(kinds)
     found = []
@@ -76,10 +72,7 @@ def channel_costs(kinds: Collection[str]) -> list[str]:
     if {"acceleration", "pressure"} <= missing:
         found.append(f"neither acceleration nor sound: nothing is said of {unseen}")
     elif "acceleration" in missing:
-        found.append(
-            f"no acceleration: structure and radiation cannot be told apart, and {unseen} not be "
-            "seen"
-        )
+        found.append("no acceleration: structure and radiation cannot be told apart")
     elif "pressure" in missing:
         found.append(f"no sound: nothing is said of {unseen}")
     if "angle" in missing:
