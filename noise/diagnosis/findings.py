@@ -12,12 +12,22 @@ if TYPE_CHECKING:
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
 __all__ = [
-    "LARGEST_GAP", "ROLES", "Agreement", "EffectFinding", "HypothesisFinding", "Illustration",
-    "LabelsAndLevels", "Location", "Remainder", "StageFinding",
+    "LARGEST_GAP", "ROLES", "SHOWN_IN", "Agreement", "EffectFinding", "HypothesisFinding",
+    "Illustration", "LabelsAndLevels", "Location", "Remainder", "StageFinding",
 ]  # fmt: skip
 
 LARGEST_GAP = 100.0
 """Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter."""
+
+SHOWN_IN = {
+    "drive": ("drive", "friction"),
+    "friction": ("friction",),
+    "structure": ("structure",),
+    "radiation": ("radiation",),
+    "measurement": ("measurement", "structure", "radiation"),
+}
+"""Stages that an effect of each stage may show in: a shaft's motion hangs together with the
+contact, and an error of a sensor looks like one of the way to it."""
 
 ROLES = ("measured", "before", "after")
 """What is compared: the recording, the nominal model, and the model with what was found."""

@@ -57,7 +57,7 @@ def made_cases(seed=0, each=10):
 
 
 @cache
-def made_nulls(seed=0, n=60):
+def made_nulls(seed=0, n=300):
     """Learn what cases without a cause differ by."""
     rng = np.random.default_rng(seed)
     tables = [made_table(rng) for _ in range(n)]

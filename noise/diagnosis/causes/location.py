@@ -44,16 +44,15 @@ def stage_findings(table: CaseTable, nulls: StageNulls) -> dict[str, StageFindin
     """How each stage differs.
 
     The gap is that of the number that differs most, over what is usual without a cause; the
-    p-values are corrected for the looks within and between stages.
+    p-value is that of the most surprising one, corrected for the looks within and between stages.
     """
-    size = nulls.sizes(table)
+    size, surprise = nulls.sizes(table), nulls.surprises(table)
     stages = np.array([stage_of(name) for name in nulls.names])
     found = {}
     for i, stage in enumerate(STAGES):
-        most = largest_of(size[stages == stage])
-        null = nulls.largest[:, i]
-        gap = most / max(float(np.median(null)), 1e-9)
-        found[stage] = (min(gap, LARGEST_GAP), _p_value(most, null))
+        inside = stages == stage
+        gap = min(largest_of(size[inside]) / float(nulls.typical[i]), LARGEST_GAP)
+        found[stage] = (gap, _p_value(largest_of(surprise[inside]), nulls.largest[:, i]))
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in found.items()}
     whole = sum(excess.values())
     return {
@@ -70,16 +69,16 @@ def locate(table: CaseTable, nulls: StageNulls, stage: str | None = None) -> Loc
     table : CaseTable
     nulls : StageNulls
     stage : str, optional
-        Where to look; by default the stage that differs most.
+        Where to look; by default the stage that differs most surely.
     """
     findings = stage_findings(table, nulls)
     if stage is None:
-        stage = max(findings, key=lambda name: findings[name].gap)
+        stage = min(findings, key=lambda name: (findings[name].p_value, -findings[name].gap))
     names = nulls.names
     inside = np.array([stage_of(name) == stage for name in names])
     if not inside.any():
         inside[:] = True
-    sizes = np.nan_to_num(nulls.sizes(table))
+    sizes = np.nan_to_num(nulls.surprises(table))
     size = np.where(inside, sizes, -1.0)
     strongest = np.argsort(size)[::-1][:12]
     strongest = strongest[size[strongest] >= 0.5 * size[strongest[0]]]
@@ -108,11 +107,11 @@ def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
     Returns
     -------
     tuple of Location
-        The surest first. A p-value is that of the place's largest difference among the largest ones
+        The surest first. A p-value is that of the place's largest surprise among the largest ones
         that whole stages have without a cause, so it is corrected for all looks.
     """
     names = nulls.names
-    size = nulls.sizes(table)
+    size = nulls.surprises(table)
     places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
     for i, name in enumerate(names):
         if np.isfinite(size[i]):

@@ -1,12 +1,14 @@
 """What numbers and stages differ by where nothing is the matter, as simulated cases show it.
 
-A p-value of a stage is the share of cases without a cause in which its largest difference is as
-large. A few numbers have long tails in such cases, as what a converter's steps or a start do to
-them; so each number counts in units of what it seldom differs by, and none hides the others.
+A p-value of a stage is the share of cases without a cause in which a difference is as surprising
+as its most surprising one. A few numbers have long tails in such cases, as what a converter's steps
+or a start do to them; so each number is as surprising as its own tail says, a power law through two
+of its quantiles, and none hides the others.
 """
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -38,10 +40,19 @@ _KIND = ModelKind(
     ("noise.diagnosis", "stages.npz"),
 )  # fmt: skip
 
-_ARRAYS = ("scale", "tails", "largest")
+_ARRAYS = ("scale", "usual", "seldom", "typical", "largest")
 
-_SELDOM = 0.98
-"""Share of cases without a cause in which a number differs by less than its tail."""
+_USUAL, _SELDOM = 0.9, 0.995
+"""Shares of cases without a cause in which a number differs by less: the two quantiles."""
+
+_LEAST_USUAL = 0.5
+"""Of the first of them, in standard errors."""
+
+_NARROWEST = 1.4
+"""Ratio of the two at least; a tail is no steeper than that."""
+
+_KEPT = 1000
+"""Quantiles of largest surprises that are kept."""
 
 _HEALTH = (
     "top", "bottom", "crest", "asymmetry", "flat", "dwell", "offset", "floor", "hum", "low_floor",
@@ -64,15 +75,19 @@ class StageNulls:
         Numbers of a recording.
     scale : ndarray, shape (n_names,)
         Scatter of each without a cause [unit of the number].
-    tails : ndarray, shape (n_names,)
-        What each seldom differs by In standard errors [-].
-    largest : ndarray, shape (n_cases, n_stages)
-        Largest differences of each stage, each column rising, in `tails` [-].
+    usual, seldom : ndarray, shape (n_names,)
+        Quantiles of what each differs by In standard errors [-].
+    typical : ndarray, shape (n_stages,)
+        Median of the largest size of a stage [-].
+    largest : ndarray, shape (n_quantiles, n_stages)
+        Largest surprises of each stage, each column rising [-].
     """
 
     names: tuple[str, ...]
     scale: NDArray[np.float64]
-    tails: NDArray[np.float64]
+    usual: NDArray[np.float64]
+    seldom: NDArray[np.float64]
+    typical: NDArray[np.float64]
     largest: NDArray[np.float64]
 
     def sizes(self, table: CaseTable) -> NDArray[np.float64]:
@@ -85,9 +100,24 @@ class StageNulls:
         Returns
         -------
         ndarray, shape (n_names,)
-            In `tails` [-]; NaN where it tells nothing.
+            In what it seldom differs by [-]; NaN where it tells nothing.
         """
-        return np.asarray(_errors(table, self.names, self.scale) / self.tails)
+        return np.asarray(_errors(table, self.names, self.scale) / self.seldom)
+
+    def surprises(self, table: CaseTable) -> NDArray[np.float64]:
+        """How surprising the mean difference of each number is.
+
+        Parameters
+        ----------
+        table : CaseTable
+
+        Returns
+        -------
+        ndarray, shape (n_names,)
+            Negative logarithm of the share of cases without a cause that differ by as much, as
+            their tail has it [-], 0 at least; NaN where it tells nothing.
+        """
+        return _surprises(_errors(table, self.names, self.scale), self.usual, self.seldom)
 
     def save(self, path: str | Path) -> None:
         """Write them into an NPZ file, whole or not at all.
@@ -125,13 +155,40 @@ def learn_stage_nulls(
         As of `StageNulls` [unit of the number].
     """
     errors = np.array([_errors(table, names, scale) for table in tables])
+    stages = np.array([stage_of(name) for name in names])
+
+    def of_stages(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.array([[largest_of(row[stages == stage]) for stage in STAGES] for row in rows])
+
+    # Cases that a tail is learned from surprise it less than others do.
+    halves = (errors[::2], errors[1::2])
+    surprises = np.concatenate(
+        [of_stages(_surprises(one, *_tails(other))) for one, other in (halves, halves[::-1])]
+    )
+    usual, seldom = _tails(errors)
+    typical = np.median(of_stages(errors / seldom), axis=0)
+    shares = np.linspace(0.0, 1.0, min(len(surprises), _KEPT))
+    return StageNulls(
+        tuple(names), scale, usual, seldom, np.maximum(typical, 1e-3),
+        np.quantile(surprises, shares, axis=0),
+    )  # fmt: skip
+
+
+def _tails(errors: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Two quantiles of each number."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that no table has
-        tails = np.nan_to_num(np.nanquantile(errors, _SELDOM, axis=0), nan=1.0)
-    tails = np.maximum(tails, 1.0)
-    stages = np.array([stage_of(name) for name in names])
-    largest = [[largest_of(row[stages == stage]) for stage in STAGES] for row in errors / tails]
-    return StageNulls(tuple(names), scale, tails, np.sort(np.array(largest), axis=0))
+        usual, seldom = np.nanquantile(errors, (_USUAL, _SELDOM), axis=0)
+    usual = np.maximum(np.nan_to_num(usual, nan=1.0), _LEAST_USUAL)
+    return usual, np.maximum(np.nan_to_num(seldom, nan=1.0), _NARROWEST * usual)
+
+
+def _surprises(
+    errors: NDArray[np.float64], usual: NDArray[np.float64], seldom: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    slopes = math.log((1.0 - _USUAL) / (1.0 - _SELDOM)) / np.log(seldom / usual)
+    away = slopes * np.log(np.maximum(errors, 1e-12) / usual) - math.log(1.0 - _USUAL)
+    return np.asarray(np.maximum(away, 0.0))
 
 
 def largest_of(sizes: NDArray[np.float64]) -> float:
@@ -183,6 +240,6 @@ def _is_overall(name: str) -> bool:
 def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> StageNulls:
     own = {name: arrays[name] for name in _ARRAYS}
     n = len(header["names"])
-    if own["scale"].shape != (n,) or own["tails"].shape != (n,):
+    if any(own[name].shape != (n,) for name in ("scale", "usual", "seldom")):
         raise ValueError("its arrays do not fit together")
     return StageNulls(names=tuple(header["names"]), **own)

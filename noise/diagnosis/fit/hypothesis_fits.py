@@ -14,6 +14,7 @@ import numpy as np
 
 from noise.diagnosis.causes.joint import marginals, normalised
 from noise.diagnosis.causes.verdict import ALONE
+from noise.diagnosis.findings import SHOWN_IN
 from noise.diagnosis.fit.closing import CLOSABLE, rms
 from noise.diagnosis.fit.closing_odds import differing, load_closing_odds
 from noise.diagnosis.fit.fit_effect import fit_effect
@@ -199,7 +200,8 @@ def updated(
     odds, library = load_closing_odds(), fits.comparison.library
     gap, left = rms(fits.before), rms(fits.recalibrated)
     gaps = {hypothesis: rms(fit.squared) for hypothesis, fit in fits.of.items()}
-    looked = {name: differing(stage) for name, stage in stages.items()}
+    looked = {name: how for name, stage in stages.items()
+              if (how := differing(stage)) is not None}  # fmt: skip
 
     def ratio(hypothesis: Hypothesis) -> float:
         if not hypothesis:
@@ -210,12 +212,12 @@ def updated(
             return 0.0
         if hypothesis not in gaps:  # with more beside it, what closes would close as well
             return max([0.0, *(ratio(other) for other in gaps if other < hypothesis)])
-        acting = [looked.get(library[name].stage.value) for name in hypothesis]
+        shown = [SHOWN_IN[library[name].stage.value] for name in hypothesis]
         return odds.of_effects(
             left,
             gaps[hypothesis],
             [gap for other, gap in gaps.items() if other < hypothesis],
-            [stage for stage in acting if stage is not None],
+            [max(how) for among in shown if (how := [looked[s] for s in among if s in looked])],
         )
 
     return normalised({h: p * math.exp(ratio(h)) for h, p in hypotheses.items()})

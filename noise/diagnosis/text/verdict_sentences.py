@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.findings import SHOWN_IN
 from noise.diagnosis.text.found import PHASES, finding_of, parameter_name, stage_of_effect
 from noise.diagnosis.text.words import cause_of, chance, frequency, joined, p_number, percent
 
@@ -77,12 +78,13 @@ def is_named(diagnosis: Diagnosis) -> bool:
 
 
 def contradicted(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """Stages of a verdict's effects that do not differ at all by themselves."""
+    """Stages of a verdict's effects, where nothing that these show in differs at all."""
     stages = []
     for name in diagnosis.verdict:
         stage = stage_of_effect(diagnosis, name)
-        found = diagnosis.stages.get(stage)
-        if found is not None and found.gap > 0.0 and found.p_value >= _NOT_AT_ALL:
+        found = [diagnosis.stages.get(among) for among in SHOWN_IN.get(stage, ())]
+        seen = [one.p_value for one in found if one is not None and one.gap > 0.0]
+        if seen and min(seen) >= _NOT_AT_ALL:
             stages.append(stage)
     return tuple(dict.fromkeys(stages))
 
