@@ -19,6 +19,7 @@ from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.stage_nulls import load_stage_nulls
+from noise.diagnosis.causes.unseen import channel_costs
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
 from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import first_answer
@@ -240,7 +241,7 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
 
 def _notes(case: Case) -> tuple[str, ...]:
     kinds = _kinds(case)
-    notes = [_COST[kind] for kind in _COST if kind not in kinds]
+    notes = channel_costs(kinds)
     different = {recording.condition for recording in case.recordings}
     if len(case.recordings) == 1:
         notes.append(
@@ -252,11 +253,3 @@ def _notes(case: Case) -> tuple[str, ...]:
     notes += [f"{r.name}: {text}" for r in case.recordings for text in r.notes]
     notes += [f"{name} was left out: {reason}" for name, reason in case.refused]
     return tuple(notes)
-
-
-_COST = {
-    "torque": "no torque: drive, contact and structure cannot be told apart from the sound alone",
-    "acceleration": "no acceleration: structure and radiation cannot be told apart",
-    "pressure": "no sound: nothing is said of radiation and room",
-    "angle": "no shaft angle: the shaft is taken to turn evenly at the speed that was set",
-}

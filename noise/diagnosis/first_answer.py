@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from noise.diagnosis.causes.joint import joint_probabilities, marginals
 from noise.diagnosis.causes.unlearned import unlearned_sensors
+from noise.diagnosis.causes.unseen import unseen_causes
 from noise.diagnosis.causes.verdict import likeliest, needs_explaining
 from noise.diagnosis.evidence.summary import case_table
 from noise.diagnosis.fit.case_comparison import CaseComparison
@@ -126,6 +127,8 @@ def first_answer(
     gap = comparison.gap(seed)
     known = known_effects(case.rig, library)
     probabilities = dict(posterior.probabilities(table))
+    kinds = {channel.kind for one in case.recordings for channel in one.channels}
+    probabilities |= dict.fromkeys(unseen_causes(kinds), 0.0)
     again = {name: p for name, p in probabilities.items() if name in known}
     probabilities |= dict.fromkeys(again, 0.0)
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])

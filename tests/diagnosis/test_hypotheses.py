@@ -1,5 +1,7 @@
 """Sets of causes are told by their joint probability, and by cases simulated of the very rig."""
 
+from concurrent.futures.process import BrokenProcessPool
+
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
@@ -197,3 +199,21 @@ def test_of_long_recordings_a_second_is_simulated(posterior):
     bench = local.bench_of(case, table)
     assert bench.runs[0].seconds == pytest.approx(local.LONGEST)
     assert bench.table is not table
+
+
+def test_processes_that_are_ended_lose_no_cases(posterior, monkeypatch):
+    monkeypatch.setattr(LocalCache, "read", lambda _cache: {})
+    monkeypatch.setattr(local, "_SEVERAL", 1)
+    case = _case()
+    bench = local.bench_of(case, case_table(case.recordings, case.rig))
+    wanted = [(frozenset(), i) for i in range(2)]
+
+    class Ended:
+        def __init__(self, **_options):
+            """Begin."""
+
+        def __call__(self, _work):
+            raise BrokenProcessPool
+
+    monkeypatch.setattr("joblib.Parallel", Ended)
+    assert len(local.local_cases(bench, posterior, wanted, workers=2)) == 2

@@ -7,20 +7,19 @@ is made again, what cannot be written is not kept, and the oldest files go.
 
 from __future__ import annotations
 
-import os
-import sys
 from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from platformdirs import user_cache_path
 
 from models.errors import ParameterError
 from noise.base.model_file import ModelKind, load_model, save_model
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -100,10 +99,4 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Kno
 
 def _folder() -> Path:
     """Return the user's folder for what can be made again."""
-    if sys.platform == "win32":
-        above = Path(os.environ.get("LOCALAPPDATA", "~"))
-    elif sys.platform == "darwin":
-        above = Path("~/Library/Caches")
-    else:
-        above = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
-    return above.expanduser() / "bushing-noise" / "local-cases"
+    return user_cache_path("bushing-noise", appauthor=False) / "local-cases"

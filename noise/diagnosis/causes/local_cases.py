@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 __all__ = ["LONGEST", "Bench", "LocalCase", "Run", "bench_of", "local_cases"]
 
 LONGEST = 1.0
-"""Of a recording that is looked at [s]: longer ones are cut, since as much has to be simulated."""
+"""Of the end of a recording that is looked at [s]: as much has to be simulated many times."""
 
 WEAKEST = 0.1
 """Least strength of an effect: weaker ones are mostly not seen, and so tell nothing."""
@@ -155,7 +155,7 @@ def local_cases(
     wanted: Sequence[tuple[frozenset[str], int]],
     *,
     library: Mapping[str, Effect] = EFFECTS,
-    budget_seconds: float = math.inf,
+    budget_seconds: float = 3600.0,
     workers: int = 1,
     seed: int = 0,
 ) -> list[LocalCase]:
@@ -189,21 +189,39 @@ def local_cases(
     missing = [job for job in wanted if job not in known]
     plain = [job for job in missing if all(EFFECTS.get(c) is library.get(c) for c in job[0])]
     own = [job for job in missing if job not in plain]
-    # A user's code may not be known to another process.
+    # A user's code may not be known to another process; it may be slow as well.
+    of_users = _simulated(bench, posterior, own, library, until - 0.5 * budget_seconds, seed)
     if workers > 1 and len(plain) >= _SEVERAL and shipped:
-        from joblib import Parallel, delayed
-
-        parts = Parallel(n_jobs=workers)(
-            delayed(_simulated)(bench, posterior, plain[i::workers], EFFECTS, until, seed)
-            for i in range(workers)
-        )
-        made = {job: odds for part in parts for job, odds in part.items()}
+        made = _simulated_by(workers, bench, posterior, plain, until, seed)
     else:
         made = _simulated(bench, posterior, plain, library, until, seed)
     if cache is not None and made:
         cache.write(known | made)
-    made |= _simulated(bench, posterior, own, library, until, seed) | known
+    made |= of_users | known
     return [LocalCase(job[0], made[job]) for job in wanted if job in made and made[job].size]
+
+
+def _simulated_by(
+    workers: int,
+    bench: Bench,
+    posterior: Posterior,
+    jobs: Sequence[tuple[frozenset[str], int]],
+    until: float,
+    seed: int,
+) -> dict[tuple[frozenset[str], int], NDArray[np.float64]]:
+    """Divide cases between processes; where these are ended, this one makes them."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    from joblib import Parallel, delayed
+
+    try:
+        parts = Parallel(n_jobs=workers)(
+            delayed(_simulated)(bench, posterior, jobs[i::workers], EFFECTS, until, seed)
+            for i in range(workers)
+        )
+    except BrokenProcessPool:
+        return _simulated(bench, posterior, jobs, EFFECTS, until, seed)
+    return {job: odds for part in parts for job, odds in part.items()}
 
 
 def _simulated(
@@ -347,7 +365,7 @@ def _cut(recording: Recording) -> Recording:
     n = round(LONGEST * recording.rate)
     if recording.samples.shape[1] <= n:
         return recording
-    return replace(recording, samples=recording.samples[:, :n])
+    return replace(recording, samples=recording.samples[:, -n:])
 
 
 def _with_kinds(recording: Recording, kinds: Sequence[str]) -> Recording:

@@ -17,7 +17,7 @@ __all__ = ["ALONE", "equivalent_pairs", "likeliest", "needs_explaining", "next_m
 ALONE = ("parameters", "unknown")
 """Causes that no effect is named beside."""
 
-BEYOND = 2.5
+BEYOND = 5.0
 """Floors from which a gap that repeats hardly ever have is one to explain."""
 
 RARE = 0.002

@@ -138,7 +138,8 @@ def _by_angle(recording: Recording, _: Rig, at: Condition) -> _Told:
     row = recording.first("angle")
     if at.speed or row is None:
         return at, []
-    speed = measured_speed(recording.samples[row], recording.rate)
+    angle = recording.samples[row]
+    speed = measured_speed(angle[angle.size // 2 :], recording.rate)  # a start lies before
     if not speed:
         return at, []
     return replace(at, speed=speed), [f"speed taken as {speed:.4g} rad/s: the angle's"]
