@@ -115,6 +115,18 @@ def test_an_unlikely_cause_is_no_headline():
     )
 
 
+def test_an_unknown_cause_that_is_unlikely_is_one_of_several():
+    torn = replace(unknown(), probabilities={"unknown": 0.47, "gain_error": 0.42})
+    assert headline(torn) == "Something differs in friction"
+    assert "it may be something unknown (47 %) or gain error (42 %)" in verdict_sentence(torn)
+
+
+def test_what_a_fit_closes_is_not_said_to_be_closed_by_none():
+    (found,) = unknown().effects
+    closed = replace(unknown(), effects=(replace(found, closed_by_effect=0.8),))
+    assert "none of the known effects looks like it" in verdict_sentence(closed)
+
+
 def test_what_the_table_of_stages_contradicts_is_no_headline():
     same = replace(one_effect(), stages=one_effect().stages | {"friction": SLIGHT})
     assert headline(same) == "Something differs in friction"

@@ -20,7 +20,7 @@ from noise.diagnosis.gap.distance import closed_fraction
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Scores", "closed_interval", "closed_share", "rms"]
+__all__ = ["CLOSABLE", "Scores", "closed_interval", "closed_share", "rms"]
 
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor."""

@@ -22,6 +22,8 @@ _COUNTS = {2: "two", 3: "three"}
 _MOST_PARAMETERS = 3
 _CANDIDATES = 3
 
+_MAY_BE = {"unknown": "something unknown", "parameters": "parameters that are off"}
+
 _LIKELY = 0.5
 """Probability from which on a cause is named first."""
 
@@ -43,13 +45,12 @@ def headline(diagnosis: Diagnosis) -> str:
     """
     if diagnosis.bench:
         return "Not this rig as it is described"
-    match diagnosis.verdict:
-        case ():
-            return "No gap"
-        case ("unknown",):
-            return "Unknown cause"
+    if not diagnosis.verdict:
+        return "No gap"
     if not is_named(diagnosis):
         return f"Something differs{_in_stage(diagnosis)}"
+    if diagnosis.verdict == ("unknown",):
+        return "Unknown cause"
     if diagnosis.verdict == ("parameters",):
         return "Parameters are off"
     names = [cause_of(name).name for name in diagnosis.verdict]
@@ -102,11 +103,10 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     match diagnosis.verdict:
         case ():
             return _no_gap(diagnosis)
+        case _ if not is_named(diagnosis):
+            return _unlikely(diagnosis)
         case ("unknown",):
             return _unknown(diagnosis)
-    if not is_named(diagnosis):
-        return _unlikely(diagnosis)
-    match diagnosis.verdict:
         case ("parameters",):
             return _parameters(diagnosis)
         case (name,):
@@ -176,11 +176,11 @@ def _unknown(diagnosis: Diagnosis) -> str:
             start += f" between {frequency(low)} and {frequency(high)}"
         if place.phase in PHASES:
             start += f" {PHASES[place.phase]}"
-    closes = "closes it" if diagnosis.held_out else "looks like it"
-    return (
-        f"{start}; none of the known effects {closes}: the cause is unknown"
-        f"{_bracketed(diagnosis, 'unknown')}."
-    )
+    closed = max((one.closed_by_effect or 0.0 for one in diagnosis.effects), default=0.0)
+    none = "none of the known effects looks like it"
+    if diagnosis.held_out and closed < _MOSTLY:
+        none = "none of the known effects closes it"
+    return f"{start}; {none}: the cause is unknown{_bracketed(diagnosis, 'unknown')}."
 
 
 def _unlikely(diagnosis: Diagnosis) -> str:
@@ -188,7 +188,8 @@ def _unlikely(diagnosis: Diagnosis) -> str:
     chances = {name: p for name, p in diagnosis.probabilities.items() if name != "none"}
     ranked = sorted(chances, key=lambda name: (name not in diagnosis.verdict, -chances[name]))
     n = max(_CANDIDATES, len(diagnosis.verdict))
-    listed = [f"{cause_of(name).name} ({percent(chances[name])})" for name in ranked[:n]]
+    listed = [f"{_MAY_BE.get(name) or cause_of(name).name} ({percent(chances[name])})"
+              for name in ranked[:n]]  # fmt: skip
     said = f"Something differs{_in_stage(diagnosis)}; it may be {joined(listed, 'or')}"
     if stages := contradicted(diagnosis):
         does = "does" if len(stages) == 1 else "do"

@@ -139,6 +139,8 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
     acting = {name: stage_of_effect(diagnosis, name) for name in named}
     for name, what in STAGES.items():
         finding = diagnosis.stages.get(name)
+        if finding is not None and finding.gap == 0.0:  # nothing of it was recorded
+            finding = None
         p_value = math.nan if finding is None else finding.p_value
         boxes.append(
             StageBox(

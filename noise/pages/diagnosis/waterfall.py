@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.fit.closing import CLOSABLE
 from noise.diagnosis.gap.distance import closed_fraction
 from noise.diagnosis.text.found import finding_of
 from noise.diagnosis.text.sentences import closed_sentence
@@ -112,6 +113,8 @@ def waterfall(diagnosis: Diagnosis) -> Waterfall | None:
     words = closed if closed is not None else _closed_so_far(before, gap, floor, len(bars) > 1)
     ticks = tuple(round_ticks(0.0, top, _TICKS))
     undetermined = "How much of the gap can be closed was not determined."
+    if before - floor < CLOSABLE:
+        undetermined = "On these recordings the gap is hardly larger than the floor."
     return Waterfall(tuple(bars), floor, top, ticks, words or undetermined)
 
 
