@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Known", "null_scale", "train_posterior"]
 
-N_ROUNDS = 200
+N_ROUNDS = 450
 N_TREES = 80
 N_LOOKED_AT = 6000
 """Trees, and cases at most, from which it is seen what columns tell anything."""
 
-N_COLUMNS = 700
+N_COLUMNS = 1000
 """Of the evidence that are kept: what tells nothing only blurs."""
 
 KEPT_EVERY = 5
@@ -168,7 +168,7 @@ def _boosted(
                 n_rounds=n_rounds,
                 seed=seed,
                 learning_rate=0.06,
-                max_leaf_nodes=12,
+                max_leaf_nodes=14,
                 min_samples_leaf=12,
                 max_features=0.15,
             )
