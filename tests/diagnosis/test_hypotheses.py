@@ -29,8 +29,7 @@ ONE_TURN = 62
 
 @pytest.fixture(autouse=True)
 def cache_folder(tmp_path, monkeypatch):
-    for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
-        monkeypatch.setenv(name, str(tmp_path))
+    monkeypatch.setattr("noise.diagnosis.causes.local_cache._folder", lambda: tmp_path)
     return tmp_path
 
 

@@ -36,6 +36,9 @@ SHORTLIST = 8
 LEADERS = 2
 """The likeliest effects, with and without which most cases are made."""
 
+_ENOUGH = 0.8
+"""Share of the local cases without which they are not asked [-]."""
+
 _IN_TRIPLES = 5
 """The likeliest effects, of which triples are made."""
 
@@ -51,7 +54,7 @@ def local_answer(
     *,
     library: Mapping[str, Effect] = EFFECTS,
     n_cases: int = 120,
-    budget_seconds: float = 30.0,
+    budget_seconds: float = 60.0,
     workers: int = 2,
     seed: int = 0,
 ) -> dict[Hypothesis, float]:
@@ -69,7 +72,8 @@ def local_answer(
         Effects that may be missing; those of the user's own are always in question.
     n_cases : int
     budget_seconds : float
-        After which no further case is begun [s]; the answer is from those that there are.
+        After which no further case is begun [s]; where that leaves too few, the first answer
+        stands.
     workers : int
         Processes.
     seed : int
@@ -92,7 +96,7 @@ def local_answer(
         bench, posterior, _wanted(hypotheses, chosen[:LEADERS], n_cases), library=library,
         budget_seconds=budget_seconds, workers=workers, seed=seed,
     )  # fmt: skip
-    if not cases:
+    if len(cases) < _ENOUGH * n_cases:  # few cases, of which the quickest come first, mislead
         return dict(first)
     model = fit_local_model(
         np.array([one.odds for one in cases]), [one.hypothesis for one in cases], hypotheses
@@ -101,6 +105,9 @@ def local_answer(
     weights = np.exp(scores - scores.max()) * _prior(hypotheses, len(chosen))
     covered = sum(first.get(hypothesis, 0.0) for hypothesis in hypotheses)
     weights *= covered / weights.sum()
+    if not own:  # a few dozen cases are as unsure as the library is: the two count alike
+        weights = np.sqrt(weights * [first.get(hypothesis, 0.0) for hypothesis in hypotheses])
+        weights *= covered / weights.sum()
     rest = {hypothesis: p for hypothesis, p in first.items() if hypothesis not in hypotheses}
     return normalised({**dict(zip(hypotheses, weights.tolist(), strict=True)), **rest})
 

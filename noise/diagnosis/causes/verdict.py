@@ -60,6 +60,9 @@ def likeliest(
 ) -> tuple[str, ...]:
     """Return the causes of the likeliest hypothesis, the likeliest of them first.
 
+    An effect that many sets share is likelier than any of these: it is weighed with all of them
+    against the hypotheses that are no set of effects.
+
     Parameters
     ----------
     hypotheses : mapping of frozenset of str to float
@@ -69,18 +72,21 @@ def likeliest(
 
     Examples
     --------
-    >>> likely = {frozenset({"clipping", "mains_hum"}): 0.5, frozenset({"mains_hum"}): 0.3,
-    ...           frozenset({"unknown"}): 0.2}
+    >>> likely = {frozenset({"clipping", "mains_hum"}): 0.3, frozenset({"mains_hum"}): 0.25,
+    ...           frozenset({"unknown"}): 0.45}
     >>> likeliest(likely), likeliest(likely, [frozenset({"mains_hum"})])
     (('mains_hum', 'clipping'), ('mains_hum',))
     """
-    named = [
-        h for h in hypotheses
-        if fitted is None or not h or h <= set(ALONE) or h in fitted
-    ]  # fmt: skip
-    best = max(named, key=lambda hypothesis: hypotheses[hypothesis])
     single = marginals(hypotheses)
-    return tuple(sorted(best, key=lambda name: (-single[name], name)))
+    alone = [h for h in hypotheses if not h or h <= set(ALONE)]
+    sets = [h for h in hypotheses if h not in alone and (fitted is None or h in fitted)]
+    best = max(sets, key=lambda h: (max(single[name] for name in h), hypotheses[h]), default=None)
+    apart = max(alone, key=lambda h: hypotheses[h], default=None)
+    if best is None or (
+        apart is not None and hypotheses[apart] >= max(single[name] for name in best)
+    ):
+        best = apart
+    return tuple(sorted(best or (), key=lambda name: (-single[name], name)))
 
 
 def _is_beyond(gap: Gap) -> bool:
