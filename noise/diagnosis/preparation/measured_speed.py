@@ -26,8 +26,8 @@ FARTHEST = 0.08
 """Relative difference from which an angle's speed is no correction of the one that is stated but
 says that one of the two is wrong [-]."""
 
-_TOLD = 0.005
-"""Relative difference from which a user is told [-]."""
+_OFF = 0.005
+"""Relative difference from which a stated speed is off [-]; runs of one speed differ by as much."""
 
 
 def measured_speed(angle: NDArray[np.float64], rate: float) -> float:
@@ -63,7 +63,8 @@ def at_measured_speeds(
     Returns
     -------
     recordings : tuple of Recording
-        Those without an angle, and whose angle turns at quite another speed, are themselves.
+        Those without an angle, or whose angle turns as stated or at quite another speed, are
+        themselves.
     notes : tuple of str
         By how much the stated speeds were off, if that is worth telling.
 
@@ -89,8 +90,10 @@ def at_measured_speeds(
     for recording, at in zip(recordings, stated, strict=True):
         if _stated(recording) in speeds:
             speed = float(np.mean(speeds[_stated(recording)]))
-            off.append(speed / at.speed - 1.0)
-            recording = replace(recording, condition=replace(at, speed=speed))
+            by = speed / at.speed - 1.0
+            if abs(by) > _OFF:
+                off.append(by)
+                recording = replace(recording, condition=replace(at, speed=speed))
         found.append(recording)
     return tuple(found), tuple(_told(off))
 
@@ -105,6 +108,6 @@ def _told(off: Sequence[float]) -> list[str]:
     said = [
         f"up to {100.0 * by:.2g} % {word}"
         for by, word in ((faster, "faster"), (slower, "slower"))
-        if by > _TOLD
+        if by > _OFF
     ]
     return [f"the shaft turns {' and '.join(said)} than stated; its angle counts"] if said else []

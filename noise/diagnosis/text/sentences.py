@@ -149,7 +149,7 @@ def equivalence_sentences(diagnosis: Diagnosis) -> list[str]:
 def _unfitted(diagnosis: Diagnosis) -> str:
     if not diagnosis.verdict or diagnosis.held_out:
         return ""
-    return "Nothing has been fitted: whether the gap closes with it is not known."
+    return "Nothing has been fitted: whether a known effect closes the gap is not known."
 
 
 def _conditions(limits: str) -> str:
