@@ -70,7 +70,7 @@ def channel_costs(kinds: Collection[str]) -> list[str]:
         )
     unseen = ", ".join(sorted(name.replace("_", " ") for name in unseen_causes(kinds)))
     if {"acceleration", "pressure"} <= missing:
-        found.append(f"neither acceleration nor sound: nothing is said of {unseen}")
+        found.append(f"no acceleration and no sound: nothing is said of {unseen}")
     elif "acceleration" in missing:
         found.append("no acceleration: structure and radiation cannot be told apart")
     elif "pressure" in missing:
