@@ -20,7 +20,7 @@ def plain():
     ("kinds", "words"),
     [
         (("pressure",), "no torque"),
-        (("torque",), "neither acceleration nor sound"),
+        (("torque",), "no acceleration and no sound"),
         (("torque", "pressure"), "no acceleration"),
         (("acceleration", "pressure"), "by acceleration and sound alone"),
         (("torque", "acceleration", "pressure"), "no shaft angle"),
