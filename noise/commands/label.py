@@ -79,12 +79,15 @@ def run(options: Namespace) -> int:
 
         track_paths(options.audacity, [job.name for job in jobs])
     from noise.labels.labelling import Labelling
+    from noise.labels.table import with_corrections
 
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(*models, full_scale=opt.full_scale_of(options))
-    return run_batch(options, work, jobs, lambda rows: _export(options, rows))
+    return run_batch(
+        options, work, jobs, also=lambda rows: _export(options, rows), keep=with_corrections
+    )
 
 
 def _check_exports(options: Namespace) -> None:
