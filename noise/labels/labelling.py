@@ -1,8 +1,9 @@
 """Labelling of recordings: a row for each segment, linked to the condition it was recorded at.
 
 What was logged stands as it is. What was not is inferred where there is a noise to tell it, with
-the bounds of an interval of 90 %; the material is never. The work on a recording can be done here
-or in other processes.
+the bounds of an interval of 90 %; the material is never. The intervals are those of a fluorocarbon
+bushing like the shipped one: a recording of another material has none, nor has a sound that nothing
+says to be of a rig. The work on a recording can be done here or in other processes.
 """
 
 from __future__ import annotations
@@ -223,6 +224,9 @@ def _inferred(
     unknown = any(getattr(logged, field) is None for field in _CONDITIONS.values())
     if not unknown or segment.label not in NAMED:
         return {}
+    # Who names a model says by it which rig the recordings are of.
+    if inference is None and not _is_of_a_rig(blocks):
+        return {}
     from noise.inference import infer_stretch, load_inference
 
     if segment.channel != "all":
@@ -230,6 +234,14 @@ def _inferred(
     first = round(segment.start * blocks.rate)
     last = min(round(segment.end * blocks.rate), blocks.n_samples)
     return infer_stretch(blocks, first, last, logged, inference or load_inference())
+
+
+def _is_of_a_rig(blocks: RecordingBlocks) -> bool:
+    """Whether anything says so: another channel than sound, a calibration, a condition."""
+    at = blocks.condition
+    stated = (at.material, at.speed, at.interference, at.support_stiffness)
+    others = any(channel.kind != "pressure" for channel in blocks.channels)
+    return blocks.calibrated or others or any(value is not None for value in stated)
 
 
 def _in_unit(column: str, value: float | None) -> float | None:
