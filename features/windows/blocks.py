@@ -1,3 +1,4 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 """A long signal in blocks at a common rate: what all features of windows are computed from.
 
 Fourier transforms of its seconds give the part below 7 kHz at 16 kHz, the part of it above 2 kHz
@@ -15,9 +16,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numba import njit
 from scipy import fft
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
+from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -106,10 +109,9 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     >>> block.sound.size, round(float(block.sound.std()), 2), round(float(block.high.std()), 2)
     (16000, 0.71, 0.0)
     """
-    length = samples.size
     n = useful * RATE
-    x = samples - samples.mean()
-    scale = float(max(x.max(), -x.min()))
+    samples = np.ascontiguousarray(samples)
+    mean, scale = _mean_and_peak(samples)
     if not scale > 0.0:
         nothing = np.zeros(n, dtype=np.float32)
         top = np.zeros((useful * FRAME_RATE, 2), dtype=np.float32)
@@ -118,20 +120,14 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     # Where a tenth of a second is no whole number of samples, all is transformed at once.
     second, aside = (useful, MARGIN) if rate % 10.0 else (1, _ASIDE)
     seconds = second + 2.0 * aside
-    length = x.size if rate % 10.0 else round(seconds * rate)
-    inner = x[round((MARGIN - aside) * rate) :]
-    parts = np.lib.stride_tricks.sliding_window_view(inner, length)[:: round(second * rate)][
-        :useful
-    ]
-    single = np.empty(parts.shape, dtype=np.float32)
-    np.multiply(parts, 1.0 / scale, out=single, casting="same_kind")
-    ramp = _ramp(round(0.5 * aside * rate))
-    single[:, : ramp.size] *= ramp
-    single[:, -ramp.size :] *= ramp[::-1]
+    count, length = (1, samples.size) if rate % 10.0 else (useful, round(seconds * rate))
+    single = np.empty((count, length), dtype=np.float32)
+    starts = np.round((MARGIN - aside + second * np.arange(count)) * rate).astype(np.int64)
+    _cut(samples, starts, mean, 1.0 / scale, _ramp(round(0.5 * aside * rate)), single)
     spectrum = fft.rfft(single, axis=1)
     low, high = _gains(round(1e6 * rate), seconds)
     kept, at_rate = min(low.size, spectrum.shape[1]), round(seconds * RATE)
-    bins = np.zeros((len(parts), at_rate // 2 + 1), dtype=np.complex64)
+    bins = np.zeros((count, at_rate // 2 + 1), dtype=np.complex64)
     # Transforms scale with their length.
     np.multiply(spectrum[:, :kept], low[:kept] * np.float32(at_rate / length), out=bins[:, :kept])
     inside = slice(round(aside * RATE), round((second + aside) * RATE))
@@ -143,6 +139,24 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
         if end <= USABLE_SHARE * rate:
             top[:, column] = _band_power(spectrum, (bottom, end), seconds, aside, length)
     return Block(sound, pulses, top, scale)
+
+
+def _mean_and_peak(x: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the mean, and the largest deviation from it."""
+    mean = float(x.mean())
+    return mean, max(float(x.max()) - mean, mean - float(x.min()))
+
+
+@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
+def _cut(x, starts, mean, gain, ramp, out) -> None:
+    """Cut out a row from each start, about the mean, times a gain, with faded ends."""
+    n = out.shape[1]
+    for row in range(starts.size):
+        for i in range(n):
+            out[row, i] = gain * (x[starts[row] + i] - mean)
+        for i in range(ramp.size):
+            out[row, i] *= ramp[i]
+            out[row, n - 1 - i] *= ramp[i]
 
 
 @lru_cache(maxsize=8)

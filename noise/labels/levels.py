@@ -1,3 +1,4 @@
+# mypy: allow-untyped-decorators
 """Levels of any part of a recording, and of each of its segments over the background.
 
 Unweighted levels are put together from sums over cells of 10 ms, while the recording is read once.
@@ -14,8 +15,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numba import njit
 
 from features.kernels.levels import weighted_levels
+from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
 from noise.base.label_names import NAMED
 
@@ -86,17 +89,9 @@ class CellLevels:
         first, last = np.searchsorted(self.edges[:-1], (begin, end)).tolist()
         if first == last:
             return
-        edges = self.edges[first : last + 1]
-        at, sizes = edges[:-1] - edges[0], np.diff(edges)
-        part = samples[edges[0] - start : edges[-1] - start]
-        mean = np.add.reduceat(part, at) / sizes
-        # About the mean of the cell and relative to its peak, whose square may overflow.
-        rest = part - np.repeat(mean, sizes)
-        peak = np.maximum.reduceat(np.abs(rest), at)
-        rest /= np.repeat(np.where(peak > 0.0, peak, 1.0), sizes)
-        self._mean[first:last] = mean
-        self._peak[first:last] = peak
-        self._square[first:last] = np.add.reduceat(rest * rest, at)
+        part = np.ascontiguousarray(samples)
+        into = (self._mean, self._peak, self._square)
+        _sum_cells(part, self.edges[first : last + 1] - start, first, *into)
 
     def rms_db(self, first: int, last: int) -> float | None:
         """Root mean square about the mean of cells `first` up to `last` [dB re the unit].
@@ -114,6 +109,34 @@ class CellLevels:
         square = self._square[first:last] * (self._peak[first:last] / peak) ** 2
         total = float(np.sum(square + sizes * (offset / peak) ** 2))
         return 20.0 * math.log10(peak) + 10.0 * math.log10(total / n) if total > 0.0 else None
+
+
+@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
+def _sum_cells(
+    samples: NDArray[np.float64],
+    edges: NDArray[np.int64],
+    first: int,
+    mean: NDArray[np.float64],
+    peak: NDArray[np.float64],
+    square: NDArray[np.float64],
+) -> None:
+    """Fill in mean, peak about it, and the sum of squares re the peak, whose own may overflow."""
+    for cell in range(edges.size - 1):
+        begin, end = edges[cell], edges[cell + 1]
+        total = 0.0
+        for i in range(begin, end):
+            total += samples[i]
+        middle = total / (end - begin)
+        largest = 0.0
+        for i in range(begin, end):
+            largest = max(largest, abs(samples[i] - middle))
+        sum_of_squares = 0.0
+        unit = 1.0 / largest if largest > 0.0 else 0.0
+        for i in range(begin, end):
+            share = (samples[i] - middle) * unit
+            sum_of_squares += share * share
+        mean[first + cell], peak[first + cell] = middle, largest
+        square[first + cell] = sum_of_squares
 
 
 def sound_levels(
