@@ -174,7 +174,7 @@ def far(name, speed, gap, interference=0.279e-3, **channels):
 def test_it_is_said_where_the_rig_file_does_not_describe_the_rig(found, words):
     sentence = agreement_sentence(replace(one_effect(), agreement=found))
     assert words in sentence
-    assert sentence.endswith("in the torque.")
+    assert sentence.endswith("in the torque (together 7.9 floors, p = 0.0004).")
 
 
 @given(st.lists(st.floats(0.3, 300.0), min_size=1, max_size=6))
@@ -196,7 +196,22 @@ def test_the_place_says_channel_band_phase_and_condition():
         "The gap begins in the friction, in the channel torque, below 1.8 kHz, while the contact "
         "sticks, where speed ≥ 2.5 rad/s; repeats would hardly ever differ as much (p = 0.0004)."
     )
-    assert "40 Hz to 160 Hz, in all conditions" in location_sentence(pressure_alone())
+
+
+def test_a_gap_is_in_all_conditions_only_where_every_recording_is_off():
+    near, off = far("a", 1.0, 1.1), far("b", 4.0, 3.0)
+    said = [
+        "in all conditions" in location_sentence(replace(pressure_alone(), agreement=found))
+        for found in ((near, off), (off, off))
+    ]
+    assert said == [False, True]
+
+
+def test_a_stage_that_does_not_surely_differ_is_in_no_headline():
+    slight = replace(one_effect(), probabilities={"partial_slip": 0.3, "none": 0.2})
+    assert headline(slight) == "Something differs in friction"
+    unsure = replace(slight, location=replace(slight.location, p_value=0.2))
+    assert headline(unsure) == "Something differs"
 
 
 def test_what_was_not_fitted_closes_nothing_in_words():

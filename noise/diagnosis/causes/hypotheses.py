@@ -12,6 +12,7 @@ from noise.diagnosis.cases.truth import KINDS
 from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
 from noise.diagnosis.causes.local_cases import bench_of, local_cases
 from noise.diagnosis.causes.local_model import fit_local_model
+from noise.diagnosis.causes.verdict import ALONE
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -27,9 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["local_answer"]
 
 NONE: Hypothesis = frozenset()
-ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
-"""Hypotheses that are no set of effects."""
-
 SHORTLIST = 8
 """Effects that local cases are made of; those hold both of a pair in five cases of six."""
 

@@ -40,7 +40,7 @@ _ENOUGH = 0.9
 _LIKELY = 0.05
 """Probability of a hypothesis that is worth a fit."""
 
-_NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *(frozenset({name}) for name in ALONE))
+_NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *ALONE)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,12 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.text.agreement_sentences import agreement_sentence, remainder_sentence
+from noise.diagnosis.findings import SURE
+from noise.diagnosis.text.agreement_sentences import (
+    agreement_sentence,
+    far_ones,
+    remainder_sentence,
+)
 from noise.diagnosis.text.found import PHASES
 from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.diagnosis.text.words import (
@@ -40,9 +45,6 @@ _COLUMNS = {
     "support_stiffness_Nm_rad": ("support stiffness", "Nm/rad"),
     "temperature_C": ("temperature", "degree C"),
 }
-
-_NOT_SURE = 0.05
-"""p-value from which on a difference is not sure."""
 
 
 def answer(diagnosis: Diagnosis) -> list[str]:
@@ -81,7 +83,7 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     if place is None:
         return ""
     low, high = place.band
-    sure = not place.p_value >= _NOT_SURE
+    sure = not place.p_value > SURE
     parts = [f"{'The gap begins' if sure else 'It shows most'} in the {place.stage}"]
     if place.channels:
         parts.append(f"in the channel{'s'[: len(place.channels) > 1]} {joined(place.channels)}")
@@ -90,8 +92,10 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     )
     if place.phase != "all":
         parts.append(PHASES.get(place.phase, f"in the phase {place.phase}"))
-    everywhere = place.conditions == "all"
-    parts.append("in all conditions" if everywhere else f"where {_conditions(place.conditions)}")
+    if place.conditions != "all":
+        parts.append(f"where {_conditions(place.conditions)}")
+    elif len(far_ones(diagnosis)) == len(diagnosis.agreement):  # else it shows at some of them
+        parts.append("in all conditions")
     though = "" if sure else "though "
     return f"{', '.join(parts)}; {though}{evidence(place.p_value)} ({p_number(place.p_value)})."
 

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.findings import SURE
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.text.found import finding_of, parameter_name, stage_of_effect
 from noise.diagnosis.text.sentences import closed_words
@@ -44,7 +45,6 @@ _PASSED_ON = {
     "structure": "acceleration",
     "radiation": "pressure",
 }
-_SMALL_P = 0.05
 _MOST_PLACES = 12
 _LIKELY_ENOUGH = 0.05
 _FEWEST, _MOST = 3, 6
@@ -64,9 +64,9 @@ class StageBox:
     share : str
         Of the whole gap.
     guilty : bool
-        Whether the gap begins here.
+        Whether the gap begins here, as far as that is sure.
     differs : bool
-        Whether the p-value is below 0.05.
+        Whether the p-value is 0.05 or below.
     causes : tuple of str
         Effects of the verdict that act here.
     passes_on : str
@@ -150,13 +150,17 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
                 p_value=p_number(p_value) if math.isfinite(p_value) else "",
                 words=evidence(p_value) if math.isfinite(p_value) else "",
                 share=percent(None if finding is None else finding.share),
-                guilty=diagnosis.location is not None and diagnosis.location.stage == name,
-                differs=p_value < _SMALL_P,
+                guilty=_begins(diagnosis.location, name),
+                differs=p_value <= SURE,
                 causes=tuple(cause_of(c).name for c, stage in acting.items() if stage == name),
                 passes_on=_PASSED_ON.get(name, ""),
             )
         )
     return tuple(boxes)
+
+
+def _begins(place: Location | None, stage: str) -> bool:
+    return place is not None and place.stage == stage and not place.p_value > SURE
 
 
 def cause_rows(diagnosis: Diagnosis) -> tuple[tuple[CauseRow, ...], tuple[CauseRow, ...]]:
@@ -256,7 +260,6 @@ def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
     >>> place_rows([Location("friction", ("torque",), (0.0, 1800.0), "stick", "all", 0.004)])
     (('friction', 'torque', 'stick', 'all', 'p = 0.0040'),)
     """
-    sure = [place for place in places if place.p_value <= _SMALL_P][:_MOST_PLACES]
     return tuple(
         (
             place.stage,
@@ -265,7 +268,7 @@ def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
             place.conditions.replace("speed_rad_s", "speed [rad/s]"),
             p_number(place.p_value),
         )
-        for place in sure
+        for place in places[:_MOST_PLACES]
     )
 
 
