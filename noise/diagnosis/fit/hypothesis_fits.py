@@ -16,7 +16,7 @@ from noise.diagnosis.causes.joint import marginals, normalised
 from noise.diagnosis.causes.verdict import ALONE
 from noise.diagnosis.findings import SHOWN_IN
 from noise.diagnosis.fit.closing import CLOSABLE, rms
-from noise.diagnosis.fit.closing_odds import differing, load_closing_odds
+from noise.diagnosis.fit.closing_odds import closed_of, differing, load_closing_odds
 from noise.diagnosis.fit.fit_effect import fit_effect
 
 if TYPE_CHECKING:
@@ -101,18 +101,42 @@ class CaseFits:
         """
         return squared[list(self.held)]
 
-    def closes(self, hypothesis: Hypothesis) -> bool:
-        """Tell whether a fit leaves less than parameters do, or nothing to close.
+    def least(self, hypothesis: Hypothesis) -> NDArray[np.float64]:
+        """Return what a fit leaves of each recording, or that of a part of it where that is less.
 
-        Either on recordings that no fit has seen, or on all of them.
+        More effects leave no more than fewer do, but a search among more of them may stop short.
+
+        Parameters
+        ----------
+        hypothesis : frozenset of str
+
+        Returns
+        -------
+        ndarray, shape (n_recordings,)
+            In squared floors [-].
         """
-        after = self.of[hypothesis].squared
-        left = rms(self.held_out(after))
-        return (
-            left < rms(self.held_out(self.recalibrated))
-            or left <= 1.0 + CLOSABLE
-            or rms(after) < rms(self.recalibrated)
-        )
+        parts = [fit.squared for names, fit in self.of.items() if names < hypothesis]
+        return min((self.of[hypothesis].squared, *parts), key=rms)
+
+    def is_mute(self, hypothesis: Hypothesis) -> bool:
+        """Tell whether effects change nothing: the rig file has no way for them to be heard."""
+        return np.array_equal(self.of[hypothesis].squared, self.recalibrated)
+
+    def closes(self, hypothesis: Hypothesis) -> bool:
+        """Tell whether a fit closes some of what parameters leave, or there is nothing to close.
+
+        Either on recordings that no fit has seen, or on all of them: held-out ones are few, and an
+        effect may show in the others alone. Effects that the model cannot let be heard are not
+        judged by their fit.
+        """
+        if self.is_mute(hypothesis):
+            return True
+        after = self.least(hypothesis)
+        both = (self.recalibrated, after)
+        pairs = [both, tuple(map(self.held_out, both))]
+        open_ones = [(rms(x), rms(y)) for x, y in pairs if rms(x) >= 1.0 + CLOSABLE]
+        enough = load_closing_odds().enough
+        return not open_ones or max(closed_of(x, y) for x, y in open_ones) >= enough
 
 
 def fit_hypotheses(
@@ -203,7 +227,7 @@ def updated(
     """
     odds, library = load_closing_odds(), fits.comparison.library
     gap, left = rms(fits.before), rms(fits.recalibrated)
-    gaps = {hypothesis: rms(fit.squared) for hypothesis, fit in fits.of.items()}
+    gaps = {hypothesis: rms(fits.least(hypothesis)) for hypothesis in fits.of}
     looked = {name: how for name, stage in stages.items()
               if (how := differing(stage)) is not None}  # fmt: skip
 
@@ -212,7 +236,7 @@ def updated(
             return odds.of_none(gap)
         if hypothesis == {"parameters"}:
             return odds.of_parameters(gap, left)
-        if hypothesis == {"unknown"}:
+        if hypothesis == {"unknown"} or (hypothesis in fits.of and fits.is_mute(hypothesis)):
             return 0.0
         if hypothesis not in gaps:  # more beside what closes can close no more than that leaves
             fewer = [other for other in gaps if other < hypothesis]
