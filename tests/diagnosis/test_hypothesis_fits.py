@@ -156,7 +156,8 @@ def closed(monkeypatch):
     """Gaps that fits leave, in place of fits; what was fitted is noted."""
     left, fitted = {}, []
 
-    def fit(comparison, chosen, names, start, seed):
+    def fit(comparison, chosen, names, start, seed, begun=None):
+        assert begun is None or begun < frozenset(names)
         fitted.append(frozenset(names))
         return SimpleNamespace(model=frozenset(names))
 

@@ -167,7 +167,12 @@ def fit_hypotheses(
     def with_fit(fits: CaseFits, hypothesis: Hypothesis) -> CaseFits:
         names = tuple(sorted(hypothesis, key=lambda name: (-single.get(name, 0.0), name)))
         tell(f"fitting {' and '.join(names)}")
-        fitted = fit_effect(fits.comparison, fits.fitted_to, names, fits.alone.model, seed)
+        parts = [fit for fewer, fit in fits.of.items() if fewer < hypothesis]
+        part = max(parts, key=lambda fit: (len(fit.names), -rms(fit.squared)), default=None)
+        fitted = fit_effect(
+            fits.comparison, fits.fitted_to, names, fits.alone.model, seed,
+            begun=None if part is None else part.fitted.model,
+        )  # fmt: skip
         after = fits.comparison.squared(fitted.model, range(len(fits.before)))
         # A model that breaks down on recordings that it has not seen closes nothing there.
         after = np.where(np.isfinite(after), after, np.maximum(fits.before, fits.recalibrated))
