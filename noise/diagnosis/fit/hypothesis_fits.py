@@ -7,7 +7,7 @@ become, and the likeliest of those not yet fitted is next.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.causes.joint import Hypothesis
     from noise.diagnosis.findings import StageFinding
     from noise.diagnosis.fit.case_comparison import CaseComparison
+    from noise.diagnosis.fit.closing_odds import ClosingOdds
     from noise.diagnosis.fit.fit_parameters import Fitted
 
 __all__ = ["CaseFits", "HypothesisFit", "fit_hypotheses", "settled", "updated"]
@@ -76,6 +77,8 @@ class CaseFits:
         Squared distance of each recording from the rig as its file has it, and with parameters
         alone, in squared floors [-].
     of : mapping of frozenset of str to HypothesisFit
+    odds : ClosingOdds
+        That say what fits tell.
     """
 
     comparison: CaseComparison
@@ -85,6 +88,7 @@ class CaseFits:
     before: NDArray[np.float64]
     recalibrated: NDArray[np.float64]
     of: Mapping[Hypothesis, HypothesisFit]
+    odds: ClosingOdds = field(default_factory=load_closing_odds)
 
     def held_out(self, squared: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return what belongs to recordings that no fit has seen.
@@ -132,11 +136,9 @@ class CaseFits:
         if self.is_mute(hypothesis):
             return True
         after = self.least(hypothesis)
-        both = (self.recalibrated, after)
-        pairs = [both, tuple(map(self.held_out, both))]
-        open_ones = [(rms(x), rms(y)) for x, y in pairs if rms(x) >= 1.0 + CLOSABLE]
-        enough = load_closing_odds().enough
-        return not open_ones or max(closed_of(x, y) for x, y in open_ones) >= enough
+        looks = ((self.recalibrated, after), map(self.held_out, (self.recalibrated, after)))
+        open_ones = [(x, y) for x, y in (map(rms, look) for look in looks) if x >= 1.0 + CLOSABLE]
+        return not open_ones or max(closed_of(*both) for both in open_ones) >= self.odds.enough
 
 
 def fit_hypotheses(
@@ -230,7 +232,7 @@ def updated(
     dict of frozenset of str to float
         The likeliest first; they sum to 1 [-].
     """
-    odds, library = load_closing_odds(), fits.comparison.library
+    odds, library = fits.odds, fits.comparison.library
     gap, left = rms(fits.before), rms(fits.recalibrated)
     gaps = {hypothesis: rms(fits.least(hypothesis)) for hypothesis in fits.of}
     looked = {name: how for name, stage in stages.items()
