@@ -85,6 +85,7 @@ def fit_effect(
     start: Model,
     seed: int = 0,
     *,
+    begun: Model | None = None,
     stated: bool = False,
 ) -> Fitted:
     """Fit effects together with the parameters.
@@ -100,12 +101,15 @@ def fit_effect(
         With the parameters as they were recalibrated alone.
     seed : int
         Of what is tried.
+    begun : Model, optional
+        Of a fit of some of the effects, which the others are added to.
     stated : bool
         Whether only forms are tried that a rig file can state.
     """
     few = different(comparison, chosen)
-    best = Model()
-    for name in names:
+    best = begun or Model()
+    there = {spec.name for spec in best.effects}
+    for name in (name for name in names if name not in there):
         candidates = stated_candidates(comparison.library[name], seed)
         if not stated:
             candidates += _further_candidates(comparison, chosen, name, seed)
