@@ -144,6 +144,15 @@ def test_a_plain_rig_has_less_of_a_gap_than_one_with_an_effect(plain, tmp_path):
     assert gaps[0].probabilities["none"] > gaps[1].probabilities["none"]
 
 
+def test_a_shipped_material_stands_in_the_place_of_a_rig_file(plain, tmp_path):
+    data, _ = write_case(tmp_path, plain)
+    (tmp_path / "rig.toml").write_text('base = "fluorocarbon"', encoding="utf-8")
+    named, filed = (
+        as_json(diagnose(data, rig, quick=True)) for rig in ("Fluorocarbon", tmp_path / "rig.toml")
+    )
+    assert named | {"seconds": 0.0} == filed | {"seconds": 0.0}
+
+
 def test_the_same_call_gives_the_same_answer(plain, tmp_path, capsys):
     data, rig = write_case(tmp_path, plain)
     one, other = (_told(capsys, data, "--rig", rig, "--quick", "--seed", "3") for _ in range(2))
