@@ -32,7 +32,11 @@ def configure(parser: ArgumentParser) -> None:
         "data", type=Path, nargs="+", metavar="DATA", help="recordings, or folders of them"
     )
     parser.add_argument(
-        "--rig", type=Path, required=True, metavar="RIG.toml", help="what is known of the rig, or the name of a material"
+        "--rig",
+        type=Path,
+        required=True,
+        metavar="RIG.toml",
+        help="what is known of the rig, or the name of a material",
     )
     opt.add_change(parser)
     parser.add_argument(

@@ -139,6 +139,13 @@ def test_a_place_where_repeats_differ_as_much_is_no_beginning():
     assert location_sentence(slight).endswith("; though repeats differ as much (p = 0.60).")
 
 
+def test_a_gap_does_not_begin_where_the_named_effect_does_not_act():
+    elsewhere = replace(one_effect(), location=replace(one_effect().location, stage="structure"))
+    said = location_sentence(elsewhere)
+    assert said.startswith("It shows in the structure, as what acts in the friction can, in the ch")
+    assert "begins" not in said
+
+
 def test_without_a_gap_an_alternative_that_is_likelier_is_said():
     torn = replace(none(), probabilities={"none": 0.2, "clipping": 0.6})
     assert verdict_sentence(torn).endswith(" If anything, it is clipping (60 %).")

@@ -15,7 +15,7 @@ from noise.diagnosis.text.agreement_sentences import (
     far_ones,
     remainder_sentence,
 )
-from noise.diagnosis.text.found import PHASES
+from noise.diagnosis.text.found import PHASES, begins, stages_acting
 from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
@@ -84,7 +84,10 @@ def location_sentence(diagnosis: Diagnosis) -> str:
         return ""
     low, high = place.band
     sure = not place.p_value > SURE
-    parts = [f"{'The gap begins' if sure else 'It shows most'} in the {place.stage}"]
+    start = "The gap begins" if begins(diagnosis) else "It shows" if sure else "It shows most"
+    parts = [f"{start} in the {place.stage}"]
+    if sure and not begins(diagnosis):
+        parts[0] += f", as what acts in the {joined(stages_acting(diagnosis))} can"
     if place.channels:
         parts.append(f"in the channel{'s'[: len(place.channels) > 1]} {joined(place.channels)}")
     parts.append(
