@@ -161,9 +161,9 @@ def _stated(
 
 
 def _shown_in(acts_in: str, findings: Mapping[str, StageFinding]) -> str | None:
-    """Return the stage that an effect shows in: its own, unless another that it may show in is sure.
+    """Return the stage that an effect shows in, None where it shows in none.
 
-    None where it shows in none of them.
+    It is the effect's own, unless that is not sure and another that it may show in is.
     """
     surest = min(SHOWN_IN[acts_in], key=lambda stage: findings[stage].p_value)
     if findings[acts_in].p_value > SURE >= findings[surest].p_value:
