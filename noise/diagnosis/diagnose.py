@@ -21,14 +21,7 @@ from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.stage_nulls import load_stage_nulls
 from noise.diagnosis.causes.unseen import channel_costs
 from noise.diagnosis.causes.verdict import equivalent_pairs, next_measurement
-from noise.diagnosis.findings import (
-    SHOWN_IN,
-    SURE,
-    Agreement,
-    EffectFinding,
-    HypothesisFinding,
-    StageFinding,
-)
+from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding, StageFinding
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.outcome import Diagnosis
@@ -124,8 +117,10 @@ def _stated(
     verdict, probabilities = judged.verdict, judged.probabilities
     findings = stage_findings(first.table, nulls)
     ranked = [name for name in _ranked(probabilities) if name in library]
-    acts_in = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
-    place = locate(first.table, nulls, acts_in and _shown_in(acts_in, findings))
+    stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
+    if stage is not None and findings[stage].p_value >= _AS_REPEATS:
+        stage = None  # it shows elsewhere
+    place = locate(first.table, nulls, stage)
     return Diagnosis(
         verdict=verdict,
         equivalent=equivalent_pairs(ranked, probabilities, _kinds(case)),
@@ -158,17 +153,6 @@ def _stated(
         agreement=_agreement(case, first.gap),
         faults=case.faults,
     )
-
-
-def _shown_in(acts_in: str, findings: Mapping[str, StageFinding]) -> str | None:
-    """Return the stage that an effect shows in, None where it shows in none.
-
-    It is the effect's own, unless that is not sure and another that it may show in is.
-    """
-    surest = min(SHOWN_IN[acts_in], key=lambda stage: findings[stage].p_value)
-    if findings[acts_in].p_value > SURE >= findings[surest].p_value:
-        return surest
-    return None if findings[acts_in].p_value >= _AS_REPEATS else acts_in
 
 
 def _agreement(case: Case, gap: Gap) -> tuple[Agreement, ...]:
