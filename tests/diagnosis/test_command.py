@@ -98,6 +98,9 @@ def test_the_quick_answer_has_the_contracts_keys(plain, tmp_path, capsys):
     told = _told(capsys, data, "--rig", rig, "--quick")
     _as_the_contract_has_it(told)
     assert told["held_out"] == []
+    nothing = [one["probability"] for one in told["hypotheses"] if not one["causes"]]
+    assert nothing == [told["probabilities"]["none"]]
+    assert all(place["p_value"] <= 0.05 for place in told["map"])
     assert all(effect["closed"] is None for effect in told["effects"])
 
 
