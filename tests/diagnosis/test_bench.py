@@ -62,7 +62,7 @@ def test_a_wrong_bench_is_told_of_files_as_they_are_prepared(right, tmp_path, na
     change, _ = WRONG_BENCHES[name]
     data, rig = write_case(tmp_path, change(right, np.random.default_rng(1)))
     case = read_case([data], load_rig(rig))
-    assert (*bench_findings(case), *case.faults)
+    assert bench_findings(case) or case.faults
 
 
 @pytest.mark.parametrize("name", RIGHT)
