@@ -42,11 +42,10 @@ if TYPE_CHECKING:
 __all__ = ["case_remarks", "diagnose_case"]
 
 _SHOWN = 5
-"""Effects that are listed at least, and hypotheses."""
-
+"""Effects that are listed at least, and hypotheses; assumed."""
 
 _AS_REPEATS = 0.5
-"""p-value from which on a stage differs as repeats do."""
+"""p-value from which on a stage differs as repeats do [-]; assumed."""
 
 
 def diagnose_case(

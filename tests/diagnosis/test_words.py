@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.findings import Agreement, Remainder
+from noise.diagnosis.findings import Agreement, Location, Remainder
 from noise.diagnosis.text.agreement_sentences import AGREES, agreement_sentence
 from noise.diagnosis.text.sentences import (
     answer,
@@ -137,6 +137,23 @@ def test_a_place_where_repeats_differ_as_much_is_no_beginning():
     slight = replace(one_effect(), location=replace(one_effect().location, p_value=0.6))
     assert location_sentence(slight).startswith("It shows most in the friction")
     assert location_sentence(slight).endswith("; though repeats differ as much (p = 0.60).")
+
+
+def test_a_gap_does_not_begin_where_the_named_effect_does_not_act():
+    elsewhere = replace(one_effect(), location=replace(one_effect().location, stage="structure"))
+    said = location_sentence(elsewhere)
+    assert said.startswith("It shows in the structure, as what acts in the friction can, in the ch")
+    assert "begins" not in said
+
+
+def test_a_surer_stage_than_that_of_the_named_effect_is_said():
+    drive = Location("drive", ("angle",), (0.0, 1800.0), "all", "all", 0.35)
+    stages = one_effect().stages | {"drive": SLIGHT}
+    compliant = replace(
+        one_effect(), verdict=("shaft_compliance",), location=drive, stages=stages, effects=()
+    )
+    assert "What differs surely is the friction" in location_sentence(compliant)
+    assert "What differs surely" not in location_sentence(one_effect())
 
 
 def test_without_a_gap_an_alternative_that_is_likelier_is_said():

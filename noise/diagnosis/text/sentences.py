@@ -9,13 +9,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.findings import SURE
+from noise.diagnosis.findings import SHOWN_IN, SURE
 from noise.diagnosis.text.agreement_sentences import (
     agreement_sentence,
     far_ones,
     remainder_sentence,
 )
-from noise.diagnosis.text.found import PHASES
+from noise.diagnosis.text.found import PHASES, begins, stages_acting
 from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
@@ -84,7 +84,10 @@ def location_sentence(diagnosis: Diagnosis) -> str:
         return ""
     low, high = place.band
     sure = not place.p_value > SURE
-    parts = [f"{'The gap begins' if sure else 'It shows most'} in the {place.stage}"]
+    start = "The gap begins" if begins(diagnosis) else "It shows" if sure else "It shows most"
+    parts = [f"{start} in the {place.stage}"]
+    if sure and not begins(diagnosis):
+        parts[0] += f", as what acts in the {joined(stages_acting(diagnosis))} can"
     if place.channels:
         parts.append(f"in the channel{'s'[: len(place.channels) > 1]} {joined(place.channels)}")
     parts.append(
@@ -97,7 +100,29 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     elif len(far_ones(diagnosis)) == len(diagnosis.agreement):  # else it shows at some of them
         parts.append("in all conditions")
     though = "" if sure else "though "
-    return f"{', '.join(parts)}; {though}{evidence(place.p_value)} ({p_number(place.p_value)})."
+    said = f"{', '.join(parts)}; {though}{evidence(place.p_value)} ({p_number(place.p_value)})."
+    return f"{said} {_surer(diagnosis)}".strip()
+
+
+def _surer(diagnosis: Diagnosis) -> str:
+    """Say which stage differs surely where that of the named effects does not."""
+    place, acting = diagnosis.location, stages_acting(diagnosis)
+    if place is None or place.stage not in acting or place.p_value <= SURE:
+        return ""
+    others = {
+        stage: found.p_value
+        for stage in SHOWN_IN.get(place.stage, ())
+        if stage != place.stage
+        and (found := diagnosis.stages.get(stage)) is not None
+        and found.p_value <= SURE
+    }
+    if not others:
+        return ""
+    surest = min(others, key=lambda stage: others[stage])
+    return (
+        f"What differs surely is the {surest} ({p_number(others[surest])}), as it can where "
+        f"something acts in the {place.stage}."
+    )
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
