@@ -80,7 +80,8 @@ class ClosingOdds:
             Gaps with all but some of the effects, where these were fitted: what is superfluous
             closes nothing of them In floors [-].
         stages : sequence of float
-            `differing` of each stage that they act in and that was looked at [-].
+            `differing` of each stage that they act in and that was looked at, 1 where no other
+            differs more surely [-].
 
         Returns
         -------

@@ -55,10 +55,8 @@ _LOOKED = 2
 """Recordings that candidates are looked at with."""
 
 _PROMISING = 6
-"""Candidates that are looked at more closely, with the parameters recalibrated and without."""
-
-_KEPT = 2
-"""Of these, how many are searched about."""
+"""Candidates that are looked at more closely, with the parameters recalibrated and without; the
+best of either is searched about."""
 
 _STEP = 0.5
 _SHRINK = (1.0, 0.5, 0.25)
@@ -118,7 +116,7 @@ def fit_effect(
         for place in range(len(names)):
             best = _refined(comparison, few, best, place)
     fitted = fit_parameters(comparison, chosen, best, rounds=_ROUNDS)
-    model = _settled(comparison, few[:_LOOKED], fitted.model)
+    model = _settled(comparison, few, fitted.model)
     strength = partial(_strength_spread, comparison, few, model)
     return replace(fitted, model=model, spreads=(*fitted.spreads, strength))
 
@@ -137,13 +135,12 @@ def _added(
         for one in [replace(model, effects=(*model.effects, spec))]
     ]
     looked.sort(key=lambda pair: pair[0])
-    tried = [
-        (offset_cost(comparison, few, one), one)
-        for _, shown in looked[:_PROMISING]
-        for one in [replace(shown, offsets=x) for x in dict.fromkeys((model.offsets, offsets))]
-    ]
-    tried.sort(key=lambda pair: pair[0])
-    refined = [_refined(comparison, few, one, len(one.effects) - 1) for _, one in tried[:_KEPT]]
+    # The effect may be what the parameters had to stand for, or one beside them.
+    starts = []
+    for x in dict.fromkeys((model.offsets, offsets)):
+        shown = [replace(one, offsets=x) for _, one in looked[:_PROMISING]]
+        starts.append(min(shown, key=lambda one: offset_cost(comparison, few, one)))
+    refined = [_refined(comparison, few, one, len(one.effects) - 1) for one in starts]
     return min(refined, key=lambda one: offset_cost(comparison, few, one))
 
 

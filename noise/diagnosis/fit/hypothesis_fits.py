@@ -237,6 +237,9 @@ def updated(
     gaps = {hypothesis: rms(fits.least(hypothesis)) for hypothesis in fits.of}
     looked = {name: how for name, stage in stages.items()
               if (how := differing(stage)) is not None}  # fmt: skip
+    # Where no stage differs for sure, that of an effect differs no less than the others.
+    surest = max(looked.values(), default=1.0)
+    looked = {name: how + 1.0 - surest for name, how in looked.items()}
 
     def ratio(hypothesis: Hypothesis) -> float:
         if not hypothesis:
