@@ -297,11 +297,13 @@ def _cut(x: NDArray[np.float64], hop: int, gain: float, out: NDArray[np.float32]
     """
     n = out.shape[1]
     for row in range(out.shape[0]):
+        part = x[row * hop : row * hop + n]
         total = 0.0
         for i in range(n):
-            total += x[row * hop + i]
+            total += part[i]
+        mean = total / n
         for i in range(n):
-            out[row, i] = gain * (x[row * hop + i] - total / n)
+            out[row, i] = gain * (part[i] - mean)
 
 
 def _continued(

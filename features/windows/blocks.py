@@ -157,8 +157,9 @@ def _cut(x, starts, mean, gain, ramp, out) -> None:
     """Cut out a row from each start, about the mean, times a gain, with faded ends."""
     n = out.shape[1]
     for row in range(starts.size):
+        part = x[starts[row] : starts[row] + n]
         for i in range(n):
-            out[row, i] = gain * (x[starts[row] + i] - mean)
+            out[row, i] = gain * (part[i] - mean)
         for i in range(ramp.size):
             out[row, i] *= ramp[i]
             out[row, n - 1 - i] *= ramp[i]
