@@ -4,8 +4,8 @@
 Overall levels are mean squares of the whole sound in time, so that a click counts by its energy
 wherever it lies. The A-weighting is applied to the sound's transform with the magnitudes that the
 standard tabulates; a recursive filter would miss them near half the sampling rate, by several
-decibels where a creak is strong. It is done half a second at a time, so that a sound may be longer
-than memory. One-third octaves are integrals of the autospectrum, whose segments are long enough for
+decibels where a creak is strong. It is done a second at a time, so that a sound may be longer than
+memory. One-third octaves are integrals of the autospectrum, whose segments are long enough for
 four bins in the lowest band; a band of fewer bins is not measured.
 """
 
@@ -41,15 +41,16 @@ __all__ = [
 FAST = 0.125
 """Time constant of the weighting F [s] (IEC 61672-1)."""
 
-_SEGMENT = 0.5
-"""Weighted at once [s]: so short that its transform stays in the cache."""
+_SEGMENT = 0.8
+"""Transformed at once [s]: so short that it stays in the cache."""
 
 _MARGIN = 0.1
 """What a segment has more on either side [s]: the response of the A-weighting's lowest pole has
 fallen by 110 dB. At its ends a sound is continued, turned about its last sample: cut off, a hum
 would click louder than it hums."""
 
-_SEGMENTS_AT_ONCE = 16
+_SEGMENTS_AT_ONCE = 4
+"""Transformed side by side in the time of one."""
 
 
 @dataclass(frozen=True)
@@ -296,11 +297,13 @@ def _cut(x: NDArray[np.float64], hop: int, gain: float, out: NDArray[np.float32]
     """
     n = out.shape[1]
     for row in range(out.shape[0]):
+        part = x[row * hop : row * hop + n]
         total = 0.0
         for i in range(n):
-            total += x[row * hop + i]
+            total += part[i]
+        mean = total / n
         for i in range(n):
-            out[row, i] = gain * (x[row * hop + i] - total / n)
+            out[row, i] = gain * (part[i] - mean)
 
 
 def _continued(

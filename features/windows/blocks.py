@@ -51,6 +51,9 @@ _HIGH_FROM = (1700.0, 2300.0)
 _TOP_BANDS = ((7_000, 13_000), (13_000, 19_000))
 """Above the common band [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
 
+_LANES = 4
+"""Rows that are transformed side by side in the time of one."""
+
 
 @dataclass(frozen=True, eq=False)
 class Block:
@@ -121,23 +124,25 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     second, aside = (useful, MARGIN) if rate % 10.0 else (1, _ASIDE)
     seconds = second + 2.0 * aside
     count, length = (1, samples.size) if rate % 10.0 else (useful, round(seconds * rate))
-    single = np.empty((count, length), dtype=np.float32)
+    rows = -(-count // _LANES) * _LANES
+    single = np.zeros((rows if count > 1 else 1, length), dtype=np.float32)
     starts = np.round((MARGIN - aside + second * np.arange(count)) * rate).astype(np.int64)
     _cut(samples, starts, mean, 1.0 / scale, _ramp(round(0.5 * aside * rate)), single)
     spectrum = fft.rfft(single, axis=1)
     low, high = _gains(round(1e6 * rate), seconds)
     kept, at_rate = min(low.size, spectrum.shape[1]), round(seconds * RATE)
-    bins = np.zeros((count, at_rate // 2 + 1), dtype=np.complex64)
+    bins = np.zeros((len(single), at_rate // 2 + 1), dtype=np.complex64)
     # Transforms scale with their length.
     np.multiply(spectrum[:, :kept], low[:kept] * np.float32(at_rate / length), out=bins[:, :kept])
     inside = slice(round(aside * RATE), round((second + aside) * RATE))
-    sound = fft.irfft(bins, at_rate, axis=1)[:, inside].reshape(-1)
+    sound = fft.irfft(bins, at_rate, axis=1)[:count, inside].reshape(-1)
     bins[:, : high.size] *= high
-    pulses = fft.irfft(bins, at_rate, axis=1)[:, inside].reshape(-1)
+    pulses = fft.irfft(bins, at_rate, axis=1)[:count, inside].reshape(-1)
     top = np.full((useful * FRAME_RATE, len(_TOP_BANDS)), np.nan, dtype=np.float32)
     for column, (bottom, end) in enumerate(_TOP_BANDS):
         if end <= USABLE_SHARE * rate:
-            top[:, column] = _band_power(spectrum, (bottom, end), seconds, aside, length)
+            power = _band_power(spectrum, (bottom, end), seconds, aside, length)
+            top[:, column] = power[: len(top)]
     return Block(sound, pulses, top, scale)
 
 
@@ -152,8 +157,9 @@ def _cut(x, starts, mean, gain, ramp, out) -> None:
     """Cut out a row from each start, about the mean, times a gain, with faded ends."""
     n = out.shape[1]
     for row in range(starts.size):
+        part = x[starts[row] : starts[row] + n]
         for i in range(n):
-            out[row, i] = gain * (x[starts[row] + i] - mean)
+            out[row, i] = gain * (part[i] - mean)
         for i in range(ramp.size):
             out[row, i] *= ramp[i]
             out[row, n - 1 - i] *= ramp[i]

@@ -111,7 +111,7 @@ class CellLevels:
         return 20.0 * math.log10(peak) + 10.0 * math.log10(total / n) if total > 0.0 else None
 
 
-@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
+@njit(fastmath={"reassoc", "contract", "nnan", "nsz"}, cache=True, **COMPILED)
 def _sum_cells(
     samples: NDArray[np.float64],
     edges: NDArray[np.int64],
@@ -122,18 +122,18 @@ def _sum_cells(
 ) -> None:
     """Fill in mean, peak about it, and the sum of squares re the peak, whose own may overflow."""
     for cell in range(edges.size - 1):
-        begin, end = edges[cell], edges[cell + 1]
+        part = samples[edges[cell] : edges[cell + 1]]
         total = 0.0
-        for i in range(begin, end):
-            total += samples[i]
-        middle = total / (end - begin)
+        for i in range(part.size):
+            total += part[i]
+        middle = total / part.size
         largest = 0.0
-        for i in range(begin, end):
-            largest = max(largest, abs(samples[i] - middle))
+        for i in range(part.size):
+            largest = max(largest, abs(part[i] - middle))
         sum_of_squares = 0.0
-        unit = 1.0 / largest if largest > 0.0 else 0.0
-        for i in range(begin, end):
-            share = (samples[i] - middle) * unit
+        peak_or_one = largest if largest > 0.0 else 1.0
+        for i in range(part.size):
+            share = (part[i] - middle) / peak_or_one
             sum_of_squares += share * share
         mean[first + cell], peak[first + cell] = middle, largest
         square[first + cell] = sum_of_squares
