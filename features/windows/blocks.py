@@ -198,8 +198,19 @@ def _band_power(
     low, high = band
     first, last = round(low * seconds), round(high * seconds)
     analytic = fft.ifft(spectrum[:, first:last], axis=1) * np.float32(2.0 * (last - first) / length)
-    per_frame = (high - low) // FRAME_RATE
-    margin = round(aside * (high - low))
-    analytic = analytic[:, margin : analytic.shape[1] - margin]
-    power = np.float32(0.5) * (analytic.real**2 + analytic.imag**2)
-    return np.asarray(power.reshape(-1, per_frame).mean(axis=1))
+    per_frame, margin = (high - low) // FRAME_RATE, round(aside * (high - low))
+    power = np.empty((len(analytic), (last - first - 2 * margin) // per_frame), dtype=np.float32)
+    _frame_powers(analytic, margin, per_frame, power)
+    return power.reshape(-1)
+
+
+@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
+def _frame_powers(analytic, margin, per_frame, power) -> None:
+    for row in range(power.shape[0]):
+        for frame in range(power.shape[1]):
+            start = margin + frame * per_frame
+            part = analytic[row, start : start + per_frame]
+            total = np.float32(0.0)
+            for i in range(part.size):
+                total += part[i].real * part[i].real + part[i].imag * part[i].imag
+            power[row, frame] = np.float32(0.5) * total / np.float32(per_frame)

@@ -72,8 +72,18 @@ def envelope(signal: NDArray[np.float32]) -> NDArray[np.float32]:
     >>> envelope(np.ones(8, dtype=np.float32)).tolist()
     [1.0, 1.0]
     """
-    whole = signal[: signal.size // _STEP * _STEP].reshape(-1, _STEP)
-    return np.asarray(np.einsum("ij,ij->i", whole, whole) / np.float32(_STEP))
+    power = np.empty(signal.size // _STEP, dtype=np.float32)
+    _mean_squares(np.ascontiguousarray(signal), power)
+    return power
+
+
+@njit(fastmath={"contract"}, cache=True, **COMPILED)
+def _mean_squares(signal, power) -> None:
+    for i in range(power.size):
+        total = np.float32(0.0)
+        for k in range(_STEP):
+            total += signal[_STEP * i + k] * signal[_STEP * i + k]
+        power[i] = total / np.float32(_STEP)
 
 
 def rhythm_features(

@@ -1,8 +1,8 @@
 """A recording described window by window, reading each of its samples once.
 
-Blocks lie on a grid that begins with the recording, and pages hold two of them; so the same numbers
-come out whether the recording is in memory or read from its file, and memory does not grow with its
-length but for a few kilobytes a second that are kept of it.
+Blocks lie on a grid that begins with the recording, and pages hold three of them; so the same
+numbers come out whether the recording is in memory or read from its file, and memory does not grow
+with its length but for a few kilobytes a second that are kept of it.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ _LEAST_BLOWS = math.log2(3.0 / 10.0)
 _COLUMN = {name: i for i, name in enumerate(FEATURE_NAMES)}
 _DECLARED = {feature.name: feature for feature in WINDOW_FEATURES}
 
-_BLOCKS_A_PAGE = 2
+_BLOCKS_A_PAGE = 3
 
 _FRAMES_A_HOP = round(HOP * FRAME_RATE)
 
