@@ -33,6 +33,7 @@ __all__ = [
     "SoundLevels",
     "WeightedLevels",
     "a_weighted",
+    "a_weighted_level",
     "fast_levels",
     "sound_levels",
     "weighted_levels",
@@ -134,7 +135,7 @@ def sound_levels(
     x = checked_signal(signal, rate)
     x = x - x.mean()
     level = float(band_levels(np.mean(x**2), reference))
-    weighted = weighted_levels(lambda first, last: x[first:last], x.size, rate, reference=reference)
+    weighted = weighted_levels(_reader(x), x.size, rate, reference=reference)
     bands = fine_third_octaves(x, rate, reference=reference)
     return SoundLevels(level, weighted.level_a, weighted.level_af_max, bands)
 
@@ -200,6 +201,44 @@ def weighted_levels(
     return WeightedLevels(level, most, band_levels(sums[: n // step] / step, reference))
 
 
+def a_weighted_level(
+    signal: ArrayLike, rate: float, *, reference: float = REFERENCE_PRESSURE
+) -> float:
+    """Return the A-weighted level of a sound [dB]; arguments and refusals as of `sound_levels`.
+
+    Parameters
+    ----------
+    signal : array_like, shape (n_samples,)
+        Sound pressure [Pa], or fractions of full scale.
+    rate : float
+        Sampling rate [Hz].
+    reference : float
+        [unit]
+
+    Returns
+    -------
+    float
+        [dB]; minus infinity for silence.
+
+    Raises
+    ------
+    ParameterError
+        A signal that can't be analysed.
+
+    Examples
+    --------
+    >>> hum = np.sqrt(2) * np.sin(2 * np.pi * 100 * np.arange(48000) / 48e3)
+    >>> round(a_weighted_level(hum, 48e3, reference=1.0), 1)
+    -19.1
+    """
+    x = checked_signal(signal, rate)
+    return weighted_levels(_reader(x), x.size, rate, reference=reference).level_a
+
+
+def _reader(x: NDArray[np.float64]) -> Callable[[int, int], NDArray[np.float64]]:
+    return lambda first, last: x[first:last]
+
+
 def _kept(rate: float) -> float:
     """Share of the squared sound that the time weighting F keeps from sample to sample."""
     return float(np.exp(-1.0 / (FAST * rate)))
@@ -261,7 +300,7 @@ def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
     -19.1
     """
     x = checked_signal(signal, rate)
-    pieces = _weighted_pieces(lambda first, last: x[first:last], x.size, rate)
+    pieces = _weighted_pieces(_reader(x), x.size, rate)
     return np.concatenate([piece * scale for piece, scale in pieces])
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from features.kernels.levels import a_weighted_level
 from models.recording import Channel, Recording
 from models.rig_files.rig_file import load_material_rig
 from noise.audio.assessment import assess
@@ -54,6 +55,8 @@ def test_a_level_is_the_same_in_every_table_over_the_same_samples(squeal, tmp_pa
         part = slice(round(row["start_s"] * RATE), round(row["end_s"] * RATE))
         rendered = assess(recorded(recording.samples[0, part])).row(full_scale=1.0)
         assert {name: row[name] for name in LEVELS} == {name: rendered[name] for name in LEVELS}
+        diagnosed = a_weighted_level(recording.samples[0, part], recording.rate)
+        assert round(diagnosed, 2) == row["level_dba"]
 
 
 def test_simulate_render_and_label_tell_the_same_level(tmp_path, monkeypatch, capsys):

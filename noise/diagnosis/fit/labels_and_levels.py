@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from features.kernels.bands import overall_level
-from features.kernels.spectra import autospectrum
-from models.recording import REFERENCE_PRESSURE
+from features.kernels.levels import a_weighted_level
 from noise.classifier import load_classifier
 from noise.diagnosis.findings import LabelsAndLevels
 from noise.labels.segments import file_label, label_recording
@@ -41,5 +39,4 @@ def _level(recording: Recording) -> float:
     row = recording.first("pressure")
     if row is None:
         return math.nan
-    spectrum = autospectrum(recording.samples[row], recording.rate)
-    return overall_level(spectrum, reference=REFERENCE_PRESSURE, weighting="A")
+    return a_weighted_level(recording.samples[row], recording.rate)
