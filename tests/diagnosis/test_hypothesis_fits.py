@@ -96,13 +96,13 @@ def test_where_parameters_close_all_names_keep_their_odds():
 
 
 def test_where_no_stage_differs_none_speaks_against_a_name():
-    before = chances(background_noise=0.3, unknown=0.3)
-    noise, unknown = frozenset({"background_noise"}), frozenset({"unknown"})
-    fits = fits_of(2.5, 2.4, background_noise=1.2)
-    faint = STAGES | {"friction": StageFinding(1.6, 0.9, 0.9)}
-    sure, unsure = (updated(before, fits, stages) for stages in (STAGES, faint))
-    assert unsure[noise] / unsure[unknown] > sure[noise] / sure[unknown]
-    assert likeliest(unsure) == ("background_noise",)
+    before = chances(speed_fluctuation=0.3, unknown=0.3)
+    drive, unknown = frozenset({"speed_fluctuation"}), frozenset({"unknown"})
+    fits = fits_of(2.5, 2.4, speed_fluctuation=1.2)
+    stages = {"drive": StageFinding(1.0, 0.0, 1.0), "measurement": StageFinding(4.0, 0.9, 0.001)}
+    faint = stages | {"measurement": StageFinding(1.6, 0.9, 0.9)}
+    sure, unsure = (updated(before, fits, looked) for looked in (stages, faint))
+    assert unsure[drive] / unsure[unknown] > sure[drive] / sure[unknown]
 
 
 def test_a_second_effect_that_closes_nothing_more_is_superfluous():
