@@ -114,14 +114,10 @@ def rhythm_features(
     """
     size = int((last - first).max(initial=0))
     rows = np.zeros((len(first), max(size, 1)), dtype=np.float32)
-    for row, start, end in zip(rows, first, last, strict=True):
-        row[: end - start] = power[start:end]
-    n = (last - first).astype(np.int64)
-    amplitude = np.sqrt(rows)
-    inside = np.arange(rows.shape[1]) < n[:, None]
-    mean = amplitude.sum(axis=1) / n
-    varying = np.where(inside, amplitude - mean[:, None], np.float32(0.0)).astype(np.float32)
-    spectrum = fft.rfft(varying, n=_LENGTH, axis=1)
+    varying = np.zeros((len(first), _LENGTH), dtype=np.float32)
+    n, mean, spread = (last - first).astype(np.int64), np.empty(len(rows)), np.empty(len(rows))
+    _gather(power, first, rows, n, varying, mean, spread)
+    spectrum = fft.rfft(varying, axis=1)
     modulation = spectrum.real**2 + spectrum.imag**2
     correlation = fft.irfft(modulation, axis=1)[:, : 2 * _LAGS[1] + 2]
     shares = np.add.reduceat(modulation, _MODULATION, axis=1)[:, :-1]
@@ -144,8 +140,26 @@ def rhythm_features(
     for name, values in found.items():
         out[described, RHYTHM_NAMES.index(name)] = values
     out[:, -len(_MODULATION) : -1] = shares / whole
-    out[:, -1] = varying.std(axis=1) / np.maximum(mean, 1e-20)
+    out[:, -1] = spread / np.maximum(mean, 1e-20)
     return out
+
+
+@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
+def _gather(power, first, rows, n, varying, mean, spread) -> None:
+    """Fill in each window's power, its amplitude about the mean, that mean, and the deviation."""
+    for w in range(rows.shape[0]):
+        part, amplitude = power[first[w] : first[w] + n[w]], varying[w]
+        total = np.float32(0.0)
+        for i in range(part.size):
+            rows[w, i] = part[i]
+            amplitude[i] = np.sqrt(part[i])
+            total += amplitude[i]
+        middle = np.float32(total / n[w])
+        squares = np.float32(0.0)
+        for i in range(part.size):
+            amplitude[i] -= middle
+            squares += amplitude[i] * amplitude[i]
+        mean[w], spread[w] = middle, np.sqrt(squares / rows.shape[1])
 
 
 @njit(cache=True, **COMPILED)
