@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["PER_LEAF", "boosted_trees", "boosting", "grow_boosted_trees", "grow_quantile_forest"]
+__all__ = ["PER_LEAF", "as_arrays", "grow_boosted_trees", "grow_quantile_forest"]
 
 PER_LEAF = 8
 """Values that a leaf of a quantile forest keeps: the middles of as many equal shares."""
@@ -56,65 +56,35 @@ def grow_boosted_trees(
     >>> trees.probabilities(np.array([[0.0, 0.0], [8.0, np.nan]])).argmax(axis=1).tolist()
     [0, 2]
     """
-    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
-    # hold for other sound.
-    model = boosting(
-        x, y, weight=weight, n_rounds=n_rounds, seed=seed,
-        learning_rate=0.1, max_leaf_nodes=16, min_samples_leaf=10, max_features=0.3,
-    )  # fmt: skip
-    return boosted_trees([model])
-
-
-def boosting(
-    x: NDArray[np.floating[Any]],
-    y: NDArray[np.int64],
-    *,
-    weight: NDArray[np.float64] | None = None,
-    n_rounds: int,
-    seed: int,
-    **shape: float,
-) -> Any:
-    """Fit scikit-learn's boosted trees, the same on every machine.
-
-    Parameters
-    ----------
-    x, y, weight, n_rounds, seed
-        As of `grow_boosted_trees`; without weights each sample counts alike.
-    **shape : float
-        What the trees are to look like [-], by scikit-learn's names.
-
-    Returns
-    -------
-    HistGradientBoostingClassifier
-    """
     from sklearn.ensemble import HistGradientBoostingClassifier
     from threadpoolctl import threadpool_limits
 
+    # Shallow trees that see a third of the features each: what is learned from made-up sound has to
+    # hold for other sound.
     model = HistGradientBoostingClassifier(
-        max_iter=n_rounds, l2_regularization=1.0, early_stopping=False, random_state=seed, **shape
-    )
+        max_iter=n_rounds, learning_rate=0.1, max_leaf_nodes=16, min_samples_leaf=10,
+        max_features=0.3, l2_regularization=1.0, early_stopping=False, random_state=seed,
+    )  # fmt: skip
     with threadpool_limits(1):  # sums are the same on every machine
-        return model.fit(x, y, sample_weight=weight)
+        model.fit(x, y, sample_weight=weight)
+    grown = [(k, tree.nodes) for trees in model._predictors for k, tree in enumerate(trees)]
+    return as_arrays(grown, np.asarray(model._baseline_prediction).reshape(-1))
 
 
-def boosted_trees(models: Sequence[Any]) -> BoostedTrees:
-    """Return scikit-learn's boosted trees as arrays.
+def as_arrays(grown: Sequence[tuple[int, NDArray[Any]]], base: NDArray[np.float64]) -> BoostedTrees:
+    """Return trees as scikit-learn keeps their nodes as arrays.
 
     Parameters
     ----------
-    models : sequence of HistGradientBoostingClassifier
-        Their classes follow on one another.
+    grown : sequence of (int, structured ndarray)
+        Class and nodes of each tree.
+    base : ndarray, shape (n_classes,)
+        Scores before any tree [-].
 
     Returns
     -------
     BoostedTrees
     """
-    grown, first = [], 0
-    for model in models:
-        for trees in model._predictors:
-            grown += [(first + k, tree.nodes) for k, tree in enumerate(trees)]
-        first += len(model._predictors[0])
-    bases = [np.asarray(model._baseline_prediction).reshape(-1) for model in models]
     nodes = np.concatenate([tree for _, tree in grown])
     counts = np.array([len(tree) for _, tree in grown])
     roots = np.cumsum(counts) - counts
@@ -128,7 +98,7 @@ def boosted_trees(models: Sequence[Any]) -> BoostedTrees:
         children=np.where(leaf[:, None], 0, children).astype(np.int32),
         missing_left=nodes["missing_go_to_left"].astype(bool),
         value=np.where(leaf, nodes["value"], 0.0).astype(np.float64),
-        base=np.concatenate(bases).astype(np.float64),
+        base=base.astype(np.float64),
     )
 
 

@@ -18,11 +18,13 @@ from tests.helpers.small_rigs import RATE, RIG, at, run
 FIT = RIG.fits[0]
 
 
-def _shape(*effects, speed=1.5, support=2214.0, rig=RIG):
+def _shape(*effects, speed=1.5, support=2214.0, rig=RIG, still=False):
     recording = run(at(speed, support), *effects, seconds=0.6, rig=rig)
     torque = recording["torque"]
     bushing = lumped_bushing(RIG, 0.279e-3, support)
     found = reconstruct(torque, np.full(torque.size, speed), RATE, bushing)
+    if still:
+        found = replace(found, by_stiffness=np.zeros_like(found.by_stiffness))
     return cycle_shape(found, FIT, *slip_starts(found, speed))
 
 
@@ -68,3 +70,9 @@ def test_a_bolted_clamp_has_no_inertia_to_be_wrong():
     shape = _shape(support=FIXED)
     assert "ring_clamp" not in shape
     assert np.isfinite(list(shape.values())).all()
+
+
+def test_sticks_whose_torque_stays_say_nothing_of_the_stiffness():
+    shape = _shape(still=True)
+    assert "ring_damping" in shape
+    assert not {"ring_stiffness", "ring_unlike"} & shape.keys()

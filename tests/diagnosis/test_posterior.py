@@ -20,8 +20,8 @@ from noise.diagnosis.causes.verdict import (
     next_measurement,
 )
 from noise.diagnosis.gap.distance import Gap
+from noise.training.causes.boosting import grow_cause_trees
 from noise.training.causes.fit import Known, causes_of, train_posterior, with_channels, with_fewer
-from noise.training.trees import boosted_trees
 from sim.effects import EFFECTS
 from tests.helpers.made_posteriors import MOVES, NAMES, made_cases, made_posterior, made_table
 
@@ -132,17 +132,27 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
         load_posterior(tmp_path / "nowhere.npz")
 
 
-def test_trees_of_several_causes_say_what_scikit_learn_says():
+def test_trees_that_are_offered_all_columns_say_what_scikit_learn_says():
     from sklearn.ensemble import HistGradientBoostingClassifier
 
     rng = np.random.default_rng(0)
-    x = rng.normal(size=(300, 8))
-    models = [
-        HistGradientBoostingClassifier(max_iter=12, early_stopping=False).fit(x, wanted)
-        for wanted in (x[:, 0] > 0.0, x[:, 1] + x[:, 2] > 0.5)
-    ]
-    expected = np.stack([model.decision_function(x) for model in models], axis=1)
-    assert boosted_trees(models).scores(x) == pytest.approx(expected, abs=1e-9)
+    x = rng.normal(size=(300, 8)).astype(np.float32)
+    y = np.stack([x[:, 0] > 0.0, x[:, 1] + x[:, 2] > 0.5], axis=1).astype(np.int64)
+    model = HistGradientBoostingClassifier(
+        max_iter=12, learning_rate=0.05, max_leaf_nodes=14, min_samples_leaf=8, max_bins=63,
+        l2_regularization=1.0, early_stopping=False,
+    )  # fmt: skip
+    expected = np.stack([model.fit(x, of).decision_function(x) for of in y.T], axis=1)
+    trees = grow_cause_trees(x, y, n_rounds=12, seed=0)
+    assert trees.scores(x) == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_cause_that_no_case_has_or_all_have_is_never_or_always_there():
+    x = np.random.default_rng(0).normal(size=(60, 3)).astype(np.float32)
+    y = np.stack([np.zeros(60), x[:, 0] > 0.0, np.ones(60)], axis=1).astype(np.int64)
+    scores = grow_cause_trees(x, y, n_rounds=3, seed=0).scores(x)
+    assert (scores[:, 0] < -5.0).all()
+    assert (scores[:, 2] > 5.0).all()
 
 
 def test_more_votes_make_a_cause_more_probable():

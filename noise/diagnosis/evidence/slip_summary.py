@@ -112,7 +112,8 @@ def _ringing(
     numbers |= {names[k]: float(value) for k, value in zip(known, x, strict=True)}
     left = float(np.var(rings[0] - x @ rings[known]))
     numbers["ring_left"] = 0.5 * math.log(left / (float(spreads[0]) ** 2 + 1e-12) + 1e-6)
-    numbers["ring_unlike"] = numbers["ring_stiffness"] - numbers["slow_stiffness"]
+    if "ring_stiffness" in numbers:
+        numbers["ring_unlike"] = numbers["ring_stiffness"] - numbers["slow_stiffness"]
     return numbers
 
 
