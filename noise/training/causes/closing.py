@@ -47,7 +47,7 @@ _LOOKED = 50
 _SCALE = (2.0, 4.0, 2.0, 3.0, 3.0, 1.0, 3.0, 2.0, 2.0)
 """How far each weight may be off the one before, as one standard deviation [-]."""
 
-_ENOUGH = (0.0, 0.005, 0.02, 0.05, 0.1, 0.2, 0.3)
+_ENOUGH = (0.005, 0.02, 0.05, 0.1, 0.2, 0.3)
 """Shares tried that a fit has to close for its effects to be named."""
 
 _WRONG = 0.01
@@ -140,7 +140,7 @@ def _kept(path: Path) -> CaseFits:
     return CaseFits(nothing, (), tuple(said["held"]), nothing, before, recalibrated, fits)
 
 
-def learn_closing_odds(cases: Sequence[FittedCase], *, ridge: float = 4.0) -> ClosingOdds:
+def learn_closing_odds(cases: Sequence[FittedCase], *, ridge: float = 10.0) -> ClosingOdds:
     """Learn weights by which the true hypotheses become likeliest.
 
     Parameters
