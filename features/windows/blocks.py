@@ -1,7 +1,8 @@
 """A long signal in blocks at a common rate: what all features of windows are computed from.
 
 One Fourier transform of eight seconds gives the part below 7 kHz at 16 kHz, the part of it above
-2 kHz where blows stand out of tones, and the power in two bands above 7 kHz. Blocks overlap by a
+2 kHz where blows stand out of tones, and the power in two bands above 7 kHz. The part below 7 kHz is
+A-weighted: in a car or a hall most power lies below 200 Hz, where no noise is told from another. Blocks overlap by a
 second, of which half is faded and thrown away on either side, and lie on a fixed grid; so what is
 computed does not depend on how much of a recording was in memory. All in single precision, relative
 to the block's peak, which is twice as fast.
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import fft
 
+from features.kernels.bands import a_weighting
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 
 if TYPE_CHECKING:
@@ -53,7 +55,7 @@ class Block:
     Parameters
     ----------
     sound : ndarray of float32, shape (n,)
-        From 160 Hz to 7 kHz [share of `scale`].
+        From 160 Hz to 7 kHz, A-weighted [share of `scale`].
     high : ndarray of float32, shape (n,)
         Its part above 2 kHz [share of `scale`].
     top : ndarray of float32, shape (n_frames, 2)
@@ -150,6 +152,7 @@ def _gains(microhertz: int, useful: int) -> tuple[NDArray[np.float32], NDArray[n
     frequency = np.arange(math.ceil(end / spacing)) * spacing
     low = _flank(frequency, *_LOW)
     low *= 1.0 - _flank(frequency, limit, end)
+    low[1:] *= 10.0 ** (a_weighting(frequency[1:]) / 20.0)
     return low.astype(np.float32), _flank(frequency, *_HIGH_FROM).astype(np.float32)
 
 

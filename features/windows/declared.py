@@ -2,9 +2,10 @@
 
 The order is that in which `features.windows.table` puts them side by side: how the frames of 32 ms
 follow each other, the lines of the averaged spectrum, the rhythm of all of the sound and of its
-part above 2 kHz, and what lies above 7 kHz. They are computed for hours of sound at once, in single
-precision and from other segments than the features of `features.registry`; so what has the same
-name there is the same idea but another number, and neither can stand in for the other.
+part above 2 kHz, and what lies above 7 kHz. All is A-weighted. They are computed for hours of sound
+at once, in single precision and from other segments than the features of `features.registry`; so
+what has the same name there is the same idea but another number, and neither can stand in for the
+other.
 """
 
 from __future__ import annotations
@@ -123,9 +124,7 @@ TONE_FEATURES = (
     _F("spectral_slope", "dB/octave", "Slope of the spectrum's level."),
     _F("lowest_line", "octave", "Frequency of the lowest line re the strongest."),
     _F("line_spacing_spread", "1", "Mean deviation of the lines' distances over their mean."),
-    *(_F(f"weighted_above_{i}", "dB", f"A-weighted power above {i} kHz re all.")
-      for i in (1, 2, 4)),
-    _F("weighted_lines", "dB", "A-weighted power in lines re all."),
+    *(_F(f"above_{i}", "dB", f"Power above {i} kHz re all.") for i in (1, 2, 4)),
 )  # fmt: skip
 """Of the lines of its averaged spectrum."""
 

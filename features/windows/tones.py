@@ -87,12 +87,6 @@ def tone_features(
     return np.stack([found[name] for name in TONE_NAMES], axis=1).astype(np.float32)
 
 
-def _audible(spectra: WindowSpectra) -> NDArray[np.float32]:
-    """Return the A-weighted power of all."""
-    low, middle, high, highest = spectra.audible
-    return np.asarray((low + high) + (middle + highest))
-
-
 def _decibel(share: NDArray[np.floating], least: float) -> NDArray[np.float64]:
     return np.asarray(10.0 * np.log10(np.maximum(share.astype(np.float64), least)))
 
@@ -100,16 +94,16 @@ def _decibel(share: NDArray[np.floating], least: float) -> NDArray[np.float64]:
 def _shape(spectra: WindowSpectra) -> dict[str, NDArray[np.floating]]:
     """Describe how the power is spread over frequency."""
     total, line, below = spectra.total, spectra.line, spectra.below
-    audible, (low, _, high, highest) = _audible(spectra), spectra.audible
+    _, middle, high, highest = spectra.octaves
     above = (total - (line + below)).astype(np.float64)
     return {
         "below_line": _decibel(below / line, 1e-5),
         "above_line": _decibel(above / line, 1e-5),
         "spectral_flatness": spectra.flatness,
         "spectral_slope": spectra.slope,
-        "weighted_above_1": _decibel((audible - low) / audible, 1e-6),
-        "weighted_above_2": _decibel((high + highest) / audible, 1e-6),
-        "weighted_above_4": _decibel(highest / audible, 1e-6),
+        "above_1": _decibel((middle + high + highest) / total, 1e-6),
+        "above_2": _decibel((high + highest) / total, 1e-6),
+        "above_4": _decibel(highest / total, 1e-6),
     }
 
 
@@ -144,7 +138,7 @@ def _lines(
     count = np.bincount(row, minlength=n)
     height = level[row, at]
     strong = height.astype(np.float64) >= strongest[row].astype(np.float64) - _STRONG_DB
-    power, audible = line_power(spectra, row, at)
+    power = line_power(spectra, row, at)
     bins, some = padded_rows(at, row, count, 0), count > 0
     heights = padded_rows(height, row, count, -200.0)
     first, second, third = np.sort(
@@ -156,9 +150,6 @@ def _lines(
         "strong_line_count": np.bincount(row[strong], minlength=n),
         "line_prominence": strongest - floor[np.arange(n), (top - FIRST) // BLOCK],
         "lines_share": np.minimum(1.0, power / spectra.total),
-        "weighted_lines": np.where(
-            some, np.minimum(_decibel(audible / _audible(spectra), 1e-6), 0.0), -60.0
-        ),
         "second_line": np.where(some, np.maximum(second - first, -_RANGE_DB), -_RANGE_DB),
         "third_line": np.where(some, np.maximum(third - first, -_RANGE_DB), -_RANGE_DB),
         "lowest_line": np.where(some, OCTAVES * np.log(lowest / top), np.nan),

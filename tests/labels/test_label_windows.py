@@ -62,7 +62,7 @@ def test_features_do_not_depend_on_the_sampling_rate(reference, rate):
         "line_count": 1.0,
         "high_blow_rate": 0.05,
         "flatness": 1.0,
-        "weighted_above_2": 0.5,
+        "above_2": 0.5,
         "band_5": 0.3,
     }.items():
         column = FEATURE_NAMES.index(f"pressure_{name}")
