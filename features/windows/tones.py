@@ -1,3 +1,4 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 """Lines of a window's spectrum: how many, how strong, and whether they are harmonics of one.
 
 What stands 10 dB above its surroundings and falls to either side before the next rises is a line,
@@ -9,12 +10,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numba import njit
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows
 from features.windows.declared import TONE_FEATURES
 from features.windows.harmonics import harmonic_features
 from features.windows.maxima import prominent_maxima
 from features.windows.spectra import BLOCK, FIRST, SPACING, line_power, window_spectra
+from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -107,6 +110,42 @@ def _shape(spectra: WindowSpectra) -> dict[str, NDArray[np.floating]]:
     }
 
 
+def _clearest(
+    level: NDArray[np.float32], floor: NDArray[np.float32], end: int
+) -> dict[str, NDArray[np.floating]]:
+    """Describe the line that stands highest above the floor about it, be it the strongest or not.
+
+    The floor runs straight from the middle of each block to that of the next.
+    """
+    n = len(level)
+    stands, at = np.empty(n, dtype=np.float32), np.empty(n, dtype=np.int64)
+    count = np.empty(n, dtype=np.int64)
+    _find_clearest(level, floor, end, stands, at, count)
+    return {
+        "clearest_line": stands,
+        "clearest_frequency": OCTAVES * np.log(at * (SPACING / 1000.0)),
+        "clear_bins": count,
+    }
+
+
+@njit(cache=True, **COMPILED)
+def _find_clearest(level, floor, end, stands, at, count) -> None:
+    blocks = floor.shape[1]
+    for w in range(level.shape[0]):
+        best, where, clear = np.float32(-np.inf), FIRST, 0
+        for b in range(-1, blocks):  # from the middle of a block to that of the next
+            low, high = floor[w, max(b, 0)], floor[w, min(b + 1, blocks - 1)]
+            step = (high - low) / np.float32(BLOCK)
+            begin = FIRST + b * BLOCK + BLOCK // 2
+            for k in range(max(begin, FIRST), min(begin + BLOCK, end)):
+                above = level[w, k] - low - step * np.float32(k - begin)
+                if above > _STANDS_DB:
+                    clear += 1
+                if above > best:
+                    best, where = above, k
+        stands[w], at[w], count[w] = best, where, clear
+
+
 def _floor(level: NDArray[np.float32], end: int) -> NDArray[np.float32]:
     """Return the median level of each block; a short last one takes that before it."""
     half, rest = BLOCK // 2, (end - FIRST) % BLOCK  # there is a whole one at least
@@ -154,6 +193,7 @@ def _lines(
         "third_line": np.where(some, np.maximum(third - first, -_RANGE_DB), -_RANGE_DB),
         "lowest_line": np.where(some, OCTAVES * np.log(lowest / top), np.nan),
         "line_spacing_spread": _spacing_spread(bins, count),
+        **_clearest(level, floor, spectra.end),
         **harmonic_features(spectra, bins, heights - strongest[:, None], count, place),
     }
 

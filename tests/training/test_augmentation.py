@@ -49,6 +49,16 @@ def test_a_phone_hears_less_below_100_hz_and_above_12_khz_than_between():
     assert power[hertz > 20e3].mean() < 0.2 * middle
 
 
+def test_in_a_pocket_little_is_heard_above_4_khz_and_cloth_rubs():
+    noise = np.random.default_rng(0).standard_normal(2**16)
+    clip = through_a_microphone(noise, 48e3, np.random.default_rng(1), kind="pocket")
+    power = np.abs(np.fft.rfft(clip)) ** 2
+    hertz = np.fft.rfftfreq(clip.size, 1 / 48e3)
+    assert power[hertz > 8e3].mean() < 0.05 * power[(hertz > 200) & (hertz < 600)].mean()
+    whole = through_a_microphone(np.sin(noise), 48e3, np.random.default_rng(1), kind="free")
+    assert not np.allclose(clip, whole)
+
+
 def test_an_automatic_gain_brings_loud_and_quiet_closer():
     tone = np.sin(0.3 * np.arange(96_000)) * np.repeat([0.01, 1.0], 48_000)
     clip = levelled(tone, 48e3, np.random.default_rng(2))

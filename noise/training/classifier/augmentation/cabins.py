@@ -203,7 +203,7 @@ def orders(
 
 
 def _road(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Rolling over a rough surface, at times over joints."""
+    """Draw the noise of rolling over a rough surface, at times over joints."""
     sound = shaped_noise(n, rate, _ROAD, rng)
     cavity = rng.uniform(190.0, 250.0)
     narrow = ((20, -60), (cavity / 1.2, -25), (cavity, 0), (1.2 * cavity, -25), (8000, -60))

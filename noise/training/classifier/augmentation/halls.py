@@ -6,7 +6,6 @@ valves hiss; fans hum at their blades' rate; somebody hammers or grinds at the o
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +17,7 @@ from noise.training.classifier.background_sounds.building import blow, placed, w
 from noise.training.draws import log_uniform, wandering
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
@@ -39,7 +38,8 @@ def hydraulic_hall(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.
         turns = _mains_turns(rng) * wavering(n, rate, 0.3, 0.004, rng)
         pump = orders(turns, rate, 1.0, float(rng.choice(_PISTONS)), rng.uniform(0.0, 1.2), rng)
         sound += 10.0 ** rng.uniform(-1.0, 0.6) * pump / pump.std()
-    return sound + 10.0 ** rng.uniform(-1.5, 0.0) * shaped_noise(n, rate, _HISS, rng)
+    valves = 10.0 ** rng.uniform(-1.5, 0.0) * shaped_noise(n, rate, _HISS, rng)
+    return np.asarray(sound + valves)
 
 
 def workshop(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -65,7 +65,7 @@ def engine_cell(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.flo
     turns = rng.uniform(13.0, 100.0) * wavering(n, rate, 0.3, 0.02, rng)
     firing = 0.5 * float(rng.choice((3, 4, 6, 8)))
     engine = orders(turns, rate, 0.5, firing, rng.uniform(0.3, 1.5), rng)
-    return rng.uniform(0.3, 3.0) * engine / engine.std() + _air(n, rate, rng)
+    return np.asarray(rng.uniform(0.3, 3.0) * engine / engine.std() + _air(n, rate, rng))
 
 
 def laboratory(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:

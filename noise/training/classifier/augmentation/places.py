@@ -170,7 +170,8 @@ def _stands_out(
     """
     frame = round(0.032 * rate)
     heard, around = (
-        np.abs(np.fft.rfft(x[: x.size // frame * frame].reshape(-1, frame) * np.hanning(frame))) ** 2
+        np.abs(np.fft.rfft(x[: x.size // frame * frame].reshape(-1, frame) * np.hanning(frame)))
+        ** 2
         for x in (sound, surroundings)
     )
     edges = np.unique(np.minimum(np.round(_BANDS * frame / rate).astype(int), frame // 2))
@@ -190,8 +191,8 @@ def _longest(sound: NDArray[np.float64], rate: float) -> tuple[float, float]:
     edges = np.flatnonzero(np.diff(np.r_[False, sounds, False].astype(int)))
     starts, ends = edges[::2], edges[1::2]
     best = int((ends - starts).argmax())
-    last = ends[best] == cells
-    return starts[best] * cell / rate, sound.size / rate if last else ends[best] * cell / rate
+    end = sound.size if ends[best] == cells else int(ends[best]) * cell
+    return int(starts[best]) * cell / rate, end / rate
 
 
 def _indicator(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
