@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
-from scipy.ndimage import uniform_filter1d
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
 
 from features.kernels.bands import a_weighting
@@ -39,7 +39,10 @@ LEARNED = tuple(name for name in PLACES if name not in LEFT_OUT)
 _HEARD_DB = 3.0
 """What is heard stands so far above the place in some half octave for some time [dB]."""
 
-_CELL = 0.1
+_HEARD_SHARE = 0.95
+"""Quantile of its frames that must stand out for it to be heard [-]."""
+
+_FRAME = 0.032
 """Within it a sound's level is taken [s]."""
 
 _PAUSE_DB = 18.0
@@ -115,7 +118,7 @@ def in_a_place(
     mixed : ndarray, shape (n,)
         [unit of `sound`]
     span : tuple of float
-        The longest time in which the sound makes no pause [s].
+        The longest time in which the sound is heard without a pause [s].
 
     Examples
     --------
@@ -131,8 +134,9 @@ def in_a_place(
         return surroundings, (0.0, sound.size / rate)
     share = level / (float(around.std()) + 1e-300) * 10.0 ** (-snr / 20.0)
     stands = _stands_out(weighted, share * around, rate)
-    share *= 10.0 ** (min(0.0, stands - _HEARD_DB) / 20.0)
-    return sound + share * surroundings, _longest(weighted, rate)
+    lift = max(0.0, _HEARD_DB - float(np.quantile(stands, _HEARD_SHARE)))
+    mixed = sound + share * 10.0 ** (-lift / 20.0) * surroundings
+    return mixed, _longest(stands + lift > 0.0, sound.size / rate)
 
 
 def a_weighted(sound: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
@@ -163,36 +167,35 @@ def a_weighted(sound: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
 
 def _stands_out(
     sound: NDArray[np.float64], surroundings: NDArray[np.float64], rate: float
-) -> float:
-    """Return by how much a sound stands above a place in its best half octave [dB].
+) -> NDArray[np.float64]:
+    """Return by how much a sound stands above a place in its best half octave, frame by frame.
 
-    The sound's loudest tenth of the time counts, and the place's mean.
+    So far below its loudest that it makes a pause, it does not; [dB].
     """
-    frame = round(0.032 * rate)
+    frame = round(_FRAME * rate)
     heard, around = (
         np.abs(np.fft.rfft(x[: x.size // frame * frame].reshape(-1, frame) * np.hanning(frame)))
-        ** 2
         for x in (sound, surroundings)
     )
-    edges = np.unique(np.minimum(np.round(_BANDS * frame / rate).astype(int), frame // 2))
-    loud = np.quantile(np.add.reduceat(heard, edges[:-1], axis=1), 0.9, axis=0)
-    mean = np.add.reduceat(around, edges[:-1], axis=1).mean(axis=0)
-    return float(10.0 * np.log10((loud / (mean + 1e-300)).max() + 1e-300))
+    edges = np.unique(np.minimum(np.round(_BANDS * frame / rate).astype(int), frame // 2))[:-1]
+    power = np.add.reduceat(heard**2, edges, axis=1)
+    mean = np.add.reduceat(around**2, edges, axis=1).mean(axis=0)
+    stands = 10.0 * np.log10((power / (mean + 1e-300)).max(axis=1) + 1e-300)
+    pause = power.sum(axis=1) < 10.0 ** (-0.1 * _PAUSE_DB) * power.sum(axis=1).max()
+    return np.where(pause, -300.0, stands)
 
 
-def _longest(sound: NDArray[np.float64], rate: float) -> tuple[float, float]:
-    """Return from when to when a sound lasts longest without a pause [s]."""
-    cell = round(_CELL * rate)
-    cells = max(1, sound.size // cell)
-    power = np.add.reduceat(sound**2, cell * np.arange(cells))
-    reach = 2 * round(0.5 * _LONGEST_PAUSE / _CELL) + 1
-    near = uniform_filter1d(power, reach, mode="nearest")
-    sounds = near > 10.0 ** (-0.1 * _PAUSE_DB) * near.max()
-    edges = np.flatnonzero(np.diff(np.r_[False, sounds, False].astype(int)))
+def _longest(sounds: NDArray[np.bool_], duration: float) -> tuple[float, float]:
+    """Return from when to when frames sound longest, but for short pauses [s]."""
+    reach = 2 * round(0.5 * _LONGEST_PAUSE / _FRAME) + 1
+    closed = minimum_filter1d(maximum_filter1d(sounds.astype(int), reach), reach)
+    edges = np.flatnonzero(np.diff(np.r_[0, closed, 0]))
+    if not edges.size:
+        return 0.0, duration
     starts, ends = edges[::2], edges[1::2]
     best = int((ends - starts).argmax())
-    end = sound.size if ends[best] == cells else int(ends[best]) * cell
-    return int(starts[best]) * cell / rate, end / rate
+    end = duration if ends[best] == sounds.size else int(ends[best]) * _FRAME
+    return int(starts[best]) * _FRAME, end
 
 
 def _indicator(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
