@@ -1,10 +1,12 @@
+# mypy: allow-untyped-decorators
 """Levels that a sound level meter shows: overall, A-weighted, the fast maximum, one-third octaves.
 
 Overall levels are mean squares of the whole sound in time, so that a click counts by its energy
 wherever it lies. The A-weighting is applied to the sound's transform with the magnitudes that the
 standard tabulates; a recursive filter would miss them near half the sampling rate, by several
-decibels where a creak is strong. One-third octaves are integrals of the autospectrum, whose
-segments are long enough for four bins in the lowest band; a band of fewer bins is not measured.
+decibels where a creak is strong. It is done a second at a time, so that a sound may be longer than
+memory. One-third octaves are integrals of the autospectrum, whose segments are long enough for
+four bins in the lowest band; a band of fewer bins is not measured.
 """
 
 from __future__ import annotations
@@ -13,32 +15,42 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numba import njit
 from scipy import fft
 
 from features.kernels.bands import a_weighting, band_levels, fine_third_octaves
 from features.kernels.conditioning import checked_signal
+from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "FAST",
     "SoundLevels",
+    "WeightedLevels",
     "a_weighted",
     "fast_levels",
     "sound_levels",
+    "weighted_levels",
 ]
 
 FAST = 0.125
 """Time constant of the weighting F [s] (IEC 61672-1)."""
 
-_MARGIN = 0.25
-"""By which a sound is continued on either side, turned about its last sample [s]: cut off, a hum
-would click louder than it hums. The lowest pole of the A-weighting has died away by then."""
+_SEGMENT = 0.8
+"""Transformed at once [s]: so short that it stays in the cache."""
 
-_BLOCK = 30.0
-"""Transformed at once [s], so that a long recording takes little memory."""
+_MARGIN = 0.1
+"""What a segment has more on either side [s]: the response of the A-weighting's lowest pole has
+fallen by 110 dB. At its ends a sound is continued, turned about its last sample: cut off, a hum
+would click louder than it hums."""
+
+_SEGMENTS_AT_ONCE = 4
+"""Transformed side by side in the time of one."""
 
 
 @dataclass(frozen=True)
@@ -121,11 +133,104 @@ def sound_levels(
     """
     x = checked_signal(signal, rate)
     x = x - x.mean()
-    weighted = a_weighted(x, rate)
-    mean_squares = [np.mean(x**2), np.mean(weighted**2)]
-    level, level_a = band_levels(mean_squares, reference).tolist()
-    fast = float(fast_levels(weighted, rate, reference=reference).max())
-    return SoundLevels(level, level_a, fast, fine_third_octaves(x, rate, reference=reference))
+    level = float(band_levels(np.mean(x**2), reference))
+    weighted = weighted_levels(lambda first, last: x[first:last], x.size, rate, reference=reference)
+    bands = fine_third_octaves(x, rate, reference=reference)
+    return SoundLevels(level, weighted.level_a, weighted.level_af_max, bands)
+
+
+@dataclass(frozen=True, eq=False)
+class WeightedLevels:
+    """A-weighted levels of one sound, all re the same value.
+
+    Parameters
+    ----------
+    level_a : float
+        Of the mean square [dB].
+    level_af_max : float
+        Largest level with the time weighting F [dB].
+    short : ndarray, shape (n,)
+        Level of each eighth of a second [dB], as far as there are whole ones.
+    """
+
+    level_a: float
+    level_af_max: float
+    short: NDArray[np.float64]
+
+
+def weighted_levels(
+    read: Callable[[int, int], NDArray[np.float64]],
+    n: int,
+    rate: float,
+    *,
+    reference: float = REFERENCE_PRESSURE,
+) -> WeightedLevels:
+    """A-weighted levels of a sound that need not be in memory as a whole.
+
+    Parameters
+    ----------
+    read : callable
+        From first and last sample to the samples between them, shape (last - first,), finite.
+    n : int
+        Samples of the sound.
+    rate : float
+        Sampling rate [Hz].
+    reference : float
+        [unit]; 1.0 for levels in dB re full scale.
+
+    Returns
+    -------
+    WeightedLevels
+        Minus infinity for silence. The meter was at rest before the first sample.
+
+    Examples
+    --------
+    >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(96000) / 48e3)
+    >>> levels = weighted_levels(lambda first, last: tone[first:last], 96000, 48e3)
+    >>> round(levels.level_a, 2), round(levels.level_af_max, 2), levels.short.round(1)[1:3].tolist()
+    (93.98, 93.98, [94.0, 94.0])
+    """
+    kept, step = _kept(rate), max(1, round(FAST * rate))
+    state, sums = np.zeros(2), np.zeros(-(-n // step))
+    done = 0
+    for piece, scale in _weighted_pieces(read, n, rate):
+        _meter(piece, float(scale) ** 2, kept, state, sums, step, done)
+        done += piece.size
+    level, most = band_levels(np.array([sums.sum() / n, state[1]]), reference).tolist()
+    return WeightedLevels(level, most, band_levels(sums[: n // step] / step, reference))
+
+
+def _kept(rate: float) -> float:
+    """Share of the squared sound that the time weighting F keeps from sample to sample."""
+    return float(np.exp(-1.0 / (FAST * rate)))
+
+
+@njit(fastmath={"contract"}, cache=True, **COMPILED)
+def _meter(
+    weighted: NDArray[np.float32],
+    unit: float,
+    kept: float,
+    state: NDArray[np.float64],
+    sums: NDArray[np.float64],
+    step: int,
+    done: int,
+) -> None:
+    """Go on with the smoothed square and its maximum, the state, and the sums of each step."""
+    smoothed, most = state[0], state[1]
+    cell, left = done // step, step - done % step
+    total = 0.0
+    for i in range(weighted.size):
+        square = unit * np.float64(weighted[i]) * np.float64(weighted[i])
+        smoothed = kept * smoothed + (1.0 - kept) * square
+        most = max(most, smoothed)
+        total += square
+        left -= 1
+        if left == 0:
+            sums[cell] += total
+            cell, left, total = cell + 1, step, 0.0
+    if total > 0.0:
+        sums[cell] += total
+    state[0], state[1] = smoothed, most
 
 
 def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
@@ -156,18 +261,64 @@ def a_weighted(signal: ArrayLike, rate: float) -> NDArray[np.float64]:
     -19.1
     """
     x = checked_signal(signal, rate)
-    margin = min(x.size - 1, round(_MARGIN * rate))
-    longer = np.pad(x, margin, mode="reflect", reflect_type="odd")
-    block = max(1, round(_BLOCK * rate))
-    weighted = np.empty_like(x)
-    for start in range(0, x.size, block):
-        kept = min(block, x.size - start)
-        piece = longer[start : start + kept + 2 * margin]
-        length = int(fft.next_fast_len(piece.size, real=True))
-        bins = fft.rfft(piece, length)
-        bins *= 10.0 ** (a_weighting(fft.rfftfreq(length, 1.0 / rate)) / 20.0)
-        weighted[start : start + kept] = fft.irfft(bins, length)[margin : margin + kept]
-    return weighted
+    pieces = _weighted_pieces(lambda first, last: x[first:last], x.size, rate)
+    return np.concatenate([piece * scale for piece, scale in pieces])
+
+
+def _weighted_pieces(
+    read: Callable[[int, int], NDArray[np.float64]], n: int, rate: float
+) -> Iterator[tuple[NDArray[np.float32], float]]:
+    """Yield the weighted sound piece by piece, each with the unit it is in."""
+    margin = min(n - 1, round(_MARGIN * rate))
+    length = int(fft.next_fast_len(max(16, round(_SEGMENT * rate), 4 * margin), real=True))
+    useful = length - 2 * margin
+    gain = (10.0 ** (a_weighting(fft.rfftfreq(length, 1.0 / rate)) / 20.0)).astype(np.float32)
+    for start in range(0, n, _SEGMENTS_AT_ONCE * useful):
+        end = min(n, start + _SEGMENTS_AT_ONCE * useful)
+        count = -(-(end - start) // useful)
+        longer = _continued(read, n, start - margin, start + count * useful + margin, margin)
+        scale = float(max(longer.max(), -longer.min()))
+        if scale > 0.0:
+            segments = np.empty((count, length), dtype=np.float32)
+            _cut(longer, useful, 1.0 / scale, segments)
+            bins = fft.rfft(segments, axis=1)
+            bins *= gain
+            whole = fft.irfft(bins, length, axis=1)[:, margin : margin + useful]
+        else:
+            whole = np.zeros((count, useful), dtype=np.float32)
+        yield whole.reshape(-1)[: end - start], scale
+
+
+@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
+def _cut(x: NDArray[np.float64], hop: int, gain: float, out: NDArray[np.float32]) -> None:
+    """Cut out a row every `hop` samples, times a gain.
+
+    An offset is taken off first: it is nothing to hear, and would cost digits.
+    """
+    n = out.shape[1]
+    for row in range(out.shape[0]):
+        part = x[row * hop : row * hop + n]
+        total = 0.0
+        for i in range(n):
+            total += part[i]
+        mean = total / n
+        for i in range(n):
+            out[row, i] = gain * (part[i] - mean)
+
+
+def _continued(
+    read: Callable[[int, int], NDArray[np.float64]], n: int, first: int, last: int, margin: int
+) -> NDArray[np.float64]:
+    """Return samples `first` up to `last`, turned about the ends for `margin` beyond them."""
+    x = read(max(first, 0), min(last, n))
+    before, after = max(0, -first), max(0, last - n)
+    if before:
+        x = np.concatenate([2.0 * x[0] - x[before:0:-1], x])
+    if after:
+        turned = min(after, margin)
+        x = np.concatenate([x, 2.0 * x[-1] - x[-2 : -2 - turned : -1]])
+        x = np.concatenate([x, np.full(after - turned, x[-1])])
+    return x
 
 
 def fast_levels(
@@ -203,6 +354,6 @@ def fast_levels(
     from scipy.signal import lfilter
 
     x = checked_signal(signal, rate)
-    kept = float(np.exp(-1.0 / (FAST * rate)))
+    kept = _kept(rate)
     smoothed = lfilter([1.0 - kept], [1.0, -kept], x**2)
     return band_levels(smoothed, reference)

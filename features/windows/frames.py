@@ -12,7 +12,7 @@ from scipy import fft
 
 from features.windows.arithmetic import OCTAVES
 from features.windows.blocks import FRAME_RATE, RATE
-from models.compilation import COMPILED
+from models.compilation import COMPILED, PART
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,6 +42,9 @@ _LAGS = (16, 200)
 """Between them the period of a voice is sought: 80 Hz to 1 kHz."""
 
 _LEAST = np.float32(1e-20)
+
+_AT_ONCE = 255
+"""Frames whose spectra stay in the cache."""
 
 FRAME_COLUMNS = (
     "energy", "flatness", "centroid", "peak", "peak_share", "second", "flux", "pitch", "voiced",
@@ -106,20 +109,33 @@ def describe_frames(sound: NDArray[np.float32], limit: float) -> Frames:
     if sound.size < FRAME:
         sound = np.concatenate([sound, np.zeros(FRAME - sound.size, dtype=np.float32)])
     frames = np.lib.stride_tricks.sliding_window_view(sound, FRAME)[::HOP]
+    last = max(_FIRST_BIN + 1, min(_EDGES[-1], int(limit / _SPACING) + 1))
+    values = np.empty((len(frames), len(FRAME_COLUMNS)), dtype=np.float32)
+    bands = np.empty((len(frames), BANDS), dtype=np.float32)
+    for first in range(0, len(frames), _AT_ONCE):
+        # With the frame before them, which they are compared with.
+        lead = min(first, 1)
+        part = slice(first, first + _AT_ONCE)
+        found, of_bands = _described(frames[first - lead : first + _AT_ONCE], last)
+        values[part], bands[part] = found[lead:], of_bands[lead:]
+    np.log10(bands, out=bands)
+    bands *= 10.0
+    return Frames(values, bands)
+
+
+def _described(
+    frames: NDArray[np.float32], last: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return `FRAME_COLUMNS` of some frames, and the power in their bands."""
     spectrum = fft.rfft(frames * _WINDOW, axis=1)
     power = spectrum.real**2
     power += spectrum.imag**2
     power += _LEAST
     correlation = fft.irfft(power, axis=1)[:, : _LAGS[1] + 2] * _TAPER
-    last = max(_FIRST_BIN + 1, min(_EDGES[-1], int(limit / _SPACING) + 1))
-    bands = np.add.reduceat(power[:, : _EDGES[-1]], _EDGES[:-1], axis=1)
     values = np.empty((len(power), len(FRAME_COLUMNS)), dtype=np.float32)
-    logarithm = np.log2(power[:, _FIRST_BIN:last])
-    values[:, 1] = logarithm.mean(axis=1)
+    values[:, 1] = np.log2(power[:, _FIRST_BIN:last]).mean(axis=1)
     _describe(power, np.sqrt(power[:, _FIRST_BIN:last]), correlation, last, values)
-    np.log10(bands, out=bands)
-    bands *= 10.0
-    return Frames(values, bands)
+    return values, np.add.reduceat(power[:, : _EDGES[-1]], _EDGES[:-1], axis=1)
 
 
 _WINDOW = np.hanning(FRAME + 2)[1:-1].astype(np.float32)
@@ -127,26 +143,24 @@ _SELF = np.correlate(_WINDOW, _WINDOW, "full")[FRAME - 1 :]
 _TAPER = (_SELF[0] / _SELF[: _LAGS[1] + 2]).astype(np.float32)
 
 
+_OCTAVE = np.log2(np.maximum(np.arange(FRAME // 2 + 1), 1) * (_SPACING / 1000.0)).astype(np.float32)
+
+
 @njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
 def _describe(power, magnitude, correlation, last, values) -> None:
     """Fill in the columns; that of the flatness holds the mean logarithm of the power before."""
     for i in range(power.shape[0]):
         p = power[i]
-        total = np.float32(0.0)
-        moment = np.float32(0.0)
+        total, moment, highest = _sums(p, last)
         top = _FIRST_BIN
-        for k in range(_FIRST_BIN, last):
-            total += p[k]
-            moment += p[k] * _OCTAVE[k]
-            if p[k] > p[top]:
-                top = k
+        while top < last - 1 and p[top] != highest:
+            top += 1
         around = np.float32(0.0)
         for k in range(max(_FIRST_BIN, top - _LOBE), min(last, top + _LOBE + 1)):
             around += p[k]
         second = _LEAST
         for k in range(_FIRST_BIN + 1, last - 1):
-            far = abs(k - top) >= _APART
-            if far and p[k] > second and p[k] >= p[k - 1] and p[k] >= p[k + 1]:
+            if p[k] > second and abs(k - top) >= _APART and p[k] >= p[k - 1] and p[k] >= p[k + 1]:
                 second = p[k]
         left, right = np.log(p[top - 1]), np.log(p[top + 1])
         bend = left - 2.0 * np.log(p[top]) + right
@@ -162,7 +176,7 @@ def _describe(power, magnitude, correlation, last, values) -> None:
         best, period = np.float32(0.0), 0
         # The shortest lag that is nearly as good as the best: not a multiple of the period.
         for lag in range(_LAGS[0], _LAGS[1] + 1):
-            if r[lag] > r[lag - 1] and r[lag] >= r[lag + 1] and r[lag] > 1.08 * best:
+            if r[lag] > 1.08 * best and r[lag] > r[lag - 1] and r[lag] >= r[lag + 1]:
                 best, period = r[lag], lag
         values[i, 0] = 10.0 * np.log10(total)
         values[i, 1] = 10.0 * (values[i, 1] * 0.30103 - np.log10(total / (last - _FIRST_BIN)))
@@ -177,4 +191,12 @@ def _describe(power, magnitude, correlation, last, values) -> None:
         values[0, 6] = values[1, 6]
 
 
-_OCTAVE = np.log2(np.maximum(np.arange(FRAME // 2 + 1), 1) * (_SPACING / 1000.0)).astype(np.float32)
+@njit(fastmath={"reassoc", "contract", "nsz", "nnan"}, cache=True, **PART)
+def _sums(p, last):
+    """Return power, power times octave, and the highest power of any bin."""
+    total, moment, highest = np.float32(0.0), np.float32(0.0), np.float32(0.0)
+    for k in range(_FIRST_BIN, last):
+        total += p[k]
+        moment += p[k] * _OCTAVE[k]
+        highest = max(highest, p[k])
+    return total, moment, highest

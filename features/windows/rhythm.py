@@ -177,40 +177,44 @@ def _period(
     correlation: NDArray[np.float32], n: NDArray[np.int64]
 ) -> dict[str, NDArray[np.float64]]:
     """Find the period of the envelope: the shortest lag nearly as good as any."""
-    least, most = _LAGS
     power = correlation[:, 0]
-    # The first fall below zero or to a tenth ends the peak at no lag.
-    ended = correlation[:, 1:most] <= 0.1 * power.astype(np.float64)[:, None]
-    begin = np.where(ended.any(axis=1), ended.argmax(axis=1) + 1, most)
-    begin = np.where(power > 0.0, begin, most)
-    middle = correlation[:, least:most]
-    highest = middle > correlation[:, least - 1 : most - 1]
-    highest &= middle >= correlation[:, least + 1 : most + 1]
-    row, lag = np.nonzero(highest)
-    lag += least
-    inside = (lag >= begin[row]) & (lag < (n // 2)[row])
-    row, lag = row[inside], lag[inside]
-    # Fewer samples overlap at a longer lag.
-    strength = correlation[row, lag] / power[row] * (n[row] / (n[row] - lag))
-    count = np.bincount(row, minlength=n.size)
-    highest_yet = np.maximum.accumulate(padded_rows(strength, row, count, 0.0), axis=1)
-    lags = padded_rows(lag, row, count, 0)
-    best, period = np.zeros(n.size), np.zeros(n.size, dtype=np.int64)
-    for i, j in np.argwhere(np.diff(highest_yet, axis=1, prepend=0.0) > 0.0).tolist():
-        if highest_yet[i, j] > _BETTER * best[i]:
-            best[i], period[i] = highest_yet[i, j], lags[i, j]
-    found, twice = period > 0, 2 * period
-    again = found & (twice + 1 < np.minimum(n, correlation.shape[1]))
-    rows = np.flatnonzero(again)
-    far = np.max([correlation[rows, twice[rows] + i] for i in (-1, 0, 1)], axis=0)
-    second, rate = np.full(n.size, np.nan), np.full(n.size, np.nan)
-    second[again] = far / power[again] * (n[again] / (n[again] - twice[again]))
+    best, second = np.zeros(n.size), np.full(n.size, np.nan)
+    period = np.zeros(n.size, dtype=np.int64)
+    _strongest_lags(correlation, n, best, period, second)
+    found, rate = period > 0, np.full(n.size, np.nan)
     rate[found] = OCTAVES * np.log(ENVELOPE_RATE / (10.0 * period[found]))
     return {
         "period_strength": np.where(power > 0.0, best, np.nan),
         "period_rate": rate,
         "second_period": second,
     }
+
+
+@njit(cache=True, **COMPILED)
+def _strongest_lags(correlation, n, best, period, second) -> None:
+    """Fill in the best lag of each row, how strong it is, and how strong twice the lag is."""
+    least, most = _LAGS
+    for w in range(n.size):
+        c, power = correlation[w], correlation[w, 0]
+        if not power > 0.0:
+            continue
+        # The first fall below zero or to a tenth ends the peak at no lag.
+        begin = 1
+        while begin < most and c[begin] > 0.1 * np.float64(power):
+            begin += 1
+        highest = 0.0
+        for lag in range(max(least, begin), min(most, n[w] // 2)):
+            if c[lag] > c[lag - 1] and c[lag] >= c[lag + 1]:
+                # Fewer samples overlap at a longer lag.
+                strength = (c[lag] / power) * (n[w] / (n[w] - lag))
+                if strength > highest:
+                    highest = strength
+                    if highest > _BETTER * best[w]:
+                        best[w], period[w] = highest, lag
+        twice = 2 * period[w]
+        if period[w] > 0 and twice + 1 < min(n[w], c.size):
+            far = max(c[twice - 1], c[twice], c[twice + 1])
+            second[w] = (far / power) * (n[w] / (n[w] - twice))
 
 
 def _blows(level: NDArray[np.float32], n: NDArray[np.int64]) -> dict[str, NDArray[np.floating]]:

@@ -15,7 +15,7 @@ from numba import njit
 from scipy import fft
 
 from features.windows.arithmetic import OCTAVES
-from models.compilation import COMPILED
+from models.compilation import COMPILED, PART
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,6 +149,9 @@ def window_spectra(
         held = first + i < last
         power[held, FIRST - 2 : end + 2] += spectra[first[held] + i, FIRST - 2 : end + 2]
     n, level = len(power), np.empty_like(power)
+    described = slice(FIRST - 2, end + 2)
+    np.log10(power[:, described], out=level[:, described])
+    level[:, described] *= 10.0
     sums, bins = np.zeros((9, n), dtype=np.float32), np.empty((3, n), dtype=np.int64)
     _measure(power, end, level, sums, bins)
     total, line, below, flatness, slope = sums[:5]
@@ -158,25 +161,30 @@ def window_spectra(
     )
 
 
+@njit(fastmath={"reassoc", "contract", "nsz", "nnan"}, cache=True, **PART)
+def _sum_and_highest(p, end):
+    total, highest = np.float32(0.0), np.float32(0.0)
+    for k in range(FIRST, end):
+        total += p[k]
+        highest = max(highest, p[k])
+    return total, highest
+
+
 @njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
 def _measure(power, end, level, sums, bins) -> None:
     n = end - FIRST
     n_blocks = -(-n // BLOCK)
     for w in range(power.shape[0]):
         p = power[w]
-        total = np.float32(0.0)
+        total, highest = _sum_and_highest(p, end)
         top = FIRST
-        for k in range(FIRST, end):
-            total += p[k]
-            if p[k] > p[top]:
-                top = k
+        while top < end - 1 and p[top] != highest:
+            top += 1
         for k in range(FIRST, _KILOHERTZ[0]):
             sums[5, w] += p[k]
         for i in range(3):
             for k in range(_KILOHERTZ[i], max(_KILOHERTZ[i], min(end, _KILOHERTZ[i + 1]))):
                 sums[6 + i, w] += p[k]
-        for k in range(FIRST - 2, end + 2):
-            level[w, k] = 10.0 * np.log10(p[k])
         # Flatness, and a line through the blocks' mean levels over the octave.
         logarithms = np.float32(0.0)
         sx, sy, sxx, sxy = 0.0, 0.0, 0.0, 0.0

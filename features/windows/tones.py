@@ -150,7 +150,7 @@ def _floor(level: NDArray[np.float32], end: int) -> NDArray[np.float32]:
     """Return the median level of each block; a short last one takes that before it."""
     half, rest = BLOCK // 2, (end - FIRST) % BLOCK  # there is a whole one at least
     blocks = level[:, FIRST : end - rest].reshape(len(level), -1, BLOCK)
-    middle = np.partition(blocks, (half - 1, half), axis=2)
+    middle = np.sort(blocks, axis=2)  # of so few, faster than a partition
     floor = (middle[:, :, half - 1] + middle[:, :, half]) / np.float32(2.0)
     if rest >= half:
         last = np.median(level[:, end - rest : end], axis=1, keepdims=True)

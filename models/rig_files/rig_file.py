@@ -29,6 +29,7 @@ from models.rig_files.shipped import (
     bench_content,
     material_content,
     material_names,
+    material_of,
     shipped_name,
 )
 from models.rig_files.sleeve_file import read_sleeve
@@ -90,7 +91,8 @@ def load_rig(path: str | Path) -> Rig:
     Parameters
     ----------
     path : path-like
-        TOML file of what differs from the shipped bench.
+        TOML file of what differs from the shipped bench; or, where there is no such file, the name
+        of a shipped material.
 
     Returns
     -------
@@ -111,6 +113,8 @@ def load_rig(path: str | Path) -> Rig:
     'PDMS'
     """
     path, where = Path(path), f"rig file {path}"
+    if (material := material_of(path)) is not None:
+        return load_material_rig(material)
     return rig_from(read_toml(path, where), path.parent, where)
 
 

@@ -11,7 +11,8 @@ from models.checks import meant
 from models.errors import ParameterError
 
 __all__ = [
-    "bench_content", "material_content", "material_names", "shipped_name", "suspension_file",
+    "bench_content", "material_content", "material_names", "material_of", "shipped_name",
+    "suspension_file",
 ]  # fmt: skip
 
 _DATA = resources.files("models") / "data"
@@ -43,6 +44,17 @@ def shipped_name(name: str) -> str | None:
     """
     known = {each.lower(): each for each in material_names()}
     return known.get(name.strip().lower())
+
+
+def material_of(path: Path) -> str | None:
+    """Return the shipped material that stands in the place of a rig file, None where none does.
+
+    Examples
+    --------
+    >>> material_of(Path("pdms")), material_of(Path("bench.toml"))
+    ('PDMS', None)
+    """
+    return None if path.exists() else shipped_name(str(path))
 
 
 def bench_content() -> dict[str, Any]:

@@ -35,7 +35,7 @@ _QUALITY_COLUMNS = {
 }
 
 COLUMNS = (
-    *("level_db", "level_dba", "level_afmax_dba", "level_dbfs"),
+    *("level_db", "level_dba", "l_afmax_dba", "level_dbfs"),
     *(f"third_octave_{band}_hz_db" for band in NOMINAL_THIRD_OCTAVES),
     *_QUALITY_COLUMNS.values(),
 )
@@ -70,7 +70,7 @@ class Assessment:
             row |= {
                 "level_db": _rounded(self.levels.level),
                 "level_dba": _rounded(self.levels.level_a),
-                "level_afmax_dba": _rounded(self.levels.level_af_max),
+                "l_afmax_dba": _rounded(self.levels.level_af_max),
             }
             for band, level in self.levels.third_octaves.items():
                 row[f"third_octave_{band}_hz_db"] = _rounded(level)
@@ -87,7 +87,7 @@ class Assessment:
         if not self.calibrated:
             levels, unit = self.in_file(full_scale), "dbfs"
             entry["level_dbfs_a"] = _rounded(levels.level_a)
-            entry["level_afmax_dbfs"] = _rounded(levels.level_af_max)
+            entry["l_afmax_dbfs"] = _rounded(levels.level_af_max)
         entry[f"third_octaves_{unit}"] = {
             band: _rounded(level) for band, level in levels.third_octaves.items()
         }

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-__all__ = ["LABELS"]
+__all__ = ["LABELS", "NAMED"]
 
 LABELS = ("creak", "squawk", "squeal", "none", "unknown")
 """The labels, in the order of all tables of probabilities."""
+
+NAMED = LABELS[:3]
+"""Those that are the name of a noise."""

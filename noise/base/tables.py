@@ -1,7 +1,8 @@
 """Tables as files: CSV, JSON Lines or Parquet by the ending, CSV on standard output without one.
 
 One value is written alike in all formats: nothing where there is none (an undefined number is
-none, too), ``true`` and ``false``, and numbers with as many digits as give the same number back.
+none, too, and an infinite one), ``true`` and ``false``, and numbers with as many digits as give the
+same number back. In CSV the infinite stiffness of a bolted clamp is the word ``fixed``.
 A table appears whole or not at all, and a target that cannot be written is refused before the work
 whose result it is to hold.
 """
@@ -29,6 +30,9 @@ __all__ = ["TABLE_ENDINGS", "check_table_path", "plain_cell", "read_table", "wri
 
 TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
+
+_SUPPORT, _FIXED = "support_stiffness", "fixed"
+"""How the columns begin whose infinity is the bolted clamp, and what it is called."""
 
 
 def check_table_path(path: str | Path | None) -> None:
@@ -191,14 +195,21 @@ def _write_csv(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cel
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(columns)
     for row in rows:
-        writer.writerow(json.dumps(value) if isinstance(value, bool) else value for value in row)
+        writer.writerow(map(_csv_cell, columns, row))
+
+
+def _csv_cell(column: str, value: Cell) -> Cell:
+    """Return what stands in a cell of CSV; an infinite number is none, but for the bolted clamp."""
+    if isinstance(value, bool):
+        return json.dumps(value)
+    if isinstance(value, float) and math.isinf(value):
+        return _FIXED if value > 0.0 and column.startswith(_SUPPORT) else None
+    return value
 
 
 def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     for row in rows:
-        # JSON has no infinity.
-        values = (None if isinstance(v, float) and math.isinf(v) else v for v in row)
-        line = json.dumps(dict(zip(columns, values, strict=True)), ensure_ascii=False)
+        line = json.dumps(dict(zip(columns, map(_finite, row), strict=True)), ensure_ascii=False)
         file.write(line + "\n")
 
 
@@ -207,10 +218,14 @@ def _write_parquet(path: Path, columns: Sequence[str], rows: Sequence[Sequence[C
     from pyarrow import parquet
 
     arrays = {
-        column: pa.array([_utf8(row[index]) for row in rows])
+        column: pa.array([_utf8(_finite(row[index])) for row in rows])
         for index, column in enumerate(columns)
     }
     parquet.write_table(pa.table(arrays), path)
+
+
+def _finite(value: Cell) -> Cell:
+    return None if isinstance(value, float) and math.isinf(value) else value
 
 
 def _utf8(value: Cell) -> Cell:

@@ -1,3 +1,4 @@
+# mypy: allow-untyped-decorators
 """Decision trees as plain arrays: boosted trees, and quantile forests.
 
 scikit-learn grows them (`noise.training.trees`); kept are a few arrays. Such a model runs no code
@@ -12,6 +13,9 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
+from numba import njit
+
+from models.compilation import COMPILED, PART
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,9 +26,6 @@ __all__ = ["LEAF", "BoostedTrees", "QuantileForest", "Trees"]
 
 LEAF = -1
 """Stands for the feature of a node that asks for none."""
-
-_ROWS_AT_ONCE = 32
-"""Samples that are led to their leaves together: so many that they stay in the cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,29 +92,66 @@ class Trees:
         ndarray of int32, shape (n, n_trees)
             Nodes.
         """
-        found = np.tile(self.roots, (len(x), 1))
-        for first in range(0, len(x), _ROWS_AT_ONCE):
-            part = slice(first, first + _ROWS_AT_ONCE)
-            self._descend(x[part], found[part].reshape(-1))
+        found = np.empty((len(x), len(self.roots)), dtype=np.int32)
+        _lead_to_leaves(*self._nodes(), np.ascontiguousarray(x), found)
         return found
 
-    def _descend(self, x: NDArray[np.floating[Any]], node: NDArray[np.int32]) -> None:
-        """Lead from the roots to the leaves, in place; row by row, tree by tree."""
-        way = np.arange(node.size)
-        start = way // len(self.roots) * x.shape[1]
-        values, children = x.reshape(-1), self.children.reshape(-1)
-        while way.size:
-            at = node.take(way)
-            feature = self.feature.take(at)
-            inner = np.flatnonzero(feature != LEAF)
-            if inner.size < way.size:
-                way, start = way.take(inner), start.take(inner)
-                at, feature = at.take(inner), feature.take(inner)
-            value = values.take(start + feature)
-            right = np.where(
-                np.isnan(value), ~self.missing_left.take(at), value > self.threshold.take(at)
+    def _nodes(self) -> tuple[NDArray[Any], ...]:
+        return self.roots, self.feature, self.threshold, self.children, self.missing_left
+
+
+@njit(cache=True, **PART)
+def _leaf(
+    node: int,
+    feature: NDArray[np.int16],
+    threshold: NDArray[np.floating[Any]],
+    children: NDArray[np.int32],
+    missing_left: NDArray[np.bool_],
+    sample: NDArray[np.floating[Any]],
+) -> int:
+    """Return the leaf that a sample comes to from a tree's root."""
+    while feature[node] != LEAF:
+        value = sample[feature[node]]
+        right = value > threshold[node] or (value != value and not missing_left[node])
+        node = children[node, int(right)]
+    return node
+
+
+@njit(cache=True, **COMPILED)
+def _lead_to_leaves(
+    roots: NDArray[np.int32],
+    feature: NDArray[np.int16],
+    threshold: NDArray[np.floating[Any]],
+    children: NDArray[np.int32],
+    missing_left: NDArray[np.bool_],
+    x: NDArray[np.floating[Any]],
+    found: NDArray[np.int32],
+) -> None:
+    # Tree by tree, so that a tree stays in the cache.
+    for tree in range(roots.size):
+        for row in range(x.shape[0]):
+            found[row, tree] = _leaf(
+                roots[tree], feature, threshold, children, missing_left, x[row]
             )
-            node[way] = children.take(2 * at + right)
+
+
+@njit(cache=True, **COMPILED)
+def _add_leaves(
+    roots: NDArray[np.int32],
+    feature: NDArray[np.int16],
+    threshold: NDArray[np.floating[Any]],
+    children: NDArray[np.int32],
+    missing_left: NDArray[np.bool_],
+    x: NDArray[np.floating[Any]],
+    classes: NDArray[np.int16],
+    added: NDArray[np.float64],
+    scores: NDArray[np.float64],
+) -> None:
+    # Tree by tree: the sums of a row do not depend on how many rows there are.
+    for tree in range(roots.size):
+        for row in range(x.shape[0]):
+            leaf = _leaf(roots[tree], feature, threshold, children, missing_left, x[row])
+            scores[row, classes[tree]] += added[leaf]
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,10 +205,7 @@ class BoostedTrees(Trees):
             [-]
         """
         scores = np.tile(self.base.astype(np.float64), (len(x), 1))
-        for first in range(0, len(x), _ROWS_AT_ONCE):
-            part = slice(first, first + _ROWS_AT_ONCE)
-            # Tree by tree, so that sums are the same to the last bit however many rows there are.
-            np.add.at(scores[part].T, self.classes, self.value[self.leaves(x[part]).T])
+        _add_leaves(*self._nodes(), np.ascontiguousarray(x), self.classes, self.value, scores)
         return scores
 
     def probabilities(self, x: NDArray[np.floating[Any]]) -> NDArray[np.float64]:

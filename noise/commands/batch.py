@@ -85,6 +85,7 @@ def run_batch(
     work: Work,
     jobs: Sequence[Job],
     also: Callable[[Rows], Sequence[Path]] = lambda _: (),
+    keep: Callable[[Path | None, Rows], Rows] = lambda _, rows: rows,
 ) -> int:
     """Go through the recordings, write the table, return the exit code.
 
@@ -98,6 +99,9 @@ def run_batch(
     jobs : sequence of Job
     also : callable
         Writes further files from the rows of the table, and returns their paths.
+    keep : callable
+        From the table's path and its new rows to those that are written: what must stay of the
+        table that is there.
 
     Raises
     ------
@@ -123,10 +127,10 @@ def run_batch(
         there = [done for done in outcomes if done is not None]
         _note_uncalibrated(there)
         try:
-            written = _write(options.out, work, there, also)
+            written = _write(options.out, work, there, also, keep)
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
-            written = _write(options.out, work, there, also)
+            written = _write(options.out, work, there, also, keep)
     refused = sum(done.error is not None for done in there)
     read = f"{len(there)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {refused} refused")
@@ -163,9 +167,12 @@ def _write(
     work: Work,
     outcomes: Sequence[Done],
     also: Callable[[Rows], Sequence[Path]],
+    keep: Callable[[Path | None, Rows], Rows],
 ) -> list[Path]:
     columns = work.columns
-    rows: Rows = [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
+    rows = keep(
+        out, [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
+    )
     write_table(out, columns, rows)
     return [*([] if out is None else [out]), *also(rows)]
 

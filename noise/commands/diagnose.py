@@ -32,7 +32,11 @@ def configure(parser: ArgumentParser) -> None:
         "data", type=Path, nargs="+", metavar="DATA", help="recordings, or folders of them"
     )
     parser.add_argument(
-        "--rig", type=Path, required=True, metavar="RIG.toml", help="what is known of the rig"
+        "--rig",
+        type=Path,
+        required=True,
+        metavar="RIG.toml",
+        help="what is known of the rig, or the name of a material",
     )
     opt.add_change(parser)
     parser.add_argument(
@@ -100,12 +104,13 @@ def run(options: Namespace) -> int:
 
 def _write(options: Namespace, diagnosis: Diagnosis) -> None:
     from models.rig_files.rig_text import base_name
+    from models.rig_files.shipped import material_of
     from noise.diagnosis.improved_file import NAME, improved_text
     from noise.pages.diagnosis.page import write_diagnosis
 
     improved, found = None, diagnosis.improvement
     if found is not None:
-        base = base_name(options.rig, options.out)
+        base = material_of(options.rig) or base_name(options.rig, options.out)
         improved = improved_text(found, base, dict(options.change or ()))
     commands = [] if found is None else _next(options, found)
     write_diagnosis(options.out, diagnosis, improved, commands)

@@ -28,8 +28,9 @@ def configure(parser: ArgumentParser) -> None:
     parser.description = (
         "Label recordings: one row a segment with the label creak, squawk, squeal, none or "
         "unknown, its probability, frequency in Hz and level in dB re 20 uPa (dBFS where not "
-        "calibrated), and the operating condition it belongs to: logged, or inferred from a creak, "
-        "squawk or squeal with bounds of 90 %, or missing. A file that cannot be read has the "
+        "calibrated), A-weighted and over the background, and the operating condition it belongs "
+        "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "
+        "fluorocarbon bushing like the shipped one, or missing. A file that cannot be read has the "
         "reason in the column error. Label tables in place of recordings are joined, for --map and "
         "--audacity."
     )
@@ -79,12 +80,29 @@ def run(options: Namespace) -> int:
 
         track_paths(options.audacity, [job.name for job in jobs])
     from noise.labels.labelling import Labelling
+    from noise.labels.table import with_corrections
+
+    def export(rows: list[dict[str, object]]) -> list[Path]:
+        _note_assumed(rows)
+        return _export(options, rows)
 
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(*models, full_scale=opt.full_scale_of(options))
-    return run_batch(options, work, jobs, lambda rows: _export(options, rows))
+    return run_batch(options, work, jobs, also=export, keep=with_corrections)
+
+
+def _note_assumed(rows: list[dict[str, object]]) -> None:
+    """Say what inferred conditions rely on where no material was logged."""
+    from noise.labels.label_display import ASSUMED, assumes_material
+
+    number = len({row["file"] for row in rows if assumes_material(row)})
+    if number:
+        note(
+            f"conditions of {counted(number, 'recording')} are inferred {ASSUMED}: no material is "
+            "logged"
+        )
 
 
 def _check_exports(options: Namespace) -> None:

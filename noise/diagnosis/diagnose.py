@@ -42,11 +42,10 @@ if TYPE_CHECKING:
 __all__ = ["case_remarks", "diagnose_case"]
 
 _SHOWN = 5
-"""Effects that are listed at least, and hypotheses."""
-
+"""Effects that are listed at least, and hypotheses; assumed."""
 
 _AS_REPEATS = 0.5
-"""p-value from which on a stage differs as repeats do."""
+"""p-value from which on a stage differs as repeats do [-]; assumed."""
 
 
 def diagnose_case(
@@ -91,19 +90,20 @@ def diagnose_case(
     else:
         from noise.diagnosis.causes.hypotheses import local_answer
         from noise.diagnosis.fit.fits import add_fits  # loads the classifier; no part of a quick
-        from noise.diagnosis.fit.judge import judge  # answer
+        from noise.diagnosis.fit.judge import judge, untold  # answer
 
+        told = ""
         if first.verdict:
             tell("simulating this rig with each likely cause")
-            first = first.with_hypotheses(
-                local_answer(
-                    case, first.table, posterior, first.hypotheses, library=library, seed=seed
-                )
+            hypotheses, told = local_answer(
+                case, first.table, posterior, first.hypotheses, library=library, seed=seed
             )
+            first = first.with_hypotheses(hypotheses)
         stages = stage_findings(first.table, nulls)
         judged = judge(case, first, stages, library, seed, tell)
         answer = _stated(case, first, judged, nulls, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
+        answer = replace(answer, notes=(*answer.notes, *filter(None, [told, *untold(judged)])))
     return replace(answer, seconds=time.perf_counter() - started)
 
 

@@ -12,12 +12,15 @@ if TYPE_CHECKING:
     from noise.diagnosis.evidence.friction_curves import FrictionCurves
 
 __all__ = [
-    "LARGEST_GAP", "ROLES", "SHOWN_IN", "Agreement", "EffectFinding", "HypothesisFinding",
+    "LARGEST_GAP", "ROLES", "SHOWN_IN", "SURE", "Agreement", "EffectFinding", "HypothesisFinding",
     "Illustration", "LabelsAndLevels", "Location", "Remainder", "StageFinding",
 ]  # fmt: skip
 
 LARGEST_GAP = 100.0
 """Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter."""
+
+SURE = 0.05
+"""p-value up to which a stage or a place is said to differ [-]; the customary level, assumed."""
 
 SHOWN_IN = {
     "drive": ("drive", "friction"),

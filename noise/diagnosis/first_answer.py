@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["FirstAnswer", "first_answer", "known_effects"]
 
 _SUSPECTED = 0.5
-"""Probability from which on an effect that the rig file lists is said to be off."""
+"""Probability from which on an effect that the rig file lists is said to be off [-]; assumed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ class FirstAnswer:
         return self.comparison.table
 
     def with_hypotheses(self, hypotheses: Mapping[Hypothesis, float]) -> FirstAnswer:
-        """Return what is said of something to explain, with other probabilities of hypotheses."""
+        """Return the answer by other probabilities of hypotheses; each cause's follow from them."""
         single = marginals(hypotheses)
         return replace(
             self,
@@ -134,8 +134,8 @@ def first_answer(
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
     unlearned = unlearned_sensors(case.rig.sensors, case.recordings)
     hypotheses = joint_probabilities(probabilities)
-    silent = FirstAnswer(comparison, gap, hypotheses, probabilities, (), (), unlearned)
+    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), unlearned)
+    answer = answer.with_hypotheses(hypotheses)
     if not needs_explaining(probabilities["none"], posterior.alarm, gap, learned=not unlearned):
-        return silent
-    suspected = tuple(name for name, p in again.items() if p >= _SUSPECTED)
-    return replace(silent, suspected=suspected).with_hypotheses(hypotheses)
+        return replace(answer, verdict=())
+    return replace(answer, suspected=tuple(n for n, p in again.items() if p >= _SUSPECTED))

@@ -10,7 +10,7 @@ from models.errors import ParameterError
 from noise.base.tables import check_table_path
 from noise.batch import find_jobs, open_journal, perform_all
 from noise.labels.labelling import Labelling
-from noise.labels.table import LabelTable
+from noise.labels.table import LabelTable, with_corrections
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -44,7 +44,8 @@ def label(
     out : path, optional
         File for the table: .csv, .jsonl or .parquet. As with ``bushing-noise label --out``, a
         journal beside it keeps each recording that is done: whichever of the two is called next
-        with the same table goes on where the last call ended, however it ended.
+        with the same table goes on where the last call ended, however it ended. What somebody has
+        corrected in the table stays as it is.
     fresh : bool
         Whether to do all recordings again, whatever earlier calls with the same `out` did.
     workers : int
@@ -91,11 +92,12 @@ def label(
         with closing(performed):
             for job, done in performed:
                 outcomes[job.index] = done
-        table = LabelTable(
+        rows: list[dict[str, object]] = [
             dict(zip(work.columns, row, strict=True))
             for index in sorted(outcomes)
             for row in outcomes[index].rows
-        )
+        ]
+        table = LabelTable(with_corrections(None if out is None else Path(out), rows))
         if out is not None:
             table.write(out)
     return table

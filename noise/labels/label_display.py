@@ -1,4 +1,4 @@
-"""Display of labels: bars over time, tables in HTML."""
+"""Display of labels: bars over time, tables in HTML, and what inferred conditions rely on."""
 
 from __future__ import annotations
 
@@ -17,12 +17,16 @@ if TYPE_CHECKING:
     from noise.labels.segments import Segment
 
 __all__ = [
+    "ASSUMED",
     "MOST_TRACKS",
+    "assumes_material",
     "draw_tracks",
     "segments_html",
     "table_html",
 ]
 
+ASSUMED = "assuming a fluorocarbon bushing like the shipped one"
+"""What inferred conditions say of themselves where no material was logged."""
 
 MOST_TRACKS = 40
 """Rows that a picture has room for."""
@@ -101,6 +105,19 @@ def draw_tracks(
     return axes
 
 
+def assumes_material(row: Mapping[str, object]) -> bool:
+    """Whether a row of the label table has inferred conditions, and no material to rely on.
+
+    Examples
+    --------
+    >>> row = {"speed_rad_s_source": "inferred", "material_source": "missing"}
+    >>> assumes_material(row), assumes_material(row | {"material_source": "logged"})
+    (True, False)
+    """
+    sources = (value for column, value in row.items() if column.endswith("_source"))
+    return "inferred" in sources and row.get("material_source") != "logged"
+
+
 def segments_html(segments: Sequence[Segment]) -> str:
     """Return the labelled segments of a recording as a table in HTML.
 
@@ -148,8 +165,10 @@ def table_html(table: Sequence[Mapping[str, object]]) -> str:
         for row in table
     ]
     header = ["file", "label", "time", "level", "speed", "interference", "support stiffness"]
-    return html_table(f"Labels of {len({row['file'] for row in table})} files", rows,
-                      header=header)  # fmt: skip
+    caption = f"Labels of {len({row['file'] for row in table})} files"
+    if any(assumes_material(row) for row in table):
+        caption += f"; conditions with bounds are inferred, {ASSUMED} where no material is logged"
+    return html_table(caption, rows, header=header)
 
 
 def _time(start: object, end: object) -> str:

@@ -1,8 +1,9 @@
 """Labelling of recordings: a row for each segment, linked to the condition it was recorded at.
 
 What was logged stands as it is. What was not is inferred where there is a noise to tell it, with
-the bounds of an interval of 90 %; the material is never. The work on a recording can be done here
-or in other processes.
+the bounds of an interval of 90 %; the material is never. The intervals are those of a fluorocarbon
+bushing like the shipped one: a recording of another material has none, nor has a sound that nothing
+says to be of a rig. The work on a recording can be done here or in other processes.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.base.label_names import LABELS
+from noise.base.label_names import LABELS, NAMED
 from noise.batch.identity import file_digest
 from noise.classifier import load_classifier
 from noise.labels.segments import label_recording
@@ -43,8 +44,8 @@ _SPEED_BLOCK = 0.02
 _BLOCKS_AT_ONCE = 500
 """How many of them are read together."""
 
-_TELLING_LABELS = ("creak", "squawk", "squeal")
-"""Noises that tell of the condition that made them."""
+_AS_STATED = 0.005
+"""A measured speed that is off by no more is the one that was stated [-]."""
 
 _CONDITIONS = {
     "speed_rad_s": "speed",
@@ -56,9 +57,9 @@ _CONDITIONS = {
 COLUMNS = (
     "file", "channel", "start_s", "end_s", "label",
     *(f"p_{label}" for label in LABELS),
-    "frequency_hz", "level_db", "level_dbfs", "calibrated",
+    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "snr_dba", "level_dbfs", "calibrated",
     *(f"{name}{part}" for name in _CONDITIONS for part in ("", "_low", "_high", "_source")),
-    "material", "material_source", "error",
+    "material", "material_source", "label_source", "error",
 )  # fmt: skip
 """Columns of the table, all of them always there."""
 
@@ -193,10 +194,14 @@ def _row(
         **{f"p_{label}": round(p, 6) for label, p in segment.probabilities.items()},
         "frequency_hz": _rounded(segment.frequency, 2),
         "level_db": _rounded(segment.level, 2),
+        "level_dba": _rounded(segment.level_a, 2),
+        "l_afmax_dba": _rounded(segment.level_af_max, 2),
+        "snr_dba": _rounded(segment.snr, 2),
         "level_dbfs": _rounded(segment.level_dbfs, 2),
         "calibrated": blocks.calibrated,
         "material": condition.material,
         "material_source": "logged" if condition.material else "missing",
+        "label_source": "classifier",
     }
     inferred = _inferred(blocks, segment, condition, inference)
     for column, field in _CONDITIONS.items():
@@ -217,7 +222,10 @@ def _inferred(
 ) -> dict[str, Interval]:
     """Infer what is not logged of a segment whose label tells of it."""
     unknown = any(getattr(logged, field) is None for field in _CONDITIONS.values())
-    if not unknown or segment.label not in _TELLING_LABELS:
+    if not unknown or segment.label not in NAMED:
+        return {}
+    # Who names a model says by it which rig the recordings are of.
+    if inference is None and not _is_of_a_rig(blocks):
         return {}
     from noise.inference import infer_stretch, load_inference
 
@@ -226,6 +234,14 @@ def _inferred(
     first = round(segment.start * blocks.rate)
     last = min(round(segment.end * blocks.rate), blocks.n_samples)
     return infer_stretch(blocks, first, last, logged, inference or load_inference())
+
+
+def _is_of_a_rig(blocks: RecordingBlocks) -> bool:
+    """Whether anything says so: another channel than sound, a calibration, a condition."""
+    at = blocks.condition
+    stated = (at.material, at.speed, at.interference, at.support_stiffness)
+    others = any(channel.kind != "pressure" for channel in blocks.channels)
+    return blocks.calibrated or others or any(value is not None for value in stated)
 
 
 def _in_unit(column: str, value: float | None) -> float | None:
@@ -237,23 +253,36 @@ def _in_unit(column: str, value: float | None) -> float | None:
 def _segment_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
     """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set.
 
-    Its magnitude where the shaft swings to and fro, whose mean speed is nothing.
+    Its magnitude where the shaft swings to and fro, whose mean speed is nothing. What was set
+    stands as it was written where the channels agree with it.
     """
+    stated, measured = blocks.condition.speed, _measured_speed(blocks, segment)
+    if measured is None:
+        return stated
+    if stated is not None and abs(abs(measured) - abs(stated)) <= _AS_STATED * abs(stated):
+        return math.copysign(stated, measured)
+    return measured
+
+
+def _measured_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
+    """Mean speed from the channels [rad/s], None where none tells it."""
     first = round(segment.start * blocks.rate)
     last = min(round(segment.end * blocks.rate), blocks.n_samples)
     block = max(1, round(_SPEED_BLOCK * blocks.rate))
     pieces = blocks.pieces(first, last, _BLOCKS_AT_ONCE * block)
     speed, angle = blocks.first("speed"), blocks.first("angle")
-    if blocks.calibrated and speed is not None:
+    if not blocks.calibrated:
+        return None
+    if speed is not None:
         return _mean_speed(piece.samples[speed] for piece in pieces)
-    if blocks.calibrated and angle is not None and last - first > block:
-        if last - first < 3 * block:
-            time = np.arange(last - first) / blocks.rate
-            return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
-        # Means of blocks first: the difference of single samples would be that of their noise.
-        means = [_block_means(piece.samples[angle], block) for piece in pieces]
-        return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
-    return blocks.condition.speed
+    if angle is None or last - first <= block:
+        return None
+    if last - first < 3 * block:
+        time = np.arange(last - first) / blocks.rate
+        return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
+    # Means of blocks first: the difference of single samples would be that of their noise.
+    means = [_block_means(piece.samples[angle], block) for piece in pieces]
+    return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
 
 
 def _block_means(signal: NDArray[np.float64], block: int) -> NDArray[np.float64]:

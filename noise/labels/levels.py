@@ -1,18 +1,40 @@
-"""Levels of any part of a recording, from sums over cells of 10 ms while it is read once."""
+# mypy: allow-untyped-decorators
+"""Levels of any part of a recording, and of each of its segments over the background.
+
+Unweighted levels are put together from sums over cells of 10 ms, while the recording is read once.
+A-weighted ones are those that `features.kernels.levels` measures of the same samples.
+
+The background is what is left where no noise is named. Its level is the one exceeded for 90 % of
+that time, L_A90, as the field has it (ISO 1996-1): a door that slams in between does not raise it.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numba import njit
 
+from features.kernels.levels import weighted_levels
+from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
+from noise.base.label_names import NAMED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["CELL_RATE", "CellLevels"]
+    from noise.labels.segments import Segment
+    from noise.recordings.blocks import RecordingBlocks
+
+__all__ = ["CELL_RATE", "CellLevels", "background_level", "with_weighted_levels"]
+
+_EXCEEDED = 90.0
+"""Share of the time for which the background is louder than its level [%]."""
+
+_LEAST_BACKGROUND = 4
+"""Eighths of a second without which a background has no level."""
 
 CELL_RATE = 100
 """Cells in a second; segments begin and end with one."""
@@ -67,17 +89,9 @@ class CellLevels:
         first, last = np.searchsorted(self.edges[:-1], (begin, end)).tolist()
         if first == last:
             return
-        edges = self.edges[first : last + 1]
-        at, sizes = edges[:-1] - edges[0], np.diff(edges)
-        part = samples[edges[0] - start : edges[-1] - start]
-        mean = np.add.reduceat(part, at) / sizes
-        # About the mean of the cell and relative to its peak, whose square may overflow.
-        rest = part - np.repeat(mean, sizes)
-        peak = np.maximum.reduceat(np.abs(rest), at)
-        rest /= np.repeat(np.where(peak > 0.0, peak, 1.0), sizes)
-        self._mean[first:last] = mean
-        self._peak[first:last] = peak
-        self._square[first:last] = np.add.reduceat(rest * rest, at)
+        part = np.ascontiguousarray(samples)
+        into = (self._mean, self._peak, self._square)
+        _sum_cells(part, self.edges[first : last + 1] - start, first, *into)
 
     def rms_db(self, first: int, last: int) -> float | None:
         """Root mean square about the mean of cells `first` up to `last` [dB re the unit].
@@ -95,6 +109,34 @@ class CellLevels:
         square = self._square[first:last] * (self._peak[first:last] / peak) ** 2
         total = float(np.sum(square + sizes * (offset / peak) ** 2))
         return 20.0 * math.log10(peak) + 10.0 * math.log10(total / n) if total > 0.0 else None
+
+
+@njit(fastmath={"reassoc", "contract", "nnan", "nsz"}, cache=True, **COMPILED)
+def _sum_cells(
+    samples: NDArray[np.float64],
+    edges: NDArray[np.int64],
+    first: int,
+    mean: NDArray[np.float64],
+    peak: NDArray[np.float64],
+    square: NDArray[np.float64],
+) -> None:
+    """Fill in mean, peak about it, and the sum of squares re the peak, whose own may overflow."""
+    for cell in range(edges.size - 1):
+        part = samples[edges[cell] : edges[cell + 1]]
+        total = 0.0
+        for i in range(part.size):
+            total += part[i]
+        middle = total / part.size
+        largest = 0.0
+        for i in range(part.size):
+            largest = max(largest, abs(part[i] - middle))
+        sum_of_squares = 0.0
+        peak_or_one = largest if largest > 0.0 else 1.0
+        for i in range(part.size):
+            share = (part[i] - middle) / peak_or_one
+            sum_of_squares += share * share
+        mean[first + cell], peak[first + cell] = middle, largest
+        square[first + cell] = sum_of_squares
 
 
 def sound_levels(
@@ -128,3 +170,77 @@ def sound_levels(
         return None, None
     level_dbfs = rms_db - 20.0 * math.log10(full_scale if calibrated else 1.0)
     return (rms_db - 20.0 * math.log10(REFERENCE_PRESSURE) if calibrated else None), level_dbfs
+
+
+def with_weighted_levels(blocks: RecordingBlocks, segments: list[Segment]) -> list[Segment]:
+    """Add the A-weighted levels of a track's segments, and their level over the background.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+        The track; where it has no pressure, nothing is added.
+    segments : list of Segment
+        All of it, in order of time.
+
+    Returns
+    -------
+    list of Segment
+    """
+    row = blocks.first("pressure")
+    if row is None:
+        return segments
+    reference = REFERENCE_PRESSURE if blocks.calibrated else 1.0
+    measured = []
+    for segment in segments:
+        first = round(segment.start * blocks.rate)
+        n = min(round(segment.end * blocks.rate), blocks.n_samples) - first
+
+        def read(start: int, end: int, first: int = first) -> NDArray[np.float64]:
+            return np.asarray(blocks.read(first + start, first + end)[row])
+
+        measured.append(weighted_levels(read, n, blocks.rate, reference=reference))
+    # The first and the last eighth of a second may hold the end of a noise beside it.
+    outside = [
+        levels.short[1:-1]
+        for segment, levels in zip(segments, measured, strict=True)
+        if segment.label not in NAMED
+    ]
+    background = background_level(np.concatenate(outside)) if outside else None
+    return [
+        replace(
+            segment,
+            level_a=_finite(levels.level_a) if blocks.calibrated else None,
+            level_af_max=_finite(levels.level_af_max) if blocks.calibrated else None,
+            snr=None if background is None else _finite(levels.level_a - background),
+        )
+        for segment, levels in zip(segments, measured, strict=True)
+    ]
+
+
+def background_level(levels: NDArray[np.float64]) -> float | None:
+    """Level of a background, L_A90.
+
+    Parameters
+    ----------
+    levels : ndarray, shape (n,)
+        Of each eighth of a second of it [dB].
+
+    Returns
+    -------
+    float or None
+        [dB re what the levels are]; ``None`` where there is too little of it, or where it is
+        digital silence.
+
+    Examples
+    --------
+    >>> background_level(np.array([40.0] * 9 + [70.0])), background_level(np.array([40.0]))
+    (40.0, None)
+    """
+    if levels.size < _LEAST_BACKGROUND:
+        return None
+    ordered = np.sort(levels)
+    return _finite(float(ordered[int((1.0 - 0.01 * _EXCEEDED) * levels.size)]))
+
+
+def _finite(level: float) -> float | None:
+    return level if math.isfinite(level) else None

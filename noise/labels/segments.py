@@ -12,7 +12,7 @@ import numpy as np
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
 from noise.base.label_names import LABELS
-from noise.labels.levels import CELL_RATE, CellLevels, sound_levels
+from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, labelled_stretches
 from noise.labels.windows import (
     FEATURE_NAMES,
@@ -66,6 +66,12 @@ class Segment:
         Sound pressure level [dB re 20 uPa]; ``None`` where not calibrated.
     level_dbfs : float or None
         Root mean square of the samples relative to full scale 1.0 [dB]; ``None`` for digital zero.
+    level_a, level_af_max : float or None
+        A-weighted level, and the largest with the time weighting F [dB(A) re 20 uPa]; ``None``
+        where not calibrated.
+    snr : float or None
+        The A-weighted level over that of the background [dB(A)], which is L_A90 of the recording
+        outside of creaks, squawks and squeals; ``None`` where there is no such part.
 
     Examples
     --------
@@ -81,6 +87,9 @@ class Segment:
     frequency: float | None
     level: float | None
     level_dbfs: float | None
+    level_a: float | None = None
+    level_af_max: float | None = None
+    snr: float | None = None
 
 
 class Segments(list[Segment]):
@@ -151,7 +160,11 @@ def label_recording(
     ['none']
     """
     found = tracks(RecordingBlocks.of(recording), per_track=per_track)
-    return Segments(seg for name, track in found for seg in _label(track, classifier, name))
+    return Segments(
+        segment
+        for name, track in found
+        for segment in with_weighted_levels(track, _label(track, classifier, name))
+    )
 
 
 def file_label(segments: list[Segment]) -> Segment:

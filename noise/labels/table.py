@@ -1,7 +1,8 @@
 """The label table: one row a segment, written, shown and read in any of its formats.
 
 A table of one's own making will do as well, as long as it has the columns ``file`` and ``label``;
-the others of the label table are empty where it has none.
+the others of the label table are empty where it has none. What somebody has corrected in a table
+stays in it when the recordings are labelled again.
 """
 
 from __future__ import annotations
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-__all__ = ["LabelTable", "cell_number", "read_label_table"]
+__all__ = ["HUMAN", "LabelTable", "cell_number", "read_label_table", "with_corrections"]
+
+HUMAN = "human"
+"""The `label_source` of what somebody has said."""
 
 _TEXTS = {
     "file", "channel", "label", "material", "error",
@@ -161,6 +165,58 @@ def _checked(row: object, where: str) -> dict[str, object]:
     return checked
 
 
+def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
+    """Return new rows of a table, with those recordings as they were that somebody has corrected.
+
+    Parameters
+    ----------
+    path : Path or None
+        The label table that the rows are for; there need be none yet.
+    rows : list of dict
+        By `COLUMNS`.
+
+    Returns
+    -------
+    list of dict
+        Where some row of a recording's track is by a human in the table that is there, all rows of
+        that track are those of that table: whoever moves a border changes both sides of it. Tracks
+        that the new rows do not have come last.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> row = {"file": "run07.wav", "channel": "all", "label": "squeal", "label_source": "human"}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     LabelTable([row]).write(Path(folder) / "labels.csv")
+    ...     new = [row | {"label": "creak", "label_source": "classifier"}]
+    ...     with_corrections(Path(folder) / "labels.csv", new)[0]["label"]
+    'squeal'
+    """
+    if path is None or not path.exists():
+        return rows
+    try:
+        before = read_label_table(path, refusals=[])
+    except RecordingError:  # no label table, so there are none in it
+        return rows
+    corrected = {_track(row) for row in before if row["label_source"] == HUMAN}
+    kept: dict[tuple[object, object], list[dict[str, object]]] = {}
+    for row in before:
+        if _track(row) in corrected:
+            kept.setdefault(_track(row), []).append(row)
+    merged = []
+    for row in rows:
+        if _track(row) in corrected:
+            merged += kept.pop(_track(row), [])
+        else:
+            merged.append(row)
+    return merged + [row for of_one in kept.values() for row in of_one]
+
+
+def _track(row: Mapping[str, object]) -> tuple[object, object]:
+    return row.get("file"), row.get("channel")
+
+
 def _value(row: Mapping[str, object], column: str, where: str) -> object:
     value = row.get(column)
     if value is None or value == "":
@@ -169,6 +225,8 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
         return str(value)
     if column == "calibrated":
         return value in (True, "true", "True")
+    if value == "fixed" and column.startswith(_SUPPORT):
+        return math.inf
     return cell_number(row, column, where)
 
 

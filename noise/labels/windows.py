@@ -221,6 +221,8 @@ class _Reader:
 
     def _framed(self, samples: NDArray[np.float64], start: int, length: int) -> NDArray[np.float64]:
         """Put what there is of a block into zeros, faded where the recording begins and ends."""
+        if samples.size == length and start > 0 and start + length < self._blocks.n_samples:
+            return samples
         whole = np.zeros(length)
         first = max(0, -start)
         part = whole[first : first + samples.size]

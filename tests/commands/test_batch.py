@@ -15,6 +15,7 @@ from noise.classifier import LABELS, load_classifier
 from noise.cli import main
 from noise.labels.labelling import COLUMNS
 from noise.labels.segments import Segment
+from noise.labels.table import LabelTable, read_label_table
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import read_recording, write_recording
 from noise.recordings.blocks import RecordingBlocks
@@ -118,6 +119,26 @@ def test_pitch_and_windows_are_not_asked_for_together(runs, capsys):
 def test_a_recording_named_twice_is_a_row_once(runs, labelled):
     assert main(["label", "runs/a.wav", "./runs/a.wav", "--out", "t.csv"]) == 0
     assert [row["file"] for row in read_table("t.csv")] == ["a.wav"]
+
+
+@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("again", [[], ["--fresh"]])
+def test_what_somebody_corrected_stays_when_recordings_are_labelled_again(
+    runs, labelled, ending, again
+):
+    out = f"labels{ending}"
+    assert main(["label", "runs", "--out", out]) == 1
+    first, refused, last = read_label_table(Path(out))
+    corrected = [
+        first | {"end_s": 0.05, "label_source": "classifier"},
+        first | {"start_s": 0.05, "label": "creak", "label_source": "human"},
+    ]
+    LabelTable([*corrected, refused, last | {"label": "none"}]).write(out)
+    assert main(["label", "runs", "--out", out, *again]) == 1
+    assert read_label_table(Path(out)) == [*corrected, refused, last]
+    # Recordings of another folder do not drive it out either.
+    assert main(["label", "runs/c.wav", "--out", out, *again]) == 0
+    assert read_label_table(Path(out)) == [last, *corrected]
 
 
 def test_the_same_call_again_repeats_nothing_but_what_was_refused(runs, labelled, capsys):

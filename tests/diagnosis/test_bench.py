@@ -56,6 +56,15 @@ def test_a_wrong_bench_is_told_and_no_cause_named(right, name):
     assert not any(p for cause, p in told.probabilities.items() if cause != "unknown")
 
 
+@pytest.mark.parametrize("name", WRONG_BENCHES)
+def test_a_wrong_bench_is_told_of_files_as_they_are_prepared(right, tmp_path, name):
+    """In other words than of raw recordings where what is cut as a start was none."""
+    change, _ = WRONG_BENCHES[name]
+    data, rig = write_case(tmp_path, change(right, np.random.default_rng(1)))
+    case = read_case([data], load_rig(rig))
+    assert bench_findings(case) or case.faults
+
+
 @pytest.mark.parametrize("name", RIGHT)
 def test_an_effect_is_no_wrong_bench(name):
     recordings = [run(at(speed), *RIGHT[name], seed=i) for i, speed in enumerate(SPEEDS[1:4])]

@@ -98,6 +98,9 @@ def test_the_quick_answer_has_the_contracts_keys(plain, tmp_path, capsys):
     told = _told(capsys, data, "--rig", rig, "--quick")
     _as_the_contract_has_it(told)
     assert told["held_out"] == []
+    nothing = [one["probability"] for one in told["hypotheses"] if not one["causes"]]
+    assert nothing == [told["probabilities"]["none"]]
+    assert all(place["p_value"] <= 0.05 for place in told["map"])
     assert all(effect["closed"] is None for effect in told["effects"])
 
 
@@ -142,6 +145,15 @@ def test_a_plain_rig_has_less_of_a_gap_than_one_with_an_effect(plain, tmp_path):
     assert gaps[0].gap < gaps[1].gap
     assert gaps[0].p_value > gaps[1].p_value
     assert gaps[0].probabilities["none"] > gaps[1].probabilities["none"]
+
+
+def test_a_shipped_material_stands_in_the_place_of_a_rig_file(plain, tmp_path):
+    data, _ = write_case(tmp_path, plain)
+    (tmp_path / "rig.toml").write_text('base = "fluorocarbon"', encoding="utf-8")
+    named, filed = (
+        as_json(diagnose(data, rig, quick=True)) for rig in ("Fluorocarbon", tmp_path / "rig.toml")
+    )
+    assert named | {"seconds": 0.0} == filed | {"seconds": 0.0}
 
 
 def test_the_same_call_gives_the_same_answer(plain, tmp_path, capsys):

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.condition import FIXED
+from models.errors import ParameterError
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes import local_cases as local
 from noise.diagnosis.causes.hypotheses import local_answer
@@ -23,8 +24,6 @@ from tests.helpers.small_rigs import RIG, at, run
 CONDITIONS = [at(v, FIXED) for v in (1.0, 1.6, 2.5)]
 HUM = ("mains_hum", {"amount": 1.0, "angle": 0.0})
 EXCLUSIVE = ("none", "parameters", "unknown")
-ONE_TURN = 62
-"""Cases with which every hypothesis of eight effects, but for most triples, has been simulated."""
 
 
 @pytest.fixture(autouse=True)
@@ -46,8 +45,10 @@ def _case(*effects, library=EFFECTS):
 def _answers(case, posterior, library=EFFECTS, **options):
     table = case_table(case.recordings, case.rig, library=library)
     first = joint_probabilities(posterior.probabilities(table))
-    options = {"n_cases": ONE_TURN, "workers": 1, "budget_seconds": 600.0} | options
-    return first, local_answer(case, table, posterior, first, library=library, **options)
+    answer, told = local_answer(
+        case, table, posterior, first, library=library, workers=1, **options
+    )
+    return first, answer, told
 
 
 def _likeliest(joint):
@@ -129,7 +130,7 @@ def test_cases_teach_what_a_pair_looks_like_where_its_members_hide_each_other():
 
 
 def test_a_rig_that_hums_is_told_by_its_own_cases(posterior):
-    _, answer = _answers(_case(HUM), posterior)
+    _, answer, _ = _answers(_case(HUM), posterior)
     assert sum(answer.values()) == pytest.approx(1.0)
     assert _likeliest(answer) == {"mains_hum"}
     assert marginals(answer)["mains_hum"] > 0.8
@@ -138,29 +139,58 @@ def test_a_rig_that_hums_is_told_by_its_own_cases(posterior):
 def test_an_effect_of_the_users_own_gets_a_probability_like_the_others(posterior, monkeypatch):
     monkeypatch.setattr("noise.diagnosis.causes.hypotheses.SHORTLIST", 3)
     library = {**EFFECTS, "rectifier": RECTIFIER}
-    _, answer = _answers(_case(("rectifier", {"share": 0.6}), library=library), posterior, library)
+    _, answer, _ = _answers(
+        _case(("rectifier", {"share": 0.6}), library=library), posterior, library
+    )
     chances = marginals(answer)
     # What is rectified is cut off as well: the fits tell the two apart.
     ranked = sorted(set(chances) - set(EXCLUSIVE), key=lambda name: -chances[name])
     assert set(ranked[:2]) == {"rectifier", "clipping"}
-    _, other = _answers(_case(HUM), posterior, library)
+    _, other, _ = _answers(_case(HUM), posterior, library)
     assert marginals(other)["rectifier"] < 0.5 * chances["rectifier"]
 
 
+@pytest.fixture
+def doubtful(monkeypatch):
+    """The first answer is never sure enough, and two effects are in question."""
+    monkeypatch.setattr("noise.diagnosis.causes.hypotheses.SURE", 2.0)
+    monkeypatch.setattr("noise.diagnosis.causes.hypotheses.SHORTLIST", 2)
+
+
+def _never(*_arguments, **_options):
+    raise AssertionError("simulated")
+
+
+@pytest.mark.usefixtures("doubtful")
 def test_a_second_diagnosis_starts_from_the_first(posterior, monkeypatch, cache_folder):
     case = _case()
-    _, before = _answers(case, posterior, n_cases=8)
+    _, before, _ = _answers(case, posterior)
     (kept,) = cache_folder.rglob("*.npz")
     assert kept.stat().st_size < 50_000
-
-    def never(*_arguments, **_options):
-        raise AssertionError("simulated again")
-
     with monkeypatch.context() as patched:
-        patched.setattr(local, "run_signals", never)
-        assert _answers(case, posterior, n_cases=8)[1] == before
+        patched.setattr(local, "run_signals", _never)
+        assert _answers(case, posterior)[1] == before
     kept.write_bytes(b"half a file")
-    assert _answers(case, posterior, n_cases=8)[1] == before
+    assert _answers(case, posterior)[1] == before
+
+
+def test_nothing_is_simulated_where_the_first_answer_is_sure(posterior, monkeypatch):
+    monkeypatch.setattr(local, "run_signals", _never)
+    case = _case()
+    table = case_table(case.recordings, case.rig)
+    sure = {frozenset({"mains_hum"}): 0.9, frozenset({"unknown"}): 0.1}
+    assert local_answer(case, table, posterior, sure) == (sure, "")
+
+
+@pytest.mark.usefixtures("doubtful")
+def test_cases_that_cannot_be_simulated_leave_the_first_answer_and_are_told(posterior, monkeypatch):
+    def broken(*_arguments, **_options):
+        raise ParameterError("no such rig")
+
+    monkeypatch.setattr(local, "run_signals", broken)
+    first, answer, told = _answers(_case(), posterior)
+    assert answer == first
+    assert "cannot be simulated" in told
 
 
 def test_another_rig_has_local_cases_of_its_own_and_old_ones_go(posterior, monkeypatch):
@@ -174,11 +204,6 @@ def test_another_rig_has_local_cases_of_its_own_and_old_ones_go(posterior, monke
     (entry,) = files[2].read().items()
     assert entry[0] == (frozenset({"clipping"}), 1)
     assert entry[1].tolist() == [1.0, 1.0, 1.0]
-
-
-def test_without_time_the_first_answer_stands(posterior):
-    first, answer = _answers(_case(), posterior, budget_seconds=0.0)
-    assert answer == first
 
 
 def test_two_processes_make_the_cases_of_one(posterior, monkeypatch):
@@ -200,6 +225,14 @@ def test_of_long_recordings_a_second_is_simulated(posterior):
     bench = local.bench_of(case, table)
     assert bench.runs[0].seconds == pytest.approx(local.LONGEST)
     assert bench.table is not table
+
+
+def test_of_many_recordings_some_are_simulated_from_the_first_to_the_last(posterior, monkeypatch):
+    monkeypatch.setattr(local, "MOST", 2)
+    case = _case()
+    bench = local.bench_of(case, case_table(case.recordings, case.rig))
+    assert [one.condition for one in bench.runs] == [CONDITIONS[0], CONDITIONS[-1]]
+    assert len(bench.table.measured) == 2
 
 
 def test_processes_that_are_ended_lose_no_cases(posterior, monkeypatch):

@@ -57,7 +57,7 @@ def test_a_name_whose_fit_closes_the_gap_gains_and_one_whose_fit_does_not_loses(
     before = chances(partial_slip=0.5, unknown=0.4)
     partial, unknown = frozenset({"partial_slip"}), frozenset({"unknown"})
     closing, idle = (
-        updated(before, fits_of(6.0, 5.9, partial_slip=left), STAGES) for left in (1.2, 5.9)
+        updated(before, fits_of(6.0, 5.9, partial_slip=left), STAGES) for left in (1.2, 5.89)
     )
     assert closing[partial] / closing[unknown] > before[partial] / before[unknown]
     assert idle[partial] / idle[unknown] < before[partial] / before[unknown]
@@ -95,6 +95,16 @@ def test_where_parameters_close_all_names_keep_their_odds():
     assert now[off] / now[unknown] > before[off] / before[unknown]
 
 
+def test_where_no_stage_differs_none_speaks_against_a_name():
+    before = chances(speed_fluctuation=0.3, unknown=0.3)
+    drive, unknown = frozenset({"speed_fluctuation"}), frozenset({"unknown"})
+    fits = fits_of(2.5, 2.4, speed_fluctuation=1.2)
+    stages = {"drive": StageFinding(1.0, 0.0, 1.0), "measurement": StageFinding(4.0, 0.9, 0.001)}
+    faint = stages | {"measurement": StageFinding(1.6, 0.9, 0.9)}
+    sure, unsure = (updated(before, fits, looked) for looked in (stages, faint))
+    assert unsure[drive] / unsure[unknown] > sure[drive] / sure[unknown]
+
+
 def test_a_second_effect_that_closes_nothing_more_is_superfluous():
     two = "partial_slip_and_velocity_weakening"
     now = updated(
@@ -130,12 +140,34 @@ def test_a_fit_that_makes_it_worse_hands_its_chance_to_the_unknown():
     assert sum(now.values()) == pytest.approx(1.0)
 
 
+def test_a_pair_whose_search_stopped_short_leaves_what_one_of_it_leaves():
+    pair = frozenset({"partial_slip", "velocity_weakening"})
+    fits = fits_of(6.0, 5.0, partial_slip=1.5, partial_slip_and_velocity_weakening=4.0)
+    assert fits.least(pair).tolist() == squared(1.5).tolist()
+    assert fits.least(frozenset({"partial_slip"})).tolist() == squared(1.5).tolist()
+
+
+def test_what_the_model_cannot_let_be_heard_keeps_its_odds_and_may_be_named():
+    fits = fits_of(6.0, 5.0, background_noise=5.0, partial_slip=4.99)
+    noise, partial = frozenset({"background_noise"}), frozenset({"partial_slip"})
+    before = chances(background_noise=0.6, partial_slip=0.1, unknown=0.2)
+    now = settled(updated(before, fits, STAGES), fits)
+    assert likeliest(now, fits.of) == ("background_noise",)
+    assert fits.closes(noise)
+    assert not fits.closes(partial)
+
+
+def test_a_gap_that_parameters_close_needs_no_closing():
+    assert fits_of(6.0, 1.2, partial_slip=1.3).closes(frozenset({"partial_slip"}))
+
+
 @pytest.fixture
 def closed(monkeypatch):
     """Gaps that fits leave, in place of fits; what was fitted is noted."""
     left, fitted = {}, []
 
-    def fit(comparison, chosen, names, start, seed):
+    def fit(comparison, chosen, names, start, seed, begun=None):
+        assert begun is None or begun < frozenset(names)
         fitted.append(frozenset(names))
         return SimpleNamespace(model=frozenset(names))
 

@@ -131,6 +131,28 @@ def test_a_weakening_is_fitted_in_some_form_and_closes_the_gap_held_out(weakenin
     assert after < _gap(weakening, start, [1])
 
 
+def test_an_effect_leaves_hardly_more_than_the_parameters_where_these_are_what_is_off():
+    stiff = with_offsets(RIG, {"elastomer_stiffness": 1.15})
+    comparison = _comparison(
+        [run(at(v, FIXED), seed=70 + i, rig=stiff) for i, v in enumerate(SPEEDS)]
+    )
+    start = fit_parameters(comparison, [0, 1, 2]).model
+    fitted = fit_effect(comparison, [0, 1, 2], ["viscoelastic_stiffness"], start)
+    alone, after = (_gap(comparison, m, range(3)) for m in (start, fitted.model))
+    assert after < alone + 0.5
+
+
+def test_a_pair_begun_with_one_of_it_keeps_that_one(weakening):
+    known = LawSpec("velocity_weakening", WEAK)
+    fitted = fit_effect(
+        weakening, [0, 2], ["velocity_weakening", "mains_hum"], Model(),
+        begun=Model(effects=(known,)),
+    )  # fmt: skip
+    assert [spec.name for spec in fitted.model.effects] == ["velocity_weakening", "mains_hum"]
+    assert fitted.model.effects[0].parameters["form"] == "exponential"
+    assert _gap(weakening, fitted.model, [0, 2]) < _gap(weakening, Model(), [0, 2])
+
+
 conditions = st.lists(
     st.builds(
         Condition,

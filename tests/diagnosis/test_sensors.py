@@ -142,7 +142,7 @@ def test_noise_from_recordings_is_found_and_told(tmp_path):
         assert sensors.of(kind).noise == pytest.approx(level, rel=0.1)
     assert sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
     assert sensors.of("torque").bits == 12
-    assert "noise of the sensors, by the recordings: torque 0." in " ".join(case.notes)
+    assert "noise of the sensors (white, RMS), by the recordings: torque 0." in " ".join(case.notes)
 
 
 def test_a_sound_without_pause_tells_no_noise():

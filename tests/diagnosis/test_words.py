@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.findings import Agreement, Remainder
+from noise.diagnosis.findings import Agreement, Location, Remainder
 from noise.diagnosis.text.agreement_sentences import AGREES, agreement_sentence
 from noise.diagnosis.text.sentences import (
     answer,
@@ -139,6 +139,23 @@ def test_a_place_where_repeats_differ_as_much_is_no_beginning():
     assert location_sentence(slight).endswith("; though repeats differ as much (p = 0.60).")
 
 
+def test_a_gap_does_not_begin_where_the_named_effect_does_not_act():
+    elsewhere = replace(one_effect(), location=replace(one_effect().location, stage="structure"))
+    said = location_sentence(elsewhere)
+    assert said.startswith("It shows in the structure, as what acts in the friction can, in the ch")
+    assert "begins" not in said
+
+
+def test_a_surer_stage_than_that_of_the_named_effect_is_said():
+    drive = Location("drive", ("angle",), (0.0, 1800.0), "all", "all", 0.35)
+    stages = one_effect().stages | {"drive": SLIGHT}
+    compliant = replace(
+        one_effect(), verdict=("shaft_compliance",), location=drive, stages=stages, effects=()
+    )
+    assert "What differs surely is the friction" in location_sentence(compliant)
+    assert "What differs surely" not in location_sentence(one_effect())
+
+
 def test_without_a_gap_an_alternative_that_is_likelier_is_said():
     torn = replace(none(), probabilities={"none": 0.2, "clipping": 0.6})
     assert verdict_sentence(torn).endswith(" If anything, it is clipping (60 %).")
@@ -174,7 +191,7 @@ def far(name, speed, gap, interference=0.279e-3, **channels):
 def test_it_is_said_where_the_rig_file_does_not_describe_the_rig(found, words):
     sentence = agreement_sentence(replace(one_effect(), agreement=found))
     assert words in sentence
-    assert sentence.endswith("in the torque.")
+    assert sentence.endswith("in the torque (together 7.9 floors, p = 0.0004).")
 
 
 @given(st.lists(st.floats(0.3, 300.0), min_size=1, max_size=6))
@@ -196,7 +213,22 @@ def test_the_place_says_channel_band_phase_and_condition():
         "The gap begins in the friction, in the channel torque, below 1.8 kHz, while the contact "
         "sticks, where speed ≥ 2.5 rad/s; repeats would hardly ever differ as much (p = 0.0004)."
     )
-    assert "40 Hz to 160 Hz, in all conditions" in location_sentence(pressure_alone())
+
+
+def test_a_gap_is_in_all_conditions_only_where_every_recording_is_off():
+    near, off = far("a", 1.0, 1.1), far("b", 4.0, 3.0)
+    said = [
+        "in all conditions" in location_sentence(replace(pressure_alone(), agreement=found))
+        for found in ((near, off), (off, off))
+    ]
+    assert said == [False, True]
+
+
+def test_a_stage_that_does_not_surely_differ_is_in_no_headline():
+    slight = replace(one_effect(), probabilities={"partial_slip": 0.3, "none": 0.2})
+    assert headline(slight) == "Something differs in friction"
+    unsure = replace(slight, location=replace(slight.location, p_value=0.2))
+    assert headline(unsure) == "Something differs"
 
 
 def test_what_was_not_fitted_closes_nothing_in_words():

@@ -21,9 +21,12 @@ from noise.classifier import LABELS
 from noise.inference import Interval, infer_stretch, load_inference
 from noise.inference.inputs import LONGEST, QUANTITIES, scaled, unscaled
 from noise.labels.conditions import conditions_map
+from noise.labels.label_display import ASSUMED, assumes_material
 from noise.labels.labelling import COLUMNS, label_rows
 from noise.labels.segments import Segment
-from noise.labels.table import read_label_table
+from noise.labels.table import LabelTable, read_label_table
+from noise.pages.engine.entry import Entry
+from noise.pages.engine.entry_display import facts_of
 from noise.recordings.blocks import RecordingBlocks
 from noise.training.inference.fit import coverage, draw_run_sample, train_inference
 from noise.training.inference.population import draw_audible_run
@@ -164,6 +167,31 @@ def test_intervals_are_for_the_recordings_that_they_hold_for_alone(creak):
     assert not infer_stretch(slow, 0, n, Condition(), MODEL)
     angle = RecordingBlocks.of(replace(only(creak, "torque"), channels=(Channel("angle"),)))
     assert not infer_stretch(angle, 0, n, Condition(), MODEL)
+
+
+def test_a_sound_that_nothing_says_to_be_of_a_rig_tells_of_no_condition(creak):
+    sound = replace(only(creak, *PRESSURE), condition=Condition(), calibrated=False)
+
+    def sources(recording, inference=None):
+        (row,) = label_rows("a.wav", recording, [segment(recording)], inference)
+        return {row[f"{name}_source"] for name in ("speed_rad_s", "interference_mm")}
+
+    assert sources(sound) == {"missing"}
+    assert "inferred" in sources(replace(sound, condition=Condition(support_stiffness=2214.0)))
+    assert "inferred" in sources(replace(sound, calibrated=True))
+    # Who names a model says by it which rig the sounds are of.
+    assert "inferred" in sources(sound, load_inference())
+
+
+def test_what_is_inferred_says_what_it_assumes_unless_the_material_is_logged(creak):
+    for material in (None, "fluorocarbon"):
+        at = Condition(material=material)
+        rows = LabelTable(label_rows("a.wav", replace(creak, condition=at), [segment(creak)]))
+        assert "inferred" in rows[0].values()
+        assert assumes_material(rows[0]) == (material is None)
+        assert (ASSUMED in rows._repr_html_()) == (material is None)
+        facts = facts_of(Entry("run07", (rows[0],)))
+        assert facts["material"].words == (material or ASSUMED)
 
 
 def test_a_long_stretch_is_known_by_its_middle(creak):

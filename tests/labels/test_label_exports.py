@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError, RecordingError
-from noise.base.tables import write_table
+from noise.base.tables import read_table, write_table
 from noise.classifier import LABELS
 from noise.cli import main
 from noise.labels.audacity import label_track, track_paths, write_label_tracks
@@ -39,6 +39,9 @@ TABLE = [
 ]
 
 
+NEWER = ("level_dba", "l_afmax_dba", "snr_dba", "label_source")
+
+
 @pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
 def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
     path = tmp_path / f"labels{ending}"
@@ -48,6 +51,22 @@ def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
         {k: v for k, v in r.items() if k != "calibrated"} for r in TABLE
     ]
     assert [r["calibrated"] for r in back] == [True] * 4 + [None]
+
+
+@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+def test_no_table_holds_an_infinity(tmp_path, ending):
+    path = tmp_path / f"labels{ending}"
+    write_table(path, COLUMNS, [TABLE[1] | {"level_db": math.inf}])
+    _, (back,) = read_table(path)
+    assert not back["level_db"]
+    assert back["support_stiffness_Nm_rad"] == ("fixed" if ending == ".csv" else None)
+
+
+def test_a_table_from_before_there_were_all_columns_still_reads(tmp_path):
+    path = tmp_path / "labels.csv"
+    write_table(path, [name for name in COLUMNS if name not in NEWER], TABLE[:1])
+    (back,) = read_label_table(path)
+    assert back == TABLE[0] | dict.fromkeys(NEWER)
 
 
 @pytest.mark.parametrize(

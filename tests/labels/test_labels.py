@@ -107,6 +107,16 @@ def test_speed_is_that_of_the_segment_where_the_angle_was_recorded():
     assert speeds == pytest.approx([1.0, 3.0], rel=0.02)
 
 
+@pytest.mark.parametrize(("stated", "given"), [(3.0, 3.0), (-3.0, 3.0), (3.1, 2.99997)])
+def test_a_speed_is_written_as_it_was_logged_where_the_angle_agrees(stated, given):
+    angle = 2.99997 * np.arange(2000) / 1000.0
+    recording = Recording(angle[None], 1000.0, (Channel("angle"),), Condition(speed=stated))
+    segment = Segment("all", 0.0, 2.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
+    (row,) = label_rows("run.wav", recording, [segment])
+    assert row["speed_rad_s"] == given
+    assert row["speed_rad_s_source"] == "logged"
+
+
 def test_a_refused_file_has_a_row_with_the_reason():
     (cells,) = refusal(Labelling(), "bad.wav", "empty").rows
     row = dict(zip(COLUMNS, cells, strict=True))

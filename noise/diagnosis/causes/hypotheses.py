@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from itertools import combinations, count, islice
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,10 +12,11 @@ from noise.diagnosis.cases.truth import KINDS
 from noise.diagnosis.causes.joint import Hypothesis, marginals, normalised
 from noise.diagnosis.causes.local_cases import bench_of, local_cases
 from noise.diagnosis.causes.local_model import fit_local_model
+from noise.diagnosis.causes.verdict import ALONE
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -27,14 +28,14 @@ if TYPE_CHECKING:
 __all__ = ["local_answer"]
 
 NONE: Hypothesis = frozenset()
-ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
-"""Hypotheses that are no set of effects."""
-
 SHORTLIST = 8
 """Effects that local cases are made of; those hold both of a pair in five cases of six."""
 
 LEADERS = 2
 """The likeliest effects, with and without which most cases are made."""
+
+SURE = 0.8
+"""Probability of a hypothesis from which on local cases change no verdict [-]."""
 
 _ENOUGH = 0.8
 """Share of the local cases without which they are not asked [-]."""
@@ -53,12 +54,13 @@ def local_answer(
     first: Mapping[Hypothesis, float],
     *,
     library: Mapping[str, Effect] = EFFECTS,
-    n_cases: int = 120,
-    budget_seconds: float = 60.0,
     workers: int = 2,
     seed: int = 0,
-) -> dict[Hypothesis, float]:
+) -> tuple[dict[Hypothesis, float], str]:
     """Probability of each hypothesis, judged by cases simulated of this rig at these conditions.
+
+    How many cases there are is settled by the hypotheses in question, and never by the clock: the
+    same recordings have the same answer on a slow machine.
 
     Parameters
     ----------
@@ -70,10 +72,6 @@ def local_answer(
         As `joint_probabilities` gives it [-].
     library : mapping of str to Effect
         Effects that may be missing; those of the user's own are always in question.
-    n_cases : int
-    budget_seconds : float
-        After which no further case is begun [s]; where that leaves too few, the first answer
-        stands.
     workers : int
         Processes.
     seed : int
@@ -84,20 +82,25 @@ def local_answer(
     dict of frozenset of str to float
         The likeliest first; they sum to 1 [-]. What was not simulated keeps the probability that
         it had.
+    str
+        Why these are the first answer's, or what else is to be known of them; empty if nothing is.
     """
     single = marginals(first)
     effects = sorted((c for c in single if c in EFFECTS), key=lambda c: -single[c])
     listed = {spec.name for spec in case.rig.effects}
     own = [name for name in library if name not in EFFECTS and name not in listed]
+    if not own and max(first.values()) >= SURE:
+        return dict(first), ""
     chosen = [*effects[:SHORTLIST], *own]
     hypotheses = _hypotheses(chosen)
     bench = bench_of(case, table, library=library, seed=seed)
-    cases = local_cases(
-        bench, posterior, _wanted(hypotheses, chosen[:LEADERS], n_cases), library=library,
-        budget_seconds=budget_seconds, workers=workers, seed=seed,
-    )  # fmt: skip
-    if len(cases) < _ENOUGH * n_cases:  # few cases, of which the quickest come first, mislead
-        return dict(first)
+    wanted = _wanted(hypotheses, chosen[:LEADERS])
+    cases = local_cases(bench, posterior, wanted, library=library, workers=workers, seed=seed)
+    if len(cases) < _ENOUGH * len(wanted):  # those that can be simulated are no fair choice
+        return dict(first), (
+            f"{len(wanted) - len(cases)} of {len(wanted)} cases of this rig with a likely cause "
+            "cannot be simulated: the causes are as probable as on other rigs"
+        )
     model = fit_local_model(
         np.array([one.odds for one in cases]), [one.hypothesis for one in cases], hypotheses
     )
@@ -109,7 +112,10 @@ def local_answer(
         weights = np.sqrt(weights * [first.get(hypothesis, 0.0) for hypothesis in hypotheses])
         weights *= covered / weights.sum()
     rest = {hypothesis: p for hypothesis, p in first.items() if hypothesis not in hypotheses}
-    return normalised({**dict(zip(hypotheses, weights.tolist(), strict=True)), **rest})
+    answer = normalised({**dict(zip(hypotheses, weights.tolist(), strict=True)), **rest})
+    n, whole = len(bench.runs), len(case.recordings)
+    part = f"{n} of {whole} recordings" if n < whole else ""
+    return answer, f"causes were simulated on this rig for {part} only" if part else ""
 
 
 def _hypotheses(effects: Sequence[str]) -> tuple[Hypothesis, ...]:
@@ -133,25 +139,19 @@ def _prior(hypotheses: Sequence[Hypothesis], n_effects: int) -> NDArray[np.float
 
 
 def _wanted(
-    hypotheses: Sequence[Hypothesis], leaders: Collection[str], n_cases: int
+    hypotheses: Sequence[Hypothesis], leaders: Collection[str]
 ) -> list[tuple[Hypothesis, int]]:
-    """Cause and number of each case, in turns, so that any number of them is balanced."""
-
-    def jobs() -> Iterator[tuple[Hypothesis, int]]:
-        for turn in count():
-            for place, hypothesis in enumerate(hypotheses):
-                often = _in_a_turn(hypothesis, leaders)
-                # Those that are rarer than turns are spread over them.
-                first, last = (
-                    math.floor(often * t + place / len(hypotheses)) for t in (turn, turn + 1)
-                )
-                yield from ((hypothesis, number) for number in range(first, last))
-
-    return list(islice(jobs(), n_cases))
+    """Cause and number of each case; of triples, which are many, one in a few has a case."""
+    found = []
+    for place, hypothesis in enumerate(hypotheses):
+        often, share = _often(hypothesis, leaders), place / len(hypotheses)
+        n = math.floor(often + share) - math.floor(share)
+        found += [(hypothesis, number) for number in range(n)]
+    return found
 
 
-def _in_a_turn(hypothesis: Hypothesis, leaders: Collection[str]) -> float:
-    """Count the cases of a hypothesis in a turn.
+def _often(hypothesis: Hypothesis, leaders: Collection[str]) -> float:
+    """Count the cases of a hypothesis; of those that have a part of one, so many share it.
 
     There are more where much hangs on it: of the likeliest effects and what may come with them, and
     of what the posterior has no name for.

@@ -9,7 +9,6 @@ the posterior says of these cases tells how to read what it says of the recordin
 from __future__ import annotations
 
 import math
-import time
 import zlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -45,10 +44,13 @@ if TYPE_CHECKING:
     from noise.diagnosis.causes.posterior import Posterior
     from sim.effects.effect import ActiveEffect, Effect
 
-__all__ = ["LONGEST", "Bench", "LocalCase", "Run", "bench_of", "local_cases"]
+__all__ = ["LONGEST", "MOST", "Bench", "LocalCase", "Run", "bench_of", "local_cases"]
 
 LONGEST = 1.0
 """Of the end of a recording that is looked at [s]: as much has to be simulated many times."""
+
+MOST = 6
+"""Recordings that are looked at, spread over all there are: how long it takes is to be known."""
 
 WEAKEST = 0.1
 """Least strength of an effect: weaker ones are mostly not seen, and so tell nothing."""
@@ -90,14 +92,14 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Bench:
-    """A rig, the runs that were recorded of it, and what the rig file predicts of them.
+    """A rig, runs that were recorded of it, and what the rig file predicts of them.
 
     Parameters
     ----------
     rig : Rig
     runs : tuple of Run
     table : CaseTable
-        Of the recordings, no longer than `LONGEST`.
+        Of these recordings, no longer than `LONGEST`.
     """
 
     rig: Rig
@@ -124,7 +126,7 @@ class LocalCase:
 def bench_of(
     case: Case, table: CaseTable, *, library: Mapping[str, Effect] = EFFECTS, seed: int = 0
 ) -> Bench:
-    """Describe how a case was recorded; recordings longer than `LONGEST` are looked at in part.
+    """Describe how a case was recorded, by `MOST` of its recordings and `LONGEST` of each.
 
     Parameters
     ----------
@@ -136,8 +138,10 @@ def bench_of(
     seed : int
         Of simulated repeats, where the table has to be made again.
     """
-    cut = tuple(_cut(recording) for recording in case.recordings)
-    if any(short is not whole for short, whole in zip(cut, case.recordings, strict=True)):
+    n = len(case.recordings)
+    looked = np.unique(np.linspace(0, n - 1, min(n, MOST)).round().astype(int))
+    cut = tuple(_cut(case.recordings[i]) for i in looked)
+    if len(cut) < n or any(a is not b for a, b in zip(cut, case.recordings, strict=True)):
         table = case_table(cut, case.rig, library=library, seed=seed)
     runs = tuple(
         Run(
@@ -155,7 +159,6 @@ def local_cases(
     wanted: Sequence[tuple[frozenset[str], int]],
     *,
     library: Mapping[str, Effect] = EFFECTS,
-    budget_seconds: float = 3600.0,
     workers: int = 1,
     seed: int = 0,
 ) -> list[LocalCase]:
@@ -170,8 +173,6 @@ def local_cases(
     library : mapping of str to Effect
         Users' own effects among them; cases with one are never kept, since nothing tells whether
         its code has changed.
-    budget_seconds : float
-        After which no further case is begun [s].
     workers : int
         Processes.
     seed : int
@@ -179,9 +180,8 @@ def local_cases(
     Returns
     -------
     list of LocalCase
-        In the order wanted, without those that cannot be simulated or for which time was short.
+        In the order wanted, without those that cannot be simulated.
     """
-    until = time.time() + budget_seconds
     bench = replace(bench, rig=_rounded(bench.rig))
     shipped = all(EFFECTS.get(spec.name) is library.get(spec.name) for spec in bench.rig.effects)
     cache = LocalCache.of((bench.rig, bench.runs, WEAKEST, seed), posterior) if shipped else None
@@ -190,11 +190,11 @@ def local_cases(
     plain = [job for job in missing if all(EFFECTS.get(c) is library.get(c) for c in job[0])]
     own = [job for job in missing if job not in plain]
     # A user's code may not be known to another process; it may be slow as well.
-    of_users = _simulated(bench, posterior, own, library, until - 0.5 * budget_seconds, seed)
+    of_users = _simulated(bench, posterior, own, library, seed)
     if workers > 1 and len(plain) >= _SEVERAL and shipped:
-        made = _simulated_by(workers, bench, posterior, plain, until, seed)
+        made = _simulated_by(workers, bench, posterior, plain, seed)
     else:
-        made = _simulated(bench, posterior, plain, library, until, seed)
+        made = _simulated(bench, posterior, plain, library, seed)
     if cache is not None and made:
         cache.write(known | made)
     made |= of_users | known
@@ -206,7 +206,6 @@ def _simulated_by(
     bench: Bench,
     posterior: Posterior,
     jobs: Sequence[tuple[frozenset[str], int]],
-    until: float,
     seed: int,
 ) -> dict[tuple[frozenset[str], int], NDArray[np.float64]]:
     """Divide cases between processes; where these are ended, this one makes them."""
@@ -216,11 +215,11 @@ def _simulated_by(
 
     try:
         parts = Parallel(n_jobs=workers)(
-            delayed(_simulated)(bench, posterior, jobs[i::workers], EFFECTS, until, seed)
+            delayed(_simulated)(bench, posterior, jobs[i::workers], EFFECTS, seed)
             for i in range(workers)
         )
     except BrokenProcessPool:
-        return _simulated(bench, posterior, jobs, EFFECTS, until, seed)
+        return _simulated(bench, posterior, jobs, EFFECTS, seed)
     return {job: odds for part in parts for job, odds in part.items()}
 
 
@@ -229,15 +228,12 @@ def _simulated(
     posterior: Posterior,
     jobs: Sequence[tuple[frozenset[str], int]],
     library: Mapping[str, Effect],
-    until: float,
     seed: int,
 ) -> dict[tuple[frozenset[str], int], NDArray[np.float64]]:
-    """Log-odds of each case until time is up; empty ones of what cannot be simulated."""
+    """Log-odds of each case; empty ones of what cannot be simulated."""
     paths = _Paths(bench.rig, library)
     found: dict[tuple[frozenset[str], int], NDArray[np.float64]] = {}
     for hypothesis, number in jobs:
-        if time.time() >= until:
-            break
         key = zlib.crc32("+".join(sorted(hypothesis)).encode())
         rng = np.random.default_rng([seed, key, number])
         try:

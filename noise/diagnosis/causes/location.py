@@ -18,7 +18,7 @@ import numpy as np
 from noise.diagnosis.causes.stage_nulls import STAGES, largest_of, stage_of
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
 from noise.diagnosis.evidence.evidence import deviations
-from noise.diagnosis.findings import LARGEST_GAP, Location, StageFinding
+from noise.diagnosis.findings import LARGEST_GAP, SURE, Location, StageFinding
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -107,8 +107,9 @@ def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
     Returns
     -------
     tuple of Location
-        The surest first. A p-value is that of the place's largest surprise among the largest ones
-        that whole stages have without a cause, so it is corrected for all looks.
+        Those that differ, the surest first; empty where none does. A p-value is that of the place's
+        largest surprise among the largest ones that whole stages have without a cause, so it is
+        corrected for all looks.
     """
     names = nulls.names
     size = nulls.surprises(table)
@@ -126,7 +127,8 @@ def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
             stage, (channel,), band or _WHOLE_BAND, phase, _conditions(table, nulls, largest),
             _p_value(most, null),
         )  # fmt: skip
-        found.append((place.p_value, -most, place))
+        if place.p_value <= SURE:
+            found.append((place.p_value, -most, place))
     return tuple(place for _, _, place in sorted(found, key=lambda entry: entry[:2]))
 
 

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.causes.joint import marginals
+from noise.diagnosis.causes.joint import Hypothesis, marginals
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Container, Mapping, Sequence
 
-    from noise.diagnosis.causes.joint import Hypothesis
     from noise.diagnosis.gap.distance import Gap
 
 __all__ = ["ALONE", "equivalent_pairs", "likeliest", "needs_explaining", "next_measurement"]
 
-ALONE = ("parameters", "unknown")
-"""Causes that no effect is named beside."""
+ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
+"""Hypotheses of a cause that no effect is named beside."""
 
 BEYOND = 5.0
 """Floors from which a gap that repeats hardly ever have is one to explain."""
@@ -78,7 +77,7 @@ def likeliest(
     (('mains_hum', 'clipping'), ('mains_hum',))
     """
     single = marginals(hypotheses)
-    alone = [h for h in hypotheses if not h or h <= set(ALONE)]
+    alone = [h for h in hypotheses if not h or h in ALONE]
     sets = [h for h in hypotheses if h not in alone and (fitted is None or h in fitted)]
     best = max(sets, key=lambda h: (max(single[name] for name in h), hypotheses[h]), default=None)
     apart = max(alone, key=lambda h: hypotheses[h], default=None)

@@ -113,7 +113,7 @@ def contact_summary(found: Reconstruction, fit: Fit, speed: float) -> Numbers:
         "stick_share": stick / n,
         "slip_share": float(near.mean()),
         "calm_speed": _mean(calm) / wanted,
-        "calm_spread": float(calm.std()) / wanted,
+        "calm_spread": float(calm.std()) / wanted if calm.size else math.nan,
     }
     numbers |= of_stick
     if n - stick - np.count_nonzero(near) >= _SLIDES_ON * n:

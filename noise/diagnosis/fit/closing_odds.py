@@ -42,11 +42,14 @@ class ClosingOdds:
         close (``room``, by `room_of`) and to close still (``left``), what the fit closes of it
         (``closed``, by `closed_of`), whether the stage differs (``stage``, by `differing`), that
         there is one effect more than in another fit (``more``), and ``one``.
+    enough : float
+        Share that a fit has to close for its effects to be named, as `closed_of` has it [-].
     """
 
     none: Mapping[str, float]
     parameters: Mapping[str, float]
     effects: Mapping[str, float]
+    enough: float
 
     def of_none(self, gap: float) -> float:
         """Logarithm of the ratio [-] for nothing being the matter, at a gap [floors]."""
@@ -77,7 +80,8 @@ class ClosingOdds:
             Gaps with all but some of the effects, where these were fitted: what is superfluous
             closes nothing of them In floors [-].
         stages : sequence of float
-            `differing` of each stage that they act in and that was looked at [-].
+            `differing` of each stage that they act in and that was looked at, 1 where no other
+            differs more surely [-].
 
         Returns
         -------
@@ -148,4 +152,4 @@ def load_closing_odds() -> ClosingOdds:
     """Load the ratios that are shipped."""
     path = resources.files("noise.diagnosis") / "data" / "closing.json"
     found = json.loads(path.read_text(encoding="utf-8"))
-    return ClosingOdds(found["none"], found["parameters"], found["effects"])
+    return ClosingOdds(found["none"], found["parameters"], found["effects"], found["enough"])

@@ -55,10 +55,8 @@ _LOOKED = 2
 """Recordings that candidates are looked at with."""
 
 _PROMISING = 6
-"""Candidates that are looked at more closely, with the parameters recalibrated and without."""
-
-_KEPT = 2
-"""Of these, how many are searched about."""
+"""Candidates that are looked at more closely, with the parameters recalibrated and without; the
+best of either is searched about."""
 
 _STEP = 0.5
 _SHRINK = (1.0, 0.5, 0.25)
@@ -85,6 +83,7 @@ def fit_effect(
     start: Model,
     seed: int = 0,
     *,
+    begun: Model | None = None,
     stated: bool = False,
 ) -> Fitted:
     """Fit effects together with the parameters.
@@ -100,12 +99,15 @@ def fit_effect(
         With the parameters as they were recalibrated alone.
     seed : int
         Of what is tried.
+    begun : Model, optional
+        Of a fit of some of the effects, which the others are added to.
     stated : bool
         Whether only forms are tried that a rig file can state.
     """
     few = different(comparison, chosen)
-    best = Model()
-    for name in names:
+    best = begun or Model()
+    there = {spec.name for spec in best.effects}
+    for name in (name for name in names if name not in there):
         candidates = stated_candidates(comparison.library[name], seed)
         if not stated:
             candidates += _further_candidates(comparison, chosen, name, seed)
@@ -114,7 +116,7 @@ def fit_effect(
         for place in range(len(names)):
             best = _refined(comparison, few, best, place)
     fitted = fit_parameters(comparison, chosen, best, rounds=_ROUNDS)
-    model = _settled(comparison, few[:_LOOKED], fitted.model)
+    model = _settled(comparison, few, fitted.model)
     strength = partial(_strength_spread, comparison, few, model)
     return replace(fitted, model=model, spreads=(*fitted.spreads, strength))
 
@@ -133,13 +135,12 @@ def _added(
         for one in [replace(model, effects=(*model.effects, spec))]
     ]
     looked.sort(key=lambda pair: pair[0])
-    tried = [
-        (offset_cost(comparison, few, one), one)
-        for _, shown in looked[:_PROMISING]
-        for one in [replace(shown, offsets=x) for x in dict.fromkeys((model.offsets, offsets))]
-    ]
-    tried.sort(key=lambda pair: pair[0])
-    refined = [_refined(comparison, few, one, len(one.effects) - 1) for _, one in tried[:_KEPT]]
+    # The effect may be what the parameters had to stand for, or one beside them.
+    starts = []
+    for x in dict.fromkeys((model.offsets, offsets)):
+        shown = [replace(one, offsets=x) for _, one in looked[:_PROMISING]]
+        starts.append(min(shown, key=lambda one: offset_cost(comparison, few, one)))
+    refined = [_refined(comparison, few, one, len(one.effects) - 1) for one in starts]
     return min(refined, key=lambda one: offset_cost(comparison, few, one))
 
 

@@ -7,7 +7,7 @@ become, and the likeliest of those not yet fitted is next.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +16,7 @@ from noise.diagnosis.causes.joint import marginals, normalised
 from noise.diagnosis.causes.verdict import ALONE
 from noise.diagnosis.findings import SHOWN_IN
 from noise.diagnosis.fit.closing import CLOSABLE, rms
-from noise.diagnosis.fit.closing_odds import differing, load_closing_odds
+from noise.diagnosis.fit.closing_odds import closed_of, differing, load_closing_odds
 from noise.diagnosis.fit.fit_effect import fit_effect
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.causes.joint import Hypothesis
     from noise.diagnosis.findings import StageFinding
     from noise.diagnosis.fit.case_comparison import CaseComparison
+    from noise.diagnosis.fit.closing_odds import ClosingOdds
     from noise.diagnosis.fit.fit_parameters import Fitted
 
 __all__ = ["CaseFits", "HypothesisFit", "fit_hypotheses", "settled", "updated"]
@@ -40,7 +41,7 @@ _ENOUGH = 0.9
 _LIKELY = 0.05
 """Probability of a hypothesis that is worth a fit."""
 
-_NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *(frozenset({name}) for name in ALONE))
+_NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *ALONE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +77,8 @@ class CaseFits:
         Squared distance of each recording from the rig as its file has it, and with parameters
         alone, in squared floors [-].
     of : mapping of frozenset of str to HypothesisFit
+    odds : ClosingOdds
+        That say what fits tell.
     """
 
     comparison: CaseComparison
@@ -85,6 +88,7 @@ class CaseFits:
     before: NDArray[np.float64]
     recalibrated: NDArray[np.float64]
     of: Mapping[Hypothesis, HypothesisFit]
+    odds: ClosingOdds = field(default_factory=load_closing_odds)
 
     def held_out(self, squared: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return what belongs to recordings that no fit has seen.
@@ -101,18 +105,40 @@ class CaseFits:
         """
         return squared[list(self.held)]
 
-    def closes(self, hypothesis: Hypothesis) -> bool:
-        """Tell whether a fit leaves less than parameters do, or nothing to close.
+    def least(self, hypothesis: Hypothesis) -> NDArray[np.float64]:
+        """Return what a fit leaves of each recording, or that of a part of it where that is less.
 
-        Either on recordings that no fit has seen, or on all of them.
+        More effects leave no more than fewer do, but a search among more of them may stop short.
+
+        Parameters
+        ----------
+        hypothesis : frozenset of str
+
+        Returns
+        -------
+        ndarray, shape (n_recordings,)
+            In squared floors [-].
         """
-        after = self.of[hypothesis].squared
-        left = rms(self.held_out(after))
-        return (
-            left < rms(self.held_out(self.recalibrated))
-            or left <= 1.0 + CLOSABLE
-            or rms(after) < rms(self.recalibrated)
-        )
+        parts = [fit.squared for names, fit in self.of.items() if names < hypothesis]
+        return min((self.of[hypothesis].squared, *parts), key=rms)
+
+    def is_mute(self, hypothesis: Hypothesis) -> bool:
+        """Tell whether effects change nothing: the rig file has no way for them to be heard."""
+        return np.array_equal(self.of[hypothesis].squared, self.recalibrated)
+
+    def closes(self, hypothesis: Hypothesis) -> bool:
+        """Tell whether a fit closes some of what parameters leave, or there is nothing to close.
+
+        Either on recordings that no fit has seen, or on all of them: held-out ones are few, and an
+        effect may show in the others alone. Effects that the model cannot let be heard are not
+        judged by their fit.
+        """
+        if self.is_mute(hypothesis):
+            return True
+        after = self.least(hypothesis)
+        looks = ((self.recalibrated, after), map(self.held_out, (self.recalibrated, after)))
+        open_ones = [(x, y) for x, y in (map(rms, look) for look in looks) if x >= 1.0 + CLOSABLE]
+        return not open_ones or max(closed_of(*both) for both in open_ones) >= self.odds.enough
 
 
 def fit_hypotheses(
@@ -143,7 +169,12 @@ def fit_hypotheses(
     def with_fit(fits: CaseFits, hypothesis: Hypothesis) -> CaseFits:
         names = tuple(sorted(hypothesis, key=lambda name: (-single.get(name, 0.0), name)))
         tell(f"fitting {' and '.join(names)}")
-        fitted = fit_effect(fits.comparison, fits.fitted_to, names, fits.alone.model, seed)
+        parts = [fit for fewer, fit in fits.of.items() if fewer < hypothesis]
+        part = max(parts, key=lambda fit: (len(fit.names), -rms(fit.squared)), default=None)
+        fitted = fit_effect(
+            fits.comparison, fits.fitted_to, names, fits.alone.model, seed,
+            begun=None if part is None else part.fitted.model,
+        )  # fmt: skip
         after = fits.comparison.squared(fitted.model, range(len(fits.before)))
         # A model that breaks down on recordings that it has not seen closes nothing there.
         after = np.where(np.isfinite(after), after, np.maximum(fits.before, fits.recalibrated))
@@ -201,18 +232,21 @@ def updated(
     dict of frozenset of str to float
         The likeliest first; they sum to 1 [-].
     """
-    odds, library = load_closing_odds(), fits.comparison.library
+    odds, library = fits.odds, fits.comparison.library
     gap, left = rms(fits.before), rms(fits.recalibrated)
-    gaps = {hypothesis: rms(fit.squared) for hypothesis, fit in fits.of.items()}
+    gaps = {hypothesis: rms(fits.least(hypothesis)) for hypothesis in fits.of}
     looked = {name: how for name, stage in stages.items()
               if (how := differing(stage)) is not None}  # fmt: skip
+    # Where no stage differs for sure, that of an effect differs no less than the others.
+    surest = max(looked.values(), default=1.0)
+    looked = {name: how + 1.0 - surest for name, how in looked.items()}
 
     def ratio(hypothesis: Hypothesis) -> float:
         if not hypothesis:
             return odds.of_none(gap)
         if hypothesis == {"parameters"}:
             return odds.of_parameters(gap, left)
-        if hypothesis == {"unknown"}:
+        if hypothesis == {"unknown"} or (hypothesis in fits.of and fits.is_mute(hypothesis)):
             return 0.0
         if hypothesis not in gaps:  # more beside what closes can close no more than that leaves
             fewer = [other for other in gaps if other < hypothesis]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from noise.diagnosis.fit.case_comparison import CaseComparison
     from sim.effects.effect import Effect
 
-__all__ = ["Judged", "judge"]
+__all__ = ["Judged", "judge", "untold"]
 
 _UNSEEN = 0.1
 """Probability before any fit of an effect that the posterior knows nothing of [-]; assumed."""
@@ -112,3 +112,24 @@ def _with_unseen(
     return normalised(
         dict(hypotheses) | {h: max(p, hypotheses.get(h, 0.0)) for h, p in least.items()}
     )
+
+
+def untold(judged: Judged) -> list[str]:
+    """Say of what is named without its fit telling anything.
+
+    Parameters
+    ----------
+    judged : Judged
+
+    Returns
+    -------
+    list of str
+        One line, or none.
+    """
+    fits, named = judged.fits, frozenset(judged.verdict)
+    if fits is None or named not in fits.of or not fits.is_mute(named):
+        return []
+    return [
+        f"the model of the rig file has no way for {' and '.join(judged.verdict)} to be heard: it "
+        "is named by the signs of it alone, and no fit has confirmed it"
+    ]

@@ -49,7 +49,7 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
     >>> run = Recording(noise, 30e3, (Channel("torque"),))
     >>> seen, notes = with_seen_sensors(load_material_rig("fluorocarbon-thesis"), [run])
     >>> round(seen.sensors.of("torque").noise, 3), notes
-    (0.01, ('noise of the sensors, by the recordings: torque 0.01 N m; hiss of ...',))
+    (0.01, ('noise of the sensors (white, RMS), by the recordings: torque 0.01 N m; ...',))
     """
     usual = Acquisition().noise
     found = dict(rig.sensors.by_kind)
@@ -73,20 +73,21 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
     notes = []
     if told:
         notes.append(
-            f"noise of the sensors, by the recordings: {', '.join(told)}; hiss of the room that is "
-            "in all of them counts as theirs"
+            f"noise of the sensors (white, RMS), by the recordings: {', '.join(told)}; a hiss of "
+            "the room that is in all recordings counts as theirs"
         )
     if steps:
         notes.append(f"steps of the converter, by the recordings: {', '.join(steps)}")
     if untold:
         notes.append(
-            f"the noise of {', '.join(untold)} cannot be told from these recordings, which never "
-            "pause or are too coarse; that of good sensors is used"
+            f"noise of the sensors of {', '.join(untold)}: these recordings do not tell it (no "
+            "white floor between the slips); that of good sensors is assumed, which [sensors] of "
+            "the rig file can replace"
         )
     if louder:
         notes.append(
-            f"white noise beyond that of usual sensors is taken for a difference: "
-            f"{', '.join(louder)}; state it under [sensors] of the rig file if it is the sensors'"
+            f"more white noise than usual sensors have, taken for a difference from the rig file: "
+            f"{', '.join(louder)}; if it is the sensors' own, state it under [sensors]"
         )
     return replace(rig, sensors=replace(rig.sensors, by_kind=found)), tuple(notes)
 

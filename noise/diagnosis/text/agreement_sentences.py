@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.text.words import floors, frequency, joined
+from noise.diagnosis.text.words import floors, frequency, joined, p_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -12,16 +13,18 @@ if TYPE_CHECKING:
     from noise.diagnosis.findings import Agreement
     from noise.diagnosis.outcome import Diagnosis
 
-__all__ = ["AGREES", "agreement_sentence", "remainder_sentence"]
+__all__ = ["AGREES", "agreement_sentence", "far_ones", "remainder_sentence"]
 
 AGREES = 2.0
 """Floors up to which a recording agrees with the rig file: of repeats, one in a hundred is farther
 off."""
 
 _LIKE_THE_MOST = 0.5
-"""Share of the largest distance from which on channels are named beside the farthest."""
+"""Share of the largest distance from which on channels are named beside the farthest [-];
+assumed."""
 
 _MOST_NAMED = 4
+"""Recordings that are named in a sentence; assumed."""
 
 
 def agreement_sentence(diagnosis: Diagnosis) -> str:
@@ -53,26 +56,44 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
     found = diagnosis.agreement
     if not found:
         return ""
-    far = [one for one in found if one.gap > AGREES]
-    n = len(found)
+    far, n = far_ones(diagnosis), len(found)
     which = "the recording is" if n == 1 else f"its {n} recordings are"
     reach = _reach(found)
     if not far:
         start = "The rig file describes the rig"
         if diagnosis.verdict:
             start += " but for a difference that shows only on a closer look"
-        return f"{start}: {which} {reach} times as far off as repeats are."
+        return f"{start}: {which} {reach} times as far off as repeats are{_whole(diagnosis)}."
     channels = f", in the {joined(_channels(far))}" if _channels(far) else ""
     if len(far) == n:
         return (
             f"The rig file does not describe the rig: {which} {reach} times as far off as repeats "
-            f"are{channels}."
+            f"are{channels}{_whole(diagnosis)}."
         )
     return (
         f"The rig file describes the rig at {n - len(far)} of {n} recordings, not "
         f"{_where(found)}: there it is up to {floors(max(one.gap for one in far))} times as far "
-        f"off as repeats are{channels}."
+        f"off as repeats are{channels}{_whole(diagnosis)}."
     )
+
+
+def far_ones(diagnosis: Diagnosis) -> list[Agreement]:
+    """Return the recordings that are farther off than repeats are.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> far_ones(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0))
+    []
+    """
+    return [one for one in diagnosis.agreement if one.gap > AGREES]
+
+
+def _whole(diagnosis: Diagnosis) -> str:
+    """Say how large the gap of all recordings is; without a verdict, that says it."""
+    if not diagnosis.verdict or not math.isfinite(diagnosis.p_value):
+        return ""
+    return f" (together {floors(diagnosis.gap)} floors, {p_number(diagnosis.p_value)})"
 
 
 def remainder_sentence(diagnosis: Diagnosis) -> str:

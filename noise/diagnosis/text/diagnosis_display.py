@@ -8,7 +8,7 @@ from models.drawing import BLUE, GREY, axes_or_new
 from models.html_table import html_table
 from noise.diagnosis.text.sentences import location_sentence
 from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
-from noise.diagnosis.text.words import STAGES, cause_of, p_number, percent
+from noise.diagnosis.text.words import STAGES, cause_of, floors, p_number, percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["diagnosis_html", "draw_causes"]
 
 _SHOWN = 10
-"""Causes that are drawn and listed: the most probable."""
+"""Causes that are drawn and listed, the most probable; assumed."""
 
 
 def diagnosis_html(diagnosis: Diagnosis) -> str:
@@ -37,14 +37,14 @@ def diagnosis_html(diagnosis: Diagnosis) -> str:
     facts = [
         ["verdict", verdict_sentence(diagnosis)],
         ["where", location_sentence(diagnosis)],
-        ["gap", f"{diagnosis.gap:.3g}, repeats {diagnosis.floor:.3g}; "
+        ["gap", f"{floors(diagnosis.gap)} floors; "
                 f"{p_number(diagnosis.p_value)}"],
         ["causes", likely],
         ["to measure next", diagnosis.next_measurement],
         *(["note", note] for note in diagnosis.notes),
     ]  # fmt: skip
     stages = [
-        [f"{name} ({STAGES[name]})" if name in STAGES else name, f"{stage.gap:.3g}",
+        [f"{name} ({STAGES[name]})" if name in STAGES else name, floors(stage.gap),
          percent(stage.share), p_number(stage.p_value)]
         for name, stage in diagnosis.stages.items()
     ]  # fmt: skip

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.findings import SURE
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from noise.diagnosis.findings import EffectFinding
     from noise.diagnosis.outcome import Diagnosis
 
-__all__ = ["PHASES", "finding_of", "parameter_name", "stage_of_effect"]
+__all__ = [
+    "PHASES", "begins", "finding_of", "parameter_name", "stage_of_effect", "stages_acting",
+]  # fmt: skip
 
 PHASES = {
     "stick": "while the contact sticks",
@@ -26,6 +29,30 @@ def stage_of_effect(diagnosis: Diagnosis, name: str) -> str:
     if finding is not None:
         return str(finding.stage)
     return str(EFFECTS[name].stage) if name in EFFECTS else ""
+
+
+def stages_acting(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """Return the stages that the effects of a verdict act in, each once."""
+    stages = (stage_of_effect(diagnosis, name) for name in diagnosis.verdict)
+    return tuple(dict.fromkeys(stage for stage in stages if stage))
+
+
+def begins(diagnosis: Diagnosis) -> bool:
+    """Tell whether the gap begins where it is located.
+
+    It does where that stage surely differs, and a verdict's effects, if there are any, act there.
+
+    Examples
+    --------
+    >>> from noise.diagnosis.outcome import Diagnosis
+    >>> begins(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0))
+    False
+    """
+    place = diagnosis.location
+    if place is None or place.p_value > SURE:
+        return False
+    acting = stages_acting(diagnosis)
+    return not acting or place.stage in acting
 
 
 def finding_of(diagnosis: Diagnosis, name: str) -> EffectFinding | None:

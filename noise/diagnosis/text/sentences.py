@@ -9,8 +9,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.text.agreement_sentences import agreement_sentence, remainder_sentence
-from noise.diagnosis.text.found import PHASES
+from noise.diagnosis.findings import SHOWN_IN, SURE
+from noise.diagnosis.text.agreement_sentences import (
+    agreement_sentence,
+    far_ones,
+    remainder_sentence,
+)
+from noise.diagnosis.text.found import PHASES, begins, stages_acting
 from noise.diagnosis.text.verdict_sentences import verdict_sentence
 from noise.diagnosis.text.words import (
     NOT_DETERMINED,
@@ -40,9 +45,6 @@ _COLUMNS = {
     "support_stiffness_Nm_rad": ("support stiffness", "Nm/rad"),
     "temperature_C": ("temperature", "degree C"),
 }
-
-_NOT_SURE = 0.05
-"""p-value from which on a difference is not sure."""
 
 
 def answer(diagnosis: Diagnosis) -> list[str]:
@@ -81,8 +83,11 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     if place is None:
         return ""
     low, high = place.band
-    sure = not place.p_value >= _NOT_SURE
-    parts = [f"{'The gap begins' if sure else 'It shows most'} in the {place.stage}"]
+    sure = not place.p_value > SURE
+    start = "The gap begins" if begins(diagnosis) else "It shows" if sure else "It shows most"
+    parts = [f"{start} in the {place.stage}"]
+    if sure and not begins(diagnosis):
+        parts[0] += f", as what acts in the {joined(stages_acting(diagnosis))} can"
     if place.channels:
         parts.append(f"in the channel{'s'[: len(place.channels) > 1]} {joined(place.channels)}")
     parts.append(
@@ -90,10 +95,34 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     )
     if place.phase != "all":
         parts.append(PHASES.get(place.phase, f"in the phase {place.phase}"))
-    everywhere = place.conditions == "all"
-    parts.append("in all conditions" if everywhere else f"where {_conditions(place.conditions)}")
+    if place.conditions != "all":
+        parts.append(f"where {_conditions(place.conditions)}")
+    elif len(far_ones(diagnosis)) == len(diagnosis.agreement):  # else it shows at some of them
+        parts.append("in all conditions")
     though = "" if sure else "though "
-    return f"{', '.join(parts)}; {though}{evidence(place.p_value)} ({p_number(place.p_value)})."
+    said = f"{', '.join(parts)}; {though}{evidence(place.p_value)} ({p_number(place.p_value)})."
+    return f"{said} {_surer(diagnosis)}".strip()
+
+
+def _surer(diagnosis: Diagnosis) -> str:
+    """Say which stage differs surely where that of the named effects does not."""
+    place, acting = diagnosis.location, stages_acting(diagnosis)
+    if place is None or place.stage not in acting or place.p_value <= SURE:
+        return ""
+    others = {
+        stage: found.p_value
+        for stage in SHOWN_IN.get(place.stage, ())
+        if stage != place.stage
+        and (found := diagnosis.stages.get(stage)) is not None
+        and found.p_value <= SURE
+    }
+    if not others:
+        return ""
+    surest = min(others, key=lambda stage: others[stage])
+    return (
+        f"What differs surely is the {surest} ({p_number(others[surest])}), as it can where "
+        f"something acts in the {place.stage}."
+    )
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from noise.diagnosis.findings import SHOWN_IN
+from noise.diagnosis.findings import SHOWN_IN, SURE
 from noise.diagnosis.text.found import PHASES, finding_of, parameter_name, stage_of_effect
 from noise.diagnosis.text.words import cause_of, chance, frequency, joined, p_number, percent
 
@@ -20,18 +20,21 @@ __all__ = ["headline", "is_named", "verdict_sentence"]
 
 _COUNTS = {2: "two", 3: "three"}
 _MOST_PARAMETERS = 3
+"""Parameters that are named in a sentence; assumed."""
+
 _CANDIDATES = 3
+"""Causes that are named where none is likely; assumed."""
 
 _MAY_BE = {"unknown": "something unknown", "parameters": "parameters that are off"}
 
 _LIKELY = 0.5
-"""Probability from which on a cause is named first."""
+"""Probability from which on a cause is named first [-]: it is likelier than not."""
 
 _MOSTLY = 0.5
-"""Share of the gap from which on what is left is no second cause."""
+"""Share of the gap from which on what is left is no second cause [-]; assumed."""
 
 _NOT_AT_ALL = 0.5
-"""p-value from which on a difference is none to speak of."""
+"""p-value from which on a difference is none to speak of [-]; assumed."""
 
 
 def headline(diagnosis: Diagnosis) -> str:
@@ -122,8 +125,9 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
 
 
 def _in_stage(diagnosis: Diagnosis) -> str:
+    """Name the stage that differs; empty where none surely does."""
     place = diagnosis.location
-    return f" in {place.stage}" if place is not None else ""
+    return f" in {place.stage}" if place is not None and place.p_value <= SURE else ""
 
 
 def _no_gap(diagnosis: Diagnosis) -> str:
@@ -170,7 +174,7 @@ def _departure(low: float, high: float) -> str:
 def _unknown(diagnosis: Diagnosis) -> str:
     start = f"Something differs{_in_stage(diagnosis)}"
     place = diagnosis.location
-    if place is not None:
+    if place is not None and place.p_value <= SURE:
         low, high = place.band
         if low > 0.0:
             start += f" between {frequency(low)} and {frequency(high)}"

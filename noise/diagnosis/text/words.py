@@ -121,6 +121,7 @@ _EVIDENCE = (
     (0.001, "repeats would hardly ever differ as much"),
     (0.01, "repeats would very seldom differ as much"),
     (0.05, "repeats would seldom differ as much"),
+    (0.2, "repeats differ as much now and then"),
     (math.inf, "repeats differ as much"),
 )
 
@@ -160,8 +161,9 @@ def evidence(p_value: float) -> str:
 
     Examples
     --------
-    >>> evidence(0.0004), evidence(0.4)
-    ('repeats would hardly ever differ as much', 'repeats differ as much')
+    >>> evidence(0.0004), evidence(0.07), evidence(0.4)
+    ('repeats would hardly ever differ as much', 'repeats differ as much now and then', 'repeats
+      differ as much')
     """
     if not math.isfinite(p_value):
         return NOT_DETERMINED

@@ -10,8 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.findings import SURE
 from noise.diagnosis.gap.signature import KINDS
-from noise.diagnosis.text.found import finding_of, parameter_name, stage_of_effect
+from noise.diagnosis.text.found import begins, finding_of, parameter_name, stage_of_effect
 from noise.diagnosis.text.sentences import closed_words
 from noise.diagnosis.text.verdict_sentences import is_named
 from noise.diagnosis.text.words import (
@@ -44,7 +45,6 @@ _PASSED_ON = {
     "structure": "acceleration",
     "radiation": "pressure",
 }
-_SMALL_P = 0.05
 _MOST_PLACES = 12
 _LIKELY_ENOUGH = 0.05
 _FEWEST, _MOST = 3, 6
@@ -64,9 +64,9 @@ class StageBox:
     share : str
         Of the whole gap.
     guilty : bool
-        Whether the gap begins here.
+        Whether the gap begins here, as far as that is sure.
     differs : bool
-        Whether the p-value is below 0.05.
+        Whether the p-value is 0.05 or below.
     causes : tuple of str
         Effects of the verdict that act here.
     passes_on : str
@@ -134,7 +134,7 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
     >>> [(box.name, box.gap) for box in boxes][:2]
     [('drive', '1.04'), ('friction', 'not determined')]
     """
-    boxes = []
+    boxes, place = [], diagnosis.location
     named = diagnosis.verdict if is_named(diagnosis) else ()
     acting = {name: stage_of_effect(diagnosis, name) for name in named}
     for name, what in STAGES.items():
@@ -150,8 +150,8 @@ def stage_boxes(diagnosis: Diagnosis) -> tuple[StageBox, ...]:
                 p_value=p_number(p_value) if math.isfinite(p_value) else "",
                 words=evidence(p_value) if math.isfinite(p_value) else "",
                 share=percent(None if finding is None else finding.share),
-                guilty=diagnosis.location is not None and diagnosis.location.stage == name,
-                differs=p_value < _SMALL_P,
+                guilty=begins(diagnosis) and place is not None and place.stage == name,
+                differs=p_value <= SURE,
                 causes=tuple(cause_of(c).name for c, stage in acting.items() if stage == name),
                 passes_on=_PASSED_ON.get(name, ""),
             )
@@ -256,7 +256,6 @@ def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
     >>> place_rows([Location("friction", ("torque",), (0.0, 1800.0), "stick", "all", 0.004)])
     (('friction', 'torque', 'stick', 'all', 'p = 0.0040'),)
     """
-    sure = [place for place in places if place.p_value <= _SMALL_P][:_MOST_PLACES]
     return tuple(
         (
             place.stage,
@@ -265,7 +264,7 @@ def place_rows(places: Sequence[Location]) -> tuple[tuple[str, ...], ...]:
             place.conditions.replace("speed_rad_s", "speed [rad/s]"),
             p_number(place.p_value),
         )
-        for place in sure
+        for place in places[:_MOST_PLACES]
     )
 
 
@@ -274,7 +273,7 @@ def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
     gaps = (None,) * 4 if finding is None else (
         finding.gap_before, finding.gap_recalibrated, finding.gap_after, finding.gap_floor,
     )  # fmt: skip
-    beside = name in _BESIDE_EFFECTS
+    beside, fitted = name in _BESIDE_EFFECTS, any(gap is not None for gap in gaps)
     return CauseRow(
         name=cause.name,
         clause=cause.clause,
@@ -282,10 +281,10 @@ def _cause_row(diagnosis: Diagnosis, name: str, probability: float) -> CauseRow:
         probability=probability,
         chance=percent(probability),
         named=name in (diagnosis.verdict or ("none",)) and is_named(diagnosis),
-        closed="" if beside else closed_words(finding),
+        closed="" if beside else closed_words(finding) if fitted else "not fitted",
         by_effect=percent(None if finding is None else finding.closed_by_effect),
-        strength="" if beside or finding is None else _strength(finding),
-        fitted=any(gap is not None for gap in gaps),
+        strength="" if beside or finding is None or not fitted else _strength(finding),
+        fitted=fitted,
         gaps=(number(gaps[0]), number(gaps[1]), number(gaps[2]), number(gaps[3])),
         parameters=() if finding is None else _fitted(finding),
     )

@@ -149,7 +149,7 @@ def _effect_label(diagnosis: Diagnosis, fitted: EffectFinding) -> str:
 def _step(label: str, before: float, after: float) -> Bar:
     change = f"{after - before:+.2f}".replace("-", "\N{MINUS SIGN}")
     kind = "closed" if after <= before else "opened"
-    return Bar(label, min(before, after), max(before, after), kind, f"{change} to {after:.2f}")
+    return Bar(label, min(before, after), max(before, after), kind, f"{change}, to {after:.2f}")
 
 
 def _closed_so_far(before: float, gap: float, floor: float, fitted: bool) -> str:

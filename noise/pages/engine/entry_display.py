@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.recording import REFERENCE_PRESSURE
+from noise.labels.label_display import ASSUMED, assumes_material
 from noise.pages.engine.spectrogram import (
     HIGHEST,
     LOWEST,
@@ -196,6 +197,8 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
     fit, temperature = condition.interference, condition.temperature
     hertz, level, dbfs = row.get("frequency_hz"), row.get("level_db"), row.get("level_dbfs")
     material = str(row.get("material") or condition.material or "")
+    if not material and assumes_material(row):
+        material = ASSUMED
     facts = {
         "speed": _condition_fact(row, "speed_rad_s", condition.speed, "rad/s"),
         "interference": _condition_fact(

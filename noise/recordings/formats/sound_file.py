@@ -96,6 +96,11 @@ def _samples(path: Path, sound: Any) -> NDArray[np.float64]:
     samples = np.empty((int(sound.channels), announced))
     size = announced if sound.format == "MP3" else _BLOCK
     read = 0
+    while len(samples) == 1 and read < announced:  # without a copy
+        found = len(sound.read(out=samples[0, read : read + size]))
+        if not found:
+            break
+        read += found
     while len(block := sound.read(size, dtype="float64", always_2d=True)):
         samples[:, read : read + len(block)] = block.T
         read += len(block)

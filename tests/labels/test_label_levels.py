@@ -1,0 +1,125 @@
+"""Levels in the label table: those that every other table has, and over the background."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from models.recording import Channel, Recording
+from models.rig_files.rig_file import load_material_rig
+from noise.audio.assessment import assess
+from noise.classifier import load_classifier
+from noise.cli import main
+from noise.labels.files import label
+from noise.labels.labelling import label_rows
+from noise.labels.levels import background_level, with_weighted_levels
+from noise.labels.segments import Segment, label_recording
+from noise.recordings import write_recording
+from noise.recordings.blocks import RecordingBlocks
+from sim.run import simulate
+
+CLASSIFIER = load_classifier()
+RATE = 30_000
+LEVELS = ("level_db", "level_dba", "l_afmax_dba")
+
+
+def recorded(pressure, *, calibrated=True):
+    return Recording(pressure[None, :], float(RATE), (Channel("pressure"),), calibrated=calibrated)
+
+
+def rows_of(recording):
+    return label_rows("run.wav", recording, label_recording(recording, CLASSIFIER))
+
+
+def segment(start, end, label):
+    return Segment("all", start, end, label, {label: 1.0}, None, None, None)
+
+
+@pytest.fixture(scope="module")
+def squeal():
+    rig = load_material_rig("fluorocarbon")
+    return simulate(rig, 10.0, support_stiffness=3745.0, seconds=2.0).recording["pressure"]
+
+
+def noise(seconds, rms):
+    return rms * np.random.default_rng(0).standard_normal(round(seconds * RATE))
+
+
+def test_a_level_is_the_same_in_every_table_over_the_same_samples(squeal, tmp_path):
+    recording = recorded(np.concatenate([noise(2.0, 0.01), squeal, noise(2.0, 0.01)]))
+    rows = rows_of(recording)
+    assert len(rows) > 1
+    for row in rows:
+        part = slice(round(row["start_s"] * RATE), round(row["end_s"] * RATE))
+        rendered = assess(recorded(recording.samples[0, part])).row(full_scale=1.0)
+        assert {name: row[name] for name in LEVELS} == {name: rendered[name] for name in LEVELS}
+
+
+def test_simulate_render_and_label_tell_the_same_level(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    squealing = ["simulate", "--speed", "10", "--support-stiffness", "3745"]
+    assert main(squealing) == 0
+    simulated = json.loads(capsys.readouterr().out)
+    assert main([*squealing, "--out", "run"]) == 0
+    assert main(["render", "run.wav", "--out", "heard.wav"]) == 0
+    (rendered,) = json.loads(Path("heard.json").read_text())["parts"]
+    (row,) = label("run.wav")
+    assert simulated["level_db"] == row["level_db"]
+    assert [rendered[name] for name in LEVELS] == [row[name] for name in LEVELS]
+
+
+def test_a_squeal_stands_over_its_background_by_what_it_is_louder(squeal):
+    weighted = assess(recorded(squeal)).levels.level_a
+    hiss = noise(6.0, 1.0)
+    hiss *= 10 ** (0.05 * (weighted - 20.0 - assess(recorded(hiss)).levels.level_a))
+    sound = hiss.copy()
+    sound[2 * RATE : 4 * RATE] += squeal
+    for calibrated in (True, False):
+        rows = rows_of(recorded(sound, calibrated=calibrated))
+        (named,) = (row for row in rows if row["label"] == "squeal")
+        assert named["snr_dba"] == pytest.approx(20.0, abs=0.5)
+        assert (named["level_dba"] is None) == (not calibrated)
+        assert all(abs(row["snr_dba"]) < 1.0 for row in rows if row["label"] == "none")
+
+
+def test_a_slam_does_not_raise_the_background():
+    sound = noise(4.0, 0.01)
+    parts = [segment(0.0, 3.0, "unknown"), segment(3.0, 4.0, "squeal")]
+    before = with_weighted_levels(RecordingBlocks.of(recorded(sound)), parts)
+    sound[RATE : RATE + RATE // 10] *= 300.0
+    after = with_weighted_levels(RecordingBlocks.of(recorded(sound)), parts)
+    assert after[1].snr == pytest.approx(before[1].snr, abs=0.1)
+    assert after[0].level_a > before[0].level_a + 20.0
+
+
+@pytest.mark.parametrize(
+    ("sound", "parts"),
+    [
+        (noise(2.0, 0.1), [segment(0.0, 2.0, "squeal")]),
+        (noise(2.0, 0.1), [segment(0.0, 0.5, "none"), segment(0.5, 2.0, "creak")]),
+        (
+            np.concatenate([np.zeros(2 * RATE), noise(2.0, 0.1)]),
+            [segment(0.0, 1.9, "none"), segment(1.9, 4.0, "creak")],
+        ),
+    ],
+    ids=["nothing else", "too little else", "digital silence"],
+)
+def test_where_there_is_no_background_nothing_is_over_it(sound, parts):
+    found = with_weighted_levels(RecordingBlocks.of(recorded(sound)), parts)
+    assert [one.snr for one in found] == [None] * len(parts)
+    assert found[-1].level_a is not None
+
+
+def test_the_background_is_exceeded_nine_tenths_of_the_time():
+    levels = np.random.default_rng(1).permutation(np.arange(1000.0))
+    assert np.mean(levels > background_level(levels)) == pytest.approx(0.9, abs=0.002)
+
+
+def test_levels_do_not_depend_on_how_much_is_read_at_once(squeal, tmp_path, monkeypatch):
+    sound = np.concatenate([noise(3.0, 0.01), squeal, noise(3.0, 0.01)])
+    path = write_recording(tmp_path / "run", recorded(sound))
+    whole = label(path)
+    monkeypatch.setattr("noise.recordings.blocks._LARGE", 0)
+    monkeypatch.setattr("noise.recordings.blocks._CHUNK", 8 * RATE // 3)
+    assert label(path) == whole
