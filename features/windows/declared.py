@@ -2,9 +2,10 @@
 
 The order is that in which `features.windows.table` puts them side by side: how the frames of 32 ms
 follow each other, the lines of the averaged spectrum, the rhythm of all of the sound and of its
-part above 2 kHz, and what lies above 7 kHz. They are computed for hours of sound at once, in single
-precision and from other segments than the features of `features.registry`; so what has the same
-name there is the same idea but another number, and neither can stand in for the other.
+part above 2 kHz, and what lies above 7 kHz. All is A-weighted. They are computed for hours of sound
+at once, in single precision and from other segments than the features of `features.registry`; so
+what has the same name there is the same idea but another number, and neither can stand in for the
+other.
 """
 
 from __future__ import annotations
@@ -96,6 +97,10 @@ TRAJECTORY_FEATURES = (
     _F("pitch_wander", "octave", "Mean distance of the pitch from its median."),
     _F("pitch_drift", "octave/s", "Slope of the pitch."),
     _F("together", "1", "How far the half octaves rise and fall together, 0 to 1."),
+    _F("band_rise", "dB", "Most that a half octave's 95th percentile lies above its median."),
+    _F("band_rising", "1", "Which half octave of 11 that is."),
+    _F("onset", "dB", "Mean rise of the half octaves from one frame to the next, the largest."),
+    _F("onset_mean", "dB", "The same, mean over the window."),
     _F("tone_steady", "1", "Longest run of frames whose maximum stays within 1/50 octave, share."),
     *(_F(f"band_{i}", "dB", f"Power of half octave {i} of 11 from 156 Hz to 7 kHz re all.")
       for i in range(1, 12)),
@@ -123,9 +128,10 @@ TONE_FEATURES = (
     _F("spectral_slope", "dB/octave", "Slope of the spectrum's level."),
     _F("lowest_line", "octave", "Frequency of the lowest line re the strongest."),
     _F("line_spacing_spread", "1", "Mean deviation of the lines' distances over their mean."),
-    *(_F(f"weighted_above_{i}", "dB", f"A-weighted power above {i} kHz re all.")
-      for i in (1, 2, 4)),
-    _F("weighted_lines", "dB", "A-weighted power in lines re all."),
+    _F("clearest_line", "dB", "Level of the line that stands highest above the floor about it."),
+    _F("clearest_frequency", _RE_1000, "Frequency of that line."),
+    _F("clear_bins", "1", "Bins of 3.9 Hz that stand 10 dB above the floor about them."),
+    *(_F(f"above_{i}", "dB", f"Power above {i} kHz re all.") for i in (1, 2, 4)),
 )  # fmt: skip
 """Of the lines of its averaged spectrum."""
 

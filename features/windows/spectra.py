@@ -14,7 +14,6 @@ import numpy as np
 from numba import njit
 from scipy import fft
 
-from features.kernels.bands import a_weighting
 from features.windows.arithmetic import OCTAVES
 from models.compilation import COMPILED, PART
 
@@ -48,9 +47,6 @@ _LEAST = np.float32(1e-20)
 _KILOHERTZ = (256, 512, 1024, 1 << 20)
 """Bins of 1, 2 and 4 kHz."""
 
-_FREQUENCY = np.arange(_LENGTH // 2 + 1) * SPACING
-_WEIGHT = (10.0 ** (0.1 * a_weighting(np.maximum(_FREQUENCY, 10.0)))).astype(np.float32)
-
 
 @dataclass(frozen=True, eq=False)
 class WindowSpectra:
@@ -70,8 +66,8 @@ class WindowSpectra:
         Geometric over arithmetic mean of the power [dB].
     slope : ndarray of float32, shape (n_windows,)
         [dB an octave]
-    audible : ndarray of float32, shape (4, n_windows)
-        A-weighted power up to 1 kHz, to 2 kHz, to 4 kHz, and above [likewise].
+    octaves : ndarray of float32, shape (4, n_windows)
+        Power up to 1 kHz, to 2 kHz, to 4 kHz, and above [likewise].
     top, low, high : ndarray of int, shape (n_windows,)
         The strongest bin, and the next on either side that have half its power or less.
     """
@@ -84,7 +80,7 @@ class WindowSpectra:
     below: NDArray[np.float32]
     flatness: NDArray[np.float32]
     slope: NDArray[np.float32]
-    audible: NDArray[np.float32]
+    octaves: NDArray[np.float32]
     top: NDArray[np.int64]
     low: NDArray[np.int64]
     high: NDArray[np.int64]
@@ -185,10 +181,10 @@ def _measure(power, end, level, sums, bins) -> None:
         while top < end - 1 and p[top] != highest:
             top += 1
         for k in range(FIRST, _KILOHERTZ[0]):
-            sums[5, w] += p[k] * _WEIGHT[k]
+            sums[5, w] += p[k]
         for i in range(3):
             for k in range(_KILOHERTZ[i], max(_KILOHERTZ[i], min(end, _KILOHERTZ[i + 1]))):
-                sums[6 + i, w] += p[k] * _WEIGHT[k]
+                sums[6 + i, w] += p[k]
         # Flatness, and a line through the blocks' mean levels over the octave.
         logarithms = np.float32(0.0)
         sx, sy, sxx, sxy = 0.0, 0.0, 0.0, 0.0
@@ -227,7 +223,7 @@ def _measure(power, end, level, sums, bins) -> None:
 
 def line_power(
     spectra: WindowSpectra, row: NDArray[np.int64], at: NDArray[np.int64]
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+) -> NDArray[np.float32]:
     """Add up the power in lines.
 
     Parameters
@@ -238,28 +234,27 @@ def line_power(
 
     Returns
     -------
-    power, audible : ndarray of float32, shape (n_windows,)
-        As it is, and A-weighted [unit of the spectra].
+    ndarray of float32, shape (n_windows,)
+        [unit of the spectra]
 
     Examples
     --------
     >>> tone = np.sin(2 * np.pi * 700.0 * np.arange(8000) / 16e3).astype(np.float32)
     >>> found = window_spectra(long_spectra(tone, 3), np.array([0]), np.array([3]), 7000.0)
-    >>> power, _ = line_power(found, np.array([0]), found.top)
+    >>> power = line_power(found, np.array([0]), found.top)
     >>> round(float(power[0] / found.total[0]), 3)
     1.0
     """
-    sums = np.zeros((2, len(spectra.power)), dtype=np.float32)
+    sums = np.zeros(len(spectra.power), dtype=np.float32)
     _add_lines(spectra.power, row, at, spectra.end, sums)
-    return sums[0], sums[1]
+    return sums
 
 
 @njit(fastmath={"reassoc", "contract", "nsz"}, cache=True, **COMPILED)
 def _add_lines(power, row, at, end, sums) -> None:
     for i in range(row.size):
         p = power[row[i]]
-        lines, audible = sums[0, row[i]], sums[1, row[i]]
+        lines = sums[row[i]]
         for k in range(max(FIRST, at[i] - LOBE), min(end, at[i] + LOBE + 1)):
             lines += p[k]
-            audible += p[k] * _WEIGHT[k]
-        sums[0, row[i]], sums[1, row[i]] = lines, audible
+        sums[row[i]] = lines

@@ -1,3 +1,4 @@
+# mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 """Lines of a window's spectrum: how many, how strong, and whether they are harmonics of one.
 
 What stands 10 dB above its surroundings and falls to either side before the next rises is a line,
@@ -9,12 +10,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numba import njit
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, padded_rows
 from features.windows.declared import TONE_FEATURES
 from features.windows.harmonics import harmonic_features
 from features.windows.maxima import prominent_maxima
 from features.windows.spectra import BLOCK, FIRST, SPACING, line_power, window_spectra
+from models.compilation import COMPILED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,12 +90,6 @@ def tone_features(
     return np.stack([found[name] for name in TONE_NAMES], axis=1).astype(np.float32)
 
 
-def _audible(spectra: WindowSpectra) -> NDArray[np.float32]:
-    """Return the A-weighted power of all."""
-    low, middle, high, highest = spectra.audible
-    return np.asarray((low + high) + (middle + highest))
-
-
 def _decibel(share: NDArray[np.floating], least: float) -> NDArray[np.float64]:
     return np.asarray(10.0 * np.log10(np.maximum(share.astype(np.float64), least)))
 
@@ -100,17 +97,53 @@ def _decibel(share: NDArray[np.floating], least: float) -> NDArray[np.float64]:
 def _shape(spectra: WindowSpectra) -> dict[str, NDArray[np.floating]]:
     """Describe how the power is spread over frequency."""
     total, line, below = spectra.total, spectra.line, spectra.below
-    audible, (low, _, high, highest) = _audible(spectra), spectra.audible
+    _, middle, high, highest = spectra.octaves
     above = (total - (line + below)).astype(np.float64)
     return {
         "below_line": _decibel(below / line, 1e-5),
         "above_line": _decibel(above / line, 1e-5),
         "spectral_flatness": spectra.flatness,
         "spectral_slope": spectra.slope,
-        "weighted_above_1": _decibel((audible - low) / audible, 1e-6),
-        "weighted_above_2": _decibel((high + highest) / audible, 1e-6),
-        "weighted_above_4": _decibel(highest / audible, 1e-6),
+        "above_1": _decibel((middle + high + highest) / total, 1e-6),
+        "above_2": _decibel((high + highest) / total, 1e-6),
+        "above_4": _decibel(highest / total, 1e-6),
     }
+
+
+def _clearest(
+    level: NDArray[np.float32], floor: NDArray[np.float32], end: int
+) -> dict[str, NDArray[np.floating]]:
+    """Describe the line that stands highest above the floor about it, be it the strongest or not.
+
+    The floor runs straight from the middle of each block to that of the next.
+    """
+    n = len(level)
+    stands, at = np.empty(n, dtype=np.float32), np.empty(n, dtype=np.int64)
+    count = np.empty(n, dtype=np.int64)
+    _find_clearest(level, floor, end, stands, at, count)
+    return {
+        "clearest_line": stands,
+        "clearest_frequency": OCTAVES * np.log(at * (SPACING / 1000.0)),
+        "clear_bins": count,
+    }
+
+
+@njit(cache=True, **COMPILED)
+def _find_clearest(level, floor, end, stands, at, count) -> None:
+    blocks = floor.shape[1]
+    for w in range(level.shape[0]):
+        best, where, clear = np.float32(-np.inf), FIRST, 0
+        for b in range(-1, blocks):  # from the middle of a block to that of the next
+            low, high = floor[w, max(b, 0)], floor[w, min(b + 1, blocks - 1)]
+            step = (high - low) / np.float32(BLOCK)
+            begin = FIRST + b * BLOCK + BLOCK // 2
+            for k in range(max(begin, FIRST), min(begin + BLOCK, end)):
+                above = level[w, k] - low - step * np.float32(k - begin)
+                if above > _STANDS_DB:
+                    clear += 1
+                if above > best:
+                    best, where = above, k
+        stands[w], at[w], count[w] = best, where, clear
 
 
 def _floor(level: NDArray[np.float32], end: int) -> NDArray[np.float32]:
@@ -144,7 +177,7 @@ def _lines(
     count = np.bincount(row, minlength=n)
     height = level[row, at]
     strong = height.astype(np.float64) >= strongest[row].astype(np.float64) - _STRONG_DB
-    power, audible = line_power(spectra, row, at)
+    power = line_power(spectra, row, at)
     bins, some = padded_rows(at, row, count, 0), count > 0
     heights = padded_rows(height, row, count, -200.0)
     first, second, third = np.sort(
@@ -156,13 +189,11 @@ def _lines(
         "strong_line_count": np.bincount(row[strong], minlength=n),
         "line_prominence": strongest - floor[np.arange(n), (top - FIRST) // BLOCK],
         "lines_share": np.minimum(1.0, power / spectra.total),
-        "weighted_lines": np.where(
-            some, np.minimum(_decibel(audible / _audible(spectra), 1e-6), 0.0), -60.0
-        ),
         "second_line": np.where(some, np.maximum(second - first, -_RANGE_DB), -_RANGE_DB),
         "third_line": np.where(some, np.maximum(third - first, -_RANGE_DB), -_RANGE_DB),
         "lowest_line": np.where(some, OCTAVES * np.log(lowest / top), np.nan),
         "line_spacing_spread": _spacing_spread(bins, count),
+        **_clearest(level, floor, spectra.end),
         **harmonic_features(spectra, bins, heights - strongest[:, None], count, place),
     }
 

@@ -174,9 +174,20 @@ def _bands(
     share = 10.0 * np.log10(np.maximum(power / ordered_sum(power), 1e-6))
     # One less the mean variance of what is left once the common rise and fall is taken out.
     height = np.maximum(relative, _QUIETEST_BAND_DB)
+    high = int(0.95 * (n - 1))
+    ordered = np.partition(height, (n // 2, high), axis=1)
+    rise = ordered[:, high] - ordered[:, n // 2]
+    onset = ordered_sum(np.maximum(np.diff(height, axis=1), 0.0)) / m
     height -= ordered_sum(height / n, axis=1)[:, None]
     mean = ordered_sum(height / m)
     common = ordered_sum(mean * mean)
     own = ordered_sum((height**2 / m).swapaxes(0, 1).reshape(n * m, windows))
     together = np.divide(common, own, out=np.zeros(windows), where=own > 0.0)
-    return {**dict(zip(_BAND_NAMES, share, strict=True)), "together": together}
+    return {
+        **dict(zip(_BAND_NAMES, share, strict=True)),
+        "together": together,
+        "band_rise": rise.max(axis=0),
+        "band_rising": rise.argmax(axis=0) + 1,
+        "onset": onset.max(axis=0),
+        "onset_mean": ordered_sum(onset) / (n - 1),
+    }

@@ -77,7 +77,7 @@ class Described:
     features : ndarray of float32, shape (n_windows, n_features)
         By `FEATURE_NAMES` [unit of each feature].
     level : ndarray, shape (n_windows,)
-        Power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
+        A-weighted power of the channel listened to, from 160 Hz to 7 kHz [dB re its unit].
     frames : ndarray of float32, shape (n_frames, n)
         Of that channel, as `features.windows.table.WindowTable` has them.
     cells : CellLevels

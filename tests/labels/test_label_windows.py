@@ -62,7 +62,7 @@ def test_features_do_not_depend_on_the_sampling_rate(reference, rate):
         "line_count": 1.0,
         "high_blow_rate": 0.05,
         "flatness": 1.0,
-        "weighted_above_2": 0.5,
+        "above_2": 0.5,
         "band_5": 0.3,
     }.items():
         column = FEATURE_NAMES.index(f"pressure_{name}")
@@ -75,6 +75,35 @@ def test_features_do_not_depend_on_the_gain():
     one, other = described(samples, 48e3), described(1e-4 * samples, 48e3)
     assert np.allclose(one.features, other.features, rtol=1e-3, atol=1e-3, equal_nan=True)
     assert one.level - other.level == pytest.approx(80.0, abs=0.01)
+
+
+def test_rumble_below_100_hz_is_not_seen(reference):
+    samples = noise(2.0)
+    rumble = 100.0 * np.sin(2 * np.pi * 37.0 * np.arange(samples.size) / 48e3)
+    one, other = described(samples, 48e3), described(samples + rumble, 48e3)
+    for name in ("line_frequency", "line_share", "band_1", "high_period_rate", "flatness"):
+        column = FEATURE_NAMES.index(f"pressure_{name}")
+        expected = one.features[1:-2, column]
+        assert other.features[1:-2, column] == pytest.approx(expected, abs=0.3), name
+
+
+def test_windows_are_a_weighted():
+    time = np.arange(96_000) / 48e3
+    tones = np.sin(2 * np.pi * 250.0 * time) + np.sin(2 * np.pi * 1000.0 * time)
+    found = described(tones, 48e3).features[3]
+    bands = [found[FEATURE_NAMES.index(f"pressure_band_{i}")] for i in (2, 6)]
+    assert bands[1] - bands[0] == pytest.approx(8.6, abs=0.5)
+
+
+def test_a_tone_is_found_under_a_stronger_rumble():
+    rng = np.random.default_rng(0)
+    rumble = coloured_noise(96_000, 4.0, rng)
+    tone = 3e-5 * np.sin(2 * np.pi * 2500.0 * np.arange(96_000) / 48e3)
+    found = described(rumble + tone, 48e3).features[1:-2]
+    frequency = found[:, FEATURE_NAMES.index("pressure_clearest_frequency")]
+    assert 1000.0 * 2.0**frequency == pytest.approx(2500.0, rel=0.01)
+    strongest = found[:, FEATURE_NAMES.index("pressure_line_frequency")]
+    assert np.all(strongest < 0.0)
 
 
 def test_a_tone_and_a_row_of_blows_are_described_as_such(reference):

@@ -18,7 +18,7 @@ def test_coloured_noise_falls_as_its_slope_says():
 
 
 def test_a_recorded_silence_is_noise_of_unit_strength():
-    clip = recorded(np.zeros(4800), 48e3, np.random.default_rng(0))
+    clip, _ = recorded(np.zeros(4800), 48e3, np.random.default_rng(0))
     assert clip.std() == pytest.approx(1.0)
 
 
@@ -41,12 +41,22 @@ def test_a_room_adds_sound_after_a_click_that_dies_away():
 
 def test_a_phone_hears_less_below_100_hz_and_above_12_khz_than_between():
     noise = np.random.default_rng(0).standard_normal(2**16)
-    clip = through_a_microphone(noise, 48e3, np.random.default_rng(1), phone=True)
+    clip = through_a_microphone(noise, 48e3, np.random.default_rng(1), kind="phone")
     power = np.abs(np.fft.rfft(clip)) ** 2
     hertz = np.fft.rfftfreq(clip.size, 1 / 48e3)
     middle = power[(hertz > 500) & (hertz < 3000)].mean()
     assert power[hertz < 40].mean() < 0.1 * middle
     assert power[hertz > 20e3].mean() < 0.2 * middle
+
+
+def test_in_a_pocket_little_is_heard_above_4_khz_and_cloth_rubs():
+    noise = np.random.default_rng(0).standard_normal(2**16)
+    clip = through_a_microphone(noise, 48e3, np.random.default_rng(1), kind="pocket")
+    power = np.abs(np.fft.rfft(clip)) ** 2
+    hertz = np.fft.rfftfreq(clip.size, 1 / 48e3)
+    assert power[hertz > 8e3].mean() < 0.05 * power[(hertz > 200) & (hertz < 600)].mean()
+    whole = through_a_microphone(np.sin(noise), 48e3, np.random.default_rng(1), kind="free")
+    assert not np.allclose(clip, whole)
 
 
 def test_an_automatic_gain_brings_loud_and_quiet_closer():

@@ -69,7 +69,7 @@ def bushing_recording(
                 "acceleration": _noisy(
                     run["acceleration"], rng.uniform(-3.0, 0.5), mean=False, rng=rng
                 ),
-                "pressure": recorded(pressure, run.rate, rng) * 10.0 ** rng.uniform(-3.0, -0.5),
+                "pressure": recorded(pressure, run.rate, rng)[0] * 10.0 ** rng.uniform(-3.0, -0.5),
             }
         )
         kept = list(rows)

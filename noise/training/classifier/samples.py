@@ -44,7 +44,7 @@ _FRICTION = {
 }
 """Label and kind by source."""
 
-SHARES = {"bushing": 0.33, "friction": 0.27, "background": 0.33, "quiet": 0.07}
+SHARES = {"bushing": 0.31, "friction": 0.26, "background": 0.30, "quiet": 0.13}
 """Of the samples [-]."""
 
 _LABEL_SHARES = {"creak": 0.42, "squeal": 0.42, "squawk": 0.16}

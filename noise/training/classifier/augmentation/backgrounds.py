@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
+from noise.training.classifier.augmentation.places import place
 from noise.training.draws import coloured_noise, log_uniform
 
 if TYPE_CHECKING:
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["background", "quiet"]
 
-_QUIETS = ("hiss", "hum", "background", "sliding", "silence")
-_SHARES = (0.28, 0.32, 0.2, 0.17, 0.03)
+_QUIETS = ("hiss", "hum", "background", "sliding", "place", "silence")
+_SHARES = (0.12, 0.14, 0.09, 0.07, 0.56, 0.02)
 """Kinds of quiet, and the share of each [-]."""
 
 
@@ -109,6 +110,8 @@ def quiet(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     kind = _QUIETS[int(rng.choice(len(_QUIETS), p=_SHARES))]
     if kind == "silence":
         return np.zeros(n)
+    if kind == "place":
+        return place(n, rate, rng, peopled=False)
     if kind == "background":
         return background(n, rate, rng)
     noise = coloured_noise(n, rng.uniform(0.0, 2.2), rng)

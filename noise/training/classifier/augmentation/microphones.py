@@ -9,21 +9,30 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import lfilter
 
-from noise.training.draws import log_uniform
+from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["clipped", "levelled", "through_a_microphone"]
 
+_BANDS = {
+    "free": ((15.0, 250.0), (5e3, 20e3), 2, 4.0),
+    "phone": ((80.0, 250.0), (6.5e3, 12e3), 4, 7.0),
+    "pocket": ((80.0, 250.0), (700.0, 3e3), 3, 8.0),
+    "stethoscope": ((30.0, 150.0), (800.0, 3e3), 4, 12.0),
+}
+"""Between which frequencies the ends of the band lie [Hz], order, and most of the ripple [dB]."""
+
 
 def through_a_microphone(
-    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, phone: bool = False
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator, *, kind: str = "free"
 ) -> NDArray[np.float64]:
     """Colour by slopes at both ends of the band and a gentle ripple between.
 
     A phone's band is narrower, 100 Hz to 8 kHz or so, and steeper, of second order; its ripple
-    larger.
+    larger. In a pocket it hears little above 2 kHz, and cloth that rubs; a stethoscope's membrane
+    and tube end about there too, and resound.
 
     Parameters
     ----------
@@ -32,7 +41,7 @@ def through_a_microphone(
     rate : float
         [Hz]
     rng : numpy.random.Generator
-    phone : bool
+    kind : {"free", "phone", "pocket", "stethoscope"}
 
     Returns
     -------
@@ -46,20 +55,26 @@ def through_a_microphone(
     """
     m = next_fast_len(sound.size, real=True)
     frequency = rfftfreq(m, 1.0 / rate)
-    if phone:
-        low, high = rng.uniform(80.0, 250.0), rng.uniform(6.5e3, 12e3)
-        order, most = 4, 7.0
-    else:
-        low = log_uniform(15.0, 250.0, rng)
-        high = log_uniform(5e3, 20e3, rng)
-        order, most = 2, 4.0
+    lows, highs, order, most = _BANDS[kind]
+    low, high = log_uniform(*lows, rng), log_uniform(*highs, rng)
     gain = 1.0 / np.sqrt(
         (1.0 + (low / np.maximum(frequency, 1.0)) ** order) * (1.0 + (frequency / high) ** order)
     )
     octaves = np.log2(np.maximum(frequency, 20.0) / 1e3)
     ripple = np.sin(rng.uniform(1.0, 4.0) * octaves + rng.uniform(0.0, 6.3))
     gain *= 10.0 ** (rng.uniform(0.0, most) / 20.0 * ripple)
-    return np.asarray(irfft(rfft(sound, m) * gain, m)[: sound.size])
+    heard = irfft(rfft(sound, m) * gain, m)[: sound.size]
+    return heard + _rubbing(heard, rate, rng) if kind == "pocket" else np.asarray(heard)
+
+
+def _rubbing(
+    sound: NDArray[np.float64], rate: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return what cloth adds that moves against the microphone: soft noise that comes and goes."""
+    n = sound.size
+    noise = low_pass(coloured_noise(n, rng.uniform(0.5, 1.5), rng), rng.uniform(500, 4000), rate)
+    strokes = np.maximum(wandering(n, rate, log_uniform(0.5, 6.0, rng), rng), 0.0) ** 2
+    return np.asarray(10.0 ** rng.uniform(-2.0, -0.5) * sound.std() * strokes * noise / noise.std())
 
 
 def levelled(
