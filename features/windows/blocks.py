@@ -8,7 +8,9 @@ cache. Blocks lie on a fixed grid; so what is computed does not depend on how mu
 was in memory. All in single precision, relative to the block's peak, which is twice as fast.
 
 The part below 7 kHz is A-weighted: in a car or a hall most power lies below 200 Hz, where no noise
-is told from another. A squawk's tone at 250 Hz loses 9 dB by it, but keeps its harmonics.
+is told from another. A squawk's tone at 250 Hz loses 9 dB by it, but keeps its harmonics. Where a
+recording was stored at a lower rate before, nothing lies above half of that rate: it is described
+as if it had that rate.
 """
 
 from __future__ import annotations
@@ -55,6 +57,13 @@ _HIGH_FROM = (1700.0, 2300.0)
 _TOP_BANDS = ((7_000, 13_000), (13_000, 19_000))
 """Above the common band [Hz]: reached by rates from 29.8 kHz and from 43.5 kHz on."""
 
+_STORED_RATES = (8_000, 11_025, 12_000, 16_000, 22_050, 24_000, 32_000, 44_100)
+"""Rates that recordings are stored at on their way [Hz]."""
+
+_CLIFF = 1e-3
+"""Density above half the rate it was stored at, over that below: 30 dB within half an octave is
+no sound's own."""
+
 _LANES = 4
 """Rows that are transformed side by side in the time of one."""
 
@@ -70,16 +79,19 @@ class Block:
     high : ndarray of float32, shape (n,)
         Its part above 2 kHz [share of `scale`].
     top : ndarray of float32, shape (n_frames, 2)
-        Power from 7 to 13 and from 13 to 19 kHz [share of `scale` squared]; NaN where the rate
-        does not reach so far.
+        Power from 7 to 13 and from 13 to 19 kHz [share of `scale` squared]; NaN where the
+        recording does not reach so far.
     scale : float
         Peak of the block [unit]; 0 where it is constant.
+    limit : float
+        Up to which it holds anything [Hz]; 0 where it is constant.
     """
 
     sound: NDArray[np.float32]
     high: NDArray[np.float32]
     top: NDArray[np.float32]
     scale: float
+    limit: float
 
 
 def block_length(duration: float) -> int:
@@ -123,7 +135,7 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
         nothing = np.zeros(n, dtype=np.float32)
         top = np.zeros((useful * FRAME_RATE, 2), dtype=np.float32)
         top[:, [high > USABLE_SHARE * rate for _, high in _TOP_BANDS]] = np.nan
-        return Block(nothing, nothing, top, 0.0)
+        return Block(nothing, nothing, top, 0.0, 0.0)
     # Where a tenth of a second is no whole number of samples, all is transformed at once.
     second, aside = (useful, MARGIN) if rate % 10.0 else (1, _ASIDE)
     seconds = second + 2.0 * aside
@@ -133,7 +145,8 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     starts = np.round((MARGIN - aside + second * np.arange(count)) * rate).astype(np.int64)
     _cut(samples, starts, mean, 1.0 / scale, _ramp(round(0.5 * aside * rate)), single)
     spectrum = fft.rfft(single, axis=1)
-    low, high = _gains(round(1e6 * rate), seconds)
+    rate_held = _rate_held(spectrum[:count], seconds, rate)
+    low, high = _gains(round(1e6 * rate_held), seconds)
     kept, at_rate = min(low.size, spectrum.shape[1]), round(seconds * RATE)
     bins = np.zeros((len(single), at_rate // 2 + 1), dtype=np.complex64)
     # Transforms scale with their length.
@@ -144,10 +157,28 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     pulses = fft.irfft(bins, at_rate, axis=1)[:count, inside].reshape(-1)
     top = np.full((useful * FRAME_RATE, len(_TOP_BANDS)), np.nan, dtype=np.float32)
     for column, (bottom, end) in enumerate(_TOP_BANDS):
-        if end <= USABLE_SHARE * rate:
+        if end <= USABLE_SHARE * rate_held:
             power = _band_power(spectrum, (bottom, end), seconds, aside, length)
             top[:, column] = power[: len(top)]
-    return Block(sound, pulses, top, scale)
+    return Block(sound, pulses, top, scale, min(WORKING_LIMIT, USABLE_SHARE * rate_held))
+
+
+def _rate_held(spectrum: NDArray[np.complex64], seconds: float, rate: float) -> float:
+    """Return the lowest rate that holds all there is: its own, or that of a store on the way."""
+    for stored in _STORED_RATES:
+        half = 0.5 * stored
+        first, last, beyond = (round(share * half * seconds) for share in (0.75, 0.85, 1.15))
+        if stored > 0.9 * rate or spectrum.shape[1] <= beyond:
+            return rate
+        above = _mean_power(spectrum[:, beyond:])
+        below = spectrum[:, first:last]
+        if above <= _CLIFF * float(np.median(below.real**2 + below.imag**2)):
+            return float(stored)
+    return rate
+
+
+def _mean_power(spectrum: NDArray[np.complex64]) -> float:
+    return float(np.mean(spectrum.real**2) + np.mean(spectrum.imag**2))
 
 
 def _mean_and_peak(x: NDArray[np.float64]) -> tuple[float, float]:
@@ -176,7 +207,7 @@ def _ramp(n: int) -> NDArray[np.float32]:
 
 @lru_cache(maxsize=8)
 def _gains(microhertz: int, seconds: float) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Gains of the whole band and of its high part, by bin."""
+    """Gains of the whole band, A-weighted, and of its high part, by bin."""
     limit = min(WORKING_LIMIT, USABLE_SHARE * 1e-6 * microhertz)
     spacing = 1.0 / seconds
     end = 1.07 * limit

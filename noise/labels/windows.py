@@ -197,8 +197,9 @@ class _Reader:
             )
         )
         frames = math.ceil(size * FRAME_RATE / RATE)
+        limit = max(block.limit for block in held) or self._limit
         return describe_windows(
-            sound[:size], high[:size], top[:frames], scale=scale, windows=windows, limit=self._limit
+            sound[:size], high[:size], top[:frames], scale=scale, windows=windows, limit=limit
         )
 
     def _block(self, number: int) -> dict[int, Block]:
