@@ -86,8 +86,9 @@ def _hump(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
 def quiet(n: int, rate: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Return `n` samples of what a microphone records where nothing sounds.
 
-    Hum is the mains' or a transformer's, 50 to 120 Hz, with up to 20 harmonics, odd ones stronger;
-    steady sliding hisses without a line, as strongly as it may.
+    More than half of it are cabins and halls with nobody in them. Hum is the mains' or a
+    transformer's, 50 to 120 Hz, with up to 20 harmonics, odd ones stronger; steady sliding hisses
+    without a line, as strongly as it may.
 
     Parameters
     ----------

@@ -48,6 +48,12 @@ _FRAME = 0.032
 _PAUSE_DB = 18.0
 """A sound so far below its loudest is a pause [dB]."""
 
+_LIFTS = (0.0, 10.0, 20.0, 40.0)
+"""A sound is lifted by one of these until it is heard for long enough [dB]."""
+
+_SHORTEST = 0.5
+"""Long enough [s]."""
+
 _LONGEST_PAUSE = 0.3
 """Of a pause that belongs to the sound [s]: blows of a creak lie closer."""
 
@@ -135,8 +141,13 @@ def in_a_place(
     share = level / (float(around.std()) + 1e-300) * 10.0 ** (-snr / 20.0)
     stands = _stands_out(weighted, share * around, rate)
     lift = max(0.0, _HEARD_DB - float(np.quantile(stands, _HEARD_SHARE)))
-    mixed = sound + share * 10.0 ** (-lift / 20.0) * surroundings
-    return mixed, _longest(stands + lift > 0.0, sound.size / rate)
+    for more in _LIFTS:
+        span = _longest(stands + lift + more > 0.0, sound.size / rate)
+        if span[1] - span[0] >= _SHORTEST:
+            break
+    else:  # it makes pauses of its own
+        span = (0.0, sound.size / rate)
+    return sound + share * 10.0 ** (-(lift + more) / 20.0) * surroundings, span
 
 
 def a_weighted(sound: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
