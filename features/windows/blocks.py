@@ -166,15 +166,21 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
 def _rate_held(spectrum: NDArray[np.complex64], seconds: float, rate: float) -> float:
     """Return the lowest rate that holds all there is: its own, or that of a store on the way."""
     for stored in _STORED_RATES:
-        half = 0.5 * stored
-        first, last, beyond = (round(share * half * seconds) for share in (0.75, 0.85, 1.15))
-        if stored > 0.9 * rate or spectrum.shape[1] <= beyond:
+        bins = 0.5 * stored * seconds
+        if stored > 0.9 * rate or spectrum.shape[1] <= 1.15 * bins:
             return rate
-        above = _mean_power(spectrum[:, beyond:])
-        below = spectrum[:, first:last]
-        if above <= _CLIFF * float(np.median(below.real**2 + below.imag**2)):
+        above = _mean_power(spectrum[:, round(1.15 * bins) :])
+        # A tone's own flanks fall as steeply: two places below have to stand as high.
+        if above <= _CLIFF * min(
+            _median_power(spectrum[:, round(low * bins) : round(high * bins)])
+            for low, high in ((0.45, 0.6), (0.75, 0.85))
+        ):
             return float(stored)
     return rate
+
+
+def _median_power(spectrum: NDArray[np.complex64]) -> float:
+    return float(np.median(spectrum.real**2 + spectrum.imag**2))
 
 
 def _mean_power(spectrum: NDArray[np.complex64]) -> float:
