@@ -38,10 +38,6 @@ def test_a_full_recording_is_described_as_far_as_it_reaches():
 
 def test_a_pure_tone_has_no_rate_of_its_own():
     time = np.arange(96_000) / 48e3
-    tone = np.sin(2 * np.pi * 3_200.0 * time) + 1e-4 * np.random.default_rng(0).standard_normal(
-        time.size
-    )
-    assert (
-        np.isfinite(described(tone, 48_000)).sum()
-        == np.isfinite(described(tone_in_noise(96_000), 48_000)).sum()
-    )
+    hiss = 1e-4 * np.random.default_rng(0).standard_normal(time.size)
+    tone = np.sin(2 * np.pi * 3_200.0 * time) + hiss
+    assert np.isfinite(described(tone, 48_000)[:, TOP]).all()
