@@ -18,7 +18,7 @@ def columns(classifier, sample):
     return sample.features[:, [FEATURE_NAMES.index(name) for name in classifier.feature_names]]
 
 
-SAMPLES = [draw_sample(seed) for seed in np.random.SeedSequence(5).spawn(48)]
+SAMPLES = [draw_sample(seed) for seed in np.random.SeedSequence(6).spawn(48)]
 
 
 @pytest.fixture(scope="module")
@@ -34,14 +34,14 @@ def test_the_same_seed_gives_the_same_bytes_of_predictions(small):
 
 
 def test_a_sample_is_the_same_again_whoever_draws_it():
-    (seed,) = np.random.SeedSequence(5).spawn(1)
+    (seed,) = np.random.SeedSequence(6).spawn(1)
     again = draw_sample(seed)
     assert again.features.tobytes() == SAMPLES[0].features.tobytes()
     assert again.label == SAMPLES[0].label
 
 
 def test_no_bushing_is_simulated_for_what_is_made_up():
-    drawn = [draw_sample(s, bushings=False) for s in np.random.SeedSequence(6).spawn(12)]
+    drawn = [draw_sample(s, bushings=False) for s in np.random.SeedSequence(7).spawn(12)]
     assert not any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in drawn)
     assert any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in SAMPLES)
 
