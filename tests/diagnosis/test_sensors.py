@@ -11,9 +11,11 @@ import soundfile
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig, load_rig
 from models.sensors import Sensor, Sensors
+from models.transfer_functions.measured import MeasuredResponse
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.cli import main
 from noise.diagnosis.case import read_case
-from noise.diagnosis.causes.unlearned import unlearned_sensors
+from noise.diagnosis.causes.unlearned import poor_responses, unlearned_sensors
 from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.gap.distance import Gap
 from noise.diagnosis.gap.floor import case_gap
@@ -153,7 +155,7 @@ def test_a_sound_without_pause_tells_no_noise():
     seen, notes = with_seen_sensors(RIG, [creak])
     assert seen.sensors.of("acceleration").noise is None
     assert seen.sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
-    assert any("cannot be told" in note and "acceleration" in note for note in notes)
+    assert any("do not tell it" in note and "acceleration" in note for note in notes)
 
 
 def test_good_sensors_are_those_the_causes_were_learned_with():
@@ -198,3 +200,17 @@ calibration.angle = { sensitivity = 0.101, offset = -7e-4, reading = "V" }
     refused = read_measurements([tmp_path / "run.wav"]).refused
     assert "calibration under [sensors] of the rig file" in refused[0][1]
     assert math.isclose(used[0].condition.speed, 1.0, rel_tol=0.01)
+
+
+def test_a_poor_hammer_test_is_told_and_a_good_one_is_not():
+    frequencies = np.linspace(0.0, 3000.0, 301)
+
+    def measured(coherence):
+        response = TransferFunction(frequencies, np.ones(301, complex), np.full(301, coherence))
+        return replace(RIG, measured=(MeasuredResponse(2214.0, torque_to_acceleration=response),))
+
+    recording = run(at(2.0))
+    (note,) = poor_responses(measured(0.9), [recording])
+    assert "coherence of 0.90" in note
+    assert poor_responses(measured(0.99), [recording]) == ()
+    assert poor_responses(RIG, [recording]) == ()

@@ -14,7 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["Hypothesis", "joint_probabilities", "marginals", "normalised"]
+__all__ = ["Hypothesis", "joint_probabilities", "marginals", "normalised", "with_none"]
 
 Hypothesis = frozenset[str]
 
@@ -61,6 +61,30 @@ def normalised(weights: Mapping[Hypothesis, float]) -> dict[Hypothesis, float]:
     whole = sum(weights.values())
     ranked = sorted(weights.items(), key=lambda entry: -entry[1])
     return {hypothesis: weight / whole for hypothesis, weight in ranked}
+
+
+def with_none(joint: Mapping[Hypothesis, float], least: float) -> dict[Hypothesis, float]:
+    """Give nothing being the matter a probability, at the expense of all others alike.
+
+    Parameters
+    ----------
+    joint : mapping of frozenset of str to float
+        Of the hypotheses [-].
+    least : float
+        Of nothing being the matter, where it has less [-].
+
+    Examples
+    --------
+    >>> raised = with_none({frozenset({"clipping"}): 0.9, frozenset(): 0.1}, 0.7)
+    >>> {"+".join(causes): round(p, 3) for causes, p in raised.items()}
+    {'': 0.7, 'clipping': 0.3}
+    """
+    none: Hypothesis = frozenset()
+    least = max(least, joint.get(none, 0.0))
+    rest = sum(p for hypothesis, p in joint.items() if hypothesis)
+    share = (1.0 - least) / rest if rest > 0.0 else 0.0
+    others = {hypothesis: share * p for hypothesis, p in joint.items() if hypothesis}
+    return normalised({none: least, **others})
 
 
 def marginals(joint: Mapping[Hypothesis, float]) -> dict[str, float]:

@@ -1,9 +1,10 @@
-"""Sensors that the shipped models of causes have not seen, and what that costs.
+"""What the shipped models of causes have not seen or cannot tell, and what that costs.
 
 The models learned from recordings through sensors up to `NOISIEST` times as noisy as the good ones
 of `sim.acquisition`, and through converters as coarse as the thesis's. Against repeats that are
 simulated through a rig's own sensors a gap stays what it is, whatever the sensors; the
-probabilities of causes do not.
+probabilities of causes do not. Nor do they where a rig's responses come from a poor hammer test:
+its errors look like those of a sensor's gain or of the plate.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import math
 from typing import TYPE_CHECKING
 
 from models.recording import CHANNEL_UNITS
+from noise.diagnosis.evidence.bench_context import lacking_coherence
 from noise.diagnosis.evidence.channel_summary import USABLE
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 
@@ -19,12 +21,17 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from models.recording import Recording
+    from models.rig import Rig
     from models.sensors import Sensors
 
-__all__ = ["NOISIEST", "unlearned_sensors"]
+__all__ = ["NOISIEST", "poor_responses", "unlearned_sensors"]
 
 NOISIEST = 6.0
 """Noise of the sensors that were learned with, over that of good ones at most [-]."""
+
+_POOR = 0.05
+"""What a good hammer test's coherence lacks of 1 at most, median over frequency [-]. On development
+benches of the second rig good tests lack 0.001 and poor ones 0.10; between these it is assumed."""
 
 
 def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tuple[str, ...]:
@@ -77,6 +84,36 @@ def unlearned_sensors(sensors: Sensors, recordings: Sequence[Recording]) -> tupl
         f"the causes were learned with better sensors than these: {'; '.join(found)}; their "
         "probabilities are less sure here, and none is named within what repeats through the same "
         "sensors differ by",
+    )
+
+
+def poor_responses(rig: Rig, recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Say that measured responses are too poor to name what they may feign; empty where not.
+
+    Parameters
+    ----------
+    rig : Rig
+    recordings : sequence of Recording
+        Whose supports' responses are looked at.
+
+    Returns
+    -------
+    tuple of str
+        One line, or none.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_rig
+    >>> poor_responses(load_rig("fluorocarbon"), [])
+    ()
+    """
+    lacking = lacking_coherence(rig, recordings) if rig.measured else 0.0
+    if lacking <= _POOR:
+        return ()
+    return (
+        f"the rig file's responses were measured with a coherence of {1.0 - lacking:.2f} only: "
+        "what they are off by looks like a gain error or another plate, so nothing is named within "
+        "what repeats differ by; more hits, and harder ones, would tell",
     )
 
 

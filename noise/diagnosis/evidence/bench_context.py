@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from models.recording import Recording
     from models.rig import Rig
 
-__all__ = ["CONTEXT", "bench_context"]
+__all__ = ["CONTEXT", "bench_context", "lacking_coherence"]
 
 _KINDS = ("torque", "acceleration", "pressure", "angle")
 
@@ -58,7 +58,7 @@ def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]
     """
     found = {
         "seconds": float(np.median([r.duration for r in recordings])),
-        "coherence": _unanswered(rig, recordings),
+        "coherence": lacking_coherence(rig, recordings),
         "constant_law": float(rig.friction.name == "coulomb"),
         "listed": float(len(rig.effects)),
     }
@@ -71,8 +71,20 @@ def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]
     return found
 
 
-def _unanswered(rig: Rig, recordings: Sequence[Recording]) -> float:
-    """Median of what the coherence of the supports' responses lacks of 1; 0 where it is unknown."""
+def lacking_coherence(rig: Rig, recordings: Sequence[Recording]) -> float:
+    """Median of what the coherence of the supports' measured responses lacks of 1.
+
+    Parameters
+    ----------
+    rig : Rig
+    recordings : sequence of Recording
+        Whose supports' responses are looked at.
+
+    Returns
+    -------
+    float
+        Of the worst of them [-]: 0 where it is unknown, 1 where no response was measured.
+    """
     supports = [r.condition.support_stiffness for r in recordings]
     responses = [
         response
