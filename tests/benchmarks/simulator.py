@@ -18,6 +18,7 @@ from scipy.integrate import solve_ivp
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
+from sim.constant_version import constant_version
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
 from sim.friction import LAWS
@@ -36,6 +37,8 @@ N = round(RATE)
 RIG = load_material_rig("fluorocarbon-thesis")
 SYSTEM = lumped_bushing(RIG, 0.279e-3, 3745.0).packed()
 CRITICAL, KINETIC, SPEED = 10.7, 8.0, 1.0
+CONDITIONS = ((0.279e-3, 3745.0, 1.0), (0.279e-3, 3745.0, 5.0), (0.381e-3, 2214.0, 5.0))
+"""Interference [m], stiffness of the support [Nm/rad], speed [rad/s]."""
 
 
 def best_of(n: int, call: Callable[[], object]) -> float:
@@ -88,12 +91,31 @@ def general_solver(method: str, tolerance: float) -> int:
     return events
 
 
-def motion(rig: Rig) -> Callable[[], object]:
+def motion(
+    rig: Rig, interference: float = 0.279e-3, support: float = 3745.0, speed: float = SPEED
+) -> Callable[[], object]:
     effects = activated(rig.effects, EFFECTS)
     return lambda: simulate_motion(
-        rig, ConstantSpeed(SPEED), interference=0.279e-3, support_stiffness=3745.0, seconds=1.0,
-        rate=RATE, effects=effects,
+        rig, ConstantSpeed(speed), interference=interference, support_stiffness=support,
+        seconds=1.0, rate=RATE, effects=effects,
     )  # fmt: skip
+
+
+def calibrated() -> None:
+    """Print what the calibrated material costs over constant torques, by condition."""
+    irregular = load_material_rig("fluorocarbon")
+    rigs = (RIG, constant_version(irregular), irregular)
+    print(f"\n{'calibrated, motion':34}{'constant torques':>18}{'alike':>16}{'irregular':>16}")
+    for condition in CONDITIONS:
+        times = []
+        for rig in rigs:
+            call = motion(rig, *condition)
+            call()
+            times.append(best_of(7, call))
+        interference, support, speed = condition
+        name = f"{1e3 * interference:.3f} mm, {support:g} Nm/rad, {speed:g} rad/s"
+        ratios = "".join(f"{1e3 * t:8.2f}{t / times[0]:7.1f}x" for t in times[1:])
+        print(f"{name:34}{1e3 * times[0]:18.2f}{ratios}")
 
 
 def main() -> None:
@@ -117,6 +139,7 @@ def main() -> None:
     print(f"\n{'friction law':34}{'ms':>10}{'x baseline':>12}")
     for name in LAWS:
         table_row(name, replace(RIG, friction=LawSpec(name, {})), baseline)
+    calibrated()
     print(f"\n{'motion, sound and acquisition':34}{'ms':>10}{'x baseline':>12}")
     for material in ("fluorocarbon-thesis", "fluorocarbon"):
         rig = load_material_rig(material)
