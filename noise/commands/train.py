@@ -50,8 +50,8 @@ def configure(parser: ArgumentParser) -> None:
         metavar="DIR",
         help="folder of labelled recordings to learn from as well (may be given several times): "
         "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
-        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav). All are learned "
-        "from, calibrate, and are scored, each by trees that were grown without its file",
+        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav). All are "
+        "learned from, calibrate, and are scored, each by trees that were grown without its file",
     )
     parser.add_argument(
         "--surroundings",
