@@ -65,7 +65,7 @@ N_ROUNDS = 220
 _QUIET_DB = 30.0
 """Windows that lie so far below a sample's loudest are pauses, of which nothing is learned."""
 
-_OUTSIDE = 0.1
+_OUTSIDE = 0.2
 """How far a window may reach beyond the time for which the label holds [s]."""
 
 _KINDS = ("pressure", "acceleration", "torque")
