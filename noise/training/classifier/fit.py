@@ -270,32 +270,12 @@ def _grown(sounds: Sequence[Sample | OwnSample], seed: int) -> tuple[Classifier,
         # Bins need one value at least of what none of these has, and trees one row of each label.
         held[0, ~np.isfinite(held).any(axis=0)] = 0.0
         absent = np.setdiff1d(np.arange(len(LABELS)), called)
+        counts = counts / np.bincount(called, counts, len(LABELS))[called]
         held = np.concatenate([held, np.repeat(held[:1], absent.size, axis=0)])
         called = np.concatenate([called, absent])
-        counts = counts / np.bincount(y[rows], counts, len(LABELS))[y[rows]]
         counts = np.concatenate([counts, np.full(absent.size, 1e-9)])
         return grow_boosted_trees(
             held, called, weight=counts / counts.mean(), n_rounds=N_ROUNDS, seed=seed
-        )
-
-    alone: list[NDArray[np.float64]]
-    together: list[NDArray[np.float64] | None]
-
-
-def _grown(sounds: Sequence[Sample | OwnSample], seed: int) -> tuple[Classifier, _LeftOut]:
-    """Grow trees, calibrate them by trees that knew other kinds alone, and find the threshold."""
-    part = parts([_source(s, i) for i, s in enumerate(sounds)], [s.label for s in sounds], seed)
-    x, y, weight, owner = _masked_rows(sounds)
-    known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
-    x = x[:, known]
-
-    def trees_of(rows: NDArray[np.bool_]) -> BoostedTrees:
-        balanced = weight[rows] / np.bincount(y[rows], weight[rows], len(LABELS))[y[rows]]
-        held = x[rows]
-        # Bins need one value at least of what none of these has.
-        held[0, ~np.isfinite(held).any(axis=0)] = 0.0
-        return grow_boosted_trees(
-            held, y[rows], weight=balanced / balanced.mean(), n_rounds=N_ROUNDS, seed=seed
         )
 
     alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)
