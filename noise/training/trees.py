@@ -76,7 +76,7 @@ def as_arrays(grown: Sequence[tuple[int, NDArray[Any]]], base: NDArray[np.float6
 
     Parameters
     ----------
-    grown : sequence of (int, structured ndarray)
+    grown : sequence of (int, structured ndarray, shape (n_nodes,))
         Class and nodes of each tree.
     base : ndarray, shape (n_classes,)
         Scores before any tree [-].

@@ -26,12 +26,13 @@ import math
 
 from numba import njit
 
+from models.compilation import PART
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE
 from sim.friction.law import FrictionLaw
 from sim.friction.shared.bristle import BRISTLE_PARAMETERS
 from sim.parameters import Parameter
 
-__all__ = ["LAW"]
+__all__ = ["LAW", "memory_rates"]
 
 _LONG_REST = 1.0
 """Age of the contact at the start [s]."""
@@ -59,11 +60,10 @@ _PARAMETERS = {
 }
 
 
-@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
-def _torque(v, c, contact, state, state_rates):
-    kinetic = contact[KINETIC]
+@njit(forceinline=True, **PART)
+def memory_rates(v, critical, kinetic, z, age, c):  # noqa: ANN201
+    """Return the torque [Nm] and the rates of z [rad/s] and phi [-]."""
     stiffness, damping = c[0] * kinetic, c[1] * kinetic
-    z, age = state[0], state[1]
     speed = abs(v)
     inverse = 1.0 / c[5]  # before the speed is known
     power = speed * inverse
@@ -72,13 +72,19 @@ def _torque(v, c, contact, state, state_rates):
     elif c[6] != 1.0:
         power **= c[6]
     strength = (
-        kinetic
-        + (contact[CRITICAL] - kinetic) * age / (age + c[3])
-        + c[4] * kinetic * math.exp(-power)
+        kinetic + (critical - kinetic) * age / (age + c[3]) + c[4] * kinetic * math.exp(-power)
     )
-    state_rates[0] = v - stiffness * speed * z / strength
-    state_rates[1] = 1.0 - speed * age / max(c[2] + c[7] * kinetic, _LEAST_RENEWAL)
-    return stiffness * z + damping * state_rates[0]
+    shearing = v - stiffness * speed * z / strength
+    ageing = 1.0 - speed * age / max(c[2] + c[7] * kinetic, _LEAST_RENEWAL)
+    return stiffness * z + damping * shearing, shearing, ageing
+
+
+@njit(LAW_SIGNATURE, cache=True, error_model="numpy")
+def _torque(v, c, contact, state, state_rates):
+    torque, state_rates[0], state_rates[1] = memory_rates(
+        v, contact[CRITICAL], contact[KINETIC], state[0], state[1], c
+    )
+    return torque
 
 
 LAW = FrictionLaw(

@@ -123,12 +123,16 @@ class ContactRun:
         motion: NDArray[np.float64] | None = None,
     ) -> None:
         # What is not imported before it is needed is not compiled either.
+        from sim.effects.critical_torque_scatter import EFFECT as SCATTER
+        from sim.friction.contact_with_memory import LAW as MEMORY
         from sim.solvers.contact_kernel import contact_loop
         from sim.solvers.stand_ins import no_hook, no_law
 
         if len(hooks) > MOST_HOOKS:
             raise ValueError(f"{len(hooks)} effects act on the contact; at most {MOST_HOOKS} can")
         law_state = np.zeros(0) if law_state is None else law_state
+        alone = [hook.function for hook in hooks] in ([], [SCATTER.contact])
+        with_memory = law is MEMORY.torque and alone
         self._rows = empty_rows(n_variables(law_state, hooks))
         self._constants = (
             contact_record(
@@ -138,8 +142,10 @@ class ContactRun:
             *[hook.function for hook in hooks],
             *[no_hook if hooks else None] * (MOST_HOOKS - len(hooks)),
             hooks_record(hooks, self._rows, law_state.size),
+            None if with_memory else 0,
+            hooks[0].values if with_memory and hooks else None,
         )
-        self._loop = contact_loop(with_effects=bool(hooks))
+        self._loop = contact_loop(with_effects=bool(hooks), with_memory=with_memory)
         # The error of a step goes with the fifth power of its length.
         self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
         self._step, self._name = step, name

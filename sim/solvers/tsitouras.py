@@ -23,6 +23,7 @@ from sim.solvers.contact_state import N_MOTION, N_STAGES
 __all__ = [
     "ERROR",
     "NODES",
+    "STAGES",
     "factor_of_step",
     "fill_between",
     "fill_stage",
@@ -34,7 +35,7 @@ __all__ = [
 NODES = np.array([0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0])
 """Of the stages, in shares of the step."""
 
-_STAGES = np.zeros((N_STAGES, N_STAGES))
+STAGES = np.zeros((N_STAGES, N_STAGES))
 for _stage, _weights in enumerate(
     (
         [0.161],
@@ -52,7 +53,7 @@ for _stage, _weights in enumerate(
     ),
     start=1,
 ):  # fmt: skip
-    _STAGES[_stage, :_stage] = _weights
+    STAGES[_stage, :_stage] = _weights
 
 ERROR = np.array(
     [
@@ -89,7 +90,7 @@ def fill_stage(u, start, k, stage, h) -> None:
     for j in range(u.size):
         change = 0.0
         for b in range(stage):
-            change += _STAGES[stage, b] * k[j, b]
+            change += STAGES[stage, b] * k[j, b]
         u[j] = start[j] + h * change
 
 
