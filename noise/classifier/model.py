@@ -1,12 +1,12 @@
 """Classifier of noises: features of windows in, probabilities of the five labels out.
 
-Trained on simulation alone, it ships with the package (``data/classifier.npz``); how it is
-trained is the business of `noise.training.classifier.fit`.
+Trained on simulation and some real sounds, it ships with the package (``data/classifier.npz``);
+how it is trained is the business of `noise.training.classifier.fit`.
 """
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Calibration", "Classifier", "has_more_than_sound", "load_classifier"]
+__all__ = [
+    "Calibration", "Classifier", "at_sensitivity", "has_more_than_sound", "load_classifier",
+]  # fmt: skip
 
 _KIND = ModelKind(
-    "classifier", 2, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
+    "classifier", 3, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
 )
 
 _FLOOR = 1e-3
@@ -70,6 +72,8 @@ class Classifier:
         For sound alone, and for sound with what else was measured.
     card : mapping
         How it was trained: seed, counts, scores.
+    threshold : float
+        Probability [-] from which a noise is named; below it the label is ``unknown``.
 
     Examples
     --------
@@ -83,6 +87,7 @@ class Classifier:
     trees: BoostedTrees
     calibrations: tuple[Calibration, Calibration]
     card: Mapping[str, object]
+    threshold: float = 0.5
 
     classes = LABELS
 
@@ -104,6 +109,22 @@ class Classifier:
         more = has_more_than_sound(features, self.feature_names)
         return np.where(more[:, None], among_others, alone)
 
+    def sensitive(self, sensitivity: float) -> Classifier:
+        """Return one that names a noise at other odds.
+
+        Parameters
+        ----------
+        sensitivity : float
+            Above 1 fainter noises are named, and more that are none [ratio of odds].
+
+        Examples
+        --------
+        >>> shipped = load_classifier()
+        >>> shipped.sensitive(2.0).threshold < shipped.threshold
+        True
+        """
+        return replace(self, threshold=at_sensitivity(self.threshold, sensitivity))
+
     def save(self, path: str | Path) -> None:
         """Write the classifier into an NPZ file, whole or not at all.
 
@@ -116,6 +137,7 @@ class Classifier:
             "labels": LABELS,
             "feature_names": self.feature_names,
             "calibrations": [asdict(calibration) for calibration in self.calibrations],
+            "threshold": self.threshold,
             "card": dict(self.card),
         }
         save_model(path, _KIND, header, self.trees.arrays())
@@ -128,6 +150,25 @@ class Classifier:
             ["features", f"{len(self.feature_names)} of windows"],
         ]
         return model_display("Classifier", facts, self.card)
+
+
+def at_sensitivity(threshold: float, sensitivity: float) -> float:
+    """Return the probability from which a noise is named at other odds [-].
+
+    Parameters
+    ----------
+    threshold : float
+        Probability at a sensitivity of 1 [-].
+    sensitivity : float
+        [ratio of odds]
+
+    Examples
+    --------
+    >>> at_sensitivity(0.75, 3.0)
+    0.5
+    """
+    odds = threshold / (1.0 - threshold) / sensitivity
+    return odds / (1.0 + odds)
 
 
 def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> NDArray[np.bool_]:
@@ -174,7 +215,11 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Cla
     sound, all_channels = (_calibration(stored) for stored in header["calibrations"])
     if tuple(header["labels"]) != LABELS or trees.base.shape != (len(LABELS),):
         raise ValueError("its labels are others")
-    return Classifier(tuple(header["feature_names"]), trees, (sound, all_channels), header["card"])
+    threshold = float(header["threshold"])
+    if not 0.0 < threshold < 1.0:
+        raise ValueError("its threshold is no probability")
+    names = tuple(header["feature_names"])
+    return Classifier(names, trees, (sound, all_channels), header["card"], threshold)
 
 
 def _calibration(stored: Mapping[str, Any]) -> Calibration:

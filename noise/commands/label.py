@@ -6,6 +6,7 @@ again.
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,8 @@ from noise.pictures.files import check_picture_path
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
+
+    from noise.labels.labelling import Labelling
 
 __all__ = ["configure", "run"]
 
@@ -56,6 +59,15 @@ def configure(parser: ArgumentParser) -> None:
         help="classifier that `bushing-noise train` made (default: the one that is shipped)",
     )
     parser.add_argument(
+        "--sensitivity",
+        type=opt.number(least=0.1, most=10.0),
+        default=1.0,
+        metavar="RATIO",
+        help="odds at which a noise is named, over the classifier's own (default: 1, chosen for at "
+        "most 12 false names an hour of real sounds that are no noise): 2 finds fainter noises and "
+        "names more that are none; how many is told",
+    )
+    parser.add_argument(
         "--inference",
         type=Path,
         metavar="FILE.npz",
@@ -89,8 +101,26 @@ def run(options: Namespace) -> int:
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
-    work = Labelling(*models, full_scale=opt.full_scale_of(options))
+    work = Labelling(
+        *models, full_scale=opt.full_scale_of(options), sensitivity=options.sensitivity
+    )
+    _note_sensitivity(work)
     return run_batch(options, work, jobs, also=export, keep=with_corrections)
+
+
+def _note_sensitivity(work: Labelling) -> None:
+    """Say how many false names were counted at another sensitivity than 1."""
+    if work.sensitivity == 1.0:
+        return
+    counted_at = work.false_names_an_hour()
+    nearest = min(counted_at, key=lambda s: abs(math.log(s / work.sensitivity)), default=None)
+    if nearest is None:
+        note("the classifier's card does not say how many false names a sensitivity brings")
+    else:
+        note(
+            f"at a sensitivity of {nearest:g} this classifier gave {counted_at[nearest]:g} false "
+            f"names an hour of real sounds that are no noise ({counted_at[1.0]:g} at 1)"
+        )
 
 
 def _note_assumed(rows: list[dict[str, object]]) -> None:

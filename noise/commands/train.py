@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["configure", "run"]
 
-_PART_TO_CALIBRATE, _PART_TO_SCORE = 5, 5
-"""With --samples N, one for so many of them is drawn to calibrate, and to score."""
+_PART_TO_SCORE = 5
+"""With --samples N, one for so many of them is drawn to score."""
 
 _TOLD = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_named")
 """Scores that are told."""
@@ -31,10 +31,10 @@ _TOLD = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_n
 def configure(parser: ArgumentParser) -> None:
     """Declare description and options."""
     parser.description = (
-        "Build the classifier again from simulated runs and made-up sounds that are none of the "
-        "three noises, and from labelled recordings of your own if --add names some; the same "
-        "call gives the same classifier. It takes some ten minutes. Use it with `bushing-noise "
-        "label --classifier FILE.npz`."
+        "Build the classifier again from simulated runs, made-up sounds that are none of the "
+        "three noises and the features of some real sounds, and from labelled recordings of your "
+        "own if --add names some; the same call gives the same classifier. It takes some twenty "
+        "minutes. Use it with `bushing-noise label --classifier FILE.npz`."
     )
     parser.add_argument(
         "--out",
@@ -50,8 +50,15 @@ def configure(parser: ArgumentParser) -> None:
         metavar="DIR",
         help="folder of labelled recordings to learn from as well (may be given several times): "
         "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
-        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav). A third of the "
-        "files is held out, and scored before and after",
+        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav). All are "
+        "learned from, calibrate, and are scored, each by trees that were grown without its file",
+    )
+    parser.add_argument(
+        "--surroundings",
+        choices=("any", "car", "rig"),
+        default="any",
+        help="what else may sound where recordings are made; a car and a rig have no animals and "
+        "no keyboards (default: any)",
     )
     parser.add_argument(
         "--samples",
@@ -81,7 +88,7 @@ def run(options: Namespace) -> int:
             )
     say("preparing")
     added, refused = _own(options.add or ())
-    classifier = _trained(options.seed, options.samples, added)
+    classifier = _trained(options, added)
     classifier.save(options.out)
     say(f"trained: {_scores(classifier.card)}")
     if added:
@@ -95,17 +102,16 @@ def run(options: Namespace) -> int:
     return int(refused)
 
 
-def _trained(seed: int, n_samples: int | None, added: Sequence[OwnSample]) -> Classifier:
-    from noise.training.classifier.fit import train
+def _trained(options: Namespace, added: Sequence[OwnSample]) -> Classifier:
+    from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 
-    if n_samples is None:
-        return train(seed=seed, added=added, progress=_progress)
+    n = options.samples
     return train(
-        seed=seed,
-        n_training=n_samples,
-        n_calibration=max(1, n_samples // _PART_TO_CALIBRATE),
-        n_test=max(1, n_samples // _PART_TO_SCORE),
+        seed=options.seed,
+        n_training=n or N_TRAINING,
+        n_test=max(1, n // _PART_TO_SCORE) if n else N_TEST,
         added=added,
+        surroundings=options.surroundings,
         progress=_progress,
     )
 
@@ -162,10 +168,16 @@ def _scores(card: Mapping[str, object]) -> str:
 def _own_scores(card: object) -> str:
     if not isinstance(card, dict):
         return "none"
-    held = card["held_out_files"]
-    if not held:
-        return f"{counted(card['files'], 'file')} learned from, too few to hold one out"
-    return (
-        f"{counted(card['files'], 'file')} learned from, {held} held out; of the windows held out "
-        f"{card['accuracy_before']:.0%} right without the others, {card['accuracy_after']:.0%} with"
-    )
+    told = [f"{counted(card['files'], 'file')}, each scored by trees grown without it"]
+    for label, found in card["labels"].items():
+        if not found["windows"]:
+            told.append(f"{label} said {counted(found['false_names'], 'time')} of something else")
+            continue
+        few = "" if found["enough"] else ", too few files to tell"
+        told.append(
+            f"{label}: {counted(found['windows'], 'window')} of {counted(found['files'], 'file')}, "
+            f"found {found['recall']:.0%} (without your recordings {found['recall_before']:.0%}), "
+            f"said {counted(found['false_names'], 'time')} of something else "
+            f"({found['false_names_before']}){few}"
+        )
+    return "; ".join(told)

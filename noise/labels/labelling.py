@@ -74,6 +74,8 @@ class Labelling:
         Files that ``bushing-noise train`` made; by default those that are shipped.
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    sensitivity : float
+        Odds at which a noise is named, over the classifier's own [ratio].
 
     Examples
     --------
@@ -84,6 +86,7 @@ class Labelling:
     classifier: Path | None = None
     inference: Path | None = None
     full_scale: PascalPerFullScale | None = None
+    sensitivity: float = 1.0
 
     doing = "labelling"
 
@@ -100,10 +103,17 @@ class Labelling:
         """Return what decides the rows: the options, and the models by their content."""
         # The shipped ones are part of the program.
         models = {"classifier": self.classifier, "inference": self.inference}
-        said: dict[str, object] = {"full_scale": self.full_scale}
+        said: dict[str, object] = {"full_scale": self.full_scale, "sensitivity": self.sensitivity}
         for name, path in models.items():
             said[name] = None if path is None else file_digest(path)
         return said
+
+    def false_names_an_hour(self) -> dict[float, float]:
+        """Return what the classifier's card counted, by sensitivity [1/h]; empty if nothing."""
+        counted = self._loaded.card.get("real_sources_left_out")
+        if not isinstance(counted, dict):
+            return {}
+        return {float(s): float(n) for s, n in counted["false_names_an_hour"].items()}
 
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""
@@ -115,7 +125,7 @@ class Labelling:
 
     @cached_property
     def _loaded(self) -> Classifier:
-        return load_classifier(self.classifier)
+        return load_classifier(self.classifier).sensitive(self.sensitivity)
 
     @cached_property
     def _inference(self) -> Inference | None:
@@ -132,6 +142,7 @@ class Labelling:
             "classifier": self.classifier,
             "inference": self.inference,
             "full_scale": self.full_scale,
+            "sensitivity": self.sensitivity,
         }
 
 

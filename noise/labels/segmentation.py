@@ -21,7 +21,13 @@ from features.windows.table import HOP
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["change_points", "labelled_stretches", "viterbi_path"]
+__all__ = ["NOISES", "change_points", "clearest", "labelled_stretches", "viterbi_path"]
+
+NOISES = 3
+"""The first labels are the noises."""
+
+_CLEAREST = 0.25
+"""Share of a stretch's windows that its name is heard from [-]."""
 
 _OWN_SHARE = 0.5
 """Of a window in what it holds [-]."""
@@ -86,14 +92,16 @@ def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
 
 
 def labelled_stretches(
-    probabilities: NDArray[np.float64],
+    probabilities: NDArray[np.float64], threshold: float = 0.5
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the stretches of the Viterbi path, each called what its windows are together.
+    """Return the stretches of the Viterbi path, each called what is heard where it is clearest.
 
     Parameters
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
-        [-]; each row sums to 1.
+        [-]; each row sums to 1; noises first, ``unknown`` last.
+    threshold : float
+        Probability [-] from which a noise is named; below it a stretch is ``unknown``.
 
     Returns
     -------
@@ -104,17 +112,56 @@ def labelled_stretches(
 
     Examples
     --------
-    >>> edges, names = labelled_stretches(np.array([[0.9, 0.1]] * 4 + [[0.1, 0.9]] * 6))
+    >>> creak, none = [0.8, 0.0, 0.0, 0.2, 0.0], [0.1, 0.0, 0.0, 0.9, 0.0]
+    >>> edges, names = labelled_stretches(np.array([none] * 4 + [creak] * 6))
     >>> edges.tolist(), names.tolist()
-    ([0, 4, 10], [0, 1])
+    ([0, 4, 10], [3, 0])
+    >>> labelled_stretches(np.array([none] * 4 + [creak] * 6), threshold=0.85)[1].tolist()
+    [3, 4]
     """
     n = len(probabilities)
     changes = np.flatnonzero(np.diff(viterbi_path(probabilities))) + 1
     edges = np.concatenate([[0], changes, [n]])
-    sums = np.add.reduceat(probabilities, edges[:-1], axis=0)
-    names = sums.argmax(axis=1)
+    group = np.repeat(np.arange(edges.size - 1), np.diff(edges))
+    p = clearest(probabilities, group)
+    names, noises = p.argmax(axis=1), p[:, :NOISES]
+    names[names < NOISES] = p.shape[1] - 1
+    names = np.where(noises.max(axis=1) >= threshold, noises.argmax(axis=1), names)
     first = np.concatenate([[True], names[1:] != names[:-1]])
     return np.concatenate([edges[:-1][first], [n]]), names[first]
+
+
+def clearest(probabilities: NDArray[np.float64], group: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Mean over the quarter of each group's windows that sounds most like a noise.
+
+    A creak is short, and pauses: in the mean over all that was recorded with it, it is lost.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (n_windows, n_labels)
+        [-]
+    group : ndarray of int, shape (n_windows,)
+        0, 1, 2 ..., none of which is without a window.
+
+    Returns
+    -------
+    ndarray, shape (n_groups, n_labels)
+        [-]
+
+    Examples
+    --------
+    >>> creak, other = [0.9, 0.0, 0.0, 0.0, 0.1], [0.1, 0.0, 0.0, 0.0, 0.9]
+    >>> clearest(np.array([creak, other, other, other, other]), np.array([0, 0, 0, 0, 1]))[:, 0]
+    array([0.9, 0.1])
+    """
+    counts = np.bincount(group)
+    taken = np.maximum(1, np.round(_CLEAREST * counts)).astype(int)
+    order = np.lexsort((-probabilities[:, :NOISES].max(axis=1), group))
+    rank = np.arange(group.size) - np.repeat(np.cumsum(counts) - counts, counts)
+    kept = order[rank < taken[group[order]]]
+    sums = np.zeros((counts.size, probabilities.shape[1]))
+    np.add.at(sums, group[kept], probabilities[kept])
+    return np.asarray(sums / taken[:, None])
 
 
 def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDArray[np.float64]:

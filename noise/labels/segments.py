@@ -13,7 +13,7 @@ from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
 from noise.base.label_names import LABELS
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
-from noise.labels.segmentation import change_points, labelled_stretches
+from noise.labels.segmentation import change_points, clearest, labelled_stretches
 from noise.labels.windows import (
     FEATURE_NAMES,
     can_be_described,
@@ -56,9 +56,11 @@ class Segment:
     start, end : float
         [s]
     label : str
-        The most probable of `noise.classifier.LABELS`.
+        The most probable of `noise.classifier.LABELS`, but ``unknown`` where that is a noise below
+        the classifier's threshold.
     probabilities : mapping of str to float
-        Of all labels [-]; mean over the segment's windows.
+        Of all labels [-], where the segment sounds most like a noise
+        (`noise.labels.segmentation.clearest`).
     frequency : float or None
         Slip frequency of a creak or squawk, strongest line of others [Hz]; ``None`` where there
         is none.
@@ -203,16 +205,16 @@ def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> lis
     probabilities = classifier.predict_proba(found.features[:, columns])
     silent = _silent_windows(blocks, found)
     probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    edges, _ = labelled_stretches(probabilities)
+    edges, names = labelled_stretches(probabilities, classifier.threshold)
+    group = np.repeat(np.arange(names.size), np.diff(edges))
+    heard = clearest(probabilities, group)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     last_cell = found.cells.count
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
-    parts = zip(pairwise(edges.tolist()), pairwise(limits), strict=True)
+    parts = zip(pairwise(edges.tolist()), pairwise(limits), names.tolist(), heard, strict=True)
     return [
-        _segment(
-            blocks, found, channel, windows, cells, probabilities[slice(*windows)].mean(axis=0)
-        )
-        for windows, cells in parts
+        _segment(blocks, found, channel, windows, cells, LABELS[name], p)
+        for windows, cells, name, p in parts
         if cells[1] > cells[0]
     ]
 
@@ -249,9 +251,9 @@ def _segment(
     channel: str,
     windows: tuple[int, int],
     cells: tuple[int, int],
+    label: str,
     probabilities: NDArray[np.float64],
 ) -> Segment:
-    label = LABELS[int(probabilities.argmax())]
     edges = found.cells.edges[list(cells)] / blocks.rate
     level, level_dbfs = _levels(blocks, found.cells, *cells)
     return Segment(

@@ -6,12 +6,13 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 
 from models.errors import ParameterError
 from noise.classifier import LABELS, load_classifier
-from noise.classifier.model import Calibration
+from noise.classifier.model import Calibration, at_sensitivity
+from noise.labels.segmentation import clearest, labelled_stretches
 from noise.training.classifier.operating_point import (
-    FALSE_NAMES,
-    file_name,
+    FALSE_NAMES_AN_HOUR,
+    false_names,
     fit_calibration,
-    means_of_groups,
+    fit_threshold,
 )
 from noise.training.trees import grow_boosted_trees
 
@@ -72,31 +73,38 @@ def test_calibrated_probabilities_are_as_often_right_as_they_say():
     honest = rng.dirichlet(np.ones(5), 4000)
     y = np.array([rng.choice(5, p=p) for p in honest])
     votes = honest**3 / (honest**3).sum(axis=1, keepdims=True)
-    fitted = fit_calibration(votes[:2000], np.arange(2000), y[:2000], unknown=9)
+    fitted = fit_calibration(votes[:2000], np.arange(2000), y[:2000])
     assert fitted.sharpness < 0.6
     p = fitted(votes[2000:])
     right = y[2000:] == p.argmax(axis=1)
     assert right.mean() == pytest.approx(p.max(axis=1).mean(), abs=0.03)
 
 
-def test_few_background_sounds_are_called_a_noise_after_calibration():
+def test_few_backgrounds_are_called_a_noise_at_the_threshold():
     rng = np.random.default_rng(3)
-    y = rng.integers(0, 5, 1000)
-    votes = rng.dirichlet(np.ones(5), 1000) + 0.4 * np.eye(5)[y]
-    votes /= votes.sum(axis=1, keepdims=True)
-    found = fit_calibration(votes, np.arange(1000), y, 4)(votes)[y == 4].argmax(axis=1)
-    assert np.mean(found < 3) <= FALSE_NAMES
+    backgrounds = [np.tile(rng.dirichlet((0.6, 0.2, 0.2, 1.0, 2.0)), (40, 1)) for _ in range(300)]
+    threshold = fit_threshold(backgrounds)
+    assert 0.5 < threshold < 0.97
+    assert false_names(backgrounds, threshold) <= FALSE_NAMES_AN_HOUR
+    assert false_names(backgrounds, threshold - 0.02) > FALSE_NAMES_AN_HOUR
 
 
-def test_a_file_is_named_by_its_longest_segment_that_is_not_none():
-    creak, squeal, none = np.eye(5)[[0, 2, 3]]
-    assert file_name(np.stack([none] * 20 + [creak] * 4 + [none] * 9 + [squeal] * 6), none=3) == 2
-    assert file_name(np.stack([none] * 4), none=3) == 3
+@pytest.mark.parametrize("threshold", [0.5, 0.8])
+def test_more_sensitive_is_named_sooner(threshold):
+    assert at_sensitivity(threshold, 1.0) == pytest.approx(threshold)
+    assert at_sensitivity(threshold, 4.0) < threshold < at_sensitivity(threshold, 0.25)
 
 
-def test_a_recording_is_the_mean_of_its_windows():
-    p = np.array([[0.0, 1.0], [1.0, 0.0], [1.0, 0.0]])
-    assert means_of_groups(p, np.array([0, 0, 1])).tolist() == [[0.5, 0.5], [1.0, 0.0]]
+def test_a_short_creak_counts_where_it_is_clearest():
+    creak, other = [0.9, 0.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 0.0, 1.0]
+    p = np.array([other, creak, creak, other, other, other, other, other])
+    assert clearest(p, np.zeros(8, dtype=int))[0, 0] == pytest.approx(0.9)
+
+
+def test_what_may_be_creak_or_squeal_is_unknown():
+    either = np.tile([0.45, 0.0, 0.45, 0.0, 0.1], (6, 1))
+    _, names = labelled_stretches(either, threshold=0.6)
+    assert [LABELS[name] for name in names] == ["unknown"]
 
 
 @pytest.mark.parametrize("content", [b"", b"no zip", b"PK\x03\x04garbage"])

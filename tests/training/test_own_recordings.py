@@ -15,7 +15,7 @@ from noise.cli import main
 from noise.labels.audacity import label_track, read_label_track
 from noise.recordings import write_recording
 from noise.training.classifier.own_recordings import MOST_WINDOWS, read_labelled
-from noise.training.classifier.own_samples import OwnSample, own_samples, split_files
+from noise.training.classifier.own_samples import own_samples
 from noise.training.trees import grow_boosted_trees
 
 RATE = 16_000.0
@@ -129,20 +129,6 @@ def test_what_is_no_label_track_is_refused(tmp_path, content):
         read_label_track(tmp_path / "a.txt")
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 4, 10, 31])
-def test_a_third_of_the_files_is_held_out_and_none_is_on_both_sides(n):
-    samples = [
-        OwnSample(np.zeros((1, 2), np.float32), ("creak", "none")[file % 2], f"{file}.wav")
-        for file in range(n)
-        for _ in range(1 + file % 4)
-    ]
-    learned, held = split_files(samples, seed=4)
-    assert len({s.name for s in held}) == n // 3
-    assert not {s.name for s in learned} & {s.name for s in held}
-    assert len(learned) + len(held) == len(samples)
-    assert [s.name for s in split_files(samples, seed=4)[1]] == [s.name for s in held]
-
-
 def test_weights_say_what_counts_where_labels_meet():
     x = np.repeat([[0.0], [1.0]], 60, axis=0)
     y = np.tile([0, 1, 2], 40)
@@ -189,17 +175,17 @@ def test_own_recordings_are_learned_and_the_card_tells_before_and_after(own, tmp
     assert main(["train", "--out", str(model), "--add", str(own), "--samples", "120"]) == 1
     said = load_classifier(model).card["own"]
     assert json.loads(json.dumps(said)) == said
-    assert (said["files"], said["held_out_files"]) == (4, 2)
-    assert said["windows"] == {"squeal": 4}
-    assert said["accuracy_before"] == 0.0
-    assert said["accuracy_after"] == 1.0
-    assert "2 held out" in capsys.readouterr().err
+    squeal = said["labels"]["squeal"]
+    assert (said["files"], squeal["windows"]) == (6, 6)
+    assert squeal["recall_before"] == 0.0
+    assert squeal["recall"] == 1.0
+    assert "each scored by trees grown without it" in capsys.readouterr().err
 
 
 class Trained:
     """Stands in for what takes minutes."""
 
-    card: ClassVar = {"own": {"files": 6, "held_out_files": 0}}
+    card: ClassVar = {"own": {"files": 6, "labels": {}}}
 
     def save(self, path):
         path.touch()

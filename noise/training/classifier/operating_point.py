@@ -1,9 +1,8 @@
-"""Calibration of the votes: probabilities, and how few background sounds are called a noise.
+"""Calibration of the votes, and from which probability on a noise is named.
 
-Six numbers are fitted on samples that no tree saw, for the mean over a recording's windows to have
-the smallest log loss. The weights of the noises are lowered further until no more than
-`FALSE_NAMES` of the background sounds are named one as files are: by the longest segment that is
-not ``none``.
+Six numbers are fitted on what trees said that had seen nothing of the kind or the source: the log
+loss of each sample where it sounds most like a noise is the smallest. A noise is named where it is
+more probable than a threshold, so high that real backgrounds are seldom named in an hour.
 """
 
 from __future__ import annotations
@@ -13,29 +12,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import minimize
 
+from features.windows.table import HOP
 from noise.classifier.model import Calibration
-from noise.labels.segmentation import labelled_stretches
+from noise.labels.segmentation import NOISES, clearest, labelled_stretches
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-__all__ = ["FALSE_NAMES", "file_name", "fit_calibration", "means_of_groups", "scores"]
+__all__ = ["FALSE_NAMES_AN_HOUR", "false_names", "fit_calibration", "fit_threshold", "scores"]
 
-FALSE_NAMES = 0.03
-"""Of the background sounds in the calibration set [-] may be called a noise at most."""
+FALSE_NAMES_AN_HOUR = 12.0
+"""So many segments of real backgrounds are called a noise, at most."""
 
-_NOISES = 3
-"""The first labels are the noises; what follows is none of them."""
-
-_LOWEST = -2.0
-"""Logarithm of a weight that no noise falls below."""
+_LEAST, _MOST = 0.5, 0.97
+"""Threshold between which none is sought [-]: a noise that is named is likelier than all else."""
 
 _PRIOR = 20.0
 """So many recordings weigh as much as the wish that the six numbers change nothing."""
 
 
 def fit_calibration(
-    votes: NDArray[np.float64], group: NDArray[np.int64], y: NDArray[np.int64], unknown: int
+    votes: NDArray[np.float64],
+    group: NDArray[np.intp],
+    y: NDArray[np.int64],
+    weight: NDArray[np.float64] | None = None,
 ) -> Calibration:
     """Fit a calibration.
 
@@ -44,11 +46,11 @@ def fit_calibration(
     votes : ndarray, shape (n_windows, n_labels)
         [-]; each row sums to 1.
     group : ndarray of int, shape (n_windows,)
-        Recording of each window.
+        Recording of each window: 0, 1, 2 ...
     y : ndarray of int, shape (n_recordings,)
         Label of each recording.
-    unknown : int
-        Label of the background sounds.
+    weight : ndarray, shape (n_recordings,), optional
+        How much each counts [-]; by default all the same.
 
     Returns
     -------
@@ -57,81 +59,60 @@ def fit_calibration(
     Examples
     --------
     >>> votes = np.array([[0.8, 0.2], [0.3, 0.7]] * 20)
-    >>> found = fit_calibration(votes, np.arange(40), np.array([0, 1] * 20), 1)
+    >>> found = fit_calibration(votes, np.arange(40), np.array([0, 1] * 20))
     >>> found.sharpness > 1.0
     True
     """
     labels = votes.shape[1]
     rows = np.arange(y.size)
+    weight = np.ones(y.size) if weight is None else weight
 
     def calibration(x: NDArray[np.float64]) -> Calibration:
         return Calibration(float(np.exp(x[0])), tuple(np.exp(x[1:]).tolist()))
 
     def loss(x: NDArray[np.float64]) -> float:
-        p = means_of_groups(calibration(x)(votes), group)[rows, y]
-        return float(-np.mean(np.log(p)) + _PRIOR / y.size * np.mean(x**2))
+        p = clearest(calibration(x)(votes), group)[rows, y]
+        return float(np.average(-np.log(p), weights=weight) + _PRIOR / y.size * np.mean(x**2))
 
     bounds = [(-2.0, 2.0)] * (labels + 1)
-    x = minimize(loss, np.zeros(labels + 1), method="L-BFGS-B", bounds=bounds).x
-    others = np.flatnonzero(y == unknown)
-    windows = [votes[group == other] for other in others.tolist()]
-    noises = np.arange(min(_NOISES, labels))
-    noises = noises[noises != unknown]
-    while windows and x[1 + noises].min() >= _LOWEST:
-        found = calibration(x)
-        named = [file_name(found(other), _NOISES) for other in windows]
-        if np.mean(np.isin(named, noises)) <= FALSE_NAMES:
-            break
-        x[1 + noises] -= 0.05
-    return calibration(x)
+    return calibration(minimize(loss, np.zeros(labels + 1), method="L-BFGS-B", bounds=bounds).x)
 
 
-def file_name(p: NDArray[np.float64], none: int) -> int:
-    """Label of a file by its windows: that of the longest segment that is not `none`.
+def fit_threshold(backgrounds: Sequence[NDArray[np.float64]]) -> float:
+    """Find the lowest threshold that names no more than `FALSE_NAMES_AN_HOUR`.
 
     Parameters
     ----------
-    p : ndarray, shape (n_windows, n_labels)
-        Probabilities [-].
-    none : int
-        Label that names no file but where there is no other.
+    backgrounds : sequence of ndarray, shape (n_windows, n_labels)
+        Probabilities [-] of the windows of each sound that is no noise.
 
     Returns
     -------
-    int
+    float
+        Probability [-].
 
     Examples
     --------
-    >>> file_name(np.array([[0.9, 0.0, 0.1]] * 4 + [[0.0, 0.9, 0.1]] * 8), none=1)
-    0
+    >>> clear, doubtful = [0.0, 0.0, 0.0, 0.1, 0.9], [0.7, 0.0, 0.0, 0.0, 0.3]
+    >>> fit_threshold([np.array([clear] * 900), np.array([doubtful] * 900)]) < 0.52
+    True
     """
-    edges, names = labelled_stretches(p)
-    length = np.where(names == none, 0, np.diff(edges))
-    return int(names[length.argmax()])
+    tried = np.arange(_LEAST, _MOST, 0.01)
+    named = (false_names(backgrounds, threshold) for threshold in tried.tolist())
+    few = [count <= FALSE_NAMES_AN_HOUR for count in named]
+    return float(tried[few.index(True)]) if any(few) else _MOST
 
 
-def means_of_groups(p: NDArray[np.float64], group: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Mean of the rows of each group 0, 1, 2 ..., none of which is empty.
-
-    Parameters
-    ----------
-    p : ndarray, shape (n, n_labels)
-        [-]
-    group : ndarray of int, shape (n,)
-
-    Returns
-    -------
-    ndarray, shape (n_groups, n_labels)
-        [-]
+def false_names(backgrounds: Sequence[NDArray[np.float64]], threshold: float) -> float:
+    """Segments that are called a noise at a threshold [1/h].
 
     Examples
     --------
-    >>> means_of_groups(np.array([[1.0], [3.0], [5.0]]), np.array([0, 0, 1])).tolist()
-    [[2.0], [5.0]]
+    >>> false_names([np.tile([0.7, 0.0, 0.0, 0.0, 0.3], (14_400, 1))], threshold=0.6)
+    1.0
     """
-    sums = np.zeros((int(group.max()) + 1, p.shape[1]))
-    np.add.at(sums, group, p)
-    return np.asarray(sums / np.bincount(group)[:, None])
+    found = sum(int(np.sum(labelled_stretches(p, threshold)[1] < NOISES)) for p in backgrounds)
+    return found * 3600.0 / (HOP * max(1, sum(map(len, backgrounds))))
 
 
 def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[str, object]:

@@ -1,8 +1,9 @@
-"""The user's own windows beside the simulated samples: how much they count, and how they score.
+"""Recorded sounds beside the simulated ones: what they are, and what is left out together.
 
-A window of one's own counts as five simulated samples: it is rare, and it is what the classifier is
-wanted for. A third of the files is held out, never windows of one file on both sides, since windows
-of one file are nearly the same sample; on it the classifier is scored with the others and without.
+The user's own windows are such sounds, and those that are stored with the program
+(`noise.training.classifier.real_sounds`). Each counts as several simulated samples: it is rare, and
+it is what the classifier is wanted for. All of them are learned from, and all of them are scored,
+by trees that were grown without any sound of the same source.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.base.label_names import LABELS
+from noise.labels.segmentation import NOISES
 from noise.labels.windows import can_be_described, describe
 from noise.recordings.blocks import RecordingBlocks
 
@@ -24,18 +26,21 @@ if TYPE_CHECKING:
 
     from noise.training.classifier.own_recordings import OwnWindow
 
-__all__ = ["OWN_WEIGHT", "OwnSample", "own_card", "own_samples", "split_files"]
+__all__ = ["N_FOLDS", "OWN_WEIGHT", "TOO_FEW", "OwnSample", "own_card", "own_samples", "parts"]
 
 OWN_WEIGHT = 5.0
 """Simulated samples that an own window counts as."""
 
-_EVERY = 3
-"""One file of so many is held out."""
+N_FOLDS = 5
+"""Parts, each of which is left out once."""
+
+TOO_FEW = 5
+"""Fewer sources of a label tell nothing of how well it is known."""
 
 
 @dataclass(frozen=True, eq=False)
 class OwnSample:
-    """What the user's own recordings teach: a window of at most a second.
+    """A recorded sound to learn from: of the user's a window of at most a second.
 
     Parameters
     ----------
@@ -45,12 +50,16 @@ class OwnSample:
     label : str
         One of `noise.classifier.LABELS`.
     name : str
-        File that it comes from.
+        Source that it comes from, of the user's the file; sounds of one source are left out
+        together.
+    weight : float
+        Simulated samples that it counts as [-].
     """
 
     features: NDArray[np.float32]
     label: str
     name: str
+    weight: float = OWN_WEIGHT
 
 
 def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[OwnSample], list[str]]:
@@ -75,57 +84,69 @@ def own_samples(windows: Iterable[OwnWindow]) -> tuple[list[OwnSample], list[str
     return samples, list(refused.values())
 
 
-def split_files(samples: Sequence[OwnSample], seed: int) -> tuple[list[OwnSample], list[OwnSample]]:
-    """Part the files into those that are learned from and a third that is scored.
+def parts(names: Sequence[str], labels: Sequence[str], seed: int) -> NDArray[np.int64]:
+    """Part sounds into `N_FOLDS`, sounds of one source together and each label spread over them.
 
-    Each label has its share on both sides as far as it goes.
+    Parameters
+    ----------
+    names, labels : sequence of str
+        Source and label of each sound.
+    seed : int
+
+    Returns
+    -------
+    ndarray of int, shape (n_sounds,)
+        Part of each.
 
     Examples
     --------
-    >>> one = np.zeros((1, 2), dtype=np.float32)
-    >>> runs = [OwnSample(one, "creak", f"{run}.wav") for run in range(6) for _ in range(4)]
-    >>> learned, held = split_files(runs, seed=0)
-    >>> len(learned), len(held), {s.name for s in learned} & {s.name for s in held}
-    (16, 8, set())
+    >>> parts(["a", "a", "b", "c"], ["creak", "creak", "creak", "none"], seed=0).tolist()
+    [1, 1, 0, 2]
     """
-    rng = np.random.default_rng([seed, 2])
     counts: dict[str, Counter[str]] = {}
-    for sample in samples:
-        counts.setdefault(sample.name, Counter())[sample.label] += 1
-    names = sorted(counts)
-    rng.shuffle(names)
-    names.sort(key=lambda name: counts[name].most_common(1)[0][0])  # stable: in groups
-    held = set(names[_EVERY - 1 :: _EVERY])
-    return (
-        [sample for sample in samples if sample.name not in held],
-        [sample for sample in samples if sample.name in held],
-    )
+    for name, label in zip(names, labels, strict=True):
+        counts.setdefault(name, Counter())[label] += 1
+    sources = sorted(counts)
+    np.random.default_rng([seed, 2]).shuffle(sources)
+    sources.sort(key=lambda name: counts[name].most_common(1)[0][0])  # stable: in groups
+    part = {name: i % N_FOLDS for i, name in enumerate(sources)}
+    return np.array([part[name] for name in names], dtype=np.int64)
 
 
 def own_card(
-    learned: Sequence[OwnSample],
-    held: Sequence[OwnSample],
-    before: NDArray[np.float64],
-    after: NDArray[np.float64],
+    samples: Sequence[OwnSample], before: NDArray[np.intp], after: NDArray[np.intp]
 ) -> dict[str, object]:
     """Return what the card says of the user's recordings.
 
     Parameters
     ----------
-    learned, held : sequence of OwnSample
-    before, after : ndarray, shape (n_held, 5)
-        Probabilities of those held out from the classifier without the others and with them.
+    samples : sequence of OwnSample
+    before, after : ndarray of int, shape (n_samples,)
+        Columns of their labels by the classifier without the user's recordings, and with all of
+        them but those of the same part.
     """
-    y = np.array([LABELS.index(sample.label) for sample in held])
-    right = [
-        round(float(np.mean(p.argmax(axis=1) == y)), 4) if held else None for p in (before, after)
-    ]
+    y = np.array([LABELS.index(sample.label) for sample in samples])
+    files = [{s.name for s in samples if s.label == label} for label in LABELS]
+    labels = {
+        label: {
+            "files": len(files[i]),
+            "windows": int(np.sum(y == i)),
+            "enough": len(files[i]) >= TOO_FEW,
+            "recall_before": _share(before[y == i] == i),
+            "recall": _share(after[y == i] == i),
+            "false_names_before": int(np.sum((before == i) & (y != i))),
+            "false_names": int(np.sum((after == i) & (y != i))),
+        }
+        for i, label in enumerate(LABELS)
+        if files[i] or np.any(after == i)
+    }
     return {
         "weight": OWN_WEIGHT,
-        "windows": dict(Counter(sample.label for sample in learned)),
-        "files": len({sample.name for sample in learned}),
-        "held_out_windows": dict(Counter(sample.label for sample in held)),
-        "held_out_files": len({sample.name for sample in held}),
-        "accuracy_before": right[0],
-        "accuracy_after": right[1],
+        "files": len({sample.name for sample in samples}),
+        "noises": int(np.sum(y < NOISES)),
+        "labels": labels,
     }
+
+
+def _share(right: NDArray[np.bool_]) -> float | None:
+    return round(float(np.mean(right)), 4) if right.size else None

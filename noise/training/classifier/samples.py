@@ -23,6 +23,7 @@ from noise.training.classifier.bushings import random_run
 from noise.training.classifier.friction_sources.creaks import CREAKS, creak
 from noise.training.classifier.friction_sources.squawks import SQUAWKS, squawk
 from noise.training.classifier.friction_sources.squeals import SQUEALS, squeal
+from noise.training.classifier.surroundings import may_sound
 from noise.training.draws import log_uniform, wandering
 
 if TYPE_CHECKING:
@@ -90,7 +91,7 @@ class Drawn:
     ambiguous: bool = False
 
 
-def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
+def draw(rng: np.random.Generator, *, bushings: bool = True, surroundings: str = "any") -> Drawn:
     """Draw a sample.
 
     Parameters
@@ -98,6 +99,8 @@ def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
     rng : numpy.random.Generator
     bushings : bool
         Whether it may be a simulated bushing, which takes ten times as long as any other.
+    surroundings : str
+        What else may sound, of `noise.training.classifier.surroundings.SURROUNDINGS`.
 
     Returns
     -------
@@ -112,7 +115,8 @@ def draw(rng: np.random.Generator, *, bushings: bool = True) -> Drawn:
     shares = {group: share for group, share in SHARES.items() if bushings or group != "bushing"}
     group = _picked(shares, rng)
     if group == "background":
-        return draw_from(f"background:{_picked(WEIGHTS, rng)}", rng)
+        heard = {name: w for name, w in WEIGHTS.items() if may_sound(name, surroundings)}
+        return draw_from(f"background:{_picked(heard, rng)}", rng)
     if group == "friction":
         label = _picked(_LABEL_SHARES, rng)
         kinds = [source for source, (own, _) in _FRICTION.items() if own == label]
