@@ -92,7 +92,7 @@ def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
 
 
 def labelled_stretches(
-    probabilities: NDArray[np.float64], threshold: float = 0.5
+    probabilities: NDArray[np.float64], threshold: float | None = None
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the stretches of the Viterbi path, each called what is heard where it is clearest.
 
@@ -100,8 +100,9 @@ def labelled_stretches(
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
         [-]; each row sums to 1; noises first, ``unknown`` last.
-    threshold : float
-        Probability [-] from which a noise is named; below it a stretch is ``unknown``.
+    threshold : float, optional
+        Probability [-] from which a noise is named; below it a stretch is ``unknown``. By default
+        the likeliest label is said.
 
     Returns
     -------
@@ -125,8 +126,9 @@ def labelled_stretches(
     group = np.repeat(np.arange(edges.size - 1), np.diff(edges))
     p = clearest(probabilities, group)
     names, noises = p.argmax(axis=1), p[:, :NOISES]
-    names[names < NOISES] = p.shape[1] - 1
-    names = np.where(noises.max(axis=1) >= threshold, noises.argmax(axis=1), names)
+    if threshold is not None:
+        names[names < NOISES] = p.shape[1] - 1
+        names = np.where(noises.max(axis=1) >= threshold, noises.argmax(axis=1), names)
     first = np.concatenate([[True], names[1:] != names[:-1]])
     return np.concatenate([edges[:-1][first], [n]]), names[first]
 

@@ -57,7 +57,8 @@ class Segment:
         [s]
     label : str
         The most probable of `noise.classifier.LABELS`, but ``unknown`` where that is a noise below
-        the classifier's threshold.
+        the classifier's threshold; not of a recording at a stated operating condition, where
+        nothing but a bushing is expected to sound.
     probabilities : mapping of str to float
         Of all labels [-], where the segment sounds most like a noise
         (`noise.labels.segmentation.clearest`).
@@ -197,15 +198,32 @@ def file_label(segments: list[Segment]) -> Segment:
     return max(audible or segments, key=lambda segment: segment.end - segment.start)
 
 
+_STRANGERS = 0.5
+"""Odds of a sound that is none of the noises and no quiet where an operating condition is stated,
+over those elsewhere [-]; assumed: of the recordings that the classifier learned from, a third are
+such sounds."""
+
+
+def _at_a_condition(blocks: RecordingBlocks) -> bool:
+    """Whether it is of a bushing at a stated condition, where nothing else is expected to sound."""
+    at = blocks.condition
+    stated = (at.speed, at.interference, at.support_stiffness)
+    return any(value is not None for value in stated)
+
+
 def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
     if not can_be_described(blocks):
         return [_nothing_to_tell(blocks, channel)]
     found = describe(blocks)
     columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
     probabilities = classifier.predict_proba(found.features[:, columns])
+    known = _at_a_condition(blocks)
+    if known:
+        probabilities[:, LABELS.index("unknown")] *= _STRANGERS
+        probabilities /= probabilities.sum(axis=1, keepdims=True)
     silent = _silent_windows(blocks, found)
     probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    edges, names = labelled_stretches(probabilities, classifier.threshold)
+    edges, names = labelled_stretches(probabilities, None if known else classifier.threshold)
     group = np.repeat(np.arange(names.size), np.diff(edges))
     heard = clearest(probabilities, group)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)

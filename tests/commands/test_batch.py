@@ -3,6 +3,7 @@ from __future__ import annotations
 import csv
 from argparse import Namespace
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -36,14 +37,21 @@ def runs(tmp_path, monkeypatch):
 @pytest.fixture
 def labelled(monkeypatch):
     """A classifier that calls everything a squeal, and what it was asked."""
-    asked = Namespace(classifiers=[], recordings=[])
+    asked = Namespace(classifiers=[], recordings=[], sensitivities=[])
+
+    class Stand:
+        card: ClassVar = {"real_sources_left_out": {"false_names_an_hour": {"1": 8.0, "2": 21.0}}}
+
+        def sensitive(self, sensitivity):
+            asked.sensitivities.append(sensitivity)
+            return self
 
     def load_classifier(path=None):
         asked.classifiers.append(path)
-        return "classifier"
+        return Stand()
 
     def label_recording(recording, classifier, *, per_track=False):
-        assert classifier == "classifier"
+        assert isinstance(classifier, Stand)
         asked.recordings.append((recording, per_track))
         certain = {label: float(label == "squeal") for label in LABELS}
         end = recording.duration
@@ -293,10 +301,16 @@ def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, labelled, capsy
     assert "without calibration" not in capsys.readouterr().err
 
 
+def test_another_sensitivity_is_taken_and_its_false_names_are_told(runs, labelled, capsys):
+    assert main(["label", "runs/a.wav", "--out", "t.csv", "--sensitivity", "2"]) == 0
+    assert labelled.sensitivities == [2.0]
+    assert "21 false names an hour" in capsys.readouterr().err
+
+
 def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
     asked = []
 
-    def train(*, seed, added, progress):
+    def train(*, seed, added, progress, **_):
         assert not added
         asked.append((seed, list(progress(iter([1, 2]), 2))))
         card = {"pressure": {"n": 600, "macro_f1": 0.9}}
