@@ -104,7 +104,19 @@ def fit_threshold(backgrounds: Sequence[NDArray[np.float64]]) -> float:
 
 
 def false_names(backgrounds: Sequence[NDArray[np.float64]], threshold: float) -> float:
-    """Segments that are called a noise at a threshold [1/h].
+    """Count segments that are called a noise.
+
+    Parameters
+    ----------
+    backgrounds : sequence of ndarray, shape (n_windows, n_labels)
+        Probabilities [-] of the windows of each sound that is no noise.
+    threshold : float
+        Probability [-] from which a noise is named.
+
+    Returns
+    -------
+    float
+        [1/h]
 
     Examples
     --------
