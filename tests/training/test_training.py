@@ -9,8 +9,9 @@ from models.errors import ParameterError
 from noise.classifier import LABELS, load_classifier
 from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
+from noise.training.classifier.described_samples import draw_sample
 from noise.training.classifier.designs import random_design
-from noise.training.classifier.fit import draw_sample, learn, train
+from noise.training.classifier.fit import learn, train
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
 from noise.training.classifier.real_sounds import load_real_sounds
 from noise.training.classifier.surroundings import may_sound

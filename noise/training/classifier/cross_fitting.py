@@ -1,0 +1,256 @@
+"""Cross-fitting: what trees say of sounds of kinds and sources that they were grown without.
+
+How probable a name is, and from where on it is said, is not asked of what the trees have seen: the
+kinds of body and of background, and the sources of real sounds, are parted into five, and trees
+that were grown without one part vote on it. Those votes calibrate, and those votes are scored:
+each part by the calibration of the other four.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.windows.table import HOP
+from noise.base.label_names import LABELS
+from noise.classifier.model import Classifier, at_sensitivity, has_more_than_sound
+from noise.labels.segmentation import NOISES, clearest
+from noise.labels.windows import FEATURE_NAMES
+from noise.training.classifier.described_samples import Sample
+from noise.training.classifier.masked_rows import (
+    KINDS,
+    SUBSETS,
+    columns_of_labels,
+    mask,
+    masked_rows,
+)
+from noise.training.classifier.operating_point import (
+    false_names,
+    fit_calibration,
+    fit_threshold,
+    scores,
+)
+from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
+from noise.training.trees import grow_boosted_trees
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from noise.base.trees import BoostedTrees
+    from noise.classifier.model import Calibration
+
+__all__ = ["LeftOut", "grown", "left_out_scores", "named", "with_trees_of"]
+
+_N_ROUNDS = 220
+
+_SENSITIVITIES = (0.5, 1.0, 2.0, 4.0)
+"""For which false names are counted [ratio of odds]."""
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """What trees and a calibration say of each sound that knew none of its part.
+
+    Parameters
+    ----------
+    alone : list of ndarray, shape (n_windows, 5)
+        Probabilities of the windows, by the sound alone [-].
+    together : list of ndarray, shape (n_windows, 5)
+        The same with its other channels [-]; None where it has none.
+    """
+
+    alone: list[NDArray[np.float64]]
+    together: list[NDArray[np.float64] | None]
+
+
+def grown(sounds: Sequence[Sample | OwnSample], seed: int) -> tuple[Classifier, LeftOut]:
+    """Grow trees, calibrate them by trees that knew other kinds alone, and find the threshold.
+
+    Parameters
+    ----------
+    sounds : sequence of Sample or OwnSample
+    seed : int
+
+    Returns
+    -------
+    classifier : Classifier
+    left_out : LeftOut
+        Of the same sounds.
+    """
+    part = parts([_source(s, i) for i, s in enumerate(sounds)], [s.label for s in sounds], seed)
+    x, y, weight, owner = masked_rows(sounds)
+    known: NDArray[np.bool_] = np.asarray(np.isfinite(x).any(axis=0))
+    x = x[:, known]
+
+    def trees_of(rows: NDArray[np.bool_]) -> BoostedTrees:
+        return _trees(x[rows], y[rows], weight[rows], seed)
+
+    alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)
+    together: list[NDArray[np.float64] | None] = [None] * len(sounds)
+    for k in range(N_FOLDS):
+        trees = trees_of(part[owner] != k)
+        for i in np.flatnonzero(part == k).tolist():
+            features = sounds[i].features
+            kinds = SUBSETS[0] if isinstance(sounds[i], Sample) else KINDS
+            alone[i] = trees.probabilities(mask(features, kinds)[:, known])
+            if has_more_than_sound(features, FEATURE_NAMES).any():
+                together[i] = trees.probabilities(features[:, known])
+    labels = columns_of_labels(sounds)
+    heavy = np.array([s.weight for s in sounds])
+    several = np.array([p is not None for p in together])
+    calibrations, calibrated = [], []
+    for votes, held in ((alone, np.ones(len(sounds), dtype=bool)), (together, several)):
+        held = held if held.any() else np.ones(len(sounds), dtype=bool)
+        voted = [p if p is not None else alone[i] for i, p in enumerate(votes)]
+        calibrations.append(_calibration(voted, labels, heavy, np.flatnonzero(held)))
+        without = [
+            _calibration(voted, labels, heavy, np.flatnonzero(held & (part != k)))
+            for k in range(N_FOLDS)
+        ]
+        calibrated.append([without[part[i]](p) for i, p in enumerate(voted)])
+    left_out = LeftOut(
+        calibrated[0], [p if s else None for p, s in zip(calibrated[1], several, strict=True)]
+    )
+    threshold = fit_threshold(_real_backgrounds(sounds, left_out))
+    names = tuple(name for name, k in zip(FEATURE_NAMES, known, strict=True) if k)
+    trees = trees_of(np.ones(y.size, dtype=bool))
+    return Classifier(names, trees, (calibrations[0], calibrations[1]), {}, threshold), left_out
+
+
+def with_trees_of(
+    classifier: Classifier, sounds: Sequence[Sample | OwnSample], seed: int
+) -> Classifier:
+    """Return a classifier with trees that were grown of other sounds, all else as it is.
+
+    Parameters
+    ----------
+    classifier : Classifier
+    sounds : sequence of Sample or OwnSample
+    seed : int
+    """
+    x, y, weight, _ = masked_rows(sounds)
+    columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
+    trees = _trees(x[:, columns], y, weight, seed)
+    return Classifier(
+        classifier.feature_names, trees, classifier.calibrations, {}, classifier.threshold
+    )
+
+
+def _trees(
+    x: NDArray[np.float32], y: NDArray[np.int64], weight: NDArray[np.float64], seed: int
+) -> BoostedTrees:
+    """Grow trees of rows whose labels are balanced."""
+    # Bins need one value at least of what none of these has, and trees one row of each label.
+    x[0, ~np.isfinite(x).any(axis=0)] = 0.0
+    absent = np.setdiff1d(np.arange(len(LABELS)), y)
+    weight = weight / np.bincount(y, weight, len(LABELS))[y]
+    x = np.concatenate([x, np.repeat(x[:1], absent.size, axis=0)])
+    y = np.concatenate([y, absent])
+    weight = np.concatenate([weight, np.full(absent.size, 1e-9)])
+    return grow_boosted_trees(x, y, weight=weight / weight.mean(), n_rounds=_N_ROUNDS, seed=seed)
+
+
+def _source(sound: Sample | OwnSample, i: int) -> str:
+    """Return what is left out together: a kind of body or background, a source of recordings."""
+    return f"{sound.name} {i}" if sound.name in ("bushing", "quiet") else sound.name
+
+
+def _calibration(
+    votes: Sequence[NDArray[np.float64]],
+    labels: NDArray[np.int64],
+    weight: NDArray[np.float64],
+    held: NDArray[np.intp],
+) -> Calibration:
+    group = np.repeat(np.arange(held.size), [len(votes[i]) for i in held])
+    return fit_calibration(
+        np.concatenate([votes[i] for i in held]), group, labels[held], weight[held]
+    )
+
+
+def _real_backgrounds(
+    sounds: Sequence[Sample | OwnSample], left_out: LeftOut
+) -> list[NDArray[np.float64]]:
+    return [
+        p
+        for sound, p in zip(sounds, left_out.alone, strict=True)
+        if isinstance(sound, OwnSample) and LABELS.index(sound.label) >= NOISES
+    ]
+
+
+def left_out_scores(
+    sounds: Sequence[Sample | OwnSample], left_out: LeftOut, threshold: float
+) -> dict[str, object]:
+    """Scores of kinds and of sources that the trees and the calibration had not known.
+
+    Parameters
+    ----------
+    sounds : sequence of Sample or OwnSample
+    left_out : LeftOut
+        Of these sounds.
+    threshold : float
+        Probability [-] from which a noise is named.
+
+    Returns
+    -------
+    dict
+        For the card.
+    """
+    said: dict[str, object] = {}
+    unknown = LABELS.index("unknown")
+    for name, votes in (("pressure", left_out.alone), ("three_channels", left_out.together)):
+        held = [
+            (s, p)
+            for s, p in zip(sounds, votes, strict=True)
+            if p is not None and isinstance(s, Sample)
+        ]
+        if held:
+            p = np.concatenate([_clearest(p) for _, p in held])
+            said[f"{name}_kinds_left_out"] = scores(
+                p, columns_of_labels([s for s, _ in held]), unknown
+            )
+    heard = [
+        (s, p) for s, p in zip(sounds, left_out.alone, strict=True) if isinstance(s, OwnSample)
+    ]
+    recall = {}
+    for label in LABELS[:NOISES]:
+        right = [_name(p, threshold) == LABELS.index(label) for s, p in heard if s.label == label]
+        if right:
+            recall[label] = {"n": len(right), "recall": round(float(np.mean(right)), 4)}
+    backgrounds = _real_backgrounds(sounds, left_out)
+    if backgrounds:
+        said["real_sources_left_out"] = {
+            "recall": recall,
+            "background_hours": round(sum(map(len, backgrounds)) * HOP / 3600.0, 3),
+            "false_names_an_hour": {
+                f"{s:g}": round(false_names(backgrounds, at_sensitivity(threshold, s)), 1)
+                for s in _SENSITIVITIES
+            },
+        }
+    return said
+
+
+def named(p: NDArray[np.float64], classifier: Classifier) -> int:
+    """Return what a recording's windows are called together, as a column of `LABELS`.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n_windows, 5)
+        Probabilities [-].
+    classifier : Classifier
+        Whose threshold counts.
+    """
+    return _name(p, classifier.threshold)
+
+
+def _name(p: NDArray[np.float64], threshold: float) -> int:
+    (whole,) = _clearest(p)
+    noise = int(whole[:NOISES].argmax())
+    return noise if whole[noise] >= threshold else NOISES + int(whole[NOISES:].argmax())
+
+
+def _clearest(p: NDArray[np.float64]) -> NDArray[np.float64]:
+    return clearest(p, np.zeros(len(p), dtype=np.intp))
