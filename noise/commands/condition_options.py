@@ -91,7 +91,8 @@ def add_condition(parser: ArgumentParser) -> None:
         "--interference",
         type=number(above=0.0, most=10.0),
         metavar="MM",
-        help=f"interference fit in mm (default: {DEFAULT_INTERFERENCE_MM:g})",
+        help=f"interference fit in mm (default: {DEFAULT_INTERFERENCE_MM:g}, or the nearest that "
+        "--rig gives)",
     )
     group.add_argument(
         "--support-stiffness",

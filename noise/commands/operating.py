@@ -76,7 +76,6 @@ def run_arguments(
         raise ParameterError(f"exactly one of --speed and --oscillate {asked}")
     seconds = _or(options.seconds, opt.DEFAULT_SECONDS)
     stiffness = _or(options.support_stiffness, opt.DEFAULT_SUPPORT_STIFFNESS)
-    interference_mm = _or(options.interference, opt.DEFAULT_INTERFERENCE_MM)
     if round(seconds * rate) < _LEAST_SAMPLES:
         raise ParameterError(
             f"--seconds {seconds:g} is too short at {rate:g} Hz; a recording holds "
@@ -84,6 +83,9 @@ def run_arguments(
         )
     library = effect_library(options.effects)
     rig = _rig(options, library, rig)
+    low, high = (1e3 * limit for limit in rig.interference_range)
+    nearest = min(max(opt.DEFAULT_INTERFERENCE_MM, low), high)
+    interference_mm = _or(options.interference, nearest)
     _note_idle(options.effects, rig, library)
     shaft, turning = _shaft(options, seconds)
     notes = _remarks(options, rig, shaft, library, interference_mm, stiffness)

@@ -314,3 +314,14 @@ antialias_hz = 16000
     assert any("antialias_hz = 16000 lies above half the sampling rate" in note for note in notes)
     assert any("torque reaches the range of its sensor, 9 N m" in note for note in notes)
     assert all(note in said for note in notes)
+
+
+def test_a_rig_of_another_fit_is_simulated_at_its_own(simulated, tmp_path):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(
+        "[[fit]]\ninterference_mm = 0.5\nelastomer_stiffness_Nm_rad = 900\n"
+        'critical_torque_Nm = 20\nkinetic_torque_Nm = 16\ndamping_Nms_rad = { "2214" = 0.1 }\n',
+        encoding="utf-8",
+    )
+    made = call(simulated, "--speed", "1", "--rig", str(rig))
+    assert made.interference == pytest.approx(0.5e-3, rel=1e-12)
