@@ -80,8 +80,8 @@ def load_real_sounds() -> RealSounds:
 
     Examples
     --------
-    >>> {sample.label for sample in load_real_sounds().samples} <= set(LABELS)
-    True
+    >>> sorted({sample.label for sample in load_real_sounds().samples})
+    ['creak', 'squeal', 'unknown']
     """
     return load_model(None, _KIND, _built)
 
