@@ -100,7 +100,10 @@ def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
     """
     import uvicorn
 
-    with contextlib.closing(socket.create_server(("127.0.0.1", port))) as listening:
+    with (
+        opened.leaving,
+        contextlib.closing(socket.create_server(("127.0.0.1", port))) as listening,
+    ):
         port = listening.getsockname()[1]
         token = secrets.token_urlsafe(24)
 

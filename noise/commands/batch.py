@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.atomic import check_target
+from noise.base.lock import locked
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, write_table
 from noise.commands.options import refuse, whole_number
@@ -170,10 +171,11 @@ def _write(
     keep: Callable[[Path | None, Rows], Rows],
 ) -> list[Path]:
     columns = work.columns
-    rows = keep(
-        out, [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
-    )
-    write_table(out, columns, rows)
+    rows: Rows = [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
+    # Nobody may change the table between the look at what stays of it and the writing.
+    with nullcontext() if out is None else locked(out):
+        rows = keep(out, rows)
+        write_table(out, columns, rows)
     return [*([] if out is None else [out]), *also(rows)]
 
 
