@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from noise.base.label_names import LABELS
 from noise.labels.table import HUMAN
-from noise.pages.engine.entry import naming_row
+from noise.pages.engine.entry import labels_in, naming_row
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,16 +28,15 @@ def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
     >>> row = {"label": "creak", "start_s": 0.0, "end_s": 2.0, "label_source": "human"}
     >>> shown = summary(7, "run07.wav", [row])
     >>> shown["id"], shown["label"], shown["labels"], shown["duration_s"], shown["corrected"]
-    (7, 'creak', ['creak'], 2.0, True)
+    (7, 'creak', ('creak',), 2.0, True)
     """
     naming = naming_row(rows) or {}
-    there = {row["label"] for row in rows}
     ends = [row["end_s"] for row in rows if isinstance(row.get("end_s"), float)]
     return {
         "id": index,
         "name": name,
         "label": naming.get("label"),
-        "labels": [label for label in LABELS if label in there],
+        "labels": labels_in(rows),
         "frequency_hz": naming.get("frequency_hz"),
         "level_dba": naming.get("level_dba"),
         "duration_s": max(ends, default=None),  # type: ignore[type-var]

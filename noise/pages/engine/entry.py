@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Row = Mapping[str, object]
 
 __all__ = [
-    "RATE", "Entry", "Part", "label_counts", "labels_sentence", "naming_row", "stretch_start",
+    "RATE", "Entry", "Part", "label_counts", "labels_in", "labels_sentence", "naming_row", "stretch_start",
 ]  # fmt: skip
 
 RATE = 48000
@@ -95,10 +95,9 @@ class Entry:
         return naming_row(self.rows)
 
     @property
-    def label(self) -> str | None:
-        """The label of the whole; None where it is not labelled."""
-        row = self.row
-        return None if row is None else str(row["label"])
+    def labels(self) -> tuple[str, ...]:
+        """All labels in it, the longest first."""
+        return labels_in(self.rows)
 
 
 def naming_row(rows: Sequence[Row]) -> Row | None:
@@ -113,6 +112,26 @@ def naming_row(rows: Sequence[Row]) -> Row | None:
     labelled = [row for row in rows if row["label"] is not None]
     loud = [row for row in labelled if row["label"] != "none"]
     return max(loud or labelled, key=_length, default=None)
+
+
+def labels_in(rows: Iterable[Row]) -> tuple[str, ...]:
+    """Return all labels of a recording: the one that names it, then by their longest row.
+
+    ``none`` comes last.
+
+    Examples
+    --------
+    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
+    >>> long = {"label": "squeal", "start_s": 1.0, "end_s": 3.0}
+    >>> labels_in([{"label": "none", "start_s": 3.0, "end_s": 9.0}, short, long])
+    ('squeal', 'creak', 'none')
+    """
+    longest: dict[str, float] = {}
+    for row in rows:
+        if row["label"] is not None:
+            label = str(row["label"])
+            longest[label] = max(_length(row), longest.get(label, 0.0))
+    return tuple(sorted(longest, key=lambda label: (label == "none", -longest[label])))
 
 
 def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
@@ -133,19 +152,19 @@ def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
 
 
 def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
-    """Count entries by label, in the order of the labels; those without one last, as "".
+    """Count entries that have a label in them, by label; those without one last, as "".
 
     Examples
     --------
-    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"},))])
-    [('creak', 1), ('', 1)]
+    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"}, {"label": "none"}))])
+    [('creak', 1), ('none', 1), ('', 1)]
     """
-    counts = Counter(entry.label or "" for entry in entries)
+    counts = Counter(label for entry in entries for label in entry.labels or ("",))
     return [(label, counts[label]) for label in (*LABELS, "") if counts[label]]
 
 
 def labels_sentence(entries: Sequence[Entry]) -> str:
-    """Say how many entries have which label.
+    """Say how many entries have which label in them.
 
     Examples
     --------
