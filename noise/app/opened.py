@@ -41,6 +41,8 @@ class Opened:
         Where what is saved goes.
     sources : tuple of Path
         Recordings and folders that the recordings were found in.
+    samples : int, optional
+        Simulated samples to learn from beside corrections [-]; by default as many as `train` takes.
     leaving : ExitStack
         What is to be ended when the app ends.
     """
@@ -50,6 +52,7 @@ class Opened:
     rigs: tuple[Path, ...]
     folder: Path
     sources: tuple[Path, ...] = ()
+    samples: int | None = None
     leaving: ExitStack = field(default_factory=ExitStack)
 
     def job(self, index: int) -> Job:
@@ -65,7 +68,9 @@ class Opened:
         return self.jobs[index]
 
 
-def open_paths(paths: Sequence[Path], table: Path | None = None) -> Opened:
+def open_paths(
+    paths: Sequence[Path], table: Path | None = None, samples: int | None = None
+) -> Opened:
     """Find recordings, label table and rig files.
 
     Parameters
@@ -75,6 +80,9 @@ def open_paths(paths: Sequence[Path], table: Path | None = None) -> Opened:
     table : Path, optional
         Label table to write, which may be there; by default the one that was named, or
         ``labels.csv`` in the folder (or beside the recording) that was.
+
+    samples : int, optional
+        Simulated samples to learn from beside corrections [-].
 
     Raises
     ------
@@ -108,4 +116,4 @@ def open_paths(paths: Sequence[Path], table: Path | None = None) -> Opened:
     if table is not None:
         check_table_path(table)
         check_target(table)
-    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds))
+    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples)

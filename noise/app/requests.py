@@ -43,7 +43,7 @@ def body(answer: Callable[[Request, object], Response]) -> Callable[[Request], A
                 raise ParameterError(f"the request is longer than {_MOST} bytes")
         try:
             said = json.loads(bytes(read) or b"{}")
-        except ValueError:
+        except (ValueError, RecursionError):
             raise ParameterError("the request is no JSON") from None
         return await run_in_threadpool(answer, request, said)
 

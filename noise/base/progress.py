@@ -1,14 +1,15 @@
 """Messages and progress bar while the program works, all on standard error.
 
 Standard output belongs to results. The bar is drawn on a terminal only; in a log file there is one
-line that says what is being done. Lines and bar do not tread on each other, and a standard error
-that is closed is no reason to stop.
+line that says what is being done, and one a second for a program that reads them (`LINES`). Lines
+and bar do not tread on each other, and a standard error that is closed is no reason to stop.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+import time
 from collections.abc import Sized
 from typing import TYPE_CHECKING, TypeVar
 
@@ -16,7 +17,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from typing import TextIO
 
-__all__ = ["counted", "discard", "note", "say", "track"]
+__all__ = ["LINES", "counted", "discard", "note", "say", "track"]
+
+LINES = "BUSHING_NOISE_PROGRESS_LINES"
+"""Environment variable that asks for lines ``simulating: 120 of 7360`` where there is no bar."""
+
+_EVERY = 1.0
+"""Between two such lines [s]."""
 
 _Item = TypeVar("_Item")
 
@@ -100,7 +107,7 @@ def track(
         total = len(items)
     if sys.stderr is None or not sys.stderr.isatty():
         say(doing if total is None else f"{doing} {counted(total, unit)}")
-        yield from items
+        yield from items if not os.environ.get(LINES) else _in_lines(items, doing, total)
         return
     from tqdm import tqdm
 
@@ -109,3 +116,12 @@ def track(
         items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr
     ) as advancing:
         yield from advancing
+
+
+def _in_lines(items: Iterable[_Item], doing: str, total: int | None) -> Iterator[_Item]:
+    said = time.monotonic()
+    for number, item in enumerate(items, 1):
+        yield item
+        if time.monotonic() - said >= _EVERY:
+            said = time.monotonic()
+            say(f"{doing}: {number}" + ("" if total is None else f" of {total}"))

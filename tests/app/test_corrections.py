@@ -16,27 +16,19 @@ from noise.batch.identity import file_identity
 from noise.batch.work import Done
 from noise.labels.labelling import COLUMNS, Labelling
 from noise.labels.table import read_label_table, with_corrections
+from tests.helpers.labelled_folder import made_row as row, write_folder
 
 NAMES = ("a.wav", "b.wav", "c.wav")
 
 
-def row(name, label="none", start=0.0, end=2.0, **more):
-    found = dict.fromkeys(COLUMNS) | {"file": name, "channel": "all", "label": label}
-    found |= {"start_s": start, "end_s": end, "label_source": "classifier", "p_creak": 0.25}
-    return found | more
-
-
 @pytest.fixture
 def folder(tmp_path):
-    for name in NAMES:
-        (tmp_path / name).write_bytes(b"no sound")
-    return tmp_path
+    return write_folder(tmp_path, NAMES)
 
 
 @pytest.fixture
 def tabled(folder):
-    write_table(folder / "labels.csv", COLUMNS, [row(name) for name in NAMES])
-    return folder
+    return write_folder(folder, NAMES, [row(name) for name in NAMES])
 
 
 def labels_of(folder):

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from collections import deque
 from contextlib import suppress
 from threading import Thread
 from typing import TYPE_CHECKING
+
+from noise.base.progress import LINES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,6 +23,9 @@ _NICE = 10
 
 _PATIENCE = 10.0
 """A command that is told to end writes what it has, which takes no longer [s]."""
+
+_OF = re.compile(r".*: (\d+) of (\d+)")
+"""A line of progress."""
 
 _KEPT = 20
 """Lines of what it said that are kept."""
@@ -51,6 +57,12 @@ class Command:
         """The last line that it said."""
         return self._said[-1] if self._said else ""
 
+    @property
+    def progress(self) -> tuple[int, int]:
+        """What is done and how much there is, of what it does now [-]; 0 of 0 where unknown."""
+        found = _OF.fullmatch(self.message)
+        return (int(found[1]), int(found[2])) if found else (0, 0)
+
     def start(self, arguments: Sequence[str]) -> None:
         """Begin; nothing happens where it runs."""
         if self.running:
@@ -65,6 +77,7 @@ class Command:
             text=True,
             encoding="utf-8",
             errors="replace",
+            env={**os.environ, LINES: "1"},
         )
         if hasattr(os, "setpriority"):
             with suppress(OSError):  # it has ended already
@@ -75,14 +88,16 @@ class Command:
 
     def stop(self) -> None:
         """Tell it to end, and wait until it has."""
-        process = self._process
-        if process is None or process.poll() is not None:
+        process, watcher = self._process, self._watcher
+        if process is None or watcher is None:
             return
-        process.terminate()
-        try:
-            process.wait(_PATIENCE)
-        except subprocess.TimeoutExpired:
-            process.kill()
+        if process.poll() is None:
+            process.terminate()
+            try:
+                process.wait(_PATIENCE)
+            except subprocess.TimeoutExpired:
+                process.kill()
+        watcher.join(_PATIENCE)
 
     def _watch(self, process: subprocess.Popen[str]) -> None:
         assert process.stderr is not None

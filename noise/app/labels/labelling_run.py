@@ -24,19 +24,23 @@ class LabellingRun:
     labels : Labels
         Where what it does arrives.
     opened : Opened
+    classifier : Path, optional
+        That labels; by default the one that is shipped.
     """
 
-    def __init__(self, labels: Labels, opened: Opened) -> None:
+    def __init__(self, labels: Labels, opened: Opened, classifier: Path | None) -> None:
         self._labels = labels
         self._opened = opened
+        self._classifier = classifier
         self._command = Command(lambda _: labels.ended())
 
     def start(self, classifier: Path | None = None) -> None:
-        """Begin, or go on; nothing happens where it runs."""
+        """Begin, or go on, from now on with another classifier; nothing happens where it runs."""
         if self._command.running:
             return
-        self._labels.follow(Labelling(classifier))
-        chosen = [] if classifier is None else ["--classifier", str(classifier)]
+        self._classifier = classifier or self._classifier
+        self._labels.follow(Labelling(self._classifier))
+        chosen = [] if self._classifier is None else ["--classifier", str(self._classifier)]
         paths = [str(path.absolute()) for path in self._opened.sources]
         self._command.start(["label", "--out", str(self._labels.path), *chosen, "--", *paths])
 
@@ -52,5 +56,6 @@ class LabellingRun:
             "done": done,
             "total": len(self._opened.jobs),
             "running": self._command.running,
+            "classifier": None if self._classifier is None else self._classifier.name,
             "message": self._command.message if failed else "",
         }

@@ -12,6 +12,7 @@ from noise.app.labels.labelling_run import LabellingRun
 from noise.app.labels.said import read_said
 from noise.app.labels.store import Labels
 from noise.app.labels.summary import plain
+from noise.app.labels.training_run import TrainingRun, own_classifier
 from noise.app.requests import body
 from noise.labels.labelling import Labelling
 
@@ -29,9 +30,13 @@ def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     if opened.table is None:
         return [Route("/api/recordings", _nothing)]
-    labels = Labels(opened.jobs, opened.table, Labelling())
-    run = LabellingRun(labels, opened)
+    learned = own_classifier(opened.table)
+    classifier = learned if learned.is_file() else None
+    labels = Labels(opened.jobs, opened.table, Labelling(classifier))
+    run = LabellingRun(labels, opened, classifier)
     opened.leaving.callback(run.stop)
+    training = TrainingRun(labels, run, opened)
+    opened.leaving.callback(training.stop)
 
     def recordings(request: Request) -> Response:
         shown = labels.summaries()
@@ -57,6 +62,13 @@ def routes(opened: Opened) -> list[BaseRoute]:
         run.start()
         return JSONResponse(run.state(0))
 
+    def trained(_: Request, __: object) -> Response:
+        training.start()
+        return JSONResponse(training.state())
+
+    def learning(_: Request) -> Response:
+        return JSONResponse(training.state())
+
     def _segments(index: int, rows: list[dict[str, object]]) -> dict[str, object]:
         channels = list(dict.fromkeys(str(row["channel"]) for row in rows if row["channel"]))
         return {
@@ -71,10 +83,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/recordings/{id:int}/segments", segments, methods=["GET"]),
         Route("/api/recordings/{id:int}/segments", body(corrected), methods=["POST"]),
         Route("/api/undo", body(undone), methods=["POST"]),
+        Route("/api/train", learning, methods=["GET"]),
+        Route("/api/train", body(trained), methods=["POST"]),
         Route("/api/label", body(labelled), methods=["POST"]),
     ]
 
 
 def _nothing(request: Request) -> Response:
-    state = {"done": 0, "total": 0, "running": False, "message": ""}
+    state = {"done": 0, "total": 0, "running": False, "message": "", "classifier": None}
     return JSONResponse({**read_asked(request.query_params).answer([]), "state": state})

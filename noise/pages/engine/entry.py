@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     Row = Mapping[str, object]
 
 __all__ = [
-    "RATE", "Entry", "Part", "label_counts", "labels_in", "labels_sentence", "naming_row", "stretch_start",
+    "RATE", "Entry", "Part", "label_counts", "labels_in", "labels_sentence",
+    "naming_row", "stretch_start",
 ]  # fmt: skip
 
 RATE = 48000
