@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     Shown = dict[str, object]
 
-__all__ = ["Asked", "read_asked"]
+__all__ = ["Asked", "read_asked", "whole_number"]
 
 _ORDERS = {
     "name": "name",

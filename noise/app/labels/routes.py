@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from starlette.responses import JSONResponse
 from starlette.routing import Route
 
-from noise.app.labels.asked import read_asked
+from noise.app.labels.asked import read_asked, whole_number
 from noise.app.labels.labelling_run import LabellingRun
+from noise.app.labels.next_check import NextCheck
 from noise.app.labels.said import read_said
 from noise.app.labels.store import Labels
 from noise.app.labels.summary import plain
@@ -35,6 +36,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
     labels = Labels(opened.jobs, opened.table, Labelling(classifier))
     run = LabellingRun(labels, opened, classifier)
     opened.leaving.callback(run.stop)
+    check = NextCheck()
     training = TrainingRun(labels, run, opened)
     opened.leaving.callback(training.stop)
 
@@ -62,6 +64,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
         run.start()
         return JSONResponse(run.state(0))
 
+    def following(request: Request) -> Response:
+        query = request.query_params
+        most = len(opened.jobs) - 1
+        after = whole_number(query, "after", 0, most) if query.get("after") else None
+        return JSONResponse(check.next(labels.all_rows(), after))
+
     def trained(_: Request, __: object) -> Response:
         training.start()
         return JSONResponse(training.state())
@@ -83,6 +91,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/recordings/{id:int}/segments", segments, methods=["GET"]),
         Route("/api/recordings/{id:int}/segments", body(corrected), methods=["POST"]),
         Route("/api/undo", body(undone), methods=["POST"]),
+        Route("/api/next", following),
         Route("/api/train", learning, methods=["GET"]),
         Route("/api/train", body(trained), methods=["POST"]),
         Route("/api/label", body(labelled), methods=["POST"]),

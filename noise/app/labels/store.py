@@ -106,6 +106,12 @@ class Labels:
         with self._lock:
             return list(self._rows[index])
 
+    def all_rows(self) -> list[list[Row]]:
+        """Return the rows of all recordings, in order."""
+        with self._lock:
+            self.refresh()
+            return list(self._rows)
+
     def correct(self, index: int, said: Sequence[Said]) -> list[Row]:
         """Put what a person says in place of a recording's segments, and write the table.
 

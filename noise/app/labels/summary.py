@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from noise.base.label_names import LABELS
+from noise.app.labels.next_check import doubt
 from noise.labels.table import HUMAN
 from noise.pages.engine.entry import labels_in, naming_row
 
@@ -14,9 +14,8 @@ if TYPE_CHECKING:
 
     Row = dict[str, object]
 
-__all__ = ["plain", "summary", "unsureness"]
+__all__ = ["plain", "summary"]
 
-_PROBABILITIES = tuple(f"p_{label}" for label in LABELS)
 _SUPPORT = "support_stiffness"
 
 
@@ -40,27 +39,10 @@ def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
         "frequency_hz": naming.get("frequency_hz"),
         "level_dba": naming.get("level_dba"),
         "duration_s": max(ends, default=None),  # type: ignore[type-var]
-        "least_sure": max(map(unsureness, rows), default=None),
+        "least_sure": max(map(doubt, rows), default=None),
         "corrected": any(row.get("label_source") == HUMAN for row in rows),
         "error": next((row["error"] for row in rows if row.get("error")), None),
     }
-
-
-def unsureness(row: Row) -> float:
-    """How near the second likeliest label is to the likeliest [ratio]: 0 sure, 1 a toss.
-
-    What a person has said is sure.
-
-    Examples
-    --------
-    >>> unsureness({"p_creak": 0.5, "p_squeal": 0.4, "p_none": 0.1})
-    0.9
-    """
-    if row.get("label_source") == HUMAN:
-        return 0.0
-    found = (row.get(name) for name in _PROBABILITIES)
-    given = sorted((p for p in found if isinstance(p, float)), reverse=True)
-    return round(1.0 - (given[0] - given[1]), 6) if len(given) > 1 else 0.0
 
 
 def plain(rows: Sequence[Row]) -> list[Row]:
