@@ -1,4 +1,4 @@
-"""Which recording is checked next: the one likely wrong, and unlike those that were asked before."""
+"""Which recording is checked next: one that is likely wrong, and unlike those asked before."""
 
 from __future__ import annotations
 
