@@ -13,7 +13,7 @@ from noise.pages.engine.spectrogram import (
     LOWEST,
     RANGE,
     TICKS,
-    line_levels,
+    clip_levels,
     picture,
     top,
 )
@@ -121,7 +121,7 @@ def draw_entries(
     for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
                                         (False, 1.0, "dBFS")):  # fmt: skip
         levels = {
-            key: line_levels(clip.samples, reference)
+            key: clip_levels(clip.samples, reference)
             for key, clip in clips.items()
             if entries[key].calibrated == calibrated
         }
