@@ -31,6 +31,10 @@ _MOST_FRAMES = 16
 _FINEST = 8
 """Zero padding of the one frame in which a line is looked for [ratio]."""
 
+_LOBE = 5 * _FINEST // 2
+"""Within which nothing is stronger than a line: 2.5 lines of the frame, a side lobe of a Hann
+window being nearer to a stronger one [lines of the padded frame]."""
+
 
 @dataclass(frozen=True)
 class Grid:
@@ -120,8 +124,9 @@ def line_levels(
     for column in range(0, grid.width, columns):
         at = starts[column * each : (column + columns) * each]
         part = _part(read, n, int(at[0]), int(at[-1]) + grid.length)
-        frames = np.lib.stride_tricks.sliding_window_view(part, grid.length)[at - at[0]] * window
-        lines = fft.rfft(frames, padded, axis=1)
+        frames = np.lib.stride_tricks.sliding_window_view(part, grid.length)[at - at[0]]
+        # An offset is nothing to hear, and would leak.
+        lines = fft.rfft((frames - frames.mean(axis=1, keepdims=True)) * window, padded, axis=1)
         strength = (lines.real**2 + lines.imag**2).reshape(-1, each, bins.size).max(axis=1)
         # One more, for a row that ends with the last line.
         strength = np.pad(strength, ((0, 0), (0, 1)))
@@ -171,7 +176,7 @@ def strongest_line(
     Returns
     -------
     Line or None
-        None where no line stands between them, but a slope.
+        None where no line stands between them, but a slope or the side lobe of one.
 
     Examples
     --------
@@ -185,15 +190,18 @@ def strongest_line(
 
     padded = _FINEST * length
     start = middle - length // 2
-    frame = _part(read, n, start, start + length) * _window(length)
-    levels = _levels(np.abs(fft.rfft(frame, padded)).astype(np.float64) ** 2, reference)
+    frame = _part(read, n, start, start + length)
+    levels = _levels(
+        np.abs(fft.rfft((frame - frame.mean()) * _window(length), padded)).astype(np.float64) ** 2,
+        reference,
+    )
     first = max(1, math.ceil(low * padded / rate))
     last = min(levels.size - 1, math.floor(high * padded / rate) + 1)
     if last - first < 1:
         return None
     at = first + int(levels[first:last].argmax())
     before, top, after = levels[at - 1 : at + 2].tolist()
-    if top <= _SILENCE or before > top or after > top:
+    if top <= _SILENCE or levels[max(0, at - _LOBE) : at + _LOBE + 1].max() > top:
         return None
     bend = before - 2.0 * top + after
     shift = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
@@ -203,7 +211,7 @@ def strongest_line(
 def _window(length: int) -> NDArray[np.float32]:
     """Under which the square of a line's magnitude is the mean square of its tone."""
     window = np.hanning(length)
-    return (window * (math.sqrt(2.0) / window.sum())).astype(np.float32)
+    return np.asarray(window * (math.sqrt(2.0) / window.sum()), dtype=np.float32)
 
 
 def _part(

@@ -33,7 +33,10 @@ _ROUND = 5.0
 """The level of the highest byte is a multiple of it [dB]."""
 
 _WINDOW = (0.01, 0.04)
-"""Shortest and longest frame, where none is asked for: twice a column in between [s]."""
+"""Shortest and longest frame, where none is asked for [s]."""
+
+_COLUMNS = 8.0
+"""That a frame covers in between [-]."""
 
 _SHORTEST, _LONGEST = 64, 1 << 15
 """Of frames [samples]."""
@@ -118,6 +121,6 @@ def _frequencies(track: Track, query: Query) -> tuple[float, float]:
 def _frame(track: Track, query: Query, column: float) -> int:
     """Return the power of two that is nearest to what is asked for [samples]."""
     shortest, longest = (seconds * track.rate for seconds in _WINDOW)
-    found = min(max(2.0 * column, shortest), longest)
+    found = min(max(_COLUMNS * column, shortest), longest)
     wanted = number(query, "window", found / track.rate, 1e-6, 1e3) * track.rate
     return 1 << round(math.log2(min(max(wanted, _SHORTEST), _LONGEST)))
