@@ -229,8 +229,8 @@ export class RecordingPage {
     const { parts } = this, top = 0.5 * this.sound.rate;
     const band = low || high ? { low: low || 10, high: high || top } : null;
     if (band && band.low >= band.high) return told("A band begins below where it ends.");
-    parts.low.value = band ? Math.round(band.low) : "";
-    parts.high.value = band ? Math.round(band.high) : "";
+    parts.low.value = low ? Math.round(low) : "";
+    parts.high.value = high ? Math.round(high) : "";
     this.player.setBand(band);
   }
 

@@ -28,6 +28,7 @@ export class Spectrogram {
     this.whole = this.#picture(found);
     this.top = found.top;
     this.draw();
+    this.plot.dataset.drawn = id;
   }
 
   async #part(start, end) {

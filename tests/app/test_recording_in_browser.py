@@ -1,0 +1,337 @@
+"""One recording in the app: what is seen, read, heard and corrected in a browser."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from models.recording import Channel, Recording
+from noise.base.tables import write_table
+from noise.labels.labelling import COLUMNS
+from noise.labels.table import read_label_table
+from noise.recordings.writing import write_recording
+from tests.helpers.browser import TAP, chromium
+from tests.helpers.labelled_folder import made_row
+from tests.helpers.opened_app import opened_app
+
+RATE = 48000
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+TONE, HALF, ODD = "tone.wav", "half.wav", "<img src=x onerror=alert(1)>.wav"
+
+
+def write_sounds(folder):
+    t = np.arange(2 * RATE) / RATE
+    tone = np.sqrt(2.0) * np.sin(2 * np.pi * 1000 * t)
+    for name, samples in {TONE: tone, HALF: 0.5 * tone, ODD: 0.1 * tone}.items():
+        sound = Recording(samples[None], RATE, (Channel("pressure"),), calibrated=True)
+        write_recording(folder / name, sound)
+    sure = {"p_creak": 0.02, "p_squawk": 0.03, "p_squeal": 0.9, "p_none": 0.04, "p_unknown": 0.01}
+    unsure = {**sure, "p_squeal": 0.4, "p_none": 0.54}
+    rows = [
+        made_row(TONE, "none", 0.0, 0.5, p_none=0.97),
+        made_row(TONE, "squeal", 0.5, 1.5, frequency_hz=1000.0, level_dba=93.98, **sure),
+        made_row(TONE, "none", 1.5, 2.0, p_none=0.97),
+        made_row(HALF, "squeal", 0.0, 2.0, **unsure),
+        made_row(ODD, "unknown", 0.0, 2.0, **sure),
+    ]
+    write_table(folder / "labels.csv", COLUMNS, rows)
+    return folder
+
+
+class OpenPage:
+    """The app in a browser, with one recording open."""
+
+    def __init__(self, browser, app, width=1280):
+        self.complaints = []
+        self.page = browser.new_page(viewport={"width": width, "height": 900})
+        self.page.on("console", lambda message: self.complaints.append(message.text))
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
+        self.page.add_init_script(TAP)
+        self.page.goto(app.address)
+
+    def open(self, name):
+        self.page.get_by_role("option").filter(has_text=name).first.click()
+        self.page.get_by_role("heading", name=name).wait_for()
+        self.page.locator(".plot[data-drawn]").wait_for()
+        self.page.locator(".strip .segment").first.wait_for()
+        self.page.locator(".recording").get_by_text("strongest third octave").wait_for()
+        return self
+
+    def at(self, time, share=0.5, lane=".screen"):
+        box = self.page.locator(lane).bounding_box()
+        return box["x"] + box["width"] * time / 2.0, box["y"] + share * box["height"]
+
+    def segments(self):
+        return [one.get_attribute("aria-label") for one in self.page.locator(".strip button").all()]
+
+    def press(self, *keys):
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def saved(self):
+        self.page.locator(".saved").filter(has_text="saved").wait_for()
+
+    def heard(self):
+        return np.array(self.page.evaluate("window.heard"))
+
+    def close(self):
+        assert self.complaints == []
+        self.page.close()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def shown(browser, tmp_path_factory):
+    with opened_app(write_sounds(tmp_path_factory.mktemp("shown"))) as app:
+        yield app
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return write_sounds(tmp_path)
+
+
+@pytest.fixture
+def app(browser, folder):
+    with opened_app(folder) as running:
+        yield running
+
+
+def in_table(folder, name=TONE):
+    rows = read_label_table(folder / "labels.csv")
+    return [
+        (row["start_s"], row["end_s"], row["label"], row["label_source"])
+        for row in rows
+        if row["file"] == name
+    ]
+
+
+def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, shown):
+    opened = OpenPage(browser, shown).open(TONE)
+    share = np.log(20e3 / 1010.0) / np.log(400.0)
+    opened.page.mouse.move(*opened.at(1.0, share))
+    readout = opened.page.locator(".readout[data-line-hz]")
+    readout.wait_for()
+    read = {
+        name: float(value)
+        for name, value in readout.evaluate("(one) => ({...one.dataset})").items()
+    }
+    assert read["time"] == pytest.approx(1.0, abs=0.005)
+    assert read["frequency"] == pytest.approx(1010.0, rel=0.02)
+    assert read["lineHz"] == pytest.approx(1000.0, abs=0.5)
+    assert read["lineDb"] == pytest.approx(93.98, abs=0.1)
+    assert "dB re 20 µPa" in readout.text_content()
+    opened.page.mouse.move(*opened.at(1.0, 0.5, ".course"))
+    assert opened.page.locator(".readout.level").text_content() == "94.0 dB(A) re 20 µPa, Fast"
+    levels = opened.page.evaluate(
+        """([share]) => {
+          const image = document.querySelector(".plot"), pen = image.getContext("2d");
+          const pixel = (y) => pen.getImageData(image.width / 2, y * image.height, 1, 1).data;
+          return [share, 0.1].map((y) => [...pixel(y).slice(0, 3)]);
+        }""",
+        [np.log(20e3 / 1000.0) / np.log(400.0)],
+    )
+    assert max(levels[0]) < 60  # dark where the tone is
+    assert min(levels[1]) > 240  # white where nothing is
+    opened.close()
+
+
+def test_zoom_by_wheel_keeps_what_is_under_the_pointer(browser, shown):
+    opened = OpenPage(browser, shown).open(TONE)
+    x, y = opened.at(1.5)
+    border = opened.page.locator(".handle").nth(1)
+    opened.page.mouse.move(x, y)
+    for _ in range(3):
+        opened.page.mouse.wheel(0, -400)
+    opened.page.wait_for_function("() => document.querySelector('.handle').hidden")
+    box = border.bounding_box()
+    assert box["x"] + box["width"] / 2 == pytest.approx(x, abs=2)
+    opened.press("0")
+    opened.page.wait_for_function("() => !document.querySelector('.handle').hidden")
+    opened.close()
+
+
+def test_what_the_classifier_gives_less_than_a_half_is_said(browser, shown):
+    opened = OpenPage(browser, shown).open(HALF)
+    assert opened.page.get_by_text("less than a half").is_visible()
+    assert opened.page.locator(".shares dd .number").all_text_contents()[2:4] == ["0.40", "0.54"]
+    opened.open(TONE)
+    opened.press("]")
+    opened.page.get_by_text("By the classifier.", exact=True).wait_for()
+    told = opened.page.locator(".chosen").text_content()
+    assert told == "squeal 0.50\N{EN DASH}1.50 s, 1000 Hz, 94.0 dB(A)"
+    opened.close()
+
+
+def test_names_are_text(browser, shown):
+    opened = OpenPage(browser, shown).open(ODD)
+    assert opened.page.get_by_role("heading", name=ODD).is_visible()
+    opened.press("b")
+    assert f"B is {ODD}" in opened.page.locator(".gains").text_content()
+    opened.close()
+
+
+def test_corrections_by_keys_are_in_the_table_when_the_server_is_killed(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    opened.press("]", "1")
+    opened.saved()
+    app.kill()
+    assert in_table(folder) == [
+        (0.0, 0.5, "none", "classifier"),
+        (0.5, 1.5, "creak", "human"),
+        (1.5, 2.0, "none", "classifier"),
+    ]
+    opened.press("2")  # it goes back, and says so
+    opened.page.locator(".saved").filter(has_text="not saved").wait_for()
+    assert opened.segments()[1] == "creak, 0.50 to 1.50 s, by a person"
+    opened.page.close()
+
+
+def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    before = in_table(folder)
+    opened.page.mouse.move(*opened.at(1.0))
+    opened.press("s")
+    opened.page.locator(".strip button").nth(3).wait_for()
+    opened.saved()
+    assert len(in_table(folder)) == 4
+    assert in_table(folder)[2][0] == pytest.approx(1.0, abs=0.005)
+    opened.press("Delete")
+    opened.page.wait_for_function("() => document.querySelectorAll('.strip button').length === 3")
+    opened.page.locator(".handle").first.focus()
+    for _ in range(3):
+        opened.press("ArrowRight")
+    opened.page.wait_for_function(
+        "() => document.querySelector('.handle').getAttribute('aria-valuenow') === '0.530'"
+    )
+    opened.page.locator(".saved").filter(has_text="saved ").wait_for()
+    x, y = opened.at(1.5)
+    opened.page.mouse.move(x, y)
+    opened.page.mouse.down()
+    opened.page.mouse.move(*opened.at(1.7), steps=4)
+    opened.page.mouse.up()
+    opened.page.wait_for_function(
+        "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') > 1.65"
+    )
+    opened.page.wait_for_function(
+        "() => document.querySelector('.saved').textContent.startsWith('saved')"
+    )
+    assert [row[0] for row in in_table(folder)] == pytest.approx([0.0, 0.53, 1.7], abs=0.004)
+    for _ in range(10):
+        if in_table(folder) == before:
+            break
+        opened.press("u")
+        opened.page.locator(".saved").filter(has_text="undone").wait_for()
+        opened.page.wait_for_timeout(100)
+    assert in_table(folder) == before
+    opened.close()
+
+
+def tone_of(samples):
+    """Amplitude and phase of 1 kHz, by sample number."""
+    at = np.exp(-2j * np.pi * 1000 * np.arange(samples.size) / RATE)
+    return 2.0 * np.mean(samples * at)
+
+
+def test_a_and_b_run_in_step_at_one_gain_and_at_equal_loudness(browser, shown):
+    opened = OpenPage(browser, shown).open(HALF)
+    opened.press("b")
+    opened.open(TONE)
+    opened.press("[")
+    opened.page.get_by_role("button", name="Loop").click()  # off: all of it
+    opened.page.evaluate("document.activeElement.blur()")
+    opened.press("Home")
+    opened.page.evaluate("window.heard.length = 0")
+    opened.press(" ")
+    opened.page.wait_for_function("() => window.heard.length > 24000")
+    change = opened.page.evaluate("window.heard.length")
+    opened.press("x")
+    opened.page.wait_for_function("(n) => window.heard.length > n + 24000", arg=change)
+    opened.press(" ")
+    heard = opened.heard()
+    starts = int(np.flatnonzero(np.abs(heard) > 1e-4)[0]) + 2400
+    one, other = heard.copy(), heard.copy()
+    one[:starts] = one[starts + 9600 :] = 0.0
+    other[: change + 9600] = other[change + 19200 :] = 0.0
+    a, b = tone_of(one), tone_of(other)
+    assert abs(b) / abs(a) == pytest.approx(0.5, rel=1e-3)
+    assert np.angle(b / a) == pytest.approx(0.0, abs=2 * np.pi * 1000 / RATE / 20)
+    words = opened.page.locator(".gains").text_content()
+    assert "full scale = 2 Pa (100 dB peak re 20 µPa)" in words
+    assert np.abs(heard).max() == pytest.approx(np.sqrt(2.0) / 2.0, rel=1e-2)
+    opened.press("e", " ")
+    opened.page.locator(".gains").filter(has_text="Equal loudness, -23 LUFS").wait_for()
+    opened.page.evaluate("window.heard.length = 0")
+    opened.page.wait_for_function("() => window.heard.length > 24000")
+    softer = opened.heard()[12000:16800]
+    opened.press("x")
+    opened.page.evaluate("window.heard.length = 0")
+    opened.page.wait_for_function("() => window.heard.length > 24000")
+    louder = opened.heard()[12000:16800]
+    assert abs(tone_of(softer)) == pytest.approx(abs(tone_of(louder)), rel=0.01)
+    opened.close()
+
+
+def test_a_band_is_heard_and_nothing_beside_it(browser, shown):
+    opened = OpenPage(browser, shown).open(TONE)
+    opened.page.get_by_label("Hear from [Hz]").fill("2000")
+    opened.page.get_by_label("Hear up to [Hz]").fill("4000")
+    opened.press("Tab")
+    opened.page.evaluate("document.activeElement.blur(); window.heard.length = 0")
+    opened.press("]", " ")
+    opened.page.wait_for_function("() => window.heard.length > 30000")
+    filtered = np.abs(opened.heard()[12000:24000]).max()
+    opened.press(" ")
+    assert filtered == pytest.approx(np.sqrt(2.0) / 2.0 / 2.0**4, rel=0.2)  # 24 dB an octave
+    assert "heard from 2000 to 4000 Hz" in opened.page.locator(".gains").text_content()
+    opened.close()
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, shown, width):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not there")
+    opened = OpenPage(browser, shown, width).open(TONE)
+    for key in ("h", "?"):
+        opened.press(key)
+        tags = {"runOnly": {"type": "tag", "values": RULES}}
+        found = axe.Axe().run(opened.page, options=tags).response
+        wrong = [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
+        assert wrong == []
+    assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+    opened.close()
+
+
+@pytest.mark.slow
+def test_the_spectrogram_of_a_minute_is_on_screen_within_half_a_second(browser, tmp_path):
+    rng = np.random.default_rng(1)
+    for name in "abcde":
+        noise = 0.1 * rng.standard_normal((1, 60 * RATE))
+        sound = Recording(noise, RATE, (Channel("pressure"),), calibrated=True)
+        write_recording(tmp_path / f"{name}.wav", sound)
+    rows = [made_row(f"{name}.wav", "none", 0.0, 60.0) for name in "abcde"]
+    write_table(tmp_path / "labels.csv", COLUMNS, rows)
+    with opened_app(tmp_path) as app:
+        opened = OpenPage(browser, app)
+        taken = []
+        for number in range(5):
+            opened.page.get_by_role("option").nth(number).wait_for()
+            taken.append(
+                opened.page.evaluate(
+                    """async (number) => {
+                      const began = performance.now();
+                      document.querySelectorAll("[role=option]")[number].click();
+                      while (document.querySelector(".plot").dataset.drawn !== `${number}`)
+                        await new Promise(requestAnimationFrame);
+                      return (performance.now() - began) / 1000;
+                    }""",
+                    number,
+                )
+            )
+        opened.close()
+    assert np.median(taken) <= 0.5, taken
