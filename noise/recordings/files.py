@@ -19,6 +19,7 @@ import numpy as np
 from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import Recording
+from noise.recordings.folders import files_below
 from noise.recordings.meaning import check_finite, chosen_rows, describe
 
 if TYPE_CHECKING:
@@ -187,7 +188,7 @@ def find_recordings(
     ----------
     paths : path-like or iterable of path-like
         A file stands for itself, whatever its ending. In a folder hidden files and folders and
-        unknown endings are passed over.
+        unknown endings are passed over, and links to folders are followed.
 
     Returns
     -------
@@ -215,7 +216,11 @@ def find_recordings(
     for path in map(Path, named):
         try:
             if path.is_dir():
-                found += sorted(_inside(path), key=lambda entry: entry[1])
+                found += [
+                    (file, name)
+                    for file, name in files_below(path)
+                    if file.suffix.lower() in READERS
+                ]
             elif path.exists():
                 found.append((path, path.name))
             else:
@@ -223,14 +228,6 @@ def find_recordings(
         except OSError as error:
             raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from error
     return found
-
-
-def _inside(folder: Path) -> Iterable[tuple[Path, str]]:
-    for path in folder.rglob("*"):
-        relative = path.relative_to(folder)
-        hidden = any(part.startswith(".") for part in relative.parts)
-        if not hidden and path.suffix.lower() in READERS and path.is_file():
-            yield path, relative.as_posix()
 
 
 def read_raw(path: Path) -> RawSamples:

@@ -18,6 +18,7 @@ from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
 from noise.recordings.files import READERS
+from noise.recordings.folders import files_below
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -178,10 +179,7 @@ def _is_sidecar(path: Path) -> bool:
 
 
 def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
-    for path in sorted(folder.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-        if hidden or not path.is_file():
-            continue
+    for path, _ in sorted(files_below(folder)):
         if path.name == DIAGNOSIS:
             yield "diagnosis", path
         elif path.suffix.lower() in TABLE_ENDINGS:
@@ -214,8 +212,9 @@ def _originals(found: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
     """Leave out ``audio/run07.wav`` beside ``recordings/run07.wav``: the same made to be heard."""
     there = {path.resolve() for path, _ in found}
     for path, name in found:
-        original = path.parent.with_name("recordings") / path.name
-        if not (path.parent.name == "audio" and original.resolve() in there):
+        folder = path.parent.resolve()
+        original = folder.parent / "recordings" / path.name
+        if not (folder.name == "audio" and original.resolve() in there):
             yield path, name
 
 
