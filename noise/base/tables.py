@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError, not_installed
+from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
 from noise.base.atomic import atomic
 
 if TYPE_CHECKING:
@@ -30,6 +31,9 @@ __all__ = ["TABLE_ENDINGS", "check_table_path", "plain_cell", "read_table", "wri
 
 TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
+
+_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
+"""Cells that a Parquet file may hold: so many, and so many a byte."""
 
 _SUPPORT, _FIXED = "support_stiffness", "fixed"
 """How the columns begin whose infinity is the bolted clamp, and what it is called."""
@@ -149,22 +153,26 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     (['file', 'label'], [{'file': 'run07.wav', 'label': 'creak'}])
     """
     check_table_path(path)
-    try:
+    with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
         if path.suffix.lower() == ".parquet":
-            from pyarrow import parquet
-
-            table = parquet.read_table(path)
-            return list(table.column_names), table.to_pylist()
+            return _read_parquet(path)
         with path.open(encoding="utf-8-sig", newline="") as file:
             if path.suffix.lower() == ".jsonl":
-                return [], [json.loads(line) for line in file if line.strip()]
+                return [], [parse_json(line) for line in file if line.strip()]
             reader = csv.DictReader(file)
             rows = [{str(column): value for column, value in row.items()} for row in reader]
             return list(reader.fieldnames or ()), rows
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, csv.Error) as error:
-        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
+
+
+def _read_parquet(path: Path) -> tuple[list[str], list[dict[str, object]]]:
+    from pyarrow import parquet
+
+    with parquet.ParquetFile(path) as file:
+        announced = file.metadata.num_rows * file.metadata.num_columns
+        if announced > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
+            raise ExcessError(f"announces {announced} cells, more than a file of its size holds")
+        table = file.read()
+    return list(table.column_names), table.to_pylist()
 
 
 def plain_cell(value: object) -> Cell:

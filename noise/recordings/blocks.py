@@ -9,7 +9,7 @@ of measurement systems are held by their own libraries: those are read whole.
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -19,8 +19,10 @@ import numpy as np
 import soundfile
 
 from models.errors import RecordingError
+from models.foreign_file import refusing
 from models.recording import Channel, Recording
 from noise.recordings.files import MIN_SAMPLES, READERS, RawSamples
+from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE
 from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes
 from noise.recordings.meaning import check_finite, describe
 
@@ -150,24 +152,32 @@ def open_blocks(
     True
     """
     path = Path(path)
+    with ExitStack() as stack:
+        with refusing(str(path), "recording", RecordingError):
+            blocks = _open(path, full_scale, stack)
+        yield blocks
+
+
+def _open(
+    path: Path, full_scale: PascalPerFullScale | None, stack: ExitStack
+) -> RecordingBlocks | None:
     sound = _opened(path)
     if sound is None:
-        yield None
-        return
-    with sound:
-        raw = RawSamples(
-            samples=np.empty((int(sound.channels), 0)),
-            rate=float(sound.samplerate),
-            fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
-            description=bext_description(path),
-            comment=sound.comment,
-        )
-        meaning = describe(path, raw, full_scale)
-        file = _File(path, sound, meaning.channels)
-        yield RecordingBlocks(
-            raw.rate, meaning.channels, meaning.condition, meaning.calibrated, path.name,
-            int(sound.frames), file.read,
-        )  # fmt: skip
+        return None
+    stack.enter_context(sound)
+    raw = RawSamples(
+        samples=np.empty((int(sound.channels), 0)),
+        rate=float(sound.samplerate),
+        fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
+        description=bext_description(path),
+        comment=sound.comment,
+    )
+    meaning = describe(path, raw, full_scale)
+    file = _File(path, sound, meaning.channels)
+    return RecordingBlocks(
+        raw.rate, meaning.channels, meaning.condition, meaning.calibrated, path.name,
+        int(sound.frames), file.read,
+    )  # fmt: skip
 
 
 def _opened(path: Path) -> Any:
@@ -177,12 +187,13 @@ def _opened(path: Path) -> Any:
             "noise.recordings.formats.sound_file:"
         ):
             return None
-        if missing_bytes(path):
+        if not path.is_file() or missing_bytes(path):
             return None
         sound = soundfile.SoundFile(path)
         n = int(sound.frames)
         size = 8 * n * int(sound.channels)
         possible = MIN_SAMPLES <= n <= DENSEST * path.stat().st_size
+        possible &= LOWEST_RATE <= sound.samplerate <= HIGHEST_RATE
         if size >= _LARGE and possible and sound.format != "MP3":
             return sound
         sound.close()

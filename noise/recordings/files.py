@@ -18,8 +18,10 @@ import numpy as np
 
 from models.condition import Condition
 from models.errors import ParameterError, RecordingError
+from models.foreign_file import reading, refusing
 from models.recording import Recording
 from noise.recordings.folders import files_below
+from noise.recordings.formats.sampling import check_rate
 from noise.recordings.meaning import check_finite, chosen_rows, describe
 
 if TYPE_CHECKING:
@@ -143,6 +145,15 @@ def read_recording(
     ('run07.wav', 30.0, 5.0)
     """
     path = Path(path)
+    with refusing(str(path), "recording", RecordingError):
+        return _read_recording(path, full_scale, calibrations)
+
+
+def _read_recording(
+    path: Path,
+    full_scale: PascalPerFullScale | None,
+    calibrations: Mapping[str, Calibration] | None,
+) -> Recording:
     raw = read_raw(path)
     meaning = describe(path, raw, full_scale, calibrations)
     n_samples = raw.samples.shape[1]
@@ -238,18 +249,7 @@ def read_raw(path: Path) -> RawSamples:
     RecordingError
         It cannot be read.
     """
-    return chosen_rows(path, _read_raw(path))
-
-
-def _read_raw(path: Path) -> RawSamples:
-    """Read a file with the reader of its ending."""
-    try:
-        if path.is_dir():
-            raise RecordingError(f"{path}: is a folder, not a recording")
-        if not path.exists():
-            raise RecordingError(f"{path}: there is no such file")
-        if not path.is_file():
-            raise RecordingError(f"{path}: is no regular file")
+    with reading(path, "recording", error=RecordingError):
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: is empty (0 bytes)")
         if path.suffix.lower() not in READERS:
@@ -257,8 +257,6 @@ def _read_raw(path: Path) -> RawSamples:
             raise RecordingError(f"{path}: has no ending of a recording; known are {known}")
         module, _, function = READERS[path.suffix.lower()].partition(":")
         reader: Callable[[Path], RawSamples] = getattr(import_module(module), function)
-        return reader(path)
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from error
-    except MemoryError as error:
-        raise RecordingError(f"{path}: needs more memory than there is") from error
+        raw = reader(path)
+        check_rate(raw.rate, str(path))
+        return chosen_rows(path, raw)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
+from models.foreign_file import parse_json, reading
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
@@ -31,6 +32,9 @@ DIAGNOSIS = "diagnosis.json"
 
 _MOST_FOLDERS = 8
 """That a name is lengthened by, to tell it from another."""
+
+_LONGEST_LINE = 1 << 20
+"""Of a table in JSON Lines, as far as it is read to know its columns [letters]."""
 
 _OF_A_SCREEN = {"design", "speed_rad_s", "interference_mm", "label"}
 _OF_LABELS = {"file", "label"}
@@ -193,18 +197,17 @@ def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
 def _columns(path: Path) -> set[str]:
     """Columns of a table; of none where it is no table or cannot be read."""
     try:
-        if path.suffix.lower() == ".parquet":
-            from pyarrow import parquet
+        with reading(path, "table"):
+            if path.suffix.lower() == ".parquet":
+                from pyarrow import parquet
 
-            return set(parquet.read_schema(path).names)
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            if path.suffix.lower() == ".jsonl":
-                import json
-
-                first = json.loads(file.readline() or "{}")
-                return set(first) if isinstance(first, dict) else set()
-            return set(next(csv.reader(file), ()))
-    except (OSError, ValueError, csv.Error, ImportError):
+                return set(parquet.read_schema(path).names)
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                if path.suffix.lower() == ".jsonl":
+                    first = parse_json(file.readline(_LONGEST_LINE) or "{}")
+                    return set(first) if isinstance(first, dict) else set()
+                return set(next(csv.reader(file), ()))
+    except BushingNoiseError:
         return set()
 
 
