@@ -21,6 +21,7 @@ import soundfile
 from models.errors import RecordingError
 from models.foreign_file import refusing
 from models.recording import Channel, Recording
+from noise.recordings.decimation import decimated
 from noise.recordings.files import MIN_SAMPLES, READERS, RawSamples
 from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE
 from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes
@@ -54,7 +55,7 @@ class RecordingBlocks:
     Parameters
     ----------
     rate : float
-        Sampling rate [Hz].
+        Sampling rate [Hz], at most `noise.recordings.decimation.HIGHEST_WORKED`.
     channels : tuple of Channel
     condition : Condition
     calibrated : bool
@@ -85,15 +86,15 @@ class RecordingBlocks:
         """Return a recording in memory as one of which parts can be had."""
         if isinstance(recording, RecordingBlocks):
             return recording
-        return cls(
-            recording.rate,
-            recording.channels,
-            recording.condition,
-            recording.calibrated,
-            recording.name,
-            recording.samples.shape[1],
+        read, n_samples, rate = decimated(
             lambda first, last: recording.samples[:, first:last],
+            recording.samples.shape[1],
+            recording.rate,
         )
+        return cls(
+            rate, recording.channels, recording.condition, recording.calibrated, recording.name,
+            n_samples, read,
+        )  # fmt: skip
 
     def cut(self, first: int, last: int) -> Recording:
         """Return the part from sample `first` up to `last`."""
@@ -174,10 +175,10 @@ def _open(
     )
     meaning = describe(path, raw, full_scale)
     file = _File(path, sound, meaning.channels)
+    read, n_samples, rate = decimated(file.read, int(sound.frames), raw.rate)
     return RecordingBlocks(
-        raw.rate, meaning.channels, meaning.condition, meaning.calibrated, path.name,
-        int(sound.frames), file.read,
-    )  # fmt: skip
+        rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, read
+    )
 
 
 def _opened(path: Path) -> Any:
