@@ -2,7 +2,9 @@
 
 One value is written alike in all formats: nothing where there is none (an undefined number is
 none, too, and an infinite one), ``true`` and ``false``, and numbers with as many digits as give the
-same number back. In CSV the infinite stiffness of a bolted clamp is the word ``fixed``.
+same number back. In CSV the infinite stiffness of a bolted clamp is the word ``fixed``, and a text
+that a spreadsheet would take for a formula (it begins with ``=``, ``+``, ``-``, ``@``, a tab or a
+carriage return) has an apostrophe before it, which reading takes away again.
 A table appears whole or not at all, and a target that cannot be written is refused before the work
 whose result it is to hold.
 """
@@ -13,6 +15,7 @@ import csv
 import json
 import math
 import numbers
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,6 +37,9 @@ TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
 
 _FEW_CELLS, _MOST_CELLS = 1_000_000, 20
 """Cells that a Parquet file may hold: so many, and so many a byte."""
+
+_FORMULA = re.compile(r"'*[=+\-@\t\r]")
+"""How a text begins that a spreadsheet takes for a formula, or that was kept from being one."""
 
 _SUPPORT, _FIXED = "support_stiffness", "fixed"
 """How the columns begin whose infinity is the bolted clamp, and what it is called."""
@@ -160,7 +166,9 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
             if path.suffix.lower() == ".jsonl":
                 return [], [parse_json(line) for line in file if line.strip()]
             reader = csv.DictReader(file)
-            rows = [{str(column): value for column, value in row.items()} for row in reader]
+            rows = [
+                {str(column): _as_meant(value) for column, value in row.items()} for row in reader
+            ]
             return list(reader.fieldnames or ()), rows
 
 
@@ -210,9 +218,17 @@ def _csv_cell(column: str, value: Cell) -> Cell:
     """Return what stands in a cell of CSV; an infinite number is none, but for the bolted clamp."""
     if isinstance(value, bool):
         return json.dumps(value)
+    if isinstance(value, str) and _FORMULA.match(value):
+        return f"'{value}"
     if isinstance(value, float) and math.isinf(value):
         return _FIXED if value > 0.0 and column.startswith(_SUPPORT) else None
     return value
+
+
+def _as_meant(value: object) -> object:
+    """Take the apostrophe from a cell of CSV that kept it from being a formula."""
+    kept = isinstance(value, str) and value.startswith("'") and _FORMULA.match(value)
+    return value[1:] if isinstance(value, str) and kept else value
 
 
 def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

@@ -24,7 +24,7 @@ from models.recording import Channel, Recording
 from noise.recordings.decimation import decimated
 from noise.recordings.files import MIN_SAMPLES, READERS, RawSamples
 from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE
-from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes
+from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes, open_sound
 from noise.recordings.meaning import check_finite, describe
 
 if TYPE_CHECKING:
@@ -190,7 +190,7 @@ def _opened(path: Path) -> Any:
             return None
         if not path.is_file() or missing_bytes(path):
             return None
-        sound = soundfile.SoundFile(path)
+        sound = open_sound(path)
         n = int(sound.frames)
         size = 8 * n * int(sound.channels)
         possible = MIN_SAMPLES <= n <= DENSEST * path.stat().st_size

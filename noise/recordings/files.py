@@ -20,6 +20,7 @@ from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import reading, refusing
 from models.recording import Recording
+from noise.base.readable import readable
 from noise.recordings.folders import files_below
 from noise.recordings.formats.sampling import check_rate
 from noise.recordings.meaning import check_finite, chosen_rows, describe
@@ -205,7 +206,8 @@ def find_recordings(
     -------
     list of (Path, str)
         Each file with its name relative to the folder named, with forward slashes; the bare name
-        where the file itself was named. Paths in the order given, sorted within a folder.
+        where the file itself was named; what cannot be shown of it as `noise.base.readable` has
+        it. Paths in the order given, sorted within a folder.
 
     Raises
     ------
@@ -228,12 +230,12 @@ def find_recordings(
         try:
             if path.is_dir():
                 found += [
-                    (file, name)
+                    (file, readable(name))
                     for file, name in files_below(path)
                     if file.suffix.lower() in READERS
                 ]
             elif path.exists():
-                found.append((path, path.name))
+                found.append((path, readable(path.name)))
             else:
                 raise ParameterError(f"{path}: there is no such file or folder")
         except OSError as error:

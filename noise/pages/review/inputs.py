@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
 from models.foreign_file import parse_json, reading
+from noise.base.readable import readable
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
@@ -59,7 +60,7 @@ class Refusal:
         >>> Refusal.of(Path("run07.wav"), "run07.wav: is empty").reason
         'is empty'
         """
-        return cls(str(path), str(error).removeprefix(f"{path}: "))
+        return cls(readable(str(path)), readable(str(error).removeprefix(f"{path}: ")))
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ class LabelTable:
         """
         resolved = recording.resolve()
         beside = tuple(r for r in self.rows if self._named(r) == resolved)
-        ending = resolved.as_posix()
+        ending = readable(resolved.as_posix())  # as tables have it
         return beside or tuple(r for r in self.rows if ending.endswith(f"/{r['file']}"))
 
     def _named(self, row: Row) -> Path:
