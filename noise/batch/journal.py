@@ -36,7 +36,10 @@ _FORMAT = 1
 class Journal:
     """What is done of a table; see `open_journal`."""
 
-    def __init__(self, file: FileIO, entries: dict[str, tuple[list[int], Done]]) -> None:
+    def __init__(
+        self, path: Path, file: FileIO, entries: dict[str, tuple[list[int], Done]]
+    ) -> None:
+        self._path = path
         self._file = file
         self._entries = entries
 
@@ -55,8 +58,9 @@ class Journal:
         if identity is None or done.error is not None:
             return
         entry = [_key(job), identity, done.calibrated, done.rows]
-        self._file.write(json.dumps(entry).encode() + b"\n")
-        os.fsync(self._file.fileno())
+        with _writing(self._path):
+            _write(self._file, json.dumps(entry).encode() + b"\n")
+            os.fsync(self._file.fileno())
 
 
 def journal_path(table: Path) -> Path:
@@ -98,19 +102,18 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
     ...     run = Path(folder) / "run07.wav"
     ...     run.touch()
     ...     job, work = Job(0, run, "run07.wav"), Featuring()
+    ...     done = Done([["run07.wav", *[1.5] * (len(work.columns) - 1)]], True)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
-    ...         journal.add(job, file_identity(run), Done([["run07.wav", 1.5]], True))
+    ...         journal.add(job, file_identity(run), done)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
-    ...         journal.find(job)
-    Done(rows=[['run07.wav', 1.5]], calibrated=True, error=None)
+    ...         journal.find(job) == done
+    True
     """
     path = journal_path(table)
     header = json.dumps([_FORMAT, work_identity(work)]).encode() + b"\n"
-    try:
+    with _writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         file = path.open("a+b", buffering=0)
-    except OSError as error:
-        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
     with file:
         _claim(file, table)
         file.seek(0)
@@ -118,12 +121,27 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
         # What follows the last line break was torn off when the process was killed.
         whole = content[: content.rfind(b"\n") + 1]
         if not whole.startswith(header):
-            file.truncate(0)
-            file.write(header)
+            with _writing(path):
+                file.truncate(0)
+                _write(file, header)
             whole = header
         elif len(whole) < len(content):
             file.truncate(len(whole))
-        yield Journal(file, _entries(whole, len(work.columns)))
+        yield Journal(path, file, _entries(whole, len(work.columns)))
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+
+def _write(file: FileIO, data: bytes) -> None:
+    """Write all of it: of what a disk has no more room for, the system takes a part."""
+    while data:
+        data = data[file.write(data) :]
 
 
 def _entries(content: bytes, n_columns: int) -> dict[str, tuple[list[int], Done]]:

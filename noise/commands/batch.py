@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, write_table
-from noise.commands.options import refuse, whole_number
+from noise.commands.options import MOST_WORKERS, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -56,7 +56,7 @@ def add_batch(parser: ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
-        type=whole_number(1),
+        type=whole_number(1, most=MOST_WORKERS),
         default=1,
         metavar="N",
         help="processes that share the work (default: 1); the table is the same",

@@ -122,7 +122,7 @@ def configure(parser: ArgumentParser) -> None:
     shared = parser.add_mutually_exclusive_group()
     shared.add_argument(
         "--workers",
-        type=opt.whole_number(1),
+        type=opt.whole_number(1, most=opt.MOST_WORKERS),
         default=-1,
         metavar="N",
         help="threads (default: one a core)",
@@ -137,6 +137,12 @@ def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
         opt.check_folder(options.out, file="map.csv")
+    from noise.screening.design.environments import environment
+
+    given = _given(options)
+    environments = [name for name in options.environment.split(",") if name.strip()]
+    for name in environments:
+        environment(name)  # refused before everything is loaded
     say("preparing")
     import numpy as np
 
@@ -146,8 +152,8 @@ def run(options: Namespace) -> int:
     simulations = options.simulations or DEFAULT_SIMULATIONS
     found = screen(
         options.designs,
-        _given(options),
-        environments=[name for name in options.environment.split(",") if name.strip()],
+        given,
+        environments=environments,
         loudness=options.loudness,
         tolerances=options.tolerances,
         rng=np.random.default_rng(options.seed or 0),
