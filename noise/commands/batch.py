@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
-from noise.base.tables import check_table_path, write_table
-from noise.commands.options import refuse, whole_number
+from noise.base.tables import check_table_path, table_endings, write_table
+from noise.commands.options import add_excel, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -44,7 +44,7 @@ def add_batch(parser: ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="TABLE",
-        help="file for the table: .csv, .jsonl or .parquet (default: CSV on standard output). The "
+        help=f"file for the table: {table_endings()} (default: CSV on standard output). The "
         "same call again goes on where the last one ended, and later does only what is new, "
         "changed or was refused",
     )
@@ -53,6 +53,7 @@ def add_batch(parser: ArgumentParser) -> None:
         action="store_true",
         help="do all recordings again, whatever earlier calls with the same --out did",
     )
+    add_excel(parser)
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
@@ -71,7 +72,7 @@ def add_batch(parser: ArgumentParser) -> None:
 
 def check_batch(options: Namespace) -> None:
     """Refuse what could not be done, before anything is read."""
-    check_table_path(options.out)
+    check_table_path(options.out, options.excel)
     if options.out is not None:
         check_target(options.out)
     if options.scheduler is not None:
@@ -127,10 +128,10 @@ def run_batch(
         there = [done for done in outcomes if done is not None]
         _note_uncalibrated(there)
         try:
-            written = _write(options.out, work, there, also, keep)
+            written = _write(options, work, there, also, keep)
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
-            written = _write(options.out, work, there, also, keep)
+            written = _write(options, work, there, also, keep)
     refused = sum(done.error is not None for done in there)
     read = f"{len(there)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {refused} refused")
@@ -163,17 +164,17 @@ def _progress(
 
 
 def _write(
-    out: Path | None,
+    options: Namespace,
     work: Work,
     outcomes: Sequence[Done],
     also: Callable[[Rows], Sequence[Path]],
     keep: Callable[[Path | None, Rows], Rows],
 ) -> list[Path]:
-    columns = work.columns
+    columns, out = work.columns, options.out
     rows = keep(
         out, [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
     )
-    write_table(out, columns, rows)
+    write_table(out, columns, rows, options.excel)
     return [*([] if out is None else [out]), *also(rows)]
 
 

@@ -162,7 +162,7 @@ def _from_tables(options: Namespace) -> int:
         )
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
-        write_table(options.out, COLUMNS, rows)
+        write_table(options.out, COLUMNS, rows, options.excel)
         print(options.out)
     for path in _export(options, rows):
         print(path)
@@ -190,6 +190,6 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         title = f"Labels by condition: {counted(number, 'recording')}"
         write_picture(options.map, plot_conditions(places, title=title))
         table = options.map.with_suffix(".csv")
-        write_table(table, MAP_COLUMNS, map_rows(places))
+        write_table(table, MAP_COLUMNS, map_rows(places), options.excel)
         written += [options.map, table]
     return written

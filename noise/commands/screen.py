@@ -130,6 +130,7 @@ def configure(parser: ArgumentParser) -> None:
     shared.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
     )
+    opt.add_excel(parser)
     opt.add_seed(parser, "of the parts within tolerances")
 
 
@@ -206,7 +207,7 @@ def _write(options: Namespace, found: Screening) -> None:
 
     folder = options.out
     for name, (columns, rows) in screening_tables(found).items():
-        write_table(folder / name, columns, rows)
+        write_table(folder / name, columns, rows, options.excel)
         print(folder / name)
     for name, path in found.files:
         try:

@@ -57,7 +57,7 @@ class LabelTable(list[dict[str, object]]):
         Parameters
         ----------
         path : str or Path
-            Ends in .csv, .jsonl or .parquet.
+            Ends in .csv, .xlsx, .jsonl or .parquet.
 
         Raises
         ------
@@ -106,7 +106,7 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     Parameters
     ----------
     path : Path
-        CSV, JSON Lines or Parquet, by its ending.
+        CSV, Excel, JSON Lines or Parquet, by its ending.
     refusals : list of str, optional
         Takes one line for each row that cannot be used, which is left out; without it, such a row
         is an error.

@@ -250,7 +250,7 @@ def test_simulate_tells_the_sound_power(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (("power.xlsx",), "tables end in .csv, .jsonl or .parquet"),
+        (("power.ods",), "tables end in .csv, .xlsx, .jsonl or .parquet"),
         (("power.csv", "--seconds", "0.1"), "--sound-power: --seconds 0.1 is too short"),
         (("power.csv", "--seconds", "61"), "--sound-power takes the whole run in memory"),
     ],

@@ -8,13 +8,12 @@ is better than none.
 
 from __future__ import annotations
 
-import csv
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
-from noise.base.tables import TABLE_ENDINGS
+from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
 from noise.recordings.files import READERS
@@ -166,7 +165,7 @@ _KINDS = ("screen", "diagnosis", "design")
 def _kind_of_file(path: Path) -> str | None:
     ending = path.suffix.lower()
     if ending in TABLE_ENDINGS:
-        return "screen" if _columns(path) >= _OF_A_SCREEN else "table"
+        return "screen" if table_columns(path) >= _OF_A_SCREEN else "table"
     return {".json": "diagnosis", ".toml": "design"}.get(ending)
 
 
@@ -185,29 +184,11 @@ def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
         if path.name == DIAGNOSIS:
             yield "diagnosis", path
         elif path.suffix.lower() in TABLE_ENDINGS:
-            columns = _columns(path)
+            columns = table_columns(path)
             if columns >= _OF_A_SCREEN:
                 yield "screen", path
             elif columns >= _OF_LABELS:
                 yield "table", path
-
-
-def _columns(path: Path) -> set[str]:
-    """Columns of a table; of none where it is no table or cannot be read."""
-    try:
-        if path.suffix.lower() == ".parquet":
-            from pyarrow import parquet
-
-            return set(parquet.read_schema(path).names)
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            if path.suffix.lower() == ".jsonl":
-                import json
-
-                first = json.loads(file.readline() or "{}")
-                return set(first) if isinstance(first, dict) else set()
-            return set(next(csv.reader(file), ()))
-    except (OSError, ValueError, csv.Error, ImportError):
-        return set()
 
 
 def _originals(found: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
