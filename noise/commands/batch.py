@@ -7,6 +7,7 @@ where the last one ended, however it ended; without, there is nowhere to keep it
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
@@ -19,7 +20,7 @@ from noise.commands.options import add_excel, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from noise.batch import Done, Job, Journal, Work
 
@@ -87,6 +88,7 @@ def run_batch(
     jobs: Sequence[Job],
     also: Callable[[Rows], Sequence[Path]] = lambda _: (),
     keep: Callable[[Path | None, Rows], Rows] = lambda _, rows: rows,
+    lines: Callable[[Rows], Iterable[str]] | None = None,
 ) -> int:
     """Go through the recordings, write the table, return the exit code.
 
@@ -103,6 +105,9 @@ def run_batch(
     keep : callable
         From the table's path and its new rows to those that are written: what must stay of the
         table that is there.
+    lines : callable
+        From the rows of the table to a line a recording for standard output, unless that is the
+        table; a terminal gets them in place of a table.
 
     Raises
     ------
@@ -111,6 +116,9 @@ def run_batch(
     """
     from noise.batch import open_journal
 
+    out = options.out
+    # Nobody reads a table of forty columns on a terminal; whoever wants it pipes or names it.
+    to_read = out is None and lines is not None and sys.stdout is not None and sys.stdout.isatty()
     work.prepare()
     outcomes: list[Done | None] = [None] * len(jobs)
     stopped = 0
@@ -128,15 +136,20 @@ def run_batch(
         there = [done for done in outcomes if done is not None]
         _note_uncalibrated(there)
         try:
-            written = _write(options, work, there, also, keep)
+            rows, written = _write(options, work, there, also, keep, table=not to_read)
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
-            written = _write(options, work, there, also, keep)
+            rows, written = _write(options, work, there, also, keep, table=not to_read)
     refused = sum(done.error is not None for done in there)
     read = f"{len(there)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {refused} refused")
+    if lines is not None and (to_read or out is not None):
+        for line in lines(rows):
+            print(line)
+    if to_read:
+        say("--out labels.csv, or a pipe, takes the whole table")
     for path in written:
-        if options.out is not None:
+        if out is not None:
             print(path)
         else:  # standard output is the table
             say(str(path))
@@ -169,13 +182,16 @@ def _write(
     outcomes: Sequence[Done],
     also: Callable[[Rows], Sequence[Path]],
     keep: Callable[[Path | None, Rows], Rows],
-) -> list[Path]:
+    *,
+    table: bool,
+) -> tuple[Rows, list[Path]]:
     columns, out = work.columns, options.out
     rows = keep(
         out, [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
     )
-    write_table(out, columns, rows, options.excel)
-    return [*([] if out is None else [out]), *also(rows)]
+    if table:
+        write_table(out, columns, rows, options.excel)
+    return rows, [*([] if out is None else [out]), *also(rows)]
 
 
 def _note_uncalibrated(outcomes: Sequence[Done]) -> None:

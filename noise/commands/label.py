@@ -34,7 +34,8 @@ def configure(parser: ArgumentParser) -> None:
         "calibrated), A-weighted and over the background, and the operating condition it belongs "
         "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "
         "fluorocarbon bushing like the shipped one, or missing. A file that cannot be read has the "
-        "reason in the column error. Label tables in place of recordings are joined, for --map and "
+        "reason in the column error. On a terminal, and beside --out, there is one line a "
+        "recording. Label tables in place of recordings are joined, for --map and "
         "--audacity."
     )
     add_batch(parser)
@@ -91,6 +92,7 @@ def run(options: Namespace) -> int:
         from noise.labels.audacity import track_paths
 
         track_paths(options.audacity, [job.name for job in jobs])
+    from noise.labels.label_display import result_lines
     from noise.labels.labelling import Labelling
     from noise.labels.table import with_corrections
 
@@ -105,7 +107,7 @@ def run(options: Namespace) -> int:
         *models, full_scale=opt.full_scale_of(options), sensitivity=options.sensitivity
     )
     _note_sensitivity(work)
-    return run_batch(options, work, jobs, also=export, keep=with_corrections)
+    return run_batch(options, work, jobs, also=export, keep=with_corrections, lines=result_lines)
 
 
 def _note_sensitivity(work: Labelling) -> None:
