@@ -36,7 +36,14 @@ if TYPE_CHECKING:
     from noise.labels.segments import Segment
     from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = ["COLUMNS", "Labelling", "label_rows", "names_no_channels"]
+__all__ = [
+    "COLUMNS",
+    "SEGMENT_COLUMNS",
+    "Labelling",
+    "label_rows",
+    "names_no_channels",
+    "segment_cells",
+]
 
 _SPEED_BLOCK = 0.02
 """Length over which the angle is averaged before its slope is taken [s]."""
@@ -54,10 +61,15 @@ _CONDITIONS = {
 }
 """Columns, and the fields of a condition that they hold."""
 
-COLUMNS = (
-    "file", "channel", "start_s", "end_s", "label",
+SEGMENT_COLUMNS = (
+    "channel", "start_s", "end_s", "label",
     *(f"p_{label}" for label in LABELS),
-    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "snr_dba", "level_dbfs", "calibrated",
+    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "snr_dba", "level_dbfs",
+)  # fmt: skip
+"""What a segment says by itself."""
+
+COLUMNS = (
+    "file", *SEGMENT_COLUMNS, "calibrated",
     *(f"{name}{part}" for name in _CONDITIONS for part in ("", "_low", "_high", "_source")),
     "material", "material_source", "label_source", "error",
 )  # fmt: skip
@@ -191,13 +203,17 @@ def label_rows(
     return [_row(name, blocks, segment, inference) for segment in segments]
 
 
-def _row(
-    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
-) -> dict[str, object]:
-    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
-    row: dict[str, object] = {
-        **dict.fromkeys(COLUMNS),
-        "file": name,
+def segment_cells(segment: Segment) -> dict[str, object]:
+    """Return what a segment says by itself, by `SEGMENT_COLUMNS`.
+
+    Examples
+    --------
+    >>> from noise.labels.segments import Segment
+    >>> quiet = Segment("all", 0.0, 2.0, "none", {"none": 0.9}, None, 31.234, None)
+    >>> segment_cells(quiet)["level_db"]
+    31.23
+    """
+    return {
         "channel": segment.channel,
         "start_s": round(segment.start, 6),
         "end_s": round(segment.end, 6),
@@ -209,6 +225,17 @@ def _row(
         "l_afmax_dba": _rounded(segment.level_af_max, 2),
         "snr_dba": _rounded(segment.snr, 2),
         "level_dbfs": _rounded(segment.level_dbfs, 2),
+    }
+
+
+def _row(
+    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
+) -> dict[str, object]:
+    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
+    row: dict[str, object] = {
+        **dict.fromkeys(COLUMNS),
+        "file": name,
+        **segment_cells(segment),
         "calibrated": blocks.calibrated,
         "material": condition.material,
         "material_source": "logged" if condition.material else "missing",

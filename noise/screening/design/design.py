@@ -29,6 +29,7 @@ from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
 from models.rig_files.shipped import material_names
+from models.short_repr import short_repr
 from noise.screening.design.axis_values import (
     FREQUENCY,
     SPEED,
@@ -111,6 +112,7 @@ class Use:
     swinging: Swinging | None = None
 
 
+@short_repr
 @dataclass(frozen=True)
 class Design:
     """A bushing on its rig, how it is used, and how it varies.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from models.short_repr import short_repr
 from noise.screening.map.batches import LABELS, Batch
 from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES
@@ -42,6 +43,7 @@ _NONE = LABELS.index("none")
 _STEADY = REGIMES.index(Regime.STEADY_SLIDING)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class DesignMap:
     """What a design does over a grid; all arrays but the axes have the grid's shape.
