@@ -4,6 +4,7 @@ import fcntl
 import io
 import os
 import pty
+import select
 import struct
 import sys
 import termios
@@ -22,9 +23,11 @@ def on_terminal(monkeypatch, work):
         monkeypatch.setattr(sys, "stderr", stream)
         work()
         stream.flush()
-        shown = os.read(ours, 1 << 16).decode()
+        shown = b""
+        while select.select([ours], [], [], 0.2)[0]:
+            shown += os.read(ours, 1 << 16)
     os.close(ours)
-    return shown
+    return shown.decode()
 
 
 def in_file(monkeypatch):
