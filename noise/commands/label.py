@@ -69,6 +69,13 @@ def configure(parser: ArgumentParser) -> None:
         "names more that are none; how many is told",
     )
     parser.add_argument(
+        "--loudness",
+        action="store_true",
+        help="tell the loudness N5 of calibrated segments as well (ISO 532-1), in the column "
+        "loudness_n5_sone, of those from half a second to ten minutes; takes a second a second of "
+        'sound, and needs pip install "bushing-noise[sound-quality]"',
+    )
+    parser.add_argument(
         "--inference",
         type=Path,
         metavar="FILE.npz",
@@ -104,7 +111,10 @@ def run(options: Namespace) -> int:
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(
-        *models, full_scale=opt.full_scale_of(options), sensitivity=options.sensitivity
+        *models,
+        full_scale=opt.full_scale_of(options),
+        sensitivity=options.sensitivity,
+        loudness=options.loudness,
     )
     _note_sensitivity(work)
     return run_batch(options, work, jobs, also=export, keep=with_corrections, lines=result_lines)

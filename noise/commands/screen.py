@@ -95,7 +95,7 @@ def configure(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--loudness",
         action="store_true",
-        help="tell loudness N10 as well (ISO 532-1): heard at the loudest point of each region, "
+        help="tell loudness N5 as well (ISO 532-1): heard at the loudest point of each region, "
         'carried on by level; needs pip install "bushing-noise[sound-quality]"',
     )
     parts = parser.add_mutually_exclusive_group()

@@ -77,10 +77,10 @@ def configure(parser: ArgumentParser) -> None:
         metavar="TABLE",
         help="write the sound power that the plate's upper side radiates, as "
         f"{table_endings()}: one-third octaves from 50 Hz to 10 kHz and their sum, in dB and "
-        "dB(A) re 1 pW; level_db is of the plate in a rigid baffle, as the sound pressure is, "
-        "free_level_db of the plate standing free; below the critical frequency (shipped plate: "
-        "1.2 kHz) they lie 2 to 17 dB apart, and a rig's plate between them, above they are the "
-        "same; of runs from "
+        "dB(A) re 1 pW; power_level_db is of the plate in a rigid baffle, as the sound pressure "
+        "is, free_power_level_db of the plate standing free; below the critical frequency (shipped "
+        "plate: 1.2 kHz) they lie 2 to 17 dB apart, and a rig's plate between them, above they are "
+        "the same; of runs from "
         f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s",
     )
     opt.add_excel(parser)
@@ -194,7 +194,7 @@ def _write_sound_power(
     )
     rows = sound_power_rows(power)
     write_table(path, COLUMNS, rows, excel)
-    total, free = rows[-1]["level_dba"], rows[-1]["free_level_dba"]
+    total, free = rows[-1]["power_level_dba"], rows[-1]["free_power_level_dba"]
     if total is None:
         say("the plate radiates no sound")
     else:

@@ -77,6 +77,9 @@ class Segment:
     level_a, level_af_max : float or None
         A-weighted level, and the largest with the time weighting F [dB(A) re 20 uPa]; ``None``
         where not calibrated.
+    loudness_n5 : float or None
+        Loudness exceeded in 5 % of its time, ISO 532-1 [sone]; ``None`` where it was not asked
+        for, where not calibrated, and of less than half a second or more than ten minutes.
     snr : float or None
         The A-weighted level over that of the background [dB(A)], which is L_A90 of the recording
         outside of creaks, squawks and squeals; ``None`` where there is no such part.
@@ -98,6 +101,7 @@ class Segment:
     level_a: float | None = None
     level_af_max: float | None = None
     snr: float | None = None
+    loudness_n5: float | None = None
 
 
 class Segments(list[Segment]):

@@ -30,7 +30,7 @@ HUMAN = "human"
 """The `label_source` of what somebody has said."""
 
 _TEXTS = {
-    "file", "channel", "label", "material", "error",
+    "file", "channel", "label", "material", "note", "error",
     *(column for column in COLUMNS if column.endswith("_source")),
 }  # fmt: skip
 _NEEDED = ("file", "label")

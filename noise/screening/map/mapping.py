@@ -59,7 +59,7 @@ class DesignMap:
     level, level_max : ndarray, shape of the grid
         L_Aeq and L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
     loudness : ndarray, shape of the grid
-        N10 [sone]; NaN where it was not asked for.
+        N5 [sone]; NaN where it was not asked for.
     how : ndarray of str, shape of the grid
         ``simulated``, ``stability``, ``refined`` or ``unchanged``.
     growth : ndarray, shape of the grid
