@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from models.condition import Condition
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
+from noise.labels.label_display import naming_row
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     Row = Mapping[str, object]
 
 __all__ = [
-    "RATE", "Entry", "Part", "label_counts", "labels_sentence", "naming_row", "stretch_start",
+    "RATE", "Entry", "Part", "label_counts", "labels_sentence", "stretch_start",
 ]  # fmt: skip
 
 RATE = 48000
@@ -101,20 +102,6 @@ class Entry:
         return None if row is None else str(row["label"])
 
 
-def naming_row(rows: Sequence[Row]) -> Row | None:
-    """Return the longest row that is not ``none``, by which a file is named.
-
-    Examples
-    --------
-    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
-    >>> naming_row([short, {"label": "none", "start_s": 1.0, "end_s": 9.0}])["label"]
-    'creak'
-    """
-    labelled = [row for row in rows if row["label"] is not None]
-    loud = [row for row in labelled if row["label"] != "none"]
-    return max(loud or labelled, key=_length, default=None)
-
-
 def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
     """Where a stretch of `length` begins that shows what a recording is named for [s].
 
@@ -154,10 +141,6 @@ def labels_sentence(entries: Sequence[Entry]) -> str:
     """
     words = [f"{number} {label or 'without a label'}" for label, number in label_counts(entries)]
     return f"{counted(len(entries), 'recording')}: {', '.join(words)}"
-
-
-def _length(row: Row) -> float:
-    return _number(row.get("end_s"), 0.0) - _number(row.get("start_s"), 0.0)
 
 
 def _number(value: object, missing: float) -> float:
