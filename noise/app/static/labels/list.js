@@ -120,7 +120,8 @@ class RecordingList {
 
   #inView() {
     const first = Math.max(0, Math.floor(this.box.scrollTop / ROW) - BEYOND);
-    const last = Math.min(this.total, Math.ceil((this.box.scrollTop + this.box.clientHeight) / ROW) + BEYOND);
+    const height = Math.min(this.box.clientHeight, screen.height); // it has none of its own before its style is there
+    const last = Math.min(this.total, Math.ceil((this.box.scrollTop + height) / ROW) + BEYOND);
     return [first, last];
   }
 
@@ -159,6 +160,7 @@ class RecordingList {
       button.hidden = !number && !ALWAYS.includes(kind) && this.label !== kind;
     }
     const left = state.total - state.done;
+    this.running = state.running;
     this.progress.hidden = !state.running;
     this.progress.max = Math.max(1, state.total);
     this.progress.value = state.done;
@@ -187,7 +189,8 @@ class RecordingList {
       const turn = this.pool.length;
       const at = first + ((place - (first % turn) + turn) % turn);
       node.hidden = at >= last;
-      if (!node.hidden) this.#fill(node, at);
+      if (node.hidden) node.removeAttribute("aria-selected");
+      else this.#fill(node, at);
     }
     for (let number = Math.floor(first / PAGE); number * PAGE < last; number++) {
       if (!this.pages.has(number)) this.#fetch(number);
