@@ -180,3 +180,23 @@ def test_labels_arrive_while_they_are_computed_and_the_table_holds_them(browser,
         page.close()
     table = (tmp_path / "labels.csv").read_text().splitlines()
     assert len(table) == 4
+
+
+def test_what_was_learned_is_told_beside_what_was_known_before(page):
+    squeal = {
+        "label": "squeal",
+        "windows": 12,
+        "enough": False,
+        "recall_before": 0.25,
+        "recall": 0.75,
+        "false_names_before": 3,
+        "false_names": 1,
+    }
+    state = {"running": False, "done": 0, "of": 0, "corrected": 4, "message": "Learned."}
+    told = state | {"scores": {"files": 4, "labels": [squeal]}}
+    page.route("**/api/train", lambda route: route.fulfill(json=told))
+    page.locator(".training summary").click()
+    row = page.locator(".training tbody tr")
+    row.wait_for()
+    assert row.inner_text().split() == ["squeal", "*", "12", "25", "%", "75", "%", "3", "1"]
+    assert "learned without its file" in page.locator(".training figcaption").inner_text()
