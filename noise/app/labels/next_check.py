@@ -46,7 +46,13 @@ def doubt(row: Row) -> float:
 
 
 def place(row: Row) -> NDArray[np.float64]:
-    """Where a segment lies among the others: what it is taken for, and how high it sounds [-]."""
+    """Where a segment lies among the others: what it is taken for, and how high it sounds.
+
+    Returns
+    -------
+    ndarray, shape (6,)
+        [-]
+    """
     p = np.array([_number(row.get(f"p_{label}")) for label in LABELS])
     hertz = max(_number(row.get("frequency_hz")), 1.0)
     return np.append(np.sqrt(np.maximum(p, 0.0)), log2(hertz) / _OCTAVES)
