@@ -139,7 +139,8 @@ class RecordingList {
     this.space.style.height = `${total * ROW}px`;
     this.#tell(counts, state);
     this.draw();
-    if (state.running) this.timer = setTimeout(() => this.load(), POLL);
+    // Somebody may label on the command line, too.
+    if (state.running || state.done < state.total) this.timer = setTimeout(() => this.load(), state.running ? POLL : 5 * POLL);
   }
 
   async #fetch(number) {
@@ -166,7 +167,7 @@ class RecordingList {
     this.progress.value = state.done;
     this.labelButton.hidden = state.running || !left;
     this.labelButton.textContent = state.done ? `Label ${left.toLocaleString("en")} more` : `Label ${left.toLocaleString("en")}`;
-    this.stateLine.textContent = state.running ? `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")} labelled` : state.message;
+    this.stateLine.textContent = state.running ? `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")} labelled` : state.message || (state.classifier ? `by ${state.classifier}` : "");
     this.box.setAttribute("aria-label", `Recordings, ${this.total}`);
     this.training.tell(counts.corrected ?? 0);
   }
