@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.atomic import check_target
+from noise.base.lock import locked
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands.options import add_excel, refuse, whole_number
@@ -186,11 +187,12 @@ def _write(
     table: bool,
 ) -> tuple[Rows, list[Path]]:
     columns, out = work.columns, options.out
-    rows = keep(
-        out, [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
-    )
-    if table:
-        write_table(out, columns, rows, options.excel)
+    rows: Rows = [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
+    # Nobody may change the table between the look at what stays of it and the writing.
+    with nullcontext() if out is None else locked(out):
+        rows = keep(out, rows)
+        if table:
+            write_table(out, columns, rows, options.excel)
     return rows, [*([] if out is None else [out]), *also(rows)]
 
 
