@@ -126,7 +126,6 @@ def test_the_whole_answer_has_the_contracts_keys_and_a_page(tmp_path, capsys):
     assert "<html" in (out / "report.html").read_text()[:200].lower()
 
 
-@pytest.mark.xfail(strict=True, reason="flat tops of the sound pass for another plate")
 def test_clipping_of_the_sound_is_a_gap_of_its_sensor(tmp_path):
     values = {"amount": 0.7, "pressure": 1.0, "torque": 0.0, "acceleration": 0.0}
     data, rig = write_case(tmp_path, _recordings(("clipping", values)))
