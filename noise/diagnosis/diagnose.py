@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from models.condition import known_condition
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.diagnosis.bench.check import bench_findings
+from noise.diagnosis.bench.silent import unchecked_units
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.stage_nulls import load_stage_nulls
@@ -147,6 +148,7 @@ def _stated(
         notes=(
             *faults,
             *map(_listed, first.suspected),
+            *unchecked_units(case, library),
             *_notes(case),
             *first.unlearned,
             *case_remarks(case, library),
