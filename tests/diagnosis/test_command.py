@@ -135,6 +135,12 @@ def test_clipping_of_the_sound_is_a_gap_of_its_sensor(tmp_path):
     assert found.stages["measurement"].share > 0.5
 
 
+def test_hum_as_it_comes_is_no_uneven_drive(tmp_path):
+    """An encoder picks up none: what the cables of the others do is no matter of the shaft."""
+    data, rig = write_case(tmp_path, _recordings(("mains_hum", {})))
+    assert diagnose(data, rig, quick=True).verdict == ("mains_hum",)
+
+
 def test_a_plain_rig_has_less_of_a_gap_than_one_with_an_effect(plain, tmp_path):
     ill = _recordings(("velocity_weakening", {"share": 0.4, "speed": 5.0}))
     gaps = []
