@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import known_condition
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
+from noise.diagnosis.assumed_fit import assumed_fit
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.bench.silent import unchecked_units
 from noise.diagnosis.causes.location import differences, locate, stage_findings
@@ -245,6 +246,7 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     at = [known_condition(recording.condition) for recording in case.recordings]
     heat = sorted({c.temperature for c in at if c.temperature is not None})
     found = [
+        assumed_fit(case.rig, [c.interference for c in at]),
         *use_remarks(
             case.rig,
             speed=[c.speed for c in at],
