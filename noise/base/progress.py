@@ -12,6 +12,8 @@ import sys
 from collections.abc import Sized
 from typing import TYPE_CHECKING, TypeVar
 
+from noise.base.readable import readable
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from typing import TextIO
@@ -22,7 +24,10 @@ _Item = TypeVar("_Item")
 
 
 def say(text: str) -> None:
-    """Print one line on standard error; line breaks inside `text` become spaces.
+    """Print one line on standard error.
+
+    Line breaks inside `text` become spaces, and what would control the terminal is shown as its
+    code.
 
     Examples
     --------
@@ -30,7 +35,7 @@ def say(text: str) -> None:
     """
     if sys.stderr is None:  # closed by the caller
         return
-    line = " ".join(text.split("\n"))
+    line = readable(" ".join(text.split("\n")))
     try:
         if "tqdm" in sys.modules:
             from tqdm import tqdm

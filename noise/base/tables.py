@@ -2,7 +2,9 @@
 
 One value is written alike in all formats: nothing where there is none (an undefined number is
 none, too, and an infinite one), ``true`` and ``false``, and numbers with as many digits as give the
-same number back. In CSV the infinite stiffness of a bolted clamp is the word ``fixed``.
+same number back. In CSV the infinite stiffness of a bolted clamp is the word ``fixed``, and a text
+that a spreadsheet would take for a formula (it begins with ``=``, ``+``, ``-``, ``@``, a tab or a
+carriage return) has an apostrophe before it, which reading takes away again.
 A table appears whole or not at all, and a target that cannot be written is refused before the work
 whose result it is to hold.
 """
@@ -13,11 +15,13 @@ import csv
 import json
 import math
 import numbers
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError, not_installed
+from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
 from noise.base.atomic import atomic
 
 if TYPE_CHECKING:
@@ -30,6 +34,12 @@ __all__ = ["TABLE_ENDINGS", "check_table_path", "plain_cell", "read_table", "wri
 
 TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
+
+_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
+"""Cells that a Parquet file may hold: so many, and so many a byte."""
+
+_FORMULA = re.compile(r"'*[=+\-@\t\r]")
+"""How a text begins that a spreadsheet takes for a formula, or that was kept from being one."""
 
 _SUPPORT, _FIXED = "support_stiffness", "fixed"
 """How the columns begin whose infinity is the bolted clamp, and what it is called."""
@@ -149,22 +159,28 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     (['file', 'label'], [{'file': 'run07.wav', 'label': 'creak'}])
     """
     check_table_path(path)
-    try:
+    with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
         if path.suffix.lower() == ".parquet":
-            from pyarrow import parquet
-
-            table = parquet.read_table(path)
-            return list(table.column_names), table.to_pylist()
+            return _read_parquet(path)
         with path.open(encoding="utf-8-sig", newline="") as file:
             if path.suffix.lower() == ".jsonl":
-                return [], [json.loads(line) for line in file if line.strip()]
+                return [], [parse_json(line) for line in file if line.strip()]
             reader = csv.DictReader(file)
-            rows = [{str(column): value for column, value in row.items()} for row in reader]
+            rows = [
+                {str(column): _as_meant(value) for column, value in row.items()} for row in reader
+            ]
             return list(reader.fieldnames or ()), rows
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, csv.Error) as error:
-        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
+
+
+def _read_parquet(path: Path) -> tuple[list[str], list[dict[str, object]]]:
+    from pyarrow import parquet
+
+    with parquet.ParquetFile(path) as file:
+        announced = file.metadata.num_rows * file.metadata.num_columns
+        if announced > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
+            raise ExcessError(f"announces {announced} cells, more than a file of its size holds")
+        table = file.read()
+    return list(table.column_names), table.to_pylist()
 
 
 def plain_cell(value: object) -> Cell:
@@ -202,9 +218,17 @@ def _csv_cell(column: str, value: Cell) -> Cell:
     """Return what stands in a cell of CSV; an infinite number is none, but for the bolted clamp."""
     if isinstance(value, bool):
         return json.dumps(value)
+    if isinstance(value, str) and _FORMULA.match(value):
+        return f"'{value}"
     if isinstance(value, float) and math.isinf(value):
         return _FIXED if value > 0.0 and column.startswith(_SUPPORT) else None
     return value
+
+
+def _as_meant(value: object) -> object:
+    """Take the apostrophe from a cell of CSV that kept it from being a formula."""
+    kept = isinstance(value, str) and value.startswith("'") and _FORMULA.match(value)
+    return value[1:] if isinstance(value, str) and kept else value
 
 
 def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

@@ -123,17 +123,18 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
             whole = header
         elif len(whole) < len(content):
             file.truncate(len(whole))
-        yield Journal(file, _entries(whole))
+        yield Journal(file, _entries(whole, len(work.columns)))
 
 
-def _entries(content: bytes) -> dict[str, tuple[list[int], Done]]:
+def _entries(content: bytes, n_columns: int) -> dict[str, tuple[list[int], Done]]:
     entries = {}
     for line in content.splitlines()[1:]:
         try:
             key, identity, calibrated, rows = json.loads(line)
-        except ValueError:  # damaged on the disk: the recording is done again
+            if {len(row) for row in rows} <= {n_columns} and isinstance(calibrated, bool):
+                entries[key] = identity, Done(rows, calibrated)
+        except (ValueError, TypeError, RecursionError):  # damaged: the recording is done again
             continue
-        entries[key] = identity, Done(rows, calibrated)
     return entries
 
 

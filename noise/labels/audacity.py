@@ -14,6 +14,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
+from models.foreign_file import LARGEST_JSON, reading
 from noise.base.atomic import atomic
 
 if TYPE_CHECKING:
@@ -72,12 +73,8 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
     ...     read_label_track(path)
     [(0.5, 2.25, 'all', 'creak'), (1.0, 2.0, '2', 'squeal')]
     """
-    try:
+    with reading(path, "label track", error=RecordingError, largest=LARGEST_JSON):
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except UnicodeDecodeError:
-        raise RecordingError(f"{path}: is no text, so no label track") from None
     found: list[tuple[float, float, str, str]] = []
     for number, line in enumerate(lines, 1):
         if not line.strip() or line.startswith("\\"):

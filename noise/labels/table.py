@@ -11,6 +11,7 @@ import math
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
+from models.foreign_file import refusing
 from noise.base.label_names import LABELS
 from noise.base.tables import check_table_path, read_table, write_table
 from noise.labels.labelling import COLUMNS
@@ -140,8 +141,10 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
         raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
     checked = []
     for number, row in enumerate(rows, 1):
+        where = f"{path}: row {number}"
         try:
-            checked.append(_checked(row, f"{path}: row {number}"))
+            with refusing(where, "row of a label table", RecordingError):
+                checked.append(_checked(row, where))
         except RecordingError as error:
             if refusals is None:
                 raise

@@ -14,10 +14,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
+from models.foreign_file import parse_json, reading
+from noise.base.readable import readable
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
 from noise.recordings.files import READERS
+from noise.recordings.folders import files_below
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -30,6 +33,9 @@ DIAGNOSIS = "diagnosis.json"
 
 _MOST_FOLDERS = 8
 """That a name is lengthened by, to tell it from another."""
+
+_LONGEST_LINE = 1 << 20
+"""Of a table in JSON Lines, as far as it is read to know its columns [letters]."""
 
 _OF_A_SCREEN = {"design", "speed_rad_s", "interference_mm", "label"}
 _OF_LABELS = {"file", "label"}
@@ -54,7 +60,7 @@ class Refusal:
         >>> Refusal.of(Path("run07.wav"), "run07.wav: is empty").reason
         'is empty'
         """
-        return cls(str(path), str(error).removeprefix(f"{path}: "))
+        return cls(readable(str(path)), readable(str(error).removeprefix(f"{path}: ")))
 
 
 @dataclass(frozen=True)
@@ -72,7 +78,7 @@ class LabelTable:
         """
         resolved = recording.resolve()
         beside = tuple(r for r in self.rows if self._named(r) == resolved)
-        ending = resolved.as_posix()
+        ending = readable(resolved.as_posix())  # as tables have it
         return beside or tuple(r for r in self.rows if ending.endswith(f"/{r['file']}"))
 
     def _named(self, row: Row) -> Path:
@@ -178,10 +184,7 @@ def _is_sidecar(path: Path) -> bool:
 
 
 def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
-    for path in sorted(folder.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-        if hidden or not path.is_file():
-            continue
+    for path, _ in sorted(files_below(folder)):
         if path.name == DIAGNOSIS:
             yield "diagnosis", path
         elif path.suffix.lower() in TABLE_ENDINGS:
@@ -195,18 +198,17 @@ def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
 def _columns(path: Path) -> set[str]:
     """Columns of a table; of none where it is no table or cannot be read."""
     try:
-        if path.suffix.lower() == ".parquet":
-            from pyarrow import parquet
+        with reading(path, "table"):
+            if path.suffix.lower() == ".parquet":
+                from pyarrow import parquet
 
-            return set(parquet.read_schema(path).names)
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            if path.suffix.lower() == ".jsonl":
-                import json
-
-                first = json.loads(file.readline() or "{}")
-                return set(first) if isinstance(first, dict) else set()
-            return set(next(csv.reader(file), ()))
-    except (OSError, ValueError, csv.Error, ImportError):
+                return set(parquet.read_schema(path).names)
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                if path.suffix.lower() == ".jsonl":
+                    first = parse_json(file.readline(_LONGEST_LINE) or "{}")
+                    return set(first) if isinstance(first, dict) else set()
+                return set(next(csv.reader(file), ()))
+    except BushingNoiseError:
         return set()
 
 
@@ -214,8 +216,9 @@ def _originals(found: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
     """Leave out ``audio/run07.wav`` beside ``recordings/run07.wav``: the same made to be heard."""
     there = {path.resolve() for path, _ in found}
     for path, name in found:
-        original = path.parent.with_name("recordings") / path.name
-        if not (path.parent.name == "audio" and original.resolve() in there):
+        folder = path.parent.resolve()
+        original = folder.parent / "recordings" / path.name
+        if not (folder.name == "audio" and original.resolve() in there):
             yield path, name
 
 

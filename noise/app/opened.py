@@ -1,0 +1,84 @@
+"""What was opened: recordings by number, their label table, rig files.
+
+No path comes from a browser.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.base.tables import TABLE_ENDINGS
+from noise.batch import find_jobs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from noise.batch import Job
+
+__all__ = ["Opened", "open_paths"]
+
+_TABLE = "labels.csv"
+
+
+@dataclass(frozen=True)
+class Opened:
+    """What the app may read and write.
+
+    Parameters
+    ----------
+    jobs : tuple of Job
+        Recordings; `Job.index` is what the browser calls each.
+    table : Path or None
+        Of their labels, there or to be made; None without recordings.
+    rigs : tuple of Path
+        Rig files.
+    folder : Path
+        Where what is saved goes.
+    """
+
+    jobs: tuple[Job, ...]
+    table: Path | None
+    rigs: tuple[Path, ...]
+    folder: Path
+
+
+def open_paths(paths: Sequence[Path], table: Path | None = None) -> Opened:
+    """Find recordings, label table and rig files.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        Recordings, folders that are searched for them at any depth, one label table, rig files.
+    table : Path, optional
+        Label table to write; by default the one that was named, or ``labels.csv`` in the folder
+        (or beside the recording) that was.
+
+    Raises
+    ------
+    ParameterError
+        A path does not exist, or several label tables are named.
+
+    Examples
+    --------
+    >>> open_paths([]).jobs
+    ()
+    """
+    for path in paths:
+        if not path.exists():
+            raise ParameterError(f"{path} does not exist")
+    rigs = [path for path in paths if path.suffix.lower() == ".toml"]
+    tables = [p for p in paths if p.is_file() and p.suffix.lower() in TABLE_ENDINGS]
+    sounds = [path for path in paths if path not in rigs and path not in tables]
+    if len(tables) > 1:
+        raise ParameterError(f"{tables[1]} is a second label table; one is corrected at a time")
+    if tables and not sounds:
+        sounds = [tables[0].absolute().parent]
+    jobs = find_jobs(sounds) if sounds else []
+    first = (sounds or rigs or [Path.cwd()])[0].absolute()
+    folder = first if first.is_dir() else first.parent
+    if table is None and jobs:
+        table = tables[0] if tables else folder / _TABLE
+    return Opened(tuple(jobs), table, tuple(rigs), folder)
