@@ -16,10 +16,8 @@ LAWS = ("shipped", "brush", "front", "normal", "stiffness")
 SHIPPED, BRUSH, FRONT, NORMAL, STIFFNESS = range(5)
 
 ELEMENTS = 5
-SKIN_SHARE = 0.3
-"""Of J_E, in the front's patches."""
-SKIN_DAMPING = 8e-6
-"""Of the front's springs [s]."""
+SKIN_SHARE, SKIN_DAMPING = 0.3, 8e-6
+"""Of the front: what its patches hold of J_E [-]; damping of its springs over stiffness [s]."""
 RELAXATION = 3e-4, 6e-5
 """Of the stiffness's two branches [s]."""
 LEAST_PRESSURE = 0.05
@@ -140,11 +138,8 @@ def _integrate(law, omega, u, c, x, samples, steps, step):
 def _rest(law):
     """States before the shaft turns: long at rest, so that the contacts are old."""
     u = np.zeros({BRUSH: 4 + 3 * ELEMENTS, FRONT: 4 + 4 * ELEMENTS, SHIPPED: 6}.get(law, 8))
-    ages = {
-        BRUSH: slice(4 + ELEMENTS, 4 + 2 * ELEMENTS),
-        FRONT: slice(4 + 3 * ELEMENTS, None),
-    }
-    u[ages.get(law, 5)] = 1.0
+    first = {BRUSH: 4 + ELEMENTS, FRONT: 4 + 3 * ELEMENTS}.get(law)
+    u[5 if first is None else slice(first, first + ELEMENTS)] = 1.0
     return u
 
 
