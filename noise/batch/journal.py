@@ -72,6 +72,7 @@ class JournalReader:
     def __init__(self, table: Path, work: Work) -> None:
         self._path = journal_path(table)
         self._header = _header(work)
+        self._n_columns = len(work.columns)
         self._read = 0
 
     def news(self, jobs: Sequence[Job]) -> dict[int, Done]:
@@ -89,7 +90,7 @@ class JournalReader:
             return {}
         whole = content[: content.rfind(b"\n") + 1]
         self._read = max(self._read, len(self._header)) + len(whole)
-        return _known(_entries(whole, len(work.columns)), jobs) if whole else {}
+        return _known(_entries(whole, self._n_columns), jobs) if whole else {}
 
 
 def journal_path(table: Path) -> Path:
