@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.conditioning import checked_signal, usable_limit
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,7 @@ _HOP = 0.01
 """Time from one estimate to the next [s]."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PitchTrack:
     """Pitch over time.

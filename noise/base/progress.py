@@ -1,15 +1,18 @@
 """Messages and progress bar while the program works, all on standard error.
 
 Standard output belongs to results. The bar is drawn on a terminal only; in a log file there is one
-line that says what is being done. Lines and bar do not tread on each other, and a standard error
-that is closed is no reason to stop.
+line that says what is being done, and one a second for a program that reads them (`LINES`). Lines
+and bar do not tread on each other, and a standard error that is closed is no reason to stop.
 """
 
 from __future__ import annotations
 
 import os
 import sys
+import threading
+import time
 from collections.abc import Sized
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
 from noise.base.readable import readable
@@ -18,9 +21,20 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from typing import TextIO
 
-__all__ = ["counted", "discard", "note", "say", "track"]
+    from tqdm import tqdm
+
+__all__ = ["LINES", "Steps", "counted", "discard", "note", "say", "steps", "track"]
+
+LINES = "BUSHING_NOISE_PROGRESS_LINES"
+"""Environment variable that asks for lines ``simulating: 120 of 7360`` where there is no bar."""
+
+_EVERY = 1.0
+"""Between two such lines [s]."""
 
 _Item = TypeVar("_Item")
+
+_TICK = 0.5
+"""After which a bar shows anew how long it has taken [s]."""
 
 
 def say(text: str) -> None:
@@ -103,9 +117,9 @@ def track(
     """
     if total is None and isinstance(items, Sized):
         total = len(items)
-    if sys.stderr is None or not sys.stderr.isatty():
+    if not _on_terminal():
         say(doing if total is None else f"{doing} {counted(total, unit)}")
-        yield from items
+        yield from items if not os.environ.get(LINES) else _in_lines(items, doing, total)
         return
     from tqdm import tqdm
 
@@ -114,3 +128,87 @@ def track(
         items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr
     ) as advancing:
         yield from advancing
+
+
+class Steps:
+    """Work of a few steps, each told of by a line; a terminal has a bar of how many are done.
+
+    Parameters
+    ----------
+    bar : tqdm.tqdm, optional
+        Where standard error is a terminal.
+    """
+
+    def __init__(self, bar: tqdm[object] | None = None) -> None:
+        self._bar = bar
+        self._begun = 0
+
+    def __call__(self, text: str) -> None:
+        """Say that a step begins, or what came of it."""
+        say(text)
+        self._begun += 1
+        if self._bar is not None:
+            self._bar.update(self._begun - 1 - self._bar.n)
+            self.expect(self._bar.total)
+
+    def expect(self, number: int) -> None:
+        """Know better how many steps there are."""
+        if self._bar is not None:
+            self._bar.total = max(number, self._begun)
+            self._bar.refresh()
+
+
+@contextmanager
+def steps(doing: str, number: int) -> Iterator[Steps]:
+    """Show how far work is that consists of steps of any length.
+
+    Parameters
+    ----------
+    doing : str
+        What is being done, such as ``"screening"``.
+    number : int
+        Of its steps, as far as that is known; it may turn out to be more or fewer.
+
+    Yields
+    ------
+    Steps
+        To be called with a line as each step begins.
+
+    Examples
+    --------
+    >>> with steps("screening", 2) as tell:
+    ...     tell("mapping PDMS")
+    ...     tell("grading PDMS")
+    """
+    if not _on_terminal():
+        yield Steps()
+        return
+    from tqdm import tqdm
+
+    with tqdm(desc=doing, total=number, unit=" step", leave=False, file=sys.stderr) as bar:
+        ended = threading.Event()
+
+        def tick() -> None:
+            while not ended.wait(_TICK):
+                bar.refresh()
+
+        ticking = threading.Thread(target=tick, daemon=True)
+        ticking.start()
+        try:
+            yield Steps(bar)
+        finally:
+            ended.set()
+            ticking.join()
+
+
+def _on_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _in_lines(items: Iterable[_Item], doing: str, total: int | None) -> Iterator[_Item]:
+    said = time.monotonic()
+    for number, item in enumerate(items, 1):
+        yield item
+        if time.monotonic() - said >= _EVERY:
+            said = time.monotonic()
+            say(f"{doing}: {number}" + ("" if total is None else f" of {total}"))

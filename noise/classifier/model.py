@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from models.short_repr import short_repr
 from noise.base.label_names import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
@@ -59,6 +60,7 @@ class Calibration:
         return np.asarray(p / p.sum(axis=1, keepdims=True))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Classifier:
     """Boosted trees over named features, with calibrated probabilities.

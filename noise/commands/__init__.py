@@ -67,6 +67,10 @@ COMMANDS = {
         "recordings, labels, screens, diagnoses -> one page to look at and to listen to",
     ),
     "train": Entry("noise.commands.train", "build the classifier again from simulation"),
+    "open": Entry(
+        "noise.commands.open",
+        "a local app: listen, correct labels, hear a design while it is changed, compare blind",
+    ),
     "thesis": Entry(
         "noise.commands.thesis", "the published numbers beside what the program computes"
     ),

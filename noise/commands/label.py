@@ -34,7 +34,8 @@ def configure(parser: ArgumentParser) -> None:
         "calibrated), A-weighted and over the background, and the operating condition it belongs "
         "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "
         "fluorocarbon bushing like the shipped one, or missing. A file that cannot be read has the "
-        "reason in the column error. Label tables in place of recordings are joined, for --map and "
+        "reason in the column error. On a terminal, and beside --out, there is one line a "
+        "recording. Label tables in place of recordings are joined, for --map and "
         "--audacity."
     )
     add_batch(parser)
@@ -68,6 +69,13 @@ def configure(parser: ArgumentParser) -> None:
         "names more that are none; how many is told",
     )
     parser.add_argument(
+        "--loudness",
+        action="store_true",
+        help="tell the loudness N5 of calibrated segments as well (ISO 532-1), in the column "
+        "loudness_n5_sone, of those from half a second to ten minutes; takes a second a second of "
+        'sound, and needs pip install "bushing-noise[sound-quality]"',
+    )
+    parser.add_argument(
         "--inference",
         type=Path,
         metavar="FILE.npz",
@@ -91,6 +99,7 @@ def run(options: Namespace) -> int:
         from noise.labels.audacity import track_paths
 
         track_paths(options.audacity, [job.name for job in jobs])
+    from noise.labels.label_display import result_lines
     from noise.labels.labelling import Labelling
     from noise.labels.table import with_corrections
 
@@ -102,10 +111,13 @@ def run(options: Namespace) -> int:
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(
-        *models, full_scale=opt.full_scale_of(options), sensitivity=options.sensitivity
+        *models,
+        full_scale=opt.full_scale_of(options),
+        sensitivity=options.sensitivity,
+        loudness=options.loudness,
     )
     _note_sensitivity(work)
-    return run_batch(options, work, jobs, also=export, keep=with_corrections)
+    return run_batch(options, work, jobs, also=export, keep=with_corrections, lines=result_lines)
 
 
 def _note_sensitivity(work: Labelling) -> None:
@@ -162,7 +174,7 @@ def _from_tables(options: Namespace) -> int:
         )
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
-        write_table(options.out, COLUMNS, rows)
+        write_table(options.out, COLUMNS, rows, options.excel)
         print(options.out)
     for path in _export(options, rows):
         print(path)
@@ -190,6 +202,6 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         title = f"Labels by condition: {counted(number, 'recording')}"
         write_picture(options.map, plot_conditions(places, title=title))
         table = options.map.with_suffix(".csv")
-        write_table(table, MAP_COLUMNS, map_rows(places))
+        write_table(table, MAP_COLUMNS, map_rows(places), options.excel)
         written += [options.map, table]
     return written

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = [
-    "add_calibration", "add_change", "add_seed", "changed", "check_folder", "full_scale_of",
-    "number", "number_or_none", "refuse", "whole_number",
+    "add_calibration", "add_change", "add_excel", "add_seed", "changed", "check_folder",
+    "full_scale_of", "number", "number_or_none", "refuse", "whole_number",
 ]  # fmt: skip
 
 
@@ -113,6 +113,22 @@ def add_seed(parser: ArgumentParser, use: str) -> None:
         default=0,
         metavar="N",
         help=f"{use} (a whole number; default: 0)",
+    )
+
+
+def add_excel(parser: ArgumentParser) -> None:
+    """Add ``--excel``, for every command that writes a table."""
+    from noise.base.excel_csv import EXCEL_LANGUAGES
+
+    parser.add_argument(
+        "--excel",
+        type=str.lower,
+        choices=EXCEL_LANGUAGES,
+        metavar="LANGUAGE",
+        help="write .csv as Excel in a language opens it at a double click, with a byte-order "
+        "mark: de has a semicolon between cells and a decimal comma, en comma and point, de-ch "
+        "semicolon and point, system what this computer is set to (default: plain CSV; .xlsx "
+        "needs none of this)",
     )
 
 

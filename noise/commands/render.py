@@ -120,6 +120,7 @@ def configure(parser: ArgumentParser) -> None:
         help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
         "needs the extra sound-quality, and some seconds a second of sound",
     )
+    opt.add_excel(parser)
     opt.add_calibration(parser)
     add_condition(parser)
     opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
@@ -258,7 +259,7 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
         print(plan.target)
         print(plan.target.with_suffix(".json"))
     if folder is not None:
-        write_table(folder / "levels.csv", ("file", *COLUMNS, "note", "error"), rows)
+        write_table(folder / "levels.csv", ("file", *COLUMNS, "note", "error"), rows, options.excel)
         print(folder / "levels.csv")
     return 1 if refused else 0
 

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
 from noise.base.atomic import check_target
-from noise.base.progress import counted, say, track
+from noise.base.progress import counted, say, steps, track
+from noise.base.tables import TABLE_ENDINGS
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
     from collections.abc import Iterable, Mapping, Sequence
 
+    from noise.base.progress import Steps
     from noise.classifier import Classifier
     from noise.training.classifier.own_samples import OwnSample
 
@@ -47,11 +50,13 @@ def configure(parser: ArgumentParser) -> None:
         "--add",
         type=Path,
         action="append",
-        metavar="DIR",
+        metavar="DIR|TABLE",
         help="folder of labelled recordings to learn from as well (may be given several times): "
         "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
-        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav). All are "
-        "learned from, calibrate, and are scored, each by trees that were grown without its file",
+        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav); or the label "
+        "table itself. Of a table that somebody has corrected (label_source is human) the "
+        "corrections count alone. All are learned from, calibrate, and are scored, each by trees "
+        "that were grown without its file",
     )
     parser.add_argument(
         "--surroundings",
@@ -67,6 +72,13 @@ def configure(parser: ArgumentParser) -> None:
         help="simulated samples to learn from (default: 4300); fewer are quicker and know less",
     )
     parser.add_argument(
+        "--keep",
+        type=Path,
+        metavar="FILE.npz",
+        help="keep what was simulated in this file; where it holds the same of an earlier call, "
+        "nothing is simulated again",
+    )
+    parser.add_argument(
         "--inference",
         type=Path,
         metavar="FILE.npz",
@@ -79,6 +91,8 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Train, save, and tell the score."""
     _check_model(options.out, "--out", "a classifier")
+    if options.keep is not None:
+        _check_model(options.keep, "--keep", "what was simulated")
     if options.inference is not None:
         _check_model(options.inference, "--inference", "a model")
         if options.inference.absolute() == options.out.absolute():
@@ -86,23 +100,28 @@ def run(options: Namespace) -> int:
                 f"--inference {options.inference}: is what --out names for the classifier; give "
                 "one of them another name"
             )
-    say("preparing")
-    added, refused = _own(options.add or ())
-    classifier = _trained(options, added)
-    classifier.save(options.out)
+    with steps("training", 3 if options.inference is None else 5) as tell:
+        tell("preparing")
+        added, refused = _own(options.add or ())
+        tell("simulating what to learn from")
+        classifier = _trained(options, added, tell)
+        classifier.save(options.out)
+        if options.inference is not None:
+            from noise.training.inference.fit import train_inference
+
+            tell("simulating what to infer from")
+            model = train_inference(seed=options.seed, progress=partial(_progress, tell))
+            model.save(options.inference)
     say(f"trained: {_scores(classifier.card)}")
     if added:
         say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
     print(options.out)
     if options.inference is not None:
-        from noise.training.inference.fit import train_inference
-
-        train_inference(seed=options.seed, progress=_progress).save(options.inference)
         print(options.inference)
     return int(refused)
 
 
-def _trained(options: Namespace, added: Sequence[OwnSample]) -> Classifier:
+def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Classifier:
     from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 
     n = options.samples
@@ -112,7 +131,8 @@ def _trained(options: Namespace, added: Sequence[OwnSample]) -> Classifier:
         n_test=max(1, n // _PART_TO_SCORE) if n else N_TEST,
         added=added,
         surroundings=options.surroundings,
-        progress=_progress,
+        keep=options.keep,
+        progress=partial(_progress, tell),
     )
 
 
@@ -130,8 +150,8 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     from noise.training.classifier.own_samples import own_samples
 
     for folder in folders:
-        if not folder.is_dir():
-            raise ParameterError(f"--add {folder}: there is no such folder")
+        if not folder.is_dir() and not (folder.is_file() and folder.suffix in TABLE_ENDINGS):
+            raise ParameterError(f"--add {folder}: there is no such folder, nor label table")
     samples: list[OwnSample] = []
     refusals: list[str] = []
     for folder in dict.fromkeys(folder.resolve() for folder in folders):
@@ -149,8 +169,9 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     return samples, bool(refusals)
 
 
-def _progress(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
-    return track(samples, "simulating", total=total, unit="training sample")
+def _progress(tell: Steps, samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+    yield from track(samples, "simulating", total=total, unit="training sample")
+    tell("growing trees, and scoring them by what they have not seen")
 
 
 def _scores(card: Mapping[str, object]) -> str:

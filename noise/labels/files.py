@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.lock import locked
 from noise.base.tables import check_table_path
 from noise.batch import find_jobs, open_journal, perform_all
 from noise.labels.labelling import Labelling
@@ -42,10 +43,10 @@ def label(
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     out : path, optional
-        File for the table: .csv, .jsonl or .parquet. As with ``bushing-noise label --out``, a
-        journal beside it keeps each recording that is done: whichever of the two is called next
-        with the same table goes on where the last call ended, however it ended. What somebody has
-        corrected in the table stays as it is.
+        File for the table: .csv, .xlsx, .jsonl or .parquet. As with
+        ``bushing-noise label --out``, a journal beside it keeps each recording that is done:
+        whichever of the two is called next with the same table goes on where the last call ended,
+        however it ended. What somebody has corrected in the table stays as it is.
     fresh : bool
         Whether to do all recordings again, whatever earlier calls with the same `out` did.
     workers : int
@@ -97,8 +98,11 @@ def label(
             for index in sorted(outcomes)
             for row in outcomes[index].rows
         ]
-        table = LabelTable(with_corrections(None if out is None else Path(out), rows))
-        if out is not None:
+        if out is None:
+            return LabelTable(rows)
+        # Nobody may correct the table between the look at its corrections and the writing.
+        with locked(Path(out)):
+            table = LabelTable(with_corrections(Path(out), rows))
             table.write(out)
     return table
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+    from pandas import DataFrame
 
     from models.recording import Recording
     from noise.classifier import Classifier
@@ -43,6 +44,10 @@ _SILENT_LEVEL_DBFS = -90.0
 
 _SURELY = 6.0
 """What is louder than silence by so much in its described part needs no second look [dB]."""
+
+
+_MOST_SHOWN = 4
+"""Segments that are named one by one where they are printed."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,9 @@ class Segment:
     level_a, level_af_max : float or None
         A-weighted level, and the largest with the time weighting F [dB(A) re 20 uPa]; ``None``
         where not calibrated.
+    loudness_n5 : float or None
+        Loudness exceeded in 5 % of its time, ISO 532-1 [sone]; ``None`` where it was not asked
+        for, where not calibrated, and of less than half a second or more than ten minutes.
     snr : float or None
         The A-weighted level over that of the background [dB(A)], which is L_A90 of the recording
         outside of creaks, squawks and squeals; ``None`` where there is no such part.
@@ -93,6 +101,7 @@ class Segment:
     level_a: float | None = None
     level_af_max: float | None = None
     snr: float | None = None
+    loudness_n5: float | None = None
 
 
 class Segments(list[Segment]):
@@ -128,6 +137,28 @@ class Segments(list[Segment]):
         for one in self:
             tracks.setdefault(one.channel, []).append((one.start, one.end, one.label))
         return draw_tracks(tracks, ax)
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row a segment as a data frame of pandas, in the columns of a label table.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        from models.data_frame import data_frame
+        from noise.labels.labelling import SEGMENT_COLUMNS, segment_cells
+
+        return data_frame(SEGMENT_COLUMNS, map(segment_cells, self))
+
+    def __repr__(self) -> str:
+        shown = [f"{one.label} {one.start:.4g} to {one.end:.4g} s" for one in self[:_MOST_SHOWN]]
+        more = ["..."] * (len(self) > _MOST_SHOWN)
+        return f"Segments({len(self)}: {', '.join(shown + more)})"
 
     def _repr_html_(self) -> str:
         from noise.labels.label_display import segments_html

@@ -8,27 +8,37 @@ stays in it when the recordings are labelled again.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
 from models.foreign_file import refusing
 from noise.base.label_names import LABELS
+from noise.base.progress import counted
 from noise.base.tables import check_table_path, read_table, write_table
 from noise.labels.labelling import COLUMNS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from matplotlib.axes import Axes
+    from pandas import DataFrame
 
-__all__ = ["HUMAN", "LabelTable", "cell_number", "read_label_table", "with_corrections"]
+__all__ = [
+    "HUMAN",
+    "LabelTable",
+    "cell_number",
+    "read_label_table",
+    "with_corrected_rows",
+    "with_corrections",
+]
 
 HUMAN = "human"
 """The `label_source` of what somebody has said."""
 
 _TEXTS = {
-    "file", "channel", "label", "material", "error",
+    "file", "channel", "label", "material", "note", "error",
     *(column for column in COLUMNS if column.endswith("_source")),
 }  # fmt: skip
 _NEEDED = ("file", "label")
@@ -38,13 +48,16 @@ _SUPPORT = "support_stiffness_Nm_rad"
 class LabelTable(list[dict[str, object]]):
     """The label table of recordings: one row a segment, by `COLUMNS`.
 
-    A table of pandas or polars is made of it as of any list of dictionaries.
+    A table of polars is made of it as of any list of dictionaries; one of pandas as well, or with
+    the columns' order kept by `to_pandas`.
 
     Examples
     --------
     >>> row = {"file": "run07.wav", "label": "creak", "start_s": 0.0, "end_s": 1.0, "error": None}
     >>> LabelTable([row, {"file": "b.wav", "label": None, "error": "is empty"}]).refused
     {'b.wav': 'is empty'}
+    >>> LabelTable([row])
+    LabelTable(1 file; segments: 1 creak)
     """
 
     @property
@@ -58,7 +71,7 @@ class LabelTable(list[dict[str, object]]):
         Parameters
         ----------
         path : str or Path
-            Ends in .csv, .jsonl or .parquet.
+            Ends in .csv, .xlsx, .jsonl or .parquet.
 
         Raises
         ------
@@ -95,6 +108,29 @@ class LabelTable(list[dict[str, object]]):
                 tracks.setdefault(f"{row['file']}{track}", []).append((start, end, label))
         return draw_tracks(tracks, ax)
 
+    def to_pandas(self) -> DataFrame:
+        """Return the table as a data frame of pandas, by `COLUMNS`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The bolted clamp's support stiffness is ``inf``.
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        from models.data_frame import data_frame
+
+        return data_frame(COLUMNS, self)
+
+    def __repr__(self) -> str:
+        counts = Counter(str(row.get("label") or "refused") for row in self)
+        files = counted(len({row.get("file") for row in self}), "file")
+        found = ", ".join(f"{number} {label}" for label, number in counts.most_common())
+        return f"LabelTable({files}; segments: {found or 'none'})"
+
     def _repr_html_(self) -> str:
         from noise.labels.label_display import table_html
 
@@ -107,7 +143,7 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     Parameters
     ----------
     path : Path
-        CSV, JSON Lines or Parquet, by its ending.
+        CSV, Excel, JSON Lines or Parquet, by its ending.
     refusals : list of str, optional
         Takes one line for each row that cannot be used, which is left out; without it, such a row
         is an error.
@@ -202,12 +238,37 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
         before = read_label_table(path, refusals=[])
     except RecordingError:  # no label table, so there are none in it
         return rows
+    return with_corrected_rows(before, rows)
+
+
+def with_corrected_rows(
+    before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
+) -> list[dict[str, object]]:
+    """Return new rows, with those tracks as they were `before` that somebody has corrected.
+
+    Parameters
+    ----------
+    before, rows : iterable of dict
+        By `COLUMNS`.
+
+    Returns
+    -------
+    list of dict
+        As `with_corrections` does.
+
+    Examples
+    --------
+    >>> row = {"file": "run07.wav", "channel": "all", "label": "squeal", "label_source": "human"}
+    >>> with_corrected_rows([row], [row | {"label": "creak"}])[0]["label"]
+    'squeal'
+    """
+    before = list(before)
     corrected = {_track(row) for row in before if row["label_source"] == HUMAN}
     kept: dict[tuple[object, object], list[dict[str, object]]] = {}
     for row in before:
         if _track(row) in corrected:
             kept.setdefault(_track(row), []).append(row)
-    merged = []
+    merged: list[dict[str, object]] = []
     for row in rows:
         if _track(row) in corrected:
             merged += kept.pop(_track(row), [])

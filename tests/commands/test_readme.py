@@ -27,7 +27,8 @@ def refused(said):
 
 def missing(folder, said):
     """Files that a command named on its standard output, and that are not there."""
-    named = [(one, line) for one in said for line in one.out.splitlines() if "." in line]
+    lines = [(one, line) for one in said for line in one.out.splitlines()]
+    named = [(one, line) for one, line in lines if "." in line and "  " not in line]
     return [
         (" ".join(one.line), line)
         for one, line in named

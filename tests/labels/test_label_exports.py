@@ -42,7 +42,7 @@ TABLE = [
 NEWER = ("level_dba", "l_afmax_dba", "snr_dba", "label_source")
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
     path = tmp_path / f"labels{ending}"
     write_table(path, COLUMNS, TABLE)
@@ -53,13 +53,13 @@ def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
     assert [r["calibrated"] for r in back] == [True] * 4 + [None]
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 def test_no_table_holds_an_infinity(tmp_path, ending):
     path = tmp_path / f"labels{ending}"
     write_table(path, COLUMNS, [TABLE[1] | {"level_db": math.inf}])
     _, (back,) = read_table(path)
     assert not back["level_db"]
-    assert back["support_stiffness_Nm_rad"] == ("fixed" if ending == ".csv" else None)
+    assert back["support_stiffness_Nm_rad"] == ("fixed" if ending in (".csv", ".xlsx") else None)
 
 
 def test_a_table_from_before_there_were_all_columns_still_reads(tmp_path):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from models.condition import Condition
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
+from noise.labels.label_display import labels_in, naming_row
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
     Row = Mapping[str, object]
 
 __all__ = [
-    "RATE", "Entry", "Part", "label_counts", "labels_sentence", "naming_row", "stretch_start",
+    "RATE", "Entry", "Part", "label_counts", "labels_sentence",
+    "stretch_start",
 ]  # fmt: skip
 
 RATE = 48000
@@ -95,24 +97,9 @@ class Entry:
         return naming_row(self.rows)
 
     @property
-    def label(self) -> str | None:
-        """The label of the whole; None where it is not labelled."""
-        row = self.row
-        return None if row is None else str(row["label"])
-
-
-def naming_row(rows: Sequence[Row]) -> Row | None:
-    """Return the longest row that is not ``none``, by which a file is named.
-
-    Examples
-    --------
-    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
-    >>> naming_row([short, {"label": "none", "start_s": 1.0, "end_s": 9.0}])["label"]
-    'creak'
-    """
-    labelled = [row for row in rows if row["label"] is not None]
-    loud = [row for row in labelled if row["label"] != "none"]
-    return max(loud or labelled, key=_length, default=None)
+    def labels(self) -> tuple[str, ...]:
+        """All labels in it, the longest first."""
+        return labels_in(self.rows)
 
 
 def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
@@ -133,19 +120,19 @@ def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
 
 
 def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
-    """Count entries by label, in the order of the labels; those without one last, as "".
+    """Count entries that have a label in them, by label; those without one last, as "".
 
     Examples
     --------
-    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"},))])
-    [('creak', 1), ('', 1)]
+    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"}, {"label": "none"}))])
+    [('creak', 1), ('none', 1), ('', 1)]
     """
-    counts = Counter(entry.label or "" for entry in entries)
+    counts = Counter(label for entry in entries for label in entry.labels or ("",))
     return [(label, counts[label]) for label in (*LABELS, "") if counts[label]]
 
 
 def labels_sentence(entries: Sequence[Entry]) -> str:
-    """Say how many entries have which label.
+    """Say how many entries have which label in them.
 
     Examples
     --------
@@ -154,10 +141,6 @@ def labels_sentence(entries: Sequence[Entry]) -> str:
     """
     words = [f"{number} {label or 'without a label'}" for label, number in label_counts(entries)]
     return f"{counted(len(entries), 'recording')}: {', '.join(words)}"
-
-
-def _length(row: Row) -> float:
-    return _number(row.get("end_s"), 0.0) - _number(row.get("start_s"), 0.0)
 
 
 def _number(value: object, missing: float) -> float:

@@ -61,7 +61,8 @@ class EntryDisplay:
     ----------
     id : str
     title : str
-    label : str or None
+    labels : tuple of str
+        All in it, the longest first.
     facts : dict of str to Fact
         Those known of ``speed``, ``interference``, ``stiffness``, ``material``, ``temperature``,
         ``frequency`` and ``level``.
@@ -80,7 +81,7 @@ class EntryDisplay:
 
     id: str
     title: str
-    label: str | None
+    labels: tuple[str, ...]
     facts: dict[str, Fact]
     note: str
     picture: bytes
@@ -171,7 +172,7 @@ def entry_display(key: str, entry: Entry, clip: Clip | None, picture: bytes) -> 
     return EntryDisplay(
         id=key,
         title=entry.title,
-        label=entry.label,
+        labels=entry.labels,
         facts=facts_of(entry),
         note=note,
         picture=picture,

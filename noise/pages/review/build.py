@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
+from models.short_repr import short_repr
 from noise.base.progress import counted
 from noise.pages.engine.clips import common_gain, make_clips
 from noise.pages.engine.entry import label_counts, labels_sentence
@@ -37,6 +38,7 @@ __all__ = ["Review", "review"]
 _PAGE = "report.html"
 
 
+@short_repr
 @dataclass(frozen=True)
 class Review:
     """A page that was written.

@@ -8,15 +8,13 @@ is better than none.
 
 from __future__ import annotations
 
-import csv
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
-from models.foreign_file import parse_json, reading
 from noise.base.readable import readable
-from noise.base.tables import TABLE_ENDINGS
+from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
 from noise.recordings.files import READERS
@@ -33,9 +31,6 @@ DIAGNOSIS = "diagnosis.json"
 
 _MOST_FOLDERS = 8
 """That a name is lengthened by, to tell it from another."""
-
-_LONGEST_LINE = 1 << 20
-"""Of a table in JSON Lines, as far as it is read to know its columns [letters]."""
 
 _OF_A_SCREEN = {"design", "speed_rad_s", "interference_mm", "label"}
 _OF_LABELS = {"file", "label"}
@@ -172,7 +167,7 @@ _KINDS = ("screen", "diagnosis", "design")
 def _kind_of_file(path: Path) -> str | None:
     ending = path.suffix.lower()
     if ending in TABLE_ENDINGS:
-        return "screen" if _columns(path) >= _OF_A_SCREEN else "table"
+        return "screen" if table_columns(path) >= _OF_A_SCREEN else "table"
     return {".json": "diagnosis", ".toml": "design"}.get(ending)
 
 
@@ -188,28 +183,11 @@ def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
         if path.name == DIAGNOSIS:
             yield "diagnosis", path
         elif path.suffix.lower() in TABLE_ENDINGS:
-            columns = _columns(path)
+            columns = table_columns(path)
             if columns >= _OF_A_SCREEN:
                 yield "screen", path
             elif columns >= _OF_LABELS:
                 yield "table", path
-
-
-def _columns(path: Path) -> set[str]:
-    """Columns of a table; of none where it is no table or cannot be read."""
-    try:
-        with reading(path, "table"):
-            if path.suffix.lower() == ".parquet":
-                from pyarrow import parquet
-
-                return set(parquet.read_schema(path).names)
-            with path.open(encoding="utf-8-sig", newline="") as file:
-                if path.suffix.lower() == ".jsonl":
-                    first = parse_json(file.readline(_LONGEST_LINE) or "{}")
-                    return set(first) if isinstance(first, dict) else set()
-                return set(next(csv.reader(file), ()))
-    except BushingNoiseError:
-        return set()
 
 
 def _originals(found: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:

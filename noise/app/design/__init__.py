@@ -1,0 +1,1 @@
+"""Of the app: a rig that is heard while it is changed."""

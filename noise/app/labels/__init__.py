@@ -1,0 +1,1 @@
+"""Of the app: recordings as a list, their labels, corrections."""

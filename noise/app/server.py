@@ -1,0 +1,140 @@
+"""The server: which views there are, and the page that they stand in."""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import signal
+import socket
+import threading
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, PackageLoader
+from starlette.applications import Starlette
+from starlette.responses import HTMLResponse, JSONResponse
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from models.errors import BushingNoiseError
+from noise.app.gate import Gate
+from noise.base.label_looks import LABEL_LOOKS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from starlette.requests import Request
+    from starlette.responses import Response
+    from starlette.types import ASGIApp
+
+    from noise.app.opened import Opened
+
+__all__ = ["VIEWS", "create_app", "serve"]
+
+VIEWS = {"labels": "Listen and label", "design": "Design", "jury": "Jury"}
+"""Views in the order of their tabs: module under `noise.app` and script under ``static``, title."""
+
+_SHARED = ("sounds",)
+"""Routes that several views use."""
+
+_STATIC = Path(__file__).parent / "static"
+
+
+def create_app(
+    opened: Opened, token: str, port: int, stop: Callable[[], None] = lambda: None
+) -> ASGIApp:
+    """Return the application.
+
+    Parameters
+    ----------
+    opened : Opened
+        What it may read and write.
+    token : str
+        Without which nothing is answered.
+    port : int
+        Of the server [-].
+    stop : callable
+        Called when somebody asks it to stop.
+    """
+    environment = Environment(loader=PackageLoader("noise.app", "static"), autoescape=True)
+    page = environment.get_template("page.html.j2").render(views=VIEWS, looks=LABEL_LOOKS)
+
+    async def shown(_: Request) -> Response:
+        return HTMLResponse(page)
+
+    async def stopped(_: Request) -> Response:
+        stop()
+        return JSONResponse({"stopped": True})
+
+    modules = (import_module(f"noise.app.{name}.routes") for name in (*_SHARED, *VIEWS))
+    routes = [
+        Route("/", shown),
+        Route("/api/stop", stopped, methods=["POST"]),
+        Mount("/static", StaticFiles(directory=_STATIC)),
+        *(route for module in modules for route in module.routes(opened)),
+    ]
+    app = Starlette(routes=routes, exception_handlers={BushingNoiseError: _told})
+    return Gate(app, token, port)
+
+
+async def _told(_: Request, error: Exception) -> Response:
+    """Tell what was wrong in one line, as the command line does."""
+    return JSONResponse({"error": " ".join(str(error).split("\n"))}, 400)
+
+
+def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
+    """Serve on the loopback address until somebody asks it to stop.
+
+    Parameters
+    ----------
+    opened : Opened
+        What it may read and write.
+    port : int
+        To listen on; 0 takes a free one [-].
+    ready : callable
+        Called with the address once it answers there.
+
+    Raises
+    ------
+    OSError
+        Something else listens on the port.
+    """
+    import uvicorn
+
+    with (
+        opened.leaving,
+        contextlib.closing(socket.create_server(("127.0.0.1", port))) as listening,
+    ):
+        port = listening.getsockname()[1]
+        token = secrets.token_urlsafe(24)
+
+        def stop() -> None:
+            server.should_exit = True
+
+        app = create_app(opened, token, port, stop)
+        server = uvicorn.Server(
+            uvicorn.Config(app, log_level="critical", ws="none", timeout_graceful_shutdown=2)
+        )
+        # Its own handlers would end the process before what runs beside it is told to end.
+        server.capture_signals = contextlib.nullcontext  # type: ignore[method-assign, assignment]
+        with _ended_by_signals(stop):
+            ready(f"http://127.0.0.1:{port}/?token={token}")
+            server.run(sockets=[listening])
+
+
+@contextlib.contextmanager
+def _ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
+    """Stop where the terminal is closed, or somebody says so there."""
+    if threading.current_thread() is not threading.main_thread():  # signals are not for us
+        yield
+        return
+    named = (getattr(signal, name, None) for name in ("SIGINT", "SIGTERM", "SIGHUP"))
+    before = {
+        number: signal.signal(number, lambda *_: stop()) for number in named if number is not None
+    }
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

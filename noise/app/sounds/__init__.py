@@ -1,0 +1,1 @@
+"""Of the app: samples, spectrogram and levels of a recording."""

@@ -1,0 +1,88 @@
+"""``bushing-noise open``: a local app in the browser to listen, correct, design and compare."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from noise.commands import options as opt
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser, Namespace
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: ArgumentParser) -> None:
+    """Declare description and options."""
+    parser.description = (
+        "Open recordings, a label table or a rig in a local app: listen, see, correct labels, hear "
+        "a design while it is changed, compare sounds blind. Its address is the first line on "
+        "standard output; only this machine reaches it, and only by that address. It stops by the "
+        "button Stop, or by Ctrl-C here. Corrections are written at once."
+    )
+    parser.epilog = (
+        "examples: bushing-noise open recordings; bushing-noise open labels.csv; "
+        "bushing-noise open RIG.toml"
+    )
+    parser.add_argument(
+        "paths",
+        nargs="*",
+        type=Path,
+        metavar="PATH",
+        help="recording; folder that is searched for recordings at any depth; label table (.csv, "
+        ".jsonl, .parquet) with its recordings beside it; rig file (.toml)",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="TABLE",
+        help="label table to write (default: the one that is named, or labels.csv in the folder)",
+    )
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=0,
+        help="to listen on (default: one that is free)",
+    )
+    parser.add_argument(
+        "--no-browser", action="store_true", help="print the address and open no browser"
+    )
+    parser.add_argument(
+        "--samples",
+        type=opt.whole_number(1),
+        metavar="N",
+        help="simulated samples that it learns from beside corrections, as of `bushing-noise "
+        "train`; fewer are quicker and know less",
+    )
+    opt.add_seed(parser, "seed of simulated sounds and of random orders")
+
+
+def run(options: Namespace) -> int:
+    """Serve until somebody asks it to stop."""
+    try:
+        from noise.app.opened import open_paths
+        from noise.app.server import serve
+    except ImportError as error:
+        if error.name not in {"starlette", "uvicorn", "anyio"}:
+            raise
+        raise ParameterError(
+            f'open needs {error.name}; run: pip install "bushing-noise[app]"'
+        ) from None
+    if not 0 <= options.port <= 65535:  # what a port can be
+        raise ParameterError(f"--port {options.port}: must be from 0 to 65535")
+    opened = open_paths(options.paths, options.out, options.samples)
+
+    def ready(address: str) -> None:
+        print(address, flush=True)
+        if not options.no_browser:
+            import webbrowser
+
+            webbrowser.open(address)
+
+    try:
+        serve(opened, options.port, ready)
+    except OSError as error:
+        raise ParameterError(f"--port {options.port}: {error.strerror or error}") from None
+    return 0
