@@ -95,7 +95,7 @@ def configure(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--band",
-        type=_band,
+        type=opt.band,
         metavar="LOW..HIGH",
         help="band in Hz in which modes are fitted (default: where the coherence can be trusted)",
     )
@@ -298,14 +298,3 @@ def _channel(text: str) -> str:
         return Channel(text).name
     except ParameterError as error:
         raise ArgumentTypeError(f"is {text!r}: {error}") from None
-
-
-def _band(text: str) -> tuple[float, float]:
-    low, dots, high = text.partition("..")
-    try:
-        band = float(low), float(high)
-    except ValueError:
-        band = 0.0, 0.0
-    if not dots or not 0.0 <= band[0] < band[1] < float("inf"):
-        raise ArgumentTypeError(f"is {text!r}, expected LOW..HIGH in Hz, such as 100..5000")
-    return band

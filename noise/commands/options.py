@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = [
-    "add_calibration", "add_change", "add_excel", "add_seed", "changed", "check_folder",
+    "add_calibration", "add_change", "add_excel", "add_seed", "band", "changed", "check_folder",
     "full_scale_of", "number", "number_or_none", "refuse", "whole_number",
 ]  # fmt: skip
 
@@ -84,6 +84,24 @@ def whole_number(least: int, *, most: int | None = None, more: str = "") -> Call
         return int(plain)
 
     return parse
+
+
+def band(text: str) -> tuple[float, float]:
+    """Read a band of frequencies [Hz].
+
+    Examples
+    --------
+    >>> band("200..2000")
+    (200.0, 2000.0)
+    """
+    low, dots, high = text.partition("..")
+    try:
+        ends = float(low), float(high)
+    except ValueError:
+        ends = 0.0, 0.0
+    if not dots or not 0.0 <= ends[0] < ends[1] < float("inf"):
+        raise ArgumentTypeError(f"is {text!r}, expected LOW..HIGH in Hz, such as 100..5000")
+    return ends
 
 
 def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
