@@ -14,7 +14,7 @@ from models.condition import Condition
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
 from noise.labels.label_display import labels_in, naming_row
-from noise.pictures.line_levels import RATE
+from noise.pictures.clip_levels import RATE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -10,7 +10,7 @@ from models.recording import REFERENCE_PRESSURE
 from noise.labels.label_display import ASSUMED, assumes_material
 from noise.pages.engine.spectrogram import RANGE, TICKS, picture, top
 from noise.pages.engine.ticks import round_ticks
-from noise.pictures.line_levels import HIGHEST, LOWEST, line_levels
+from noise.pictures.clip_levels import HIGHEST, LOWEST, clip_levels
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -114,7 +114,7 @@ def draw_entries(
     for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
                                         (False, 1.0, "dBFS")):  # fmt: skip
         levels = {
-            key: line_levels(clip.samples, reference)
+            key: clip_levels(clip.samples, reference)
             for key, clip in clips.items()
             if entries[key].calibrated == calibrated
         }
