@@ -62,7 +62,7 @@ class Segment:
         [s]
     label : str
         The most probable of `noise.classifier.LABELS`, but ``unknown`` where that is a noise below
-        the classifier's threshold; not of a recording at a stated operating condition, where
+        the classifier's threshold of it; not of a recording at a stated operating condition, where
         nothing but a bushing is expected to sound.
     probabilities : mapping of str to float
         Of all labels [-], where the segment sounds most like a noise
@@ -254,7 +254,7 @@ def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> lis
         probabilities /= probabilities.sum(axis=1, keepdims=True)
     silent = _silent_windows(blocks, found)
     probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    edges, names = labelled_stretches(probabilities, None if known else classifier.threshold)
+    edges, names = labelled_stretches(probabilities, None if known else classifier.thresholds)
     group = np.repeat(np.arange(names.size), np.diff(edges))
     heard = clearest(probabilities, group)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
