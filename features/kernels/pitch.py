@@ -101,7 +101,7 @@ def pitch_track(
     x = checked_signal(signal, rate)
     hop = max(1, round(_HOP * rate))
     frame = 2 ** int(np.ceil(np.log2(4.0 * rate / lowest)))
-    if not np.ptp(x) > 0.0:
+    if not np.ptp(x) > 0.0 or usable_limit(rate) <= lowest:
         time = np.arange(1 + x.size // hop) * hop / rate
         return PitchTrack(time, np.full(time.size, np.nan))
     frequency, _, _ = librosa.pyin(

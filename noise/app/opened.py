@@ -5,12 +5,14 @@ No path comes from a browser.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import ExitStack
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.tables import TABLE_ENDINGS
+from noise.base.atomic import check_target
+from noise.base.tables import TABLE_ENDINGS, check_table_path
 from noise.batch import find_jobs
 
 if TYPE_CHECKING:
@@ -37,15 +39,38 @@ class Opened:
         Rig files.
     folder : Path
         Where what is saved goes.
+    sources : tuple of Path
+        Recordings and folders that the recordings were found in.
+    samples : int, optional
+        Simulated samples to learn from beside corrections [-]; by default as many as `train` takes.
+    leaving : ExitStack
+        What is to be ended when the app ends.
     """
 
     jobs: tuple[Job, ...]
     table: Path | None
     rigs: tuple[Path, ...]
     folder: Path
+    sources: tuple[Path, ...] = ()
+    samples: int | None = None
+    leaving: ExitStack = field(default_factory=ExitStack)
+
+    def job(self, index: int) -> Job:
+        """Return the recording of a number.
+
+        Raises
+        ------
+        ParameterError
+            None has it.
+        """
+        if not 0 <= index < len(self.jobs):
+            raise ParameterError(f"there is no recording {index}")
+        return self.jobs[index]
 
 
-def open_paths(paths: Sequence[Path], table: Path | None = None) -> Opened:
+def open_paths(
+    paths: Sequence[Path], table: Path | None = None, samples: int | None = None
+) -> Opened:
     """Find recordings, label table and rig files.
 
     Parameters
@@ -53,13 +78,16 @@ def open_paths(paths: Sequence[Path], table: Path | None = None) -> Opened:
     paths : sequence of Path
         Recordings, folders that are searched for them at any depth, one label table, rig files.
     table : Path, optional
-        Label table to write; by default the one that was named, or ``labels.csv`` in the folder
-        (or beside the recording) that was.
+        Label table to write, which may be there; by default the one that was named, or
+        ``labels.csv`` in the folder (or beside the recording) that was.
+
+    samples : int, optional
+        Simulated samples to learn from beside corrections [-].
 
     Raises
     ------
     ParameterError
-        A path does not exist, or several label tables are named.
+        A path does not exist, several label tables are named, or no table can be written there.
 
     Examples
     --------
@@ -74,11 +102,18 @@ def open_paths(paths: Sequence[Path], table: Path | None = None) -> Opened:
     sounds = [path for path in paths if path not in rigs and path not in tables]
     if len(tables) > 1:
         raise ParameterError(f"{tables[1]} is a second label table; one is corrected at a time")
+    if tables and table is not None and table.absolute() != tables[0].absolute():
+        raise ParameterError(
+            f"--out {table}: corrections go into the label table that is named, {tables[0]}"
+        )
     if tables and not sounds:
         sounds = [tables[0].absolute().parent]
+    if table is not None:  # the one beside the recordings is written where there is a correction
+        check_table_path(table)
+        check_target(table)
     jobs = find_jobs(sounds) if sounds else []
     first = (sounds or rigs or [Path.cwd()])[0].absolute()
     folder = first if first.is_dir() else first.parent
     if table is None and jobs:
         table = tables[0] if tables else folder / _TABLE
-    return Opened(tuple(jobs), table, tuple(rigs), folder)
+    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples)

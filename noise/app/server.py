@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import secrets
+import signal
 import socket
+import threading
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,7 +22,7 @@ from noise.app.gate import Gate
 from noise.base.label_looks import LABEL_LOOKS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from starlette.requests import Request
     from starlette.responses import Response
@@ -100,7 +102,10 @@ def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
     """
     import uvicorn
 
-    with contextlib.closing(socket.create_server(("127.0.0.1", port))) as listening:
+    with (
+        opened.leaving,
+        contextlib.closing(socket.create_server(("127.0.0.1", port))) as listening,
+    ):
         port = listening.getsockname()[1]
         token = secrets.token_urlsafe(24)
 
@@ -111,5 +116,25 @@ def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
         server = uvicorn.Server(
             uvicorn.Config(app, log_level="critical", ws="none", timeout_graceful_shutdown=2)
         )
-        ready(f"http://127.0.0.1:{port}/?token={token}")
-        server.run(sockets=[listening])
+        # Its own handlers would end the process before what runs beside it is told to end.
+        server.capture_signals = contextlib.nullcontext  # type: ignore[method-assign, assignment]
+        with _ended_by_signals(stop):
+            ready(f"http://127.0.0.1:{port}/?token={token}")
+            server.run(sockets=[listening])
+
+
+@contextlib.contextmanager
+def _ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
+    """Stop where the terminal is closed, or somebody says so there."""
+    if threading.current_thread() is not threading.main_thread():  # signals are not for us
+        yield
+        return
+    named = (getattr(signal, name, None) for name in ("SIGINT", "SIGTERM", "SIGHUP"))
+    before = {
+        number: signal.signal(number, lambda *_: stop()) for number in named if number is not None
+    }
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

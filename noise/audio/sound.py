@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 
     from models.recording import Channel, Recording
 
-__all__ = ["FADE", "audible", "pressure_channel", "resampled"]
+__all__ = ["FADE", "audible", "playable", "pressure_channel", "resampled"]
 
 FADE = 0.010
 """Half a Hann window at either end [s]."""
 
 _STOP_BAND = 100.0  # dB
 _PASS_BAND = 0.95  # of the lower Nyquist frequency
+_LARGEST_TERM = 100_000  # of that ratio: the filter is 300 times as long
 _FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right within 1e-6
 
 
@@ -59,9 +60,35 @@ def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> N
     >>> audible(run).shape, audible(run, 44100).shape
     ((4800,), (4410,))
     """
-    signal = recording[pressure_channel(recording).name]
-    sound = resampled(signal - signal.mean(), recording.rate, rate)
-    n = min(round(fade * rate), sound.size // 2)
+    return playable(recording[pressure_channel(recording).name], recording.rate, rate, fade=fade)
+
+
+def playable(
+    signal: NDArray[np.float64], rate: float, new_rate: int = 48000, *, fade: float = FADE
+) -> NDArray[np.float64]:
+    """Return a signal at a rate that is played, without its mean, faded in and out.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n_samples,)
+        In any [unit].
+    rate, new_rate : float
+        Sampling rates [Hz].
+    fade : float
+        As of `audible` [s].
+
+    Returns
+    -------
+    ndarray, shape (n_new_samples,)
+        In the unit of the signal, such as [Pa].
+
+    Examples
+    --------
+    >>> playable(np.ones(3000), 30e3).shape
+    (4800,)
+    """
+    sound = resampled(signal - signal.mean(), rate, new_rate)
+    n = min(round(fade * new_rate), sound.size // 2)
     flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
     sound[:n] *= flank
     sound[sound.size - n :] *= flank[::-1]
@@ -102,7 +129,8 @@ def resampled(signal: NDArray[np.float64], rate: float, new_rate: float) -> NDAr
     """
     from scipy.signal import firwin, kaiser_beta, resample_poly
 
-    ratio = Fraction(new_rate / rate).limit_denominator(_FINEST_RATIO)
+    terms = max(1, min(_FINEST_RATIO, int(_LARGEST_TERM * rate / new_rate)))
+    ratio = Fraction(new_rate / rate).limit_denominator(terms)
     if ratio == 1:
         return np.array(signal, dtype=float)
     up, down = ratio.numerator, ratio.denominator

@@ -8,7 +8,7 @@ import json
 import math
 from typing import TYPE_CHECKING
 
-from noise.base.excel_csv import plain_text, separator_of, with_apostrophe
+from noise.base.excel_csv import plain_text, separator_of, with_apostrophe, without_apostrophe
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -40,12 +40,12 @@ def read_csv(file: TextIO) -> tuple[list[str], list[dict[str, object]]]:
     header = header.removeprefix(_MARK)
     lines = itertools.chain([header], file)
     reader = csv.DictReader(lines, delimiter=separator_of(header))
-    rows: list[dict[str, object]] = []
-    for row in reader:
-        cells = {str(column): value for column, value in row.items()}
-        if of_excel or reader.reader.dialect.delimiter == ";":
-            cells = {c: plain_text(v) if isinstance(v, str) else v for c, v in cells.items()}
-        rows.append(cells)
+    of_excel |= reader.reader.dialect.delimiter == ";"
+    meant = plain_text if of_excel else without_apostrophe
+    rows: list[dict[str, object]] = [
+        {str(c): meant(value) if isinstance(value, str) else value for c, value in row.items()}
+        for row in reader
+    ]
     return list(reader.fieldnames or ()), rows
 
 
@@ -89,10 +89,10 @@ def finite_or_fixed(column: str, value: Cell) -> Cell:
 
 
 def _csv_cell(column: str, value: Cell) -> Cell:
+    if isinstance(value, str):
+        return with_apostrophe(value)
     return json.dumps(value) if isinstance(value, bool) else finite_or_fixed(column, value)
 
 
 def _excel_cell(value: Cell, signs: ExcelSigns) -> Cell:
-    if isinstance(value, float):
-        return signs.text(value)
-    return with_apostrophe(value) if isinstance(value, str) else value
+    return signs.text(value) if isinstance(value, float) else value

@@ -19,6 +19,7 @@ __all__ = [
     "plain_text",
     "separator_of",
     "with_apostrophe",
+    "without_apostrophe",
 ]
 
 _COMMAS = ("cs", "da", "de", "es", "fi", "fr", "hu", "it", "nb", "nl", "pl", "pt", "ru", "sv", "tr")
@@ -27,8 +28,8 @@ _POINTS = ("en", "he", "hi", "ja", "ko", "th", "zh")
 EXCEL_LANGUAGES = (*_COMMAS, *_POINTS, "de-ch", "system")
 """Whose signs are known, by their two letters; ``system`` is that of this computer."""
 
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""How a text begins that Excel computes."""
+_FORMULA = re.compile(r"'*[=+\-@\t\r]")
+"""How a text begins that a spreadsheet computes, or that was kept from being one."""
 
 _NUMBER = re.compile(r"-?\d+(,\d+)?(e[+-]?\d+)?")
 
@@ -85,27 +86,36 @@ def separator_of(header: str) -> str:
 
 
 def with_apostrophe(text: str) -> str:
-    """Return a text that Excel takes for nothing else.
+    """Return a text that a spreadsheet takes for nothing else.
 
     Examples
     --------
     >>> with_apostrophe("=cmd.wav"), with_apostrophe("run07.wav")
     ("'=cmd.wav", 'run07.wav')
     """
-    return f"'{text}" if text.startswith(_FORMULA) else text
+    return f"'{text}" if _FORMULA.match(text) else text
 
 
-def plain_text(cell: str) -> str:
-    """Return what stands in a cell of such a file as any other table has it.
+def without_apostrophe(cell: str) -> str:
+    """Return a text as it was before `with_apostrophe`.
 
     Examples
     --------
-    >>> plain_text("59,9"), plain_text("'=cmd.wav"), plain_text("'s-Hertogenbosch, 1.wav")
-    ('59.9', '=cmd.wav', "'s-Hertogenbosch, 1.wav")
+    >>> without_apostrophe("'=cmd.wav"), without_apostrophe("'s-Hertogenbosch, 1.wav")
+    ('=cmd.wav', "'s-Hertogenbosch, 1.wav")
     """
-    if _NUMBER.fullmatch(cell):
-        return cell.replace(",", ".")
-    return cell[1:] if cell.startswith("'") and cell[1:].startswith(_FORMULA) else cell
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
+
+
+def plain_text(cell: str) -> str:
+    """Return what stands in a cell of Excel's CSV as any other table has it.
+
+    Examples
+    --------
+    >>> plain_text("59,9"), plain_text("'=cmd.wav")
+    ('59.9', '=cmd.wav')
+    """
+    return cell.replace(",", ".") if _NUMBER.fullmatch(cell) else without_apostrophe(cell)
 
 
 def _of_this_computer() -> str:

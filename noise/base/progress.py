@@ -1,8 +1,8 @@
 """Messages and progress bar while the program works, all on standard error.
 
 Standard output belongs to results. The bar is drawn on a terminal only; in a log file there is one
-line that says what is being done. Lines and bar do not tread on each other, and a standard error
-that is closed is no reason to stop.
+line that says what is being done, and one a second for a program that reads them (`LINES`). Lines
+and bar do not tread on each other, and a standard error that is closed is no reason to stop.
 """
 
 from __future__ import annotations
@@ -10,9 +10,12 @@ from __future__ import annotations
 import os
 import sys
 import threading
+import time
 from collections.abc import Sized
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
+
+from noise.base.readable import readable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -20,7 +23,13 @@ if TYPE_CHECKING:
 
     from tqdm import tqdm
 
-__all__ = ["Steps", "counted", "discard", "note", "say", "steps", "track"]
+__all__ = ["LINES", "Steps", "counted", "discard", "note", "say", "steps", "track"]
+
+LINES = "BUSHING_NOISE_PROGRESS_LINES"
+"""Environment variable that asks for lines ``simulating: 120 of 7360`` where there is no bar."""
+
+_EVERY = 1.0
+"""Between two such lines [s]."""
 
 _Item = TypeVar("_Item")
 
@@ -29,7 +38,10 @@ _TICK = 0.5
 
 
 def say(text: str) -> None:
-    """Print one line on standard error; line breaks inside `text` become spaces.
+    """Print one line on standard error.
+
+    Line breaks inside `text` become spaces, and what would control the terminal is shown as its
+    code.
 
     Examples
     --------
@@ -37,7 +49,7 @@ def say(text: str) -> None:
     """
     if sys.stderr is None:  # closed by the caller
         return
-    line = " ".join(text.split("\n"))
+    line = readable(" ".join(text.split("\n")))
     try:
         if "tqdm" in sys.modules:
             from tqdm import tqdm
@@ -107,7 +119,7 @@ def track(
         total = len(items)
     if not _on_terminal():
         say(doing if total is None else f"{doing} {counted(total, unit)}")
-        yield from items
+        yield from items if not os.environ.get(LINES) else _in_lines(items, doing, total)
         return
     from tqdm import tqdm
 
@@ -191,3 +203,12 @@ def steps(doing: str, number: int) -> Iterator[Steps]:
 
 def _on_terminal() -> bool:
     return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _in_lines(items: Iterable[_Item], doing: str, total: int | None) -> Iterator[_Item]:
+    said = time.monotonic()
+    for number, item in enumerate(items, 1):
+        yield item
+        if time.monotonic() - said >= _EVERY:
+            said = time.monotonic()
+            say(f"{doing}: {number}" + ("" if total is None else f" of {total}"))

@@ -3,7 +3,8 @@
 One value is written alike in all formats: nothing where there is none (an undefined number is
 none, too, and an infinite one), ``true`` and ``false``, and numbers with as many digits as give the
 same number back. In CSV and in a workbook the infinite stiffness of a bolted clamp is the word
-``fixed``.
+``fixed``; in CSV a text that a spreadsheet would take for a formula (it begins with ``=``, ``+``,
+``-``, ``@``, a tab or a carriage return) has an apostrophe before it, which reading takes away.
 A table appears whole or not at all, and a target that cannot be written is refused before the work
 whose result it is to hold.
 """
@@ -18,7 +19,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError, RecordingError, not_installed
+from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
+from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
 from noise.base.atomic import atomic
 from noise.base.csv_text import finite_or_fixed, read_csv, write_csv
 from noise.base.excel_csv import excel_signs, separator_of
@@ -41,6 +43,12 @@ __all__ = [
 
 TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
+
+_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
+"""Cells that a Parquet file may hold: so many, and so many a byte."""
+
+_LONGEST_LINE = 1 << 20
+"""Characters of a line that are looked at for the columns."""
 
 
 def table_endings(*more: str) -> str:
@@ -194,12 +202,9 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     """
     check_table_path(path)
     ending = path.suffix.lower()
-    try:
+    with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
         if ending == ".parquet":
-            from pyarrow import parquet
-
-            table = parquet.read_table(path)
-            return list(table.column_names), table.to_pylist()
+            return _read_parquet(path)
         if ending == ".xlsx":
             from noise.base.workbook import read_workbook
 
@@ -208,11 +213,18 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
             with path.open(encoding="utf-8", newline="") as file:
                 return read_csv(file)
         with path.open(encoding="utf-8-sig") as file:
-            return [], [json.loads(line) for line in file if line.strip()]
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, csv.Error) as error:
-        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
+            return [], [parse_json(line) for line in file if line.strip()]
+
+
+def _read_parquet(path: Path) -> tuple[list[str], list[dict[str, object]]]:
+    from pyarrow import parquet
+
+    with parquet.ParquetFile(path) as file:
+        announced = file.metadata.num_rows * file.metadata.num_columns
+        if announced > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
+            raise ExcessError(f"announces {announced} cells, more than a file of its size holds")
+        table = file.read()
+    return list(table.column_names), table.to_pylist()
 
 
 def table_columns(path: Path) -> set[str]:
@@ -228,21 +240,22 @@ def table_columns(path: Path) -> set[str]:
     """
     ending = path.suffix.lower()
     try:
-        if ending == ".parquet":
-            from pyarrow import parquet
+        with reading(path, "table"):
+            if ending == ".parquet":
+                from pyarrow import parquet
 
-            return set(parquet.read_schema(path).names)
-        if ending == ".xlsx":
-            from noise.base.workbook import read_workbook
+                return set(parquet.read_schema(path).names)
+            if ending == ".xlsx":
+                from noise.base.workbook import read_workbook
 
-            return set(read_workbook(path)[0])
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            header = file.readline()
-        if ending == ".jsonl":
-            first = json.loads(header or "{}")
-            return set(first) if isinstance(first, dict) else set()
-        return set(next(csv.reader([header], delimiter=separator_of(header)), ()))
-    except (OSError, ValueError, csv.Error, ImportError):
+                return set(read_workbook(path)[0])
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                header = file.readline(_LONGEST_LINE)
+            if ending == ".jsonl":
+                first = parse_json(header or "{}")
+                return set(first) if isinstance(first, dict) else set()
+            return set(next(csv.reader([header], delimiter=separator_of(header)), ()))
+    except BushingNoiseError:
         return set()
 
 

@@ -5,13 +5,14 @@ is the same, byte for byte, as that of one process that nobody disturbed.
 """
 
 from noise.batch.identity import file_digest, file_identity
-from noise.batch.journal import Journal, journal_path, open_journal
+from noise.batch.journal import Journal, JournalReader, journal_path, open_journal
 from noise.batch.work import Done, Job, Work, find_jobs, perform_all
 
 __all__ = [
     "Done",
     "Job",
     "Journal",
+    "JournalReader",
     "Work",
     "file_digest",
     "file_identity",

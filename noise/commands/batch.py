@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.atomic import check_target
+from noise.base.lock import locked
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands.options import add_excel, refuse, whole_number
+from noise.commands.options import MOST_WORKERS, add_excel, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -58,7 +59,7 @@ def add_batch(parser: ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
-        type=whole_number(1),
+        type=whole_number(1, most=MOST_WORKERS),
         default=1,
         metavar="N",
         help="processes that share the work (default: 1); the table is the same",
@@ -186,11 +187,12 @@ def _write(
     table: bool,
 ) -> tuple[Rows, list[Path]]:
     columns, out = work.columns, options.out
-    rows = keep(
-        out, [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
-    )
-    if table:
-        write_table(out, columns, rows, options.excel)
+    rows: Rows = [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
+    # Nobody may change the table between the look at what stays of it and the writing.
+    with nullcontext() if out is None else locked(out):
+        rows = keep(out, rows)
+        if table:
+            write_table(out, columns, rows, options.excel)
     return rows, [*([] if out is None else [out]), *also(rows)]
 
 

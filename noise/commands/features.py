@@ -149,10 +149,12 @@ def _windows(path: Path, channel: str, blocks: RecordingBlocks) -> Iterator[dict
 def _pitch(recording: Recording) -> dict[str, float]:
     """Pitch of the first pressure channel."""
     from features.kernels.pitch import pitch_track
+    from noise.recordings.blocks import RecordingBlocks
 
     row = recording.first("pressure")
     if row is None:
         return {}
-    track = pitch_track(recording.samples[row], recording.rate)
+    blocks = RecordingBlocks.of(recording)
+    track = pitch_track(blocks.read(0, blocks.n_samples)[row], blocks.rate)
     values = (track.median, track.range, track.voiced_share)
     return dict(zip(_PITCH_COLUMNS, values, strict=True))

@@ -49,6 +49,13 @@ def configure(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--no-browser", action="store_true", help="print the address and open no browser"
     )
+    parser.add_argument(
+        "--samples",
+        type=opt.whole_number(1),
+        metavar="N",
+        help="simulated samples that it learns from beside corrections, as of `bushing-noise "
+        "train`; fewer are quicker and know less",
+    )
     opt.add_seed(parser, "seed of simulated sounds and of random orders")
 
 
@@ -65,7 +72,7 @@ def run(options: Namespace) -> int:
         ) from None
     if not 0 <= options.port <= 65535:  # what a port can be
         raise ParameterError(f"--port {options.port}: must be from 0 to 65535")
-    opened = open_paths(options.paths, options.out)
+    opened = open_paths(options.paths, options.out, options.samples)
 
     def ready(address: str) -> None:
         print(address, flush=True)

@@ -60,7 +60,13 @@ def number(
     return parse
 
 
-def whole_number(least: int, *, more: str = "") -> Callable[[str], int]:
+_LONGEST_NUMBER = 18  # digits
+
+MOST_WORKERS = 1024
+"""Processes or threads that a command starts at most: beyond it systems refuse to start more."""
+
+
+def whole_number(least: int, *, most: int | None = None, more: str = "") -> Callable[[str], int]:
     """Return a parser of whole numbers from `least` on; `more` ends what it says it expected.
 
     Examples
@@ -70,11 +76,12 @@ def whole_number(least: int, *, more: str = "") -> Callable[[str], int]:
     """
 
     def parse(text: str) -> int:
-        if not text.strip().isdecimal() or int(text) < least:
-            raise ArgumentTypeError(
-                f"is {text!r}, expected a whole number of {least} or more{more}"
-            )
-        return int(text)
+        plain = text.strip()
+        decimal = plain.isdecimal() and len(plain) <= _LONGEST_NUMBER
+        if not decimal or int(plain) < least or (most is not None and int(plain) > most):
+            span = f"of {least} or more" if most is None else f"from {least} to {most}"
+            raise ArgumentTypeError(f"is {text!r}, expected a whole number {span}{more}")
+        return int(plain)
 
     return parse
 

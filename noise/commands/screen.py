@@ -123,7 +123,7 @@ def configure(parser: ArgumentParser) -> None:
     shared = parser.add_mutually_exclusive_group()
     shared.add_argument(
         "--workers",
-        type=opt.whole_number(1),
+        type=opt.whole_number(1, most=opt.MOST_WORKERS),
         default=-1,
         metavar="N",
         help="threads (default: one a core)",
@@ -139,11 +139,16 @@ def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
         opt.check_folder(options.out, file="map.csv")
+    from noise.screening.design.environments import environment
+
+    given = _given(options)
     environments = [name for name in options.environment.split(",") if name.strip()]
+    for name in environments:
+        environment(name)  # refused before everything is loaded
     of_each = 2 if options.tolerances is False else 3  # map, grade, parts
     number = 1 + of_each * len(options.designs) * len(environments)
     with steps("screening", number) as tell:
-        found = _screened(options, environments, tell)
+        found = _screened(options, given, environments, tell)
     from noise.screening.tables.summary import summary_lines
 
     for name, reason in (*found.refused, *found.failed):
@@ -158,7 +163,7 @@ def run(options: Namespace) -> int:
     return 1 if found.refused or found.failed else 0
 
 
-def _screened(options: Namespace, environments: list[str], tell: Steps) -> Screening:
+def _screened(options: Namespace, given: Use, environments: list[str], tell: Steps) -> Screening:
     tell("preparing")
     import numpy as np
 
@@ -167,7 +172,7 @@ def _screened(options: Namespace, environments: list[str], tell: Steps) -> Scree
     simulations = options.simulations or DEFAULT_SIMULATIONS
     return screen(
         options.designs,
-        _given(options),
+        given,
         environments=environments,
         loudness=options.loudness,
         tolerances=options.tolerances,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 from models.errors import ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import counted, say, steps, track
+from noise.base.tables import TABLE_ENDINGS
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
@@ -49,11 +50,13 @@ def configure(parser: ArgumentParser) -> None:
         "--add",
         type=Path,
         action="append",
-        metavar="DIR",
+        metavar="DIR|TABLE",
         help="folder of labelled recordings to learn from as well (may be given several times): "
         "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
-        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav). All are "
-        "learned from, calibrate, and are scored, each by trees that were grown without its file",
+        "a label table, or by Audacity's label tracks (run07.txt beside run07.wav); or the label "
+        "table itself. Of a table that somebody has corrected (label_source is human) the "
+        "corrections count alone. All are learned from, calibrate, and are scored, each by trees "
+        "that were grown without its file",
     )
     parser.add_argument(
         "--surroundings",
@@ -69,6 +72,13 @@ def configure(parser: ArgumentParser) -> None:
         help="simulated samples to learn from (default: 4300); fewer are quicker and know less",
     )
     parser.add_argument(
+        "--keep",
+        type=Path,
+        metavar="FILE.npz",
+        help="keep what was simulated in this file; where it holds the same of an earlier call, "
+        "nothing is simulated again",
+    )
+    parser.add_argument(
         "--inference",
         type=Path,
         metavar="FILE.npz",
@@ -81,6 +91,8 @@ def configure(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Train, save, and tell the score."""
     _check_model(options.out, "--out", "a classifier")
+    if options.keep is not None:
+        _check_model(options.keep, "--keep", "what was simulated")
     if options.inference is not None:
         _check_model(options.inference, "--inference", "a model")
         if options.inference.absolute() == options.out.absolute():
@@ -119,6 +131,7 @@ def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Cla
         n_test=max(1, n // _PART_TO_SCORE) if n else N_TEST,
         added=added,
         surroundings=options.surroundings,
+        keep=options.keep,
         progress=partial(_progress, tell),
     )
 
@@ -137,8 +150,8 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     from noise.training.classifier.own_samples import own_samples
 
     for folder in folders:
-        if not folder.is_dir():
-            raise ParameterError(f"--add {folder}: there is no such folder")
+        if not folder.is_dir() and not (folder.is_file() and folder.suffix in TABLE_ENDINGS):
+            raise ParameterError(f"--add {folder}: there is no such folder, nor label table")
     samples: list[OwnSample] = []
     refusals: list[str] = []
     for folder in dict.fromkeys(folder.resolve() for folder in folders):

@@ -12,6 +12,7 @@ import re
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
+from models.foreign_file import LARGEST_JSON, reading
 from noise.base.atomic import atomic
 from noise.base.exports import export_paths
 
@@ -66,18 +67,15 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
     Examples
     --------
     >>> import tempfile
+    >>> from pathlib import Path
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "run07.txt"
     ...     _ = path.write_text("0.5\t2.25\tcreak\n1\t2\ttrack 2: squeal\n")
     ...     read_label_track(path)
     [(0.5, 2.25, 'all', 'creak'), (1.0, 2.0, '2', 'squeal')]
     """
-    try:
+    with reading(path, "label track", error=RecordingError, largest=LARGEST_JSON):
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except UnicodeDecodeError:
-        raise RecordingError(f"{path}: is no text, so no label track") from None
     found: list[tuple[float, float, str, str]] = []
     for number, line in enumerate(lines, 1):
         if not line.strip() or line.startswith("\\"):

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.base.lock import locked
 from noise.base.tables import check_table_path
 from noise.batch import find_jobs, open_journal, perform_all
 from noise.labels.labelling import Labelling
@@ -97,8 +98,11 @@ def label(
             for index in sorted(outcomes)
             for row in outcomes[index].rows
         ]
-        table = LabelTable(with_corrections(None if out is None else Path(out), rows))
-        if out is not None:
+        if out is None:
+            return LabelTable(rows)
+        # Nobody may correct the table between the look at its corrections and the writing.
+        with locked(Path(out)):
+            table = LabelTable(with_corrections(Path(out), rows))
             table.write(out)
     return table
 

@@ -23,6 +23,7 @@ __all__ = [
     "MOST_TRACKS",
     "assumes_material",
     "draw_tracks",
+    "labels_in",
     "naming_row",
     "result_lines",
     "segments_html",
@@ -134,6 +135,26 @@ def naming_row(rows: Sequence[Mapping[str, object]]) -> Mapping[str, object] | N
     labelled = [row for row in rows if row.get("label") is not None]
     loud = [row for row in labelled if row["label"] != "none"]
     return max(loud or labelled, key=_length, default=None)
+
+
+def labels_in(rows: Sequence[Mapping[str, object]]) -> tuple[str, ...]:
+    """Return all labels of a recording: the one that names it, then by their longest row.
+
+    ``none`` comes last.
+
+    Examples
+    --------
+    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
+    >>> long = {"label": "squeal", "start_s": 1.0, "end_s": 3.0}
+    >>> labels_in([{"label": "none", "start_s": 3.0, "end_s": 9.0}, short, long])
+    ('squeal', 'creak', 'none')
+    """
+    longest: dict[str, float] = {}
+    for row in rows:
+        if row["label"] is not None:
+            label = str(row["label"])
+            longest[label] = max(_length(row), longest.get(label, 0.0))
+    return tuple(sorted(longest, key=lambda label: (label == "none", -longest[label])))
 
 
 def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:

@@ -12,19 +12,27 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
+from models.foreign_file import refusing
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
 from noise.base.tables import check_table_path, read_table, write_table
 from noise.labels.labelling import COLUMNS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from matplotlib.axes import Axes
     from pandas import DataFrame
 
-__all__ = ["HUMAN", "LabelTable", "cell_number", "read_label_table", "with_corrections"]
+__all__ = [
+    "HUMAN",
+    "LabelTable",
+    "cell_number",
+    "read_label_table",
+    "with_corrected_rows",
+    "with_corrections",
+]
 
 HUMAN = "human"
 """The `label_source` of what somebody has said."""
@@ -169,8 +177,10 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
         raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
     checked = []
     for number, row in enumerate(rows, 1):
+        where = f"{path}: row {number}"
         try:
-            checked.append(_checked(row, f"{path}: row {number}"))
+            with refusing(where, "row of a label table", RecordingError):
+                checked.append(_checked(row, where))
         except RecordingError as error:
             if refusals is None:
                 raise
@@ -228,12 +238,37 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
         before = read_label_table(path, refusals=[])
     except RecordingError:  # no label table, so there are none in it
         return rows
+    return with_corrected_rows(before, rows)
+
+
+def with_corrected_rows(
+    before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
+) -> list[dict[str, object]]:
+    """Return new rows, with those tracks as they were `before` that somebody has corrected.
+
+    Parameters
+    ----------
+    before, rows : iterable of dict
+        By `COLUMNS`.
+
+    Returns
+    -------
+    list of dict
+        As `with_corrections` does.
+
+    Examples
+    --------
+    >>> row = {"file": "run07.wav", "channel": "all", "label": "squeal", "label_source": "human"}
+    >>> with_corrected_rows([row], [row | {"label": "creak"}])[0]["label"]
+    'squeal'
+    """
+    before = list(before)
     corrected = {_track(row) for row in before if row["label_source"] == HUMAN}
     kept: dict[tuple[object, object], list[dict[str, object]]] = {}
     for row in before:
         if _track(row) in corrected:
             kept.setdefault(_track(row), []).append(row)
-    merged = []
+    merged: list[dict[str, object]] = []
     for row in rows:
         if _track(row) in corrected:
             merged += kept.pop(_track(row), [])

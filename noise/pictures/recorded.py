@@ -19,7 +19,7 @@ from models.recording import REFERENCE_PRESSURE
 from noise.audio.sound import resampled
 from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure
-from noise.pictures.line_levels import HIGHEST, LOWEST, RATE, line_levels
+from noise.pictures.clip_levels import HIGHEST, LOWEST, RATE, clip_levels
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,7 +47,7 @@ _NAMED = 0.06
 
 
 def plot_recording(recording: Recording, rows: Sequence[Mapping[str, object]] = ()) -> Figure:
-    """Draw a recording.
+    r"""Draw a recording.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def _unit(recording: Recording) -> str:
 def _spectrogram(figure: Figure, axes: Axes, recording: Recording, row: int) -> None:
     sound = recording.samples[row]
     at_rate = resampled(sound - sound.mean(), recording.rate, RATE).astype(np.float32)
-    level = line_levels(at_rate, _reference(recording))[::-1]
+    level = clip_levels(at_rate, _reference(recording))[::-1]
     highest = 5.0 * math.ceil(float(level.max()) / 5.0)
     edges = np.geomspace(LOWEST, HIGHEST, level.shape[0] + 1)
     time = np.linspace(0.0, recording.duration, level.shape[1] + 1)

@@ -282,7 +282,7 @@ def test_a_classifier_of_ones_own_is_used(runs, labelled):
 
 def test_a_missing_classifier_is_refused(runs, capsys):
     assert main(["label", "runs", "--classifier", "nowhere.npz"]) == 2
-    assert "nowhere.npz: no such file" in capsys.readouterr().err
+    assert "nowhere.npz: there is no such file" in capsys.readouterr().err
 
 
 def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, labelled, capsys):

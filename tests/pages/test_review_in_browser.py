@@ -151,6 +151,13 @@ def test_recordings_of_one_label_can_be_shown_alone(opened):
     assert opened.card(CREAK).is_visible()
 
 
+def test_a_recording_is_found_under_every_label_in_it_and_titled_by_the_longest_first(opened):
+    assert opened.card(CREAK).locator(".head .badge").all_text_contents() == ["creak", "none"]
+    opened.page.get_by_role("button", name="none 2").click()
+    assert opened.card(CREAK).is_visible()
+    assert not opened.card(SQUEAL).is_visible()
+
+
 def test_a_loop_goes_on_and_without_it_the_sound_ends(opened):
     opened.play(CREAK)
     opened.page.keyboard.press("End")

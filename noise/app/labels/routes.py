@@ -4,7 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from starlette.responses import JSONResponse
+from starlette.routing import Route
+
+from noise.app.labels.asked import read_asked, whole_number
+from noise.app.labels.describing import Describing
+from noise.app.labels.labelling_run import LabellingRun
+from noise.app.labels.next_check import NextCheck
+from noise.app.labels.said import read_said
+from noise.app.labels.store import Labels
+from noise.app.labels.summary import plain
+from noise.app.labels.training_run import TrainingRun, own_classifier
+from noise.app.requests import body
+from noise.labels.labelling import Labelling
+
 if TYPE_CHECKING:
+    from starlette.requests import Request
+    from starlette.responses import Response
     from starlette.routing import BaseRoute
 
     from noise.app.opened import Opened
@@ -12,6 +28,79 @@ if TYPE_CHECKING:
 __all__ = ["routes"]
 
 
-def routes(_opened: Opened) -> list[BaseRoute]:
+def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
-    return []
+    if opened.table is None:
+        return [Route("/api/recordings", _nothing)]
+    learned = own_classifier(opened.table)
+    classifier = learned if learned.is_file() else None
+    labels = Labels(opened.jobs, opened.table, Labelling(classifier))
+    run = LabellingRun(labels, opened, classifier)
+    opened.leaving.callback(run.stop)
+    describing = Describing()
+    opened.leaving.callback(describing.stop)
+    check = NextCheck(opened.jobs, describing)
+    training = TrainingRun(labels, run, opened)
+    opened.leaving.callback(training.stop)
+
+    def recordings(request: Request) -> Response:
+        shown = labels.summaries()
+        done = sum(bool(one["labels"] or one["error"]) for one in shown)
+        return JSONResponse(
+            {**read_asked(request.query_params).answer(shown), "state": run.state(done)}
+        )
+
+    def segments(request: Request) -> Response:
+        job = opened.job(request.path_params["id"])
+        return JSONResponse(_segments(job.index, labels.rows(job.index)))
+
+    def corrected(request: Request, said: object) -> Response:
+        job = opened.job(request.path_params["id"])
+        rows = said.get("rows") if isinstance(said, dict) else None
+        return JSONResponse(_segments(job.index, labels.correct(job.index, read_said(rows))))
+
+    def undone(_: Request, __: object) -> Response:
+        index, rows = labels.undo()
+        return JSONResponse(_segments(index, rows))
+
+    def labelled(_: Request, __: object) -> Response:
+        run.start()
+        return JSONResponse(run.state(0))
+
+    def following(request: Request) -> Response:
+        query = request.query_params
+        most = len(opened.jobs) - 1
+        after = whole_number(query, "after", 0, most) if query.get("after") else None
+        return JSONResponse(check.next(labels.all_rows(), after))
+
+    def trained(_: Request, __: object) -> Response:
+        training.start()
+        return JSONResponse(training.state())
+
+    def learning(_: Request) -> Response:
+        return JSONResponse(training.state())
+
+    def _segments(index: int, rows: list[dict[str, object]]) -> dict[str, object]:
+        channels = list(dict.fromkeys(str(row["channel"]) for row in rows if row["channel"]))
+        return {
+            "id": index,
+            "name": opened.jobs[index].name,
+            "channels": channels or ["all"],
+            "rows": plain(rows),
+        }
+
+    return [
+        Route("/api/recordings", recordings),
+        Route("/api/recordings/{id:int}/segments", segments, methods=["GET"]),
+        Route("/api/recordings/{id:int}/segments", body(corrected), methods=["POST"]),
+        Route("/api/undo", body(undone), methods=["POST"]),
+        Route("/api/next", following),
+        Route("/api/train", learning, methods=["GET"]),
+        Route("/api/train", body(trained), methods=["POST"]),
+        Route("/api/label", body(labelled), methods=["POST"]),
+    ]
+
+
+def _nothing(request: Request) -> Response:
+    state = {"done": 0, "total": 0, "running": False, "message": "", "classifier": None}
+    return JSONResponse({**read_asked(request.query_params).answer([]), "state": state})

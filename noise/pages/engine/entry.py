@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from models.condition import Condition
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
-from noise.labels.label_display import naming_row
-from noise.pictures.line_levels import RATE
+from noise.labels.label_display import labels_in, naming_row
+from noise.pictures.clip_levels import RATE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     Row = Mapping[str, object]
 
 __all__ = [
-    "RATE", "Entry", "Part", "label_counts", "labels_sentence", "stretch_start",
+    "RATE", "Entry", "Part", "label_counts", "labels_sentence",
+    "stretch_start",
 ]  # fmt: skip
 
 
@@ -94,10 +95,9 @@ class Entry:
         return naming_row(self.rows)
 
     @property
-    def label(self) -> str | None:
-        """The label of the whole; None where it is not labelled."""
-        row = self.row
-        return None if row is None else str(row["label"])
+    def labels(self) -> tuple[str, ...]:
+        """All labels in it, the longest first."""
+        return labels_in(self.rows)
 
 
 def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
@@ -118,19 +118,19 @@ def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
 
 
 def label_counts(entries: Iterable[Entry]) -> list[tuple[str, int]]:
-    """Count entries by label, in the order of the labels; those without one last, as "".
+    """Count entries that have a label in them, by label; those without one last, as "".
 
     Examples
     --------
-    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"},))])
-    [('creak', 1), ('', 1)]
+    >>> label_counts([Entry("a"), Entry("b", ({"label": "creak"}, {"label": "none"}))])
+    [('creak', 1), ('none', 1), ('', 1)]
     """
-    counts = Counter(entry.label or "" for entry in entries)
+    counts = Counter(label for entry in entries for label in entry.labels or ("",))
     return [(label, counts[label]) for label in (*LABELS, "") if counts[label]]
 
 
 def labels_sentence(entries: Sequence[Entry]) -> str:
-    """Say how many entries have which label.
+    """Say how many entries have which label in them.
 
     Examples
     --------

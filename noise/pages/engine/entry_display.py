@@ -10,7 +10,7 @@ from models.recording import REFERENCE_PRESSURE
 from noise.labels.label_display import ASSUMED, assumes_material
 from noise.pages.engine.spectrogram import RANGE, TICKS, picture, top
 from noise.pages.engine.ticks import round_ticks
-from noise.pictures.line_levels import HIGHEST, LOWEST, line_levels
+from noise.pictures.clip_levels import HIGHEST, LOWEST, clip_levels
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -54,7 +54,8 @@ class EntryDisplay:
     ----------
     id : str
     title : str
-    label : str or None
+    labels : tuple of str
+        All in it, the longest first.
     facts : dict of str to Fact
         Those known of ``speed``, ``interference``, ``stiffness``, ``material``, ``temperature``,
         ``frequency`` and ``level``.
@@ -73,7 +74,7 @@ class EntryDisplay:
 
     id: str
     title: str
-    label: str | None
+    labels: tuple[str, ...]
     facts: dict[str, Fact]
     note: str
     picture: bytes
@@ -113,7 +114,7 @@ def draw_entries(
     for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
                                         (False, 1.0, "dBFS")):  # fmt: skip
         levels = {
-            key: line_levels(clip.samples, reference)
+            key: clip_levels(clip.samples, reference)
             for key, clip in clips.items()
             if entries[key].calibrated == calibrated
         }
@@ -164,7 +165,7 @@ def entry_display(key: str, entry: Entry, clip: Clip | None, picture: bytes) -> 
     return EntryDisplay(
         id=key,
         title=entry.title,
-        label=entry.label,
+        labels=entry.labels,
         facts=facts_of(entry),
         note=note,
         picture=picture,

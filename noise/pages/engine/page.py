@@ -127,7 +127,7 @@ def _about(display: EntryDisplay, factor: float | None, *, on_card: bool) -> dic
     facts = [fact.words for fact in display.facts.values()] if on_card else [display.note]
     told: dict[str, object] = {
         "title": display.title,
-        "label": display.label,
+        "label": " + ".join(display.labels),
         "facts": " · ".join(facts),
         "duration": display.duration,
         "equal": factor,

@@ -35,7 +35,7 @@ def top(levels: Sequence[NDArray[np.float64]]) -> float:
     Parameters
     ----------
     levels : sequence of ndarray, shape (n_rows, n_columns)
-        Of `line_levels` [dB].
+        Of `clip_levels` [dB].
 
     Returns
     -------
@@ -52,7 +52,7 @@ def picture(levels: NDArray[np.float64], highest: float) -> bytes:
     Parameters
     ----------
     levels : ndarray, shape (n_rows, n_columns)
-        Of `line_levels` [dB].
+        Of `clip_levels` [dB].
     highest : float
         [dB]
     """

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 
 from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
+from models.foreign_file import refusing
 from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
 from models.rig_files.shipped import material_names
 from models.short_repr import short_repr
@@ -175,6 +176,11 @@ def load_design(given: str | Path) -> Design:
             )
         return Design(name, load_material_rig(name))
     where = f"design {path}"
+    with refusing(where, "design"):
+        return _read_design(path, where)
+
+
+def _read_design(path: Path, where: str) -> Design:
     content = read_toml(path, where)
     table = a_table(content.pop("design", {}), "design", where)
     tolerances = content.pop("tolerances", {})

@@ -22,6 +22,7 @@ from noise.labels.segmentation import clearest
 from noise.labels.windows import FEATURE_NAMES
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
 from noise.training.classifier.described_samples import draw_sample
+from noise.training.classifier.kept_samples import load_samples, save_samples
 from noise.training.classifier.masked_rows import (
     KINDS,
     SUBSETS,
@@ -37,6 +38,7 @@ from noise.training.classifier.surroundings import may_sound
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
+    from pathlib import Path
 
     from noise.classifier.model import Classifier
     from noise.training.classifier.described_samples import Sample
@@ -60,6 +62,7 @@ def train(
     n_test: int = N_TEST,
     added: Sequence[OwnSample] = (),
     surroundings: str = "any",
+    keep: Path | None = None,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
 ) -> Classifier:
     """Train a classifier; the same seed gives the same classifier.
@@ -74,6 +77,9 @@ def train(
         (`noise.training.classifier.own_samples`).
     surroundings : str
         What else may sound, of `noise.training.classifier.surroundings.SURROUNDINGS`.
+    keep : Path, optional
+        File that keeps the simulated samples (`noise.training.classifier.kept_samples`): they are
+        taken from it where it holds those of the same call by the same program.
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.
 
@@ -95,13 +101,12 @@ def train(
     """
     n_made_up = round(_MADE_UP * n_training)
     total = n_made_up + n_training + n_test
-    seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
-    seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
-    drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw_sample)(child, bushings=i >= n_made_up, surroundings=surroundings)
-        for i, child in enumerate(seeds)
-    )
-    samples = list(progress(drawn, total) if progress else drawn)
+    call = (seed, n_training, n_test, surroundings)
+    samples = None if keep is None else load_samples(keep, call)
+    if samples is None:
+        samples = _drawn(seed, n_made_up, total, surroundings, progress)
+        if keep is not None:
+            save_samples(keep, call, samples)
     real = load_real_sounds()
     heard = [
         sample
@@ -115,6 +120,22 @@ def train(
         "licences": sorted({f"{s.name}: {real.licences[s.name]}" for s in heard}),
     }
     return learn(samples, n_made_up + n_training, seed=seed, real=heard, added=added, card=card)
+
+
+def _drawn(
+    seed: int,
+    n_made_up: int,
+    total: int,
+    surroundings: str,
+    progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None,
+) -> list[Sample]:
+    seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
+    seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
+    drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
+        delayed(draw_sample)(child, bushings=i >= n_made_up, surroundings=surroundings)
+        for i, child in enumerate(seeds)
+    )
+    return list(progress(drawn, total) if progress else drawn)
 
 
 def learn(

@@ -3,7 +3,9 @@ r"""Own labelled recordings of the user, as windows to learn from.
 A label is said in one of three ways, the finest of which counts where there are several: by a label
 track as Audacity exports it (``run07.txt`` or ``run07.wav.txt`` beside ``run07.wav``), by a row of
 a label table as ``bushing-noise label`` writes it, or by the name of a folder that the recording
-lies in, at any depth (``creak/run07.wav``). What cannot be used is named in one line and passed
+lies in, at any depth (``creak/run07.wav``). Of a table in which somebody has corrected something
+(`label_source` is ``human``), what they said counts alone: of its own labels a classifier learns
+nothing. What cannot be used is named in one line and passed
 over: one bad file is no reason to lose the others.
 """
 
@@ -19,7 +21,7 @@ from models.errors import BushingNoiseError, RecordingError
 from noise.base.label_names import LABELS
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.audacity import read_label_track
-from noise.labels.table import read_label_table
+from noise.labels.table import HUMAN, read_label_table
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 
@@ -67,13 +69,14 @@ class _Stretch:
     channel: str = "all"
 
 
-def read_labelled(folder: Path) -> tuple[list[OwnWindow], list[str]]:
-    """Read the labelled recordings of a folder.
+def read_labelled(source: Path) -> tuple[list[OwnWindow], list[str]]:
+    """Read the labelled recordings of a folder, or of a label table.
 
     Parameters
     ----------
-    folder : Path
-        Searched at any depth for recordings, label tables and label tracks.
+    source : Path
+        Folder, searched at any depth for recordings, label tables and label tracks; or a label
+        table, whose files are relative to it.
 
     Returns
     -------
@@ -86,7 +89,9 @@ def read_labelled(folder: Path) -> tuple[list[OwnWindow], list[str]]:
     Raises
     ------
     ParameterError
-        The folder does not exist.
+        It does not exist.
+    RecordingError
+        A file that is named is no label table.
 
     Examples
     --------
@@ -102,34 +107,36 @@ def read_labelled(folder: Path) -> tuple[list[OwnWindow], list[str]]:
     >>> [(window.label, window.recording.duration) for window in windows], refusals
     ([('none', 0.75), ('none', 0.75), ('none', 0.75)], [])
     """
-    recordings = find_recordings(folder)
     refusals: list[str] = []
-    tabled = _from_tables(folder, {path.resolve() for path, _ in recordings}, refusals)
     windows: list[OwnWindow] = []
-    for path, _ in recordings:
+    if source.is_file():
+        tabled = _from_table(source, source.parent, None, refusals)
+        recordings = list(tabled)
+    else:
+        recordings = [path for path, _ in find_recordings(source)]
+        tabled = _from_tables(source, {path.resolve() for path in recordings}, refusals)
+    for path in recordings:
         try:
-            stretches = (
-                _from_track(path, refusals)
-                or tabled.get(path.resolve())
-                or _from_folders(path, folder)
-            )
-            windows += _windows(path, stretches, refusals)
+            said = tabled.get(path.resolve())
+            if source.is_dir():
+                said = _from_track(path, refusals) or said or _from_folders(path, source) or said
+            if said is None:
+                known = ", ".join(LABELS)
+                raise RecordingError(
+                    f"{path}: has no label; put it into a folder called {known}, or beside a "
+                    "label table or a label track"
+                )
+            windows += _windows(path, said, refusals)  # none of what nobody has corrected
         except (BushingNoiseError, OSError) as error:
             refusals.append(_naming(path, str(error)))
     return windows, refusals
 
 
 def _from_folders(path: Path, folder: Path) -> list[_Stretch]:
-    """Return what the nearest folder that is named as a label says."""
+    """Return what the nearest folder that is named as a label says; nothing where none is."""
     above = (*reversed(path.relative_to(folder).parts[:-1]), folder.resolve().name)
     label = next((name.lower() for name in above if name.lower() in LABELS), None)
-    if label is None:
-        known = ", ".join(LABELS)
-        raise RecordingError(
-            f"{path}: has no label; put it into a folder called {known}, or beside a label table "
-            "or a label track"
-        )
-    return [_Stretch(label)]
+    return [] if label is None else [_Stretch(label)]
 
 
 def _from_track(path: Path, refusals: list[str]) -> list[_Stretch]:
@@ -160,30 +167,46 @@ def _from_tables(
         if not table.is_file() or table.name.startswith("."):
             continue
         try:
-            rows = read_label_table(table, refusals)
+            found = _from_table(table, folder, recordings, refusals)
         except BushingNoiseError as error:
             refusals.append(_naming(table, str(error)))
             continue
-        unknown = set()
-        for row in rows:
-            if row["label"] is None:
-                continue
-            file = str(row["file"])
-            places = (table.parent / file, folder / file)
-            path = next((p.resolve() for p in places if p.resolve() in recordings), None)
-            if path is None:
-                unknown.add(file)
-                continue
-            start, end = row["start_s"], row["end_s"]
-            said.setdefault(path, []).append(
-                _Stretch(
-                    str(row["label"]),
-                    start if isinstance(start, float) else 0.0,
-                    end if isinstance(end, float) else math.inf,
-                    str(row["channel"] or "all"),
-                )
+        for path, stretches in found.items():
+            said.setdefault(path, []).extend(stretches)
+    return said
+
+
+def _from_table(
+    table: Path, folder: Path, recordings: set[Path] | None, refusals: list[str]
+) -> dict[Path, list[_Stretch]]:
+    """Return what a label table says of recordings, by default of all that are there.
+
+    Of those that nobody has corrected, where somebody has corrected others, it says nothing.
+    """
+    said: dict[Path, list[_Stretch]] = {}
+    unknown = set()
+    rows = [row for row in read_label_table(table, refusals) if row["label"] is not None]
+    by_human = any(row["label_source"] == HUMAN for row in rows)
+    for row in rows:
+        file = str(row["file"])
+        places = [p.resolve() for p in (table.parent / file, folder / file)]
+        there = [p for p in places if (p.is_file() if recordings is None else p in recordings)]
+        if not there:
+            unknown.add(file)
+            continue
+        stretches = said.setdefault(there[0], [])
+        if by_human and row["label_source"] != HUMAN:
+            continue
+        start, end = row["start_s"], row["end_s"]
+        stretches.append(
+            _Stretch(
+                str(row["label"]),
+                start if isinstance(start, float) else 0.0,
+                end if isinstance(end, float) else math.inf,
+                str(row["channel"] or "all"),
             )
-        refusals += [f"{table}: names {file}, which is not there" for file in sorted(unknown)]
+        )
+    refusals += [f"{table}: names {file}, which is not there" for file in sorted(unknown)]
     return said
 
 

@@ -1,1 +1,19 @@
-export function mount(panel) { panel.textContent = ""; }
+// The view of recordings: their list beside the page of the one that is open.
+import { made, mountList } from "./list.js";
+import { RecordingPage } from "./recording.js";
+
+export function mount(panel) {
+  document.head.append(made("link", { rel: "stylesheet", href: new URL("./labels.css", import.meta.url).href }));
+  const list = made("div", { className: "beside" });
+  const page = made("article", { className: "recording", hidden: true });
+  const empty = made("p", { className: "empty", textContent: "Open a recording of the list." });
+  panel.replaceChildren(made("div", { className: "labels-view" }, list, made("div", { className: "page" }, empty, page)));
+  const open = async (id) => {
+    page.hidden = false;
+    empty.hidden = true;
+    recording.open(id);
+  };
+  const recording = new RecordingPage(page, open);
+  mountList(list, { onOpen: open });
+  return { recording };
+}

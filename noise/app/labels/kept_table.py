@@ -1,0 +1,77 @@
+"""The label table on disk: read again where somebody else has written it, written whole.
+
+Columns that are not of a label table, such as a remark of one's own, stay in it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from noise.base.tables import read_table, write_table
+from noise.labels.labelling import COLUMNS
+from noise.labels.table import read_label_table
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    Row = dict[str, object]
+
+__all__ = ["KeptTable"]
+
+
+class KeptTable:
+    """A label table that several programs may write.
+
+    Parameters
+    ----------
+    path : Path
+        There, or to be made.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._seen: tuple[int, ...] | None = None
+        self._more: tuple[str, ...] = ()
+
+    def changed(self) -> bool:
+        """Whether it is another than was last read or written."""
+        return self._state() != self._seen
+
+    def read(self) -> list[Row]:
+        """Return its rows; none where there is no table.
+
+        Raises
+        ------
+        RecordingError
+            It is no label table, or has a row that cannot be used.
+        """
+        self._seen = self._state()  # before: what is written meanwhile is read again
+        if self._seen is None:
+            return []
+        rows = read_label_table(self.path)
+        _, raw = read_table(self.path)
+        self._more = tuple(
+            dict.fromkeys(name for row in raw for name in row if name not in COLUMNS)
+        )
+        if self._more:
+            for row, full in zip(rows, raw, strict=True):
+                row |= {name: full.get(name) for name in self._more}
+        return rows
+
+    def write(self, rows: list[Row]) -> None:
+        """Write it, whole or not at all.
+
+        Raises
+        ------
+        ParameterError
+            It cannot be written.
+        """
+        write_table(self.path, (*COLUMNS, *self._more), rows)
+        self._seen = self._state()
+
+    def _state(self) -> tuple[int, ...] | None:
+        try:
+            found = self.path.stat()
+        except OSError:
+            return None
+        return found.st_ino, found.st_size, found.st_mtime_ns

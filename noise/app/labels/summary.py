@@ -1,0 +1,59 @@
+"""A recording in the list: what it is named for, what else is in it, how sure that is."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from noise.app.labels.next_check import doubt
+from noise.labels.label_display import labels_in, naming_row
+from noise.labels.table import HUMAN
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    Row = dict[str, object]
+
+__all__ = ["plain", "summary"]
+
+_SUPPORT = "support_stiffness"
+
+
+def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
+    """Return what the list shows of a recording.
+
+    Examples
+    --------
+    >>> row = {"label": "creak", "start_s": 0.0, "end_s": 2.0, "label_source": "human"}
+    >>> shown = summary(7, "run07.wav", [row])
+    >>> shown["id"], shown["label"], shown["labels"], shown["duration_s"], shown["corrected"]
+    (7, 'creak', ('creak',), 2.0, True)
+    """
+    naming = naming_row(rows) or {}
+    ends = [row["end_s"] for row in rows if isinstance(row.get("end_s"), float)]
+    return {
+        "id": index,
+        "name": name,
+        "label": naming.get("label"),
+        "labels": labels_in(rows),
+        "frequency_hz": naming.get("frequency_hz"),
+        "level_dba": naming.get("level_dba"),
+        "duration_s": max(ends, default=None),  # type: ignore[type-var]
+        "least_sure": max(map(doubt, rows), default=None),
+        "corrected": any(row.get("label_source") == HUMAN for row in rows),
+        "error": next((row["error"] for row in rows if row.get("error")), None),
+    }
+
+
+def plain(rows: Sequence[Row]) -> list[Row]:
+    """Return rows as JSON can hold them, numbered; the bolted clamp is the word ``fixed``."""
+    return [
+        {name: _plain(name, value) for name, value in row.items()} | {"row": number}
+        for number, row in enumerate(rows)
+    ]
+
+
+def _plain(name: str, value: object) -> object:
+    if isinstance(value, float) and not math.isfinite(value):
+        return "fixed" if name.startswith(_SUPPORT) and value > 0.0 else None
+    return value

@@ -1,0 +1,60 @@
+// What a person does to the segments of one track: rows in order of time come in, new rows go out, none is changed.
+
+export const SHORTEST = 0.01; // of a segment [s]
+const SAME = 1e-6; // s
+
+const HUMAN = "human";
+
+// Places where a segment ends and another begins, or where one stands alone: { left, right, time }.
+export function borders(rows) {
+  const found = [];
+  for (let at = 0; at + 1 < rows.length; at++) {
+    const end = rows[at].end_s, start = rows[at + 1].start_s;
+    if (Math.abs(end - start) < SAME) found.push({ left: at, right: at + 1, time: end });
+    else found.push({ left: at, right: null, time: end }, { left: null, right: at + 1, time: start });
+  }
+  return found;
+}
+
+export function limits(rows, { left, right }) {
+  const low = left !== null ? rows[left].start_s + SHORTEST : rows[right - 1].end_s;
+  const high = right !== null ? rows[right].end_s - SHORTEST : rows[left + 1].start_s;
+  return { low, high };
+}
+
+export function moved(rows, border, time) {
+  const { low, high } = limits(rows, border);
+  const at = Math.min(high, Math.max(low, Math.round(time * 1000) / 1000));
+  return rows.map((row, index) => {
+    if (index === border.left) return said(row, { end_s: at });
+    return index === border.right ? said(row, { start_s: at }) : row;
+  });
+}
+
+export function relabelled(rows, index, label) {
+  return rows.map((row, at) => (at === index ? said(row, { label }) : row));
+}
+
+// Null where a piece would be shorter than a segment can be.
+export function split(rows, time) {
+  const at = Math.round(time * 1000) / 1000;
+  const index = rows.findIndex((row) => row.start_s + SHORTEST <= at && at <= row.end_s - SHORTEST);
+  if (index < 0) return null;
+  return rows.flatMap((row, place) => (place === index ? [said(row, { end_s: at }), said(row, { start_s: at })] : [row]));
+}
+
+// To the neighbour before it, or after the first; null where there is none.
+export function joined(rows, index) {
+  if (rows.length < 2) return null;
+  const into = index > 0 ? index - 1 : 1;
+  const { start_s, end_s } = rows[index];
+  return rows.flatMap((row, at) => {
+    if (at === index) return [];
+    if (at !== into) return [row];
+    return [said(row, { start_s: Math.min(row.start_s, start_s), end_s: Math.max(row.end_s, end_s) })];
+  });
+}
+
+function said(row, change) {
+  return { ...row, ...change, label_source: HUMAN };
+}

@@ -1,0 +1,103 @@
+// The parts of the page of one recording: names, tools, lanes, the chosen segment.
+import { helpDialog } from "./keys.js";
+import { made } from "./list.js";
+
+export const LABELS = ["creak", "squawk", "squeal", "none", "unknown"];
+const WINDOWS = { "": "by zoom", 0.01: "10 ms", 0.02: "20 ms", 0.04: "40 ms", 0.08: "80 ms", 0.16: "160 ms", 0.32: "320 ms" };
+
+function button(textContent, title, more = {}) {
+  return made("button", { type: "button", textContent, title, ...more });
+}
+
+function toggle(textContent, title, pressed = false) {
+  const one = button(textContent, title);
+  one.setAttribute("aria-pressed", pressed);
+  return one;
+}
+
+function select(text, options) {
+  const box = made("select", {}, ...Object.entries(options).sort(([one], [two]) => one - two).map(([value, words]) => made("option", { value, textContent: words })));
+  return { box, label: made("label", {}, `${text} `, box) };
+}
+
+function field(text, ariaLabel) {
+  const box = made("input", { type: "number", min: 1, step: "any", placeholder: text, ariaLabel });
+  return box;
+}
+
+function canvas(className, ariaLabel) {
+  const one = made("canvas", { className });
+  if (ariaLabel) {
+    one.setAttribute("role", "img");
+    one.setAttribute("aria-label", ariaLabel);
+  } else one.setAttribute("aria-hidden", "true");
+  return one;
+}
+
+function group(name, ...children) {
+  const one = made("div", { className: "group" }, ...children);
+  one.setAttribute("role", "group");
+  one.setAttribute("aria-label", name);
+  return one;
+}
+
+export function build(element) {
+  const range = select("Range", { 50: "50 dB", 70: "70 dB", 90: "90 dB" });
+  range.box.value = "70";
+  const frames = select("Window", WINDOWS);
+  frames.box.value = "";
+  const channel = select("Channel", {});
+  const track = select("Labels of", {});
+  const parts = {
+    title: made("h2"), facts: made("p", { className: "facts" }), saved: made("p", { className: "saved" }),
+    play: button("Play", "Space", { className: "play" }), loop: toggle("Loop", "L", true), clock: made("output", { className: "clock" }),
+    a: toggle("A", "X changes over", true), b: toggle("B", "X changes over"), keep: button("Keep as B", "B"), equal: toggle("Equal loudness", "E"),
+    low: field("from Hz", "Hear from [Hz]"), high: field("to Hz", "Hear up to [Hz]"), unfiltered: button("All frequencies", "Hear all frequencies"),
+    out: button("−", "zoom out", { ariaLabel: "Zoom out" }), in: button("+", "zoom in", { ariaLabel: "Zoom in" }),
+    left: button("‹", "earlier", { ariaLabel: "Earlier" }), right: button("›", "later", { ariaLabel: "Later" }),
+    whole: button("All", "0"), fit: button("Segment", "F", { ariaLabel: "Zoom to the segment" }), harmonic: toggle("Harmonics", "H"),
+    help: button("?", "keys", { ariaLabel: "Help: keys" }), range, frames, channel, track,
+    gains: made("p", { className: "gains" }), readout: made("output", { className: "readout" }), levelRead: made("output", { className: "readout level" }),
+    strip: made("div", { className: "strip" }), overlay: made("div", { className: "overlay" }), position: made("div", { className: "position" }), selection: made("div", { className: "selection" }),
+    wave: canvas("wave", "Samples over time"), waveAxis: canvas("axis wave"),
+    plot: canvas("plot"), marks: canvas("marks"), frequencies: canvas("axis frequencies"), legend: canvas("legend", "Colours of levels"),
+    course: canvas("course", "A-weighted level over time, Fast"), courseAxis: canvas("axis course"), times: canvas("times"),
+    chosen: made("div", { className: "chosen" }), labels: group("Label of the segment"), shares: made("dl", { className: "shares" }), source: made("p"),
+    split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "U"), next: button("Next to check", "N"),
+    bands: canvas("bands", "Third octaves"), bandsText: made("p", { className: "facts" }), dialog: helpDialog(),
+  };
+  for (const [at, label] of LABELS.entries()) {
+    const one = made("button", { type: "button", className: `label ${label}`, title: `${at + 1}`, data: { label } }, made("i"), label);
+    parts.labels.append(one);
+  }
+  parts.saved.setAttribute("role", "status");
+  parts.strip.setAttribute("role", "group");
+  parts.strip.setAttribute("aria-label", "Segments");
+  parts.track.label.hidden = true;
+  const screen = made("div", { className: "screen", tabIndex: 0 }, parts.plot, parts.marks);
+  screen.setAttribute("role", "application");
+  screen.setAttribute("aria-roledescription", "spectrogram");
+  screen.setAttribute("aria-label", "Spectrogram: arrow keys move the cursor");
+  parts.screen = screen;
+  parts.overlay.append(parts.selection, parts.position);
+  parts.area = made("div", { className: "area" }, parts.strip, parts.wave, screen, parts.course, parts.times, parts.overlay);
+  const axes = made("div", { className: "axes" }, made("span", { className: "strip" }), parts.waveAxis, parts.frequencies, parts.courseAxis, made("span", { className: "times", textContent: "s" }));
+  parts.lanes = made("div", { className: "lanes" }, axes, parts.area);
+  element.replaceChildren(
+    made("header", { className: "about" }, parts.title, parts.saved, parts.facts),
+    made("div", { className: "tools" },
+      group("Playing", parts.play, parts.loop, parts.clock),
+      group("Comparing", parts.a, parts.b, parts.keep, parts.equal),
+      group("View", parts.out, parts.in, parts.left, parts.right, parts.whole, parts.fit, parts.harmonic),
+      group("Correcting", parts.split, parts.join, parts.undo, parts.next, parts.help)),
+    parts.lanes,
+    made("div", { className: "under" }, parts.readout, parts.levelRead, parts.legend),
+    made("div", { className: "below" },
+      made("section", { ariaLabel: "Segment" }, parts.chosen, parts.labels, parts.source, parts.shares),
+      made("section", { ariaLabel: "Third octaves" }, parts.bands, parts.bandsText)),
+    parts.gains,
+    made("div", { className: "tools" }, parts.channel.label, parts.track.label, frames.label, range.label,
+      group("Band that is heard", "Hear ", parts.low, "–", parts.high, " Hz", parts.unfiltered)),
+    parts.dialog);
+  return parts;
+}

@@ -1,0 +1,117 @@
+// Level over time, and third octaves of a stretch.
+import { facts } from "./sounds.js";
+import { DEEP, INK, LINE, SOFT, sheet, ticks } from "./timeline.js";
+
+const LEAST_RANGE = 30; // of the level axis [dB]
+
+export class LevelCourse {
+  constructor(timeline, { plot, axis, readout }) {
+    Object.assign(this, { timeline, plot, axis, readout });
+    this.turn = 0;
+  }
+
+  async load(id, channel) {
+    this.found = null;
+    this.draw();
+    const turn = ++this.turn;
+    const found = await facts(id, "levels", { channel });
+    if (turn !== this.turn) return;
+    const known = found.levels.filter((level) => level !== null);
+    const most = known.length ? Math.max(...known.slice(0, 1e5)) : 0;
+    // The first eighth of a second is the meter's own rise.
+    const settled = found.levels.slice(Math.ceil(0.25 / found.cell_s)).filter((level) => level !== null);
+    const least = settled.length ? Math.min(...settled) : most - LEAST_RANGE;
+    this.found = found;
+    this.high = 5 * Math.ceil((most + 1) / 5);
+    this.low = Math.max(this.high - 90, Math.min(this.high - LEAST_RANGE, 5 * Math.floor(least / 5)));
+    this.draw();
+  }
+
+  level(time) {
+    return this.found?.levels[Math.min(this.found.levels.length - 1, Math.floor(time / this.found.cell_s))] ?? null;
+  }
+
+  read(time) {
+    const level = time === null ? null : this.level(time);
+    this.readout.textContent = level === null ? "" : `${level.toFixed(1)} ${this.found.unit}, Fast`;
+  }
+
+  draw() {
+    const { pen, width, height } = sheet(this.plot);
+    const axis = sheet(this.axis);
+    if (!this.found) return;
+    const y = (level) => ((this.high - level) / (this.high - this.low)) * height;
+    axis.pen.fillStyle = SOFT;
+    axis.pen.textAlign = "right";
+    axis.pen.textBaseline = "middle";
+    for (const level of ticks(this.low, this.high, 4).found) {
+      pen.fillStyle = LINE;
+      pen.fillRect(0, Math.round(y(level)), width, 1);
+      axis.pen.fillText(`${level}`.replace("-", "−"), axis.width - 6, Math.min(height - 6, Math.max(6, y(level))));
+    }
+    const { cell_s: cell, levels } = this.found;
+    pen.strokeStyle = DEEP;
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    const first = Math.max(0, Math.floor(this.timeline.start / cell) - 1);
+    const last = Math.min(levels.length, Math.ceil(this.timeline.end / cell) + 1);
+    const each = Math.max(1, Math.floor((last - first) / (2 * width)));
+    for (let at = first; at < last; at += each) {
+      let most = this.low;
+      for (let one = at; one < Math.min(last, at + each); one++) most = Math.max(most, levels[one] ?? this.low);
+      pen.lineTo(this.timeline.share((at + each / 2) * cell) * width, y(most));
+    }
+    pen.stroke();
+    pen.fillStyle = "#ffffffe0";
+    pen.fillRect(4, height - 15, 62, 13);
+    pen.fillStyle = SOFT;
+    pen.textBaseline = "middle";
+    pen.fillText("dB(A), Fast", 6, height - 8);
+  }
+}
+
+export class Bands {
+  constructor({ plot, text }) {
+    Object.assign(this, { plot, text });
+    this.turn = 0;
+  }
+
+  async load(id, channel, start, end) {
+    const turn = ++this.turn;
+    const found = await facts(id, "bands", { channel, start, end });
+    if (turn !== this.turn) return;
+    this.found = found;
+    this.draw();
+  }
+
+  draw() {
+    const { pen, width, height } = sheet(this.plot);
+    if (!this.found) return;
+    const { third_octaves: octaves, unit } = this.found;
+    const entries = Object.entries(octaves).filter(([, level]) => level !== null).sort(([one], [two]) => one - two);
+    if (!entries.length) return;
+    const high = 10 * Math.ceil((Math.max(...entries.map(([, level]) => level)) + 1) / 10), low = high - 60;
+    const left = 34, bottom = height - 16, each = (width - left) / entries.length;
+    const y = (level) => Math.min(1, (high - level) / (high - low)) * (bottom - 6) + 6;
+    pen.textBaseline = "middle";
+    for (const level of ticks(low, high, 3).found) {
+      pen.fillStyle = LINE;
+      pen.fillRect(left, Math.round(y(level)), width - left, 1);
+      pen.fillStyle = SOFT;
+      pen.textAlign = "right";
+      pen.fillText(`${level}`.replace("-", "−"), left - 4, y(level));
+    }
+    pen.textAlign = "center";
+    for (const [place, [band, level]] of entries.entries()) {
+      pen.fillStyle = DEEP;
+      pen.fillRect(left + place * each + 1, y(level), Math.max(1, each - 2), bottom - y(level));
+      if (!["31.5", "63", "125", "250", "500", "1000", "2000", "4000", "8000", "16000"].includes(band)) continue;
+      pen.fillStyle = INK;
+      pen.fillText(band.replace(/000$/, "k"), left + (place + 0.5) * each, height - 7);
+    }
+    const strongest = entries.reduce((best, one) => (one[1] > best[1] ? one : best));
+    const { start, end, level, level_a: weighted, level_af_max: most } = this.found;
+    const said = (value, what) => (value === null ? [] : [`${value.toFixed(1)} ${what}`]);
+    this.text.textContent = `${start.toFixed(2)}–${end.toFixed(2)} s: ${[...said(level, unit), ...said(weighted, unit === "dBFS" ? "dBFS(A)" : "dB(A)"), ...said(most, "Fast at most")].join(", ")}; strongest third octave ${strongest[0]} Hz, ${strongest[1].toFixed(1)}`;
+  }
+}

@@ -1,0 +1,263 @@
+// The list of recordings: filter, order, rows as they scroll into view, labels as they arrive.
+import { api, told } from "../api.js";
+import { mountTraining } from "./training.js";
+
+const PAGE = 200; // rows of one request
+const ROW = 46; // height of a row [px], as in list.css
+const BEYOND = 8; // rows drawn above and below what is seen
+const POLL = 1000; // while labels arrive [ms]
+const KINDS = { "": "all", creak: "creak", squawk: "squawk", squeal: "squeal", none: "none", unknown: "unknown", unlabelled: "without a label", corrected: "corrected", refused: "refused" };
+const ALWAYS = ["", "creak", "squawk", "squeal", "none", "unknown"];
+const ORDERS = [["", "as found"], ["name asc", "name"], ["label asc", "label"], ["frequency asc", "frequency, lowest first"], ["frequency desc", "frequency, highest first"], ["level desc", "level, loudest first"], ["duration desc", "duration, longest first"], ["least_sure desc", "least sure first"]];
+
+let list = null;
+
+export function mountList(element, { onOpen }) {
+  list = new RecordingList(element, onOpen);
+  list.load();
+  return list;
+}
+
+// Take the list again, such as after a correction; `id` becomes the one that is marked.
+export async function refresh(id) {
+  if (id !== undefined) list.marked = id;
+  await list.load();
+}
+
+// Open the recording that is best checked next; where there is none, say so.
+export async function openNext(after) {
+  const { id } = await api(`next${after === undefined || after === null ? "" : `?after=${after}`}`);
+  if (id === null) told("Nothing is left to check.");
+  else { list.marked = id; list.draw(); list.onOpen(id); }
+  return id;
+}
+
+export function made(tag, properties = {}, ...children) {
+  const { data, ...rest } = properties;
+  const node = Object.assign(document.createElement(tag), rest);
+  Object.assign(node.dataset, data);
+  node.append(...children);
+  return node;
+}
+
+class RecordingList {
+  constructor(element, onOpen) {
+    this.onOpen = onOpen;
+    this.label = "";
+    this.total = 0;
+    this.pages = new Map();
+    this.asked = 0;
+    this.at = 0; // where the keyboard is
+    this.marked = null;
+    this.#build(element);
+  }
+
+  #build(element) {
+    if (!document.getElementById("list-style")) {
+      document.head.append(made("link", { id: "list-style", rel: "stylesheet", href: new URL("./list.css", import.meta.url).href }));
+    }
+    this.find = made("input", { type: "search", placeholder: "name holds ...", ariaLabel: "Find by name" });
+    this.order = made("select", { ariaLabel: "Order" });
+    for (const [value, text] of ORDERS) this.order.append(made("option", { value, textContent: text }));
+    this.kinds = made("div", { className: "kinds" });
+    this.kinds.setAttribute("role", "group");
+    this.kinds.setAttribute("aria-label", "Show recordings with");
+    for (const [kind, text] of Object.entries(KINDS)) {
+      const button = made("button", { type: "button", className: `kind ${kind}`, data: { kind } }, made("i"), `${text} `, made("span"));
+      button.addEventListener("click", () => this.#ask(() => { this.label = this.label === kind ? "" : kind; }));
+      this.kinds.append(button);
+    }
+    this.progress = made("progress", { ariaLabel: "Labelled", hidden: true });
+    this.stateLine = made("span");
+    this.labelButton = made("button", { type: "button", hidden: true });
+    this.labelButton.addEventListener("click", async () => { await api("label", {}); this.load(); });
+    this.nextButton = made("button", { type: "button", textContent: "Next to check" });
+    this.nextButton.addEventListener("click", () => openNext(this.marked));
+    this.box = made("div", { className: "rows", tabIndex: 0, id: "recordings" });
+    this.box.setAttribute("role", "listbox");
+    this.box.setAttribute("aria-label", "Recordings");
+    this.space = made("div", { className: "space" });
+    this.space.setAttribute("role", "presentation");
+    this.box.append(this.space);
+    this.pool = [];
+    const training = made("details", { className: "training" });
+    element.replaceChildren(made("div", { className: "recording-list" },
+      made("div", { className: "line" }, this.find, this.order),
+      this.kinds,
+      made("div", { className: "line" }, this.nextButton, this.labelButton, this.stateLine, this.progress),
+      this.box, training));
+    this.training = mountTraining(training, () => this.load());
+    let wait;
+    this.find.addEventListener("input", () => { clearTimeout(wait); wait = setTimeout(() => this.#ask(() => {}), 120); });
+    this.order.addEventListener("change", () => this.#ask(() => {}));
+    let due = false;
+    this.box.addEventListener("scroll", () => {
+      if (due) return;
+      due = true;
+      requestAnimationFrame(() => { due = false; this.draw(); });
+    }, { passive: true });
+    new ResizeObserver(() => this.draw()).observe(this.box);
+    this.box.addEventListener("click", (event) => {
+      const row = event.target.closest("[role=option]");
+      if (row) this.#open(Number(row.dataset.at));
+    });
+    this.box.addEventListener("keydown", (event) => this.#key(event));
+  }
+
+  #ask(change) {
+    change();
+    this.at = 0;
+    this.box.scrollTop = 0;
+    this.pages.clear();
+    return this.load();
+  }
+
+  #query(first) {
+    const [sort, order] = this.order.value.split(" ");
+    const said = { label: this.label, text: this.find.value, sort: sort ?? "", order: order ?? "asc", first, count: PAGE };
+    return `recordings?${new URLSearchParams(said)}`;
+  }
+
+  #inView() {
+    const first = Math.max(0, Math.floor(this.box.scrollTop / ROW) - BEYOND);
+    const height = Math.min(this.box.clientHeight, screen.height); // it has none of its own before its style is there
+    const last = Math.min(this.total, Math.ceil((this.box.scrollTop + height) / ROW) + BEYOND);
+    return [first, last];
+  }
+
+  // Ask for all that is in view again; what is out of view is asked for when it comes into it.
+  async load() {
+    clearTimeout(this.timer);
+    const turn = ++this.asked;
+    const [first, last] = this.#inView();
+    const numbers = new Set([Math.floor(first / PAGE), Math.floor(Math.max(first, last - 1) / PAGE)]);
+    const answers = await Promise.all([...numbers].map(async (number) => [number, await api(this.#query(number * PAGE))]));
+    if (turn !== this.asked) return; // something else was asked for meanwhile
+    this.pages = new Map(answers.map(([number, answer]) => [number, answer.rows]));
+    const { total, counts, state } = answers[0][1];
+    this.total = total;
+    this.space.style.height = `${total * ROW}px`;
+    this.#tell(counts, state);
+    this.draw();
+    // Somebody may label on the command line, too.
+    if (state.running || state.done < state.total) this.timer = setTimeout(() => this.load(), state.running ? POLL : 5 * POLL);
+  }
+
+  async #fetch(number) {
+    this.pages.set(number, null); // is asked for
+    const turn = this.asked;
+    const answer = await api(this.#query(number * PAGE));
+    if (turn !== this.asked) return;
+    this.pages.set(number, answer.rows);
+    this.draw();
+  }
+
+  #tell(counts, state) {
+    for (const button of this.kinds.children) {
+      const { kind } = button.dataset;
+      const number = counts[kind] ?? 0;
+      button.lastChild.textContent = number.toLocaleString("en");
+      button.setAttribute("aria-pressed", this.label === kind);
+      button.hidden = !number && !ALWAYS.includes(kind) && this.label !== kind;
+    }
+    const left = state.total - state.done;
+    this.running = state.running;
+    this.progress.hidden = !state.running;
+    this.progress.max = Math.max(1, state.total);
+    this.progress.value = state.done;
+    this.labelButton.hidden = state.running || !left;
+    this.labelButton.textContent = state.done ? `Label ${left.toLocaleString("en")} more` : `Label ${left.toLocaleString("en")}`;
+    this.stateLine.textContent = state.running ? `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")} labelled` : state.message || (state.classifier ? `by ${state.classifier}` : "");
+    this.box.setAttribute("aria-label", `Recordings, ${this.total}`);
+    this.training.tell(counts.corrected ?? 0);
+  }
+
+  row(at) {
+    return this.pages.get(Math.floor(at / PAGE))?.[at % PAGE];
+  }
+
+  // Draw the rows in view; elements are used again, so that scrolling makes none.
+  draw() {
+    const [first, last] = this.#inView();
+    while (this.pool.length < last - first) {
+      const node = made("div", { className: "row" }, made("i"), made("b"), made("span"), made("small"));
+      node.setAttribute("role", "option");
+      this.space.append(node);
+      this.pool.push(node);
+    }
+    for (const [place, node] of this.pool.entries()) {
+      // The element of a row stays with it while it is in view, wherever that is.
+      const turn = this.pool.length;
+      const at = first + ((place - (first % turn) + turn) % turn);
+      node.hidden = at >= last;
+      if (node.hidden) node.removeAttribute("aria-selected");
+      else this.#fill(node, at);
+    }
+    for (let number = Math.floor(first / PAGE); number * PAGE < last; number++) {
+      if (!this.pages.has(number)) this.#fetch(number);
+    }
+    this.box.setAttribute("aria-activedescendant", this.total && this.at >= first && this.at < last ? `row-${this.at}` : "");
+  }
+
+  #fill(node, at) {
+    const shown = this.row(at);
+    if (node.at !== at) {
+      node.at = at;
+      node.id = `row-${at}`;
+      node.dataset.at = at;
+      node.style.transform = `translateY(${at * ROW}px)`;
+      node.setAttribute("aria-posinset", at + 1);
+      node.shown = undefined;
+    }
+    node.setAttribute("aria-setsize", this.total);
+    node.setAttribute("aria-selected", shown !== undefined && shown !== null && shown.id === this.marked);
+    node.classList.toggle("at", at === this.at);
+    if (node.shown === shown && shown) return;
+    node.shown = shown;
+    const [mark, name, labels, numbers] = node.children;
+    mark.className = shown?.label ?? "";
+    name.textContent = shown ? shown.name : "...";
+    name.title = shown ? shown.name : "";
+    labels.textContent = shown ? title(shown) : "";
+    numbers.textContent = shown ? figures(shown) : "";
+  }
+
+  #open(at) {
+    this.at = at;
+    const shown = this.row(at);
+    if (shown) {
+      this.marked = shown.id;
+      this.onOpen(shown.id);
+    }
+    this.draw();
+  }
+
+  #key(event) {
+    const page = Math.max(1, Math.floor(this.box.clientHeight / ROW) - 1);
+    const step = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page, Home: -this.total, End: this.total }[event.key];
+    if (event.key === "Enter" && this.total) this.#open(this.at);
+    else if (step && !event.ctrlKey && !event.metaKey && !event.altKey) {
+      this.at = Math.min(Math.max(0, this.at + step), Math.max(0, this.total - 1));
+      const top = this.at * ROW;
+      if (top < this.box.scrollTop) this.box.scrollTop = top;
+      else if (top + ROW > this.box.scrollTop + this.box.clientHeight) this.box.scrollTop = top + ROW - this.box.clientHeight;
+      this.draw();
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}
+
+// Every label in a recording, the longest first.
+function title({ label, labels, error, corrected }) {
+  if (error) return `refused: ${error}`;
+  return (label ? labels.join(" + ") : "no label yet") + (corrected ? ", corrected" : "");
+}
+
+function figures({ frequency_hz: frequency, level_dba: level, duration_s: duration }) {
+  const parts = [];
+  if (frequency !== null) parts.push(`${Math.round(frequency)} Hz`);
+  if (level !== null) parts.push(`${level.toFixed(1)} dB(A)`);
+  if (duration !== null) parts.push(`${duration.toFixed(1)} s`);
+  return parts.join(" · ");
+}

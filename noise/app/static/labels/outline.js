@@ -1,0 +1,68 @@
+// Outline of the samples over time.
+import { numbers } from "./sounds.js";
+import { DEEP, LINE, SOFT, sheet } from "./timeline.js";
+
+const FINER = 60; // after the view has come to rest [ms]
+
+export class Outline {
+  constructor(timeline, { plot, axis }) {
+    Object.assign(this, { timeline, plot, axis });
+    this.parts = [];
+    this.turn = 0;
+  }
+
+  async load(id, channel) {
+    Object.assign(this, { id, channel, parts: [] });
+    await this.#ask(0, null, 0);
+  }
+
+  async #ask(start, end, place) {
+    const turn = ++this.turn;
+    const width = Math.max(16, Math.round(this.plot.clientWidth * (window.devicePixelRatio || 1)));
+    const found = await numbers(this.id, "outline", { channel: this.channel, start, end, width }, Float32Array);
+    if (turn !== this.turn) return;
+    this.parts[place] = found;
+    if (!place) this.most = found.values.reduce((most, one) => Math.max(most, Math.abs(one)), 0) || 1;
+    this.draw();
+  }
+
+  refine() {
+    clearTimeout(this.timer);
+    if (!this.parts.length) return;
+    this.timer = setTimeout(() => this.#ask(this.timeline.start, this.timeline.end, 1), FINER);
+  }
+
+  draw() {
+    const { pen, width, height } = sheet(this.plot);
+    const { start, end } = this.timeline;
+    const fine = this.parts[1];
+    const part = fine && fine.start <= start + 1e-3 && fine.end >= end - 1e-3 ? fine : this.parts[0];
+    this.#drawAxis(part);
+    pen.fillStyle = LINE;
+    pen.fillRect(0, height / 2, width, 1);
+    if (!part) return;
+    const columns = part.values.length / 2, step = (part.end - part.start) / columns;
+    pen.fillStyle = DEEP;
+    const y = (value) => (0.5 - (0.47 * value) / this.most) * height;
+    const from = Math.max(0, Math.floor((start - part.start) / step));
+    const to = Math.min(columns, Math.ceil((end - part.start) / step));
+    for (let column = from; column < to; column++) {
+      const x = this.timeline.share(part.start + column * step) * width;
+      const low = y(part.values[column]), high = y(part.values[columns + column]);
+      pen.fillRect(x, high, Math.max(1, (step / this.timeline.span) * width), Math.max(1, low - high));
+    }
+  }
+
+  #drawAxis(part) {
+    const { pen, width, height } = sheet(this.axis);
+    if (!part) return;
+    pen.fillStyle = SOFT;
+    pen.textAlign = "right";
+    pen.textBaseline = "middle";
+    const largest = Number(this.most.toPrecision(2));
+    for (const [value, at] of [[largest, 0.03], [-largest, 0.97]]) {
+      pen.fillText(`${value}`.replace("-", "−"), width - 4, Math.min(height - 6, Math.max(6, at * height)));
+    }
+    pen.fillText(part.unit, width - 4, height / 2);
+  }
+}

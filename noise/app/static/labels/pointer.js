@@ -1,0 +1,86 @@
+// The pointer over the lanes: reads, goes there, selects a stretch, zooms; on the frequency axis it chooses a band.
+
+const STILL = 4; // a press that moves less is a click [px]
+const WHEEL = 0.0015; // of zoom for a pixel of the wheel
+
+export function follow(page) {
+  const { parts, timeline, spectrogram, levels } = page;
+  const at = ({ clientX }) => {
+    const box = parts.area.getBoundingClientRect();
+    return timeline.time((clientX - box.left) / box.width);
+  };
+  const height = ({ clientY }, node) => {
+    const box = node.getBoundingClientRect();
+    return Math.min(1, Math.max(0, (clientY - box.top) / box.height));
+  };
+
+  for (const lane of [parts.wave, parts.screen, parts.course]) {
+    lane.addEventListener("pointerdown", (event) => {
+      if (event.button || !page.sound) return;
+      const first = at(event);
+      lane.setPointerCapture(event.pointerId);
+      let moved = false;
+      const move = (now) => {
+        moved ||= Math.abs(now.clientX - event.clientX) > STILL;
+        if (moved) timeline.select(first, at(now));
+      };
+      const end = (last) => {
+        for (const [name, one] of Object.entries({ pointermove: move, pointerup: end, pointercancel: end })) lane.removeEventListener(name, one);
+        if (last.type === "pointercancel") timeline.select(null);
+        else if (moved) page.seek(timeline.selection.start);
+        else { if (timeline.selection) timeline.select(null); page.seek(first); }
+      };
+      for (const [name, one] of Object.entries({ pointermove: move, pointerup: end, pointercancel: end })) lane.addEventListener(name, one);
+    });
+    lane.addEventListener("pointermove", (event) => {
+      if (!page.sound || !spectrogram.whole) return;
+      const time = at(event);
+      page.pointed = time;
+      levels.read(time);
+      if (lane === parts.screen) spectrogram.read(time, spectrogram.frequency(height(event, lane)));
+    });
+    lane.addEventListener("pointerleave", () => {
+      page.pointed = null;
+      spectrogram.read(null);
+    });
+  }
+
+  parts.area.addEventListener("wheel", (event) => {
+    if (!page.sound) return;
+    event.preventDefault();
+    if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) timeline.pan((event.deltaX || event.deltaY) / parts.area.clientWidth);
+    else timeline.zoom(Math.exp(-WHEEL * event.deltaY), at(event));
+  }, { passive: false });
+
+  // By keys, a row and a column at a time.
+  parts.screen.addEventListener("keydown", (event) => {
+    const [right, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+    if ((!right && !up) || event.ctrlKey || event.metaKey || event.altKey || !spectrogram.whole) return;
+    event.preventDefault();
+    const far = event.shiftKey ? 10 : 1;
+    const cursor = spectrogram.cursor ?? { time: timeline.position, frequency: 1000 };
+    const time = Math.min(timeline.duration, Math.max(0, cursor.time + (right * far * timeline.span) / parts.screen.clientWidth));
+    const share = spectrogram.share(cursor.frequency) - (up * far) / parts.screen.clientHeight;
+    timeline.follow(time);
+    page.pointed = time;
+    levels.read(time);
+    spectrogram.read(time, spectrogram.frequency(share));
+  });
+  parts.screen.addEventListener("blur", () => { page.pointed = null; spectrogram.read(null); });
+
+  const axis = parts.frequencies;
+  axis.title = "drag: hear this band; double click: all";
+  axis.addEventListener("pointerdown", (event) => {
+    if (event.button || !spectrogram.whole) return;
+    axis.setPointerCapture(event.pointerId);
+    const first = height(event, axis);
+    const end = (last) => {
+      axis.removeEventListener("pointerup", end);
+      const second = height(last, axis);
+      if (Math.abs(second - first) * axis.clientHeight < STILL) return;
+      page.filter(spectrogram.frequency(Math.max(first, second)), spectrogram.frequency(Math.min(first, second)));
+    };
+    axis.addEventListener("pointerup", end);
+  });
+  axis.addEventListener("dblclick", () => page.filter(0, 0));
+}

@@ -1,0 +1,290 @@
+// The page of one recording: puts its lanes, segments, player and keys together.
+import { told } from "../api.js";
+import { Corrections } from "./corrections.js";
+import { joined, relabelled, split } from "./edits.js";
+import { build, LABELS } from "./frame.js";
+import { listen } from "./keys.js";
+import { Bands, LevelCourse } from "./levels.js";
+import { made, openNext, refresh } from "./list.js";
+import { Outline } from "./outline.js";
+import { Player } from "./player.js";
+import { follow } from "./pointer.js";
+import { showSegment } from "./segment.js";
+import { Segments } from "./segments.js";
+import { about } from "./sounds.js";
+import { Spectrogram } from "./spectrogram.js";
+import { drawTimes, Timeline } from "./timeline.js";
+
+const ZOOM = 1.6, PAN = 0.3;
+const POLL = 1500; // while labels are awaited [ms]
+
+export class RecordingPage {
+  constructor(element, onOpen) {
+    this.element = element;
+    this.onOpen = onOpen;
+    const parts = (this.parts = build(element));
+    const timeline = (this.timeline = new Timeline());
+    this.player = new Player(told);
+    this.corrections = new Corrections((text) => { parts.saved.textContent = text; });
+    this.spectrogram = new Spectrogram(timeline, { plot: parts.plot, marks: parts.marks, axis: parts.frequencies, legend: parts.legend, readout: parts.readout });
+    this.outline = new Outline(timeline, { plot: parts.wave, axis: parts.waveAxis });
+    this.levels = new LevelCourse(timeline, { plot: parts.course, axis: parts.courseAxis, readout: parts.levelRead });
+    this.bands = new Bands({ plot: parts.bands, text: parts.bandsText });
+    this.segments = new Segments(timeline, this.corrections, parts, () => this.#chosen());
+    timeline.addEventListener("view", () => this.#view());
+    timeline.addEventListener("position", () => this.#position());
+    timeline.addEventListener("selection", () => { this.#marks(); this.#stretch(); });
+    this.corrections.addEventListener("change", () => this.#rows());
+    this.corrections.addEventListener("saved", ({ detail }) => refresh(detail));
+    this.player.addEventListener("change", () => this.#playing());
+    new ResizeObserver(() => { this.#view(); this.bands.draw(); }).observe(parts.area);
+    follow(this);
+    this.#buttons();
+    this.#keys();
+  }
+
+  async open(id) {
+    const { parts } = this;
+    this.id = id;
+    parts.saved.textContent = "";
+    const channel = null;
+    // All at once: what each needs of the others comes with it.
+    const seen = this.spectrogram.load(id, channel);
+    const sound = await about(id);
+    if (id !== this.id) return;
+    this.sound = sound;
+    this.channel = sound.channel;
+    parts.title.textContent = sound.name;
+    parts.facts.textContent = [`${sound.duration_s.toFixed(2)} s`, `${sound.rate} Hz`, sound.calibrated ? "calibrated" : "not calibrated: levels in dBFS", ...sound.conditions].join(", ");
+    parts.channel.box.replaceChildren(...sound.channels.map(({ name, unit }) => made("option", { value: name, textContent: `${name} [${unit}]` })));
+    parts.channel.box.value = this.channel;
+    this.timeline.reset(sound.duration_s);
+    this.timeline.select(null);
+    this.player.put("a", this.#slot());
+    this.player.stop();
+    this.timeline.go(0);
+    this.player.position = 0;
+    this.segments.at = 0;
+    await Promise.all([seen, this.outline.load(id, this.channel), this.#labels(id)]);
+    if (id !== this.id) return;
+    await this.levels.load(id, this.channel);
+    this.#chosen();
+  }
+
+  // Labels, which may be on their way.
+  async #labels(id) {
+    clearTimeout(this.timer);
+    await this.corrections.open(id, this.sound.duration_s);
+    if (id !== this.id || this.corrections.rows.length) return;
+    this.timer = setTimeout(() => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }, POLL);
+  }
+
+  #slot() {
+    const { name, channels, calibrated, duration_s: duration } = this.sound;
+    const { kind } = channels.find((one) => one.name === this.channel);
+    return { id: this.id, name, channel: this.channel, kind, calibrated: calibrated && kind === "pressure", duration, anchor: null };
+  }
+
+  async hearChannel(name) {
+    this.channel = name;
+    const at = this.sound.channels.findIndex((one) => one.name === name);
+    if (this.corrections.tracks.includes(`${at + 1}`)) this.corrections.show(`${at + 1}`);
+    this.player.put("a", this.#slot());
+    await Promise.all([this.spectrogram.load(this.id, name), this.outline.load(this.id, name), this.levels.load(this.id, name)]);
+    this.spectrogram.refine();
+    this.#stretch();
+  }
+
+  // What is played and measured: the selection, else the chosen segment while it loops, else all.
+  get stretch() {
+    const { selection, duration } = this.timeline;
+    if (selection) return selection;
+    const { chosen } = this.segments;
+    const one = this.player.looping && chosen ? { start: chosen.start_s, end: chosen.end_s } : { start: 0, end: duration };
+    return one.end > one.start ? one : { start: 0, end: duration };
+  }
+
+  play(from = this.timeline.position) {
+    const stretch = this.stretch;
+    const inside = from >= stretch.start && from < stretch.end - 0.005;
+    return this.player.play(stretch, inside ? from : stretch.start);
+  }
+
+  seek(time) {
+    this.timeline.go(time);
+    this.segments.chooseAt(time);
+    this.player.position = this.timeline.position;
+    if (this.player.playing) this.play();
+  }
+
+  #playing() {
+    const { parts, player } = this;
+    parts.play.textContent = player.playing ? "Pause" : "Play";
+    parts.loop.setAttribute("aria-pressed", player.looping);
+    parts.equal.setAttribute("aria-pressed", player.equal);
+    for (const slot of ["a", "b"]) {
+      parts[slot].setAttribute("aria-pressed", player.active === slot);
+      parts[slot].disabled = !player.slots[slot];
+      parts[slot].setAttribute("aria-label", `${slot.toUpperCase()}: ${player.slots[slot]?.name ?? "empty"}`);
+      parts[slot].title = player.slots[slot]?.name ?? "empty";
+    }
+    parts.gains.textContent = player.words + (player.slots.b ? `. B is ${player.slots.b.name}.` : "");
+    this.spectrogram.band = player.band;
+    this.spectrogram.draw();
+    cancelAnimationFrame(this.frame);
+    const step = () => {
+      if (!player.playing) return;
+      this.timeline.go(player.now());
+      this.frame = requestAnimationFrame(step);
+    };
+    step();
+  }
+
+  #view() {
+    for (const lane of [this.spectrogram, this.outline]) { lane.draw(); lane.refine(); }
+    this.levels.draw();
+    drawTimes(this.parts.times, this.timeline);
+    this.segments.draw();
+    this.#marks();
+  }
+
+  #position() {
+    this.parts.clock.textContent = `${this.timeline.position.toFixed(2)} s`;
+    this.#marks();
+  }
+
+  #marks() {
+    const { timeline, parts: { position, selection } } = this;
+    const share = timeline.share(timeline.position);
+    position.hidden = share < 0 || share > 1;
+    position.style.left = `${100 * share}%`;
+    selection.hidden = !timeline.selection;
+    if (!timeline.selection) return;
+    const [from, to] = [timeline.selection.start, timeline.selection.end].map((time) => Math.min(1, Math.max(0, timeline.share(time))));
+    selection.style.left = `${100 * from}%`;
+    selection.style.width = `${100 * (to - from)}%`;
+  }
+
+  #rows() {
+    const { parts, corrections } = this, { tracks } = corrections;
+    parts.track.label.hidden = tracks.length < 2;
+    parts.track.box.replaceChildren(...tracks.map((track) => made("option", { value: track, textContent: `track ${track}` })));
+    parts.track.box.value = corrections.track;
+    showSegment(parts, this.segments.chosen);
+  }
+
+  #chosen() {
+    showSegment(this.parts, this.segments.chosen);
+    this.#stretch();
+  }
+
+  // Third octaves of the stretch, and what is played of it.
+  #stretch() {
+    clearTimeout(this.measuring);
+    this.measuring = setTimeout(() => {
+      const { selection } = this.timeline, { chosen } = this.segments;
+      const { start, end } = selection ?? (chosen ? { start: chosen.start_s, end: chosen.end_s } : this.stretch);
+      if (this.sound && end - start > 0.001) this.bands.load(this.id, this.channel, start, end);
+      if (this.player.playing) this.play();
+    }, 60);
+  }
+
+  label(label) {
+    const { corrections, segments } = this;
+    if (segments.chosen) return corrections.write(relabelled(corrections.shown, segments.at, label));
+    return corrections.write([{ start_s: 0, end_s: this.timeline.duration, label, channel: "all", label_source: "human" }]);
+  }
+
+  splitHere() {
+    const { corrections, timeline } = this;
+    const time = this.pointed ?? timeline.position;
+    const rows = split(corrections.shown, time);
+    if (!rows) return told("A segment is split inside it: put the cursor there.");
+    const at = rows.findIndex((row) => Math.abs(row.start_s - time) < 0.002);
+    corrections.write(rows);
+    if (at > 0) this.segments.choose(at);
+  }
+
+  joinHere() {
+    const rows = joined(this.corrections.shown, this.segments.at);
+    if (!rows) return told("There is no other segment to join it to.");
+    const at = Math.max(0, this.segments.at - 1);
+    this.corrections.write(rows);
+    this.segments.choose(at);
+  }
+
+  async undo() {
+    const id = await this.corrections.undo();
+    if (id !== this.id) this.onOpen(id);
+  }
+
+  keepAsB() {
+    const { selection } = this.timeline;
+    const from = selection?.start ?? (this.player.looping && this.segments.chosen ? this.segments.chosen.start_s : null);
+    this.player.put("b", { ...this.#slot(), anchor: from });
+    told(`B is ${this.sound.name}${from === null ? "" : ` from ${from.toFixed(2)} s on`}; open another as A, X changes over.`);
+  }
+
+  filter(low, high) {
+    const { parts } = this, top = 0.5 * this.sound.rate;
+    const band = low || high ? { low: low || 10, high: high || top } : null;
+    if (band && band.low >= band.high) return told("A band begins below where it ends.");
+    parts.low.value = band ? Math.round(band.low) : "";
+    parts.high.value = band ? Math.round(band.high) : "";
+    this.player.setBand(band);
+  }
+
+  toggle(what) {
+    const { player } = this;
+    if (what === "play") return player.playing ? player.stop() : this.play();
+    if (what === "harmonic") {
+      this.spectrogram.harmonic = !this.spectrogram.harmonic;
+      this.parts.harmonic.setAttribute("aria-pressed", this.spectrogram.harmonic);
+      return this.spectrogram.drawMarks();
+    }
+    player[what] = !player[what];
+    this.#playing();
+    if (player.playing) this.play();
+  }
+
+  changeOver(slot = this.player.active === "a" ? "b" : "a") { this.player.hear(slot); }
+
+  #buttons() {
+    const { parts, timeline } = this;
+    const actions = {
+      play: () => this.toggle("play"), loop: () => this.toggle("looping"), equal: () => this.toggle("equal"), harmonic: () => this.toggle("harmonic"),
+      a: () => this.changeOver("a"), b: () => this.changeOver("b"), keep: () => this.keepAsB(),
+      in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN),
+      whole: () => timeline.whole(), fit: () => this.fit(), help: () => parts.dialog.showModal(),
+      split: () => this.splitHere(), join: () => this.joinHere(), undo: () => this.undo(), next: () => openNext(this.id), unfiltered: () => this.filter(0, 0),
+    };
+    for (const [name, action] of Object.entries(actions)) parts[name].addEventListener("click", () => { if (this.sound) action(); });
+    for (const button of parts.labels.children) button.addEventListener("click", () => this.label(button.dataset.label));
+    for (const box of [parts.low, parts.high]) box.addEventListener("change", () => this.filter(Number(parts.low.value), Number(parts.high.value)));
+    parts.range.box.addEventListener("change", ({ target }) => this.spectrogram.setRange(Number(target.value)));
+    parts.frames.box.addEventListener("change", ({ target }) => this.spectrogram.setWindow(target.value || null));
+    parts.channel.box.addEventListener("change", ({ target }) => this.hearChannel(target.value));
+    parts.track.box.addEventListener("change", ({ target }) => this.corrections.show(target.value));
+  }
+
+  fit() {
+    const { selection } = this.timeline, { chosen } = this.segments;
+    if (selection) this.timeline.fit(selection.start, selection.end);
+    else if (chosen) this.timeline.fit(chosen.start_s, chosen.end_s);
+  }
+
+  #keys() {
+    const { timeline, segments } = this;
+    const step = (sign) => ({ shiftKey }) => this.seek(timeline.position + sign * (shiftKey ? 1 : 0.1));
+    const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
+    const actions = {
+      " ": () => this.toggle("play"), l: () => this.toggle("looping"), e: () => this.toggle("equal"), h: () => this.toggle("harmonic"),
+      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => this.splitHere(), u: () => this.undo(), n: () => openNext(this.id),
+      Delete: () => this.joinHere(), Backspace: () => this.joinHere(), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1),
+      "+": () => timeline.zoom(ZOOM), "=": () => timeline.zoom(ZOOM), "-": () => timeline.zoom(1 / ZOOM), 0: () => timeline.whole(), f: () => this.fit(),
+      Escape: () => timeline.select(null), "?": () => this.parts.dialog.showModal(),
+    };
+    for (const [at, label] of LABELS.entries()) actions[at + 1] = () => this.label(label);
+    listen(this.element, Object.fromEntries(Object.entries(actions).map(([key, action]) => [key, (event) => { if (this.sound || key === "n") action(event); }])));
+  }
+}

@@ -1,0 +1,32 @@
+// What is known of the chosen segment: its place, level, frequency, and how sure its label is.
+import { LABELS } from "./frame.js";
+import { made } from "./list.js";
+
+const HALF = 0.5;
+
+export function showSegment({ chosen, labels, shares, source }, row) {
+  for (const button of labels.children) button.setAttribute("aria-pressed", button.dataset.label === row?.label);
+  if (!row) {
+    chosen.textContent = "No label yet: a label here is of the whole recording.";
+    source.textContent = "";
+    shares.replaceChildren();
+    return;
+  }
+  const facts = [`${row.start_s.toFixed(2)}–${row.end_s.toFixed(2)} s`];
+  if (known(row.frequency_hz)) facts.push(`${row.frequency_hz.toFixed(0)} Hz`);
+  if (known(row.level_dba)) facts.push(`${row.level_dba.toFixed(1)} dB(A)`);
+  else if (known(row.level_dbfs)) facts.push(`${row.level_dbfs.toFixed(1)} dBFS`);
+  chosen.replaceChildren(made("b", { textContent: row.label }), ` ${facts.join(", ")}`);
+  const found = LABELS.map((label) => [label, row[`p_${label}`]]).filter(([, share]) => known(share));
+  if (row.label_source === "human") source.textContent = "By a person.";
+  else if (!found.length) source.textContent = "How sure this is, the table does not say.";
+  else if ((row[`p_${row.label}`] ?? 0) < HALF) source.textContent = "By the classifier, which gives it less than a half: listen.";
+  else source.textContent = "By the classifier.";
+  shares.replaceChildren(...found.flatMap(([label, share]) => {
+    const bar = made("span", { className: `bar ${label}` });
+    bar.style.width = `${100 * share}%`;
+    return [made("dt", { textContent: label }), made("dd", {}, made("span", { className: "number", textContent: share.toFixed(2) }), made("span", { className: "room" }, bar))];
+  }));
+}
+
+function known(value) { return value !== null && value !== undefined; }

@@ -1,0 +1,123 @@
+// Segments over the lanes: coloured regions, their names, borders that are dragged or moved by keys.
+import { borders, limits, moved } from "./edits.js";
+import { made } from "./list.js";
+import { seconds } from "./timeline.js";
+
+const STEP = 0.01; // of an arrow key on a border [s]
+
+export class Segments {
+  constructor(timeline, corrections, { strip, overlay }, chosen) {
+    Object.assign(this, { timeline, corrections, strip, overlay, onChosen: chosen });
+    this.at = 0; // which is chosen
+    this.regions = made("div", { className: "regions" });
+    this.handles = made("div", { className: "handles" });
+    overlay.append(this.regions, this.handles);
+    corrections.addEventListener("change", () => this.draw());
+  }
+
+  get chosen() { return this.corrections.shown[this.at]; }
+
+  choose(at) {
+    const { length } = this.corrections.shown;
+    this.at = Math.min(Math.max(0, at), Math.max(0, length - 1));
+    this.draw();
+    this.onChosen(this.chosen);
+  }
+
+  chooseAt(time) {
+    const at = this.corrections.shown.findIndex((row) => row.start_s <= time && time < row.end_s);
+    if (at >= 0) this.choose(at);
+  }
+
+  draw() {
+    const rows = this.corrections.shown;
+    this.at = Math.min(this.at, Math.max(0, rows.length - 1));
+    fill(this.strip, rows.length, () => this.#button());
+    fill(this.regions, rows.length, () => made("div"));
+    for (const [at, row] of rows.entries()) {
+      const chosen = at === this.at;
+      const button = this.strip.children[at], region = this.regions.children[at];
+      button.className = region.className = `segment ${row.label}`;
+      button.firstChild.textContent = row.label;
+      button.setAttribute("aria-pressed", chosen);
+      button.setAttribute("aria-label", `${row.label}, ${seconds(row.start_s, 0.01)} to ${seconds(row.end_s, 0.01)} s${row.label_source === "human" ? ", by a person" : ""}`);
+      region.classList.toggle("chosen", chosen);
+      this.#place(button, row.start_s, row.end_s);
+      this.#place(region, row.start_s, row.end_s);
+    }
+    const found = borders(rows);
+    fill(this.handles, found.length, () => this.#handle());
+    for (const [at, border] of found.entries()) {
+      const handle = this.handles.children[at];
+      handle.border = border;
+      const { low, high } = limits(rows, border);
+      const names = [border.left, border.right].filter((index) => index !== null).map((index) => rows[index].label);
+      handle.setAttribute("aria-label", border.right === null ? `End of ${names[0]}` : border.left === null ? `Start of ${names[0]}` : `Border of ${names.join(" and ")}`);
+      for (const [name, value] of [["min", low], ["max", high], ["now", border.time]]) handle.setAttribute(`aria-value${name}`, value.toFixed(3));
+      handle.setAttribute("aria-valuetext", `${border.time.toFixed(3)} s`);
+      const share = this.timeline.share(border.time);
+      handle.hidden = share < 0 || share > 1;
+      handle.style.left = `${100 * share}%`;
+    }
+  }
+
+  #place(node, start, end) {
+    const from = Math.max(0, this.timeline.share(start)), to = Math.min(1, this.timeline.share(end));
+    node.hidden = to <= 0 || from >= 1;
+    node.style.left = `${100 * from}%`;
+    node.style.width = `${100 * Math.max(0, to - from)}%`;
+  }
+
+  #button() {
+    const button = made("button", { type: "button" }, made("span"));
+    button.addEventListener("click", () => {
+      const at = [...this.strip.children].indexOf(button);
+      this.choose(at);
+      this.timeline.go(this.chosen.start_s);
+    });
+    button.addEventListener("dblclick", () => this.timeline.fit(this.chosen.start_s, this.chosen.end_s));
+    return button;
+  }
+
+  #handle() {
+    const handle = made("div", { className: "handle", tabIndex: 0 });
+    handle.setAttribute("role", "slider");
+    handle.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: -STEP, ArrowRight: STEP }[event.key];
+      if (!step || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      event.stopPropagation();
+      const { border } = handle;
+      this.corrections.write(moved(this.corrections.shown, border, border.time + step * (event.shiftKey ? 10 : 1)));
+    });
+    handle.addEventListener("pointerdown", (event) => {
+      if (event.button) return;
+      event.preventDefault();
+      handle.focus();
+      handle.setPointerCapture(event.pointerId);
+      const { border } = handle, rows = this.corrections.shown;
+      let changed = null;
+      const move = ({ clientX }) => {
+        const box = this.overlay.getBoundingClientRect();
+        changed = moved(rows, border, this.timeline.time((clientX - box.left) / box.width));
+        this.corrections.preview(changed);
+      };
+      const end = (last) => {
+        handle.removeEventListener("pointermove", move);
+        handle.removeEventListener("pointerup", end);
+        handle.removeEventListener("pointercancel", end);
+        if (!changed) return;
+        this.corrections.write(last.type === "pointerup" ? changed : rows);
+      };
+      handle.addEventListener("pointermove", move);
+      handle.addEventListener("pointerup", end);
+      handle.addEventListener("pointercancel", end);
+    });
+    return handle;
+  }
+}
+
+function fill(parent, count, make) {
+  while (parent.children.length > count) parent.lastChild.remove();
+  while (parent.children.length < count) parent.append(make());
+}

@@ -1,0 +1,219 @@
+// Spectrogram: levels as colours, its axes, a cursor that reads them, harmonics of a frequency.
+import { colour, palette } from "./colours.js";
+import { facts, numbers } from "./sounds.js";
+import { DEEP, INK, SOFT, sheet } from "./timeline.js";
+
+const FINER = 90; // after the view has come to rest [ms]
+const REST = 60; // after the cursor has [ms]
+const HARMONICS = 20;
+const FREQUENCIES = [20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000];
+
+export class Spectrogram {
+  constructor(timeline, { plot, marks, axis, legend, readout }) {
+    Object.assign(this, { timeline, plot, marks, axis, legend, readout });
+    this.range = 70; // from the darkest colour to white [dB]
+    this.window = null; // of the frames [s]; null: by what is in view
+    this.harmonic = false;
+    this.cursor = null; // { time, frequency }
+    this.whole = this.fine = null;
+    this.turn = 0;
+  }
+
+  async load(id, channel) {
+    Object.assign(this, { id, channel, whole: null, fine: null, top: null, cursor: null });
+    const turn = ++this.turn;
+    clearTimeout(this.timer);
+    const found = await this.#part(0, null);
+    if (turn !== this.turn) return;
+    this.whole = this.#picture(found);
+    this.top = found.top;
+    this.draw();
+  }
+
+  async #part(start, end) {
+    const fine = window.devicePixelRatio || 1;
+    const width = Math.min(2400, Math.max(16, Math.round(this.plot.clientWidth * fine)));
+    const height = Math.min(600, Math.max(16, Math.round(this.plot.clientHeight * fine)));
+    const said = { channel: this.channel, start, end, width, height, window: this.window };
+    const found = await numbers(this.id, "spectrogram", said, Uint8Array);
+    let most = 0;
+    for (const byte of found.values) if (byte > most) most = byte;
+    return { ...found, top: 5 * Math.ceil((found.floor + most * found.step) / 5) };
+  }
+
+  #picture(found) {
+    const canvas = Object.assign(document.createElement("canvas"), { width: found.width, height: found.height });
+    const picture = { ...found, canvas };
+    this.#colour(picture);
+    return picture;
+  }
+
+  #colour(picture) {
+    const pen = picture.canvas.getContext("2d");
+    const image = pen.createImageData(picture.width, picture.height);
+    const words = new Uint32Array(image.data.buffer);
+    const of = palette(picture.floor, picture.step, this.top ?? picture.top, this.range);
+    for (let i = 0; i < words.length; i++) words[i] = of[picture.values[i]];
+    pen.putImageData(image, 0, 0);
+  }
+
+  // Ask for what is in view, once it rests.
+  refine() {
+    clearTimeout(this.timer);
+    if (!this.whole) return;
+    this.timer = setTimeout(async () => {
+      const { start, end } = this.timeline, turn = ++this.turn;
+      const found = await this.#part(start, end);
+      if (turn !== this.turn) return;
+      this.fine = this.#picture(found);
+      this.draw();
+    }, FINER);
+  }
+
+  setRange(range) {
+    this.range = range;
+    for (const picture of [this.whole, this.fine]) if (picture) this.#colour(picture);
+    this.draw();
+  }
+
+  setWindow(window) {
+    this.window = window;
+    this.refine();
+  }
+
+  draw() {
+    const { pen, width, height } = sheet(this.plot);
+    for (const picture of [this.whole, this.fine]) {
+      if (!picture) continue;
+      const from = this.timeline.share(picture.start) * width;
+      const to = this.timeline.share(picture.end) * width;
+      pen.imageSmoothingEnabled = false;
+      pen.drawImage(picture.canvas, from, 0, to - from, height);
+    }
+    this.#drawAxis();
+    this.#drawLegend();
+    this.drawMarks();
+  }
+
+  share(frequency) { return Math.log(this.whole.high / frequency) / Math.log(this.whole.high / this.whole.low); }
+
+  frequency(share) { return this.whole.high * (this.whole.low / this.whole.high) ** Math.min(1, Math.max(0, share)); }
+
+  #drawAxis() {
+    const { pen, width, height } = sheet(this.axis);
+    if (!this.whole) return;
+    pen.textAlign = "right";
+    pen.textBaseline = "middle";
+    if (this.band) {
+      const [top, bottom] = [this.band.high, this.band.low].map((one) => Math.min(1, Math.max(0, this.share(one))) * height);
+      pen.fillStyle = "#bcd6f2";
+      pen.fillRect(width - 8, top, 8, Math.max(1, bottom - top));
+    }
+    pen.fillStyle = pen.strokeStyle = SOFT;
+    for (const one of FREQUENCIES) {
+      if (one < this.whole.low || one > this.whole.high) continue;
+      const y = Math.min(height - 6, Math.max(6, this.share(one) * height));
+      pen.fillText(one < 1000 ? `${one}` : `${one / 1000}k`, width - 9, y);
+      pen.fillRect(width - 6, this.share(one) * height, 6, 1);
+    }
+    pen.textAlign = "left";
+    pen.fillText("Hz", 1, 6);
+  }
+
+  #drawLegend() {
+    const { pen, width, height } = sheet(this.legend);
+    if (!this.whole) return;
+    const top = this.top, low = top - this.range;
+    const bar = { from: 2, to: Math.max(60, width - 110) };
+    for (let x = bar.from; x < bar.to; x++) {
+      pen.fillStyle = `rgb(${colour((x - bar.from) / (bar.to - bar.from)).join(" ")})`;
+      pen.fillRect(x, 1, 1, 9);
+    }
+    pen.strokeStyle = SOFT;
+    pen.strokeRect(bar.from - 0.5, 0.5, bar.to - bar.from + 1, 10);
+    pen.fillStyle = INK;
+    pen.textBaseline = "alphabetic";
+    for (let level = low; level <= top; level += 10) {
+      const share = (level - low) / this.range;
+      pen.textAlign = share === 0 ? "left" : "center";
+      pen.fillText(`${level}`, bar.from + share * (bar.to - bar.from), height - 2);
+    }
+    pen.textAlign = "left";
+    pen.fillText(this.whole.unit, bar.to + 14, 10);
+    this.legend.setAttribute("aria-label", `Colours from ${low} (white) to ${top} (black) ${this.whole.unit}`);
+  }
+
+  // Level under the cursor, of the finest picture that has it [dB]; null where there is none.
+  level(time, frequency) {
+    for (const picture of [this.fine, this.whole]) {
+      if (!picture || time < picture.start || time >= picture.end) continue;
+      const column = Math.floor(((time - picture.start) / (picture.end - picture.start)) * picture.width);
+      const row = Math.min(picture.height - 1, Math.floor(this.share(frequency) * picture.height));
+      return picture.floor + picture.step * picture.values[row * picture.width + column];
+    }
+    return null;
+  }
+
+  // Put the cursor somewhere and read it; null takes it away.
+  read(time, frequency) {
+    clearTimeout(this.rest);
+    this.cursor = time === null || !this.whole ? null : { time, frequency };
+    this.drawMarks();
+    if (!this.cursor) return;
+    this.#say("");
+    this.rest = setTimeout(async () => {
+      const at = this.cursor;
+      const column = this.timeline.span / Math.max(1, this.plot.clientWidth);
+      const said = { channel: this.channel, time: at.time, frequency: at.frequency, column, window: this.window };
+      const found = await facts(this.id, "line", said);
+      if (at !== this.cursor || found.level_db === null) return;
+      this.#say(`; line at ${found.frequency_hz.toFixed(1)} Hz, ${found.level_db.toFixed(1)}`);
+      Object.assign(this.readout.dataset, { lineHz: found.frequency_hz, lineDb: found.level_db });
+    }, REST);
+  }
+
+  #say(line) {
+    const { time, frequency } = this.cursor;
+    const level = this.level(time, frequency);
+    const rough = frequency < 1000 ? frequency.toFixed(1) : frequency.toFixed(0);
+    this.readout.textContent = `${time.toFixed(3)} s, ${rough} Hz: ${level === null ? "–" : level.toFixed(1)}${line} ${this.whole.unit}`;
+    Object.assign(this.readout.dataset, { time, frequency, level: level ?? "" });
+  }
+
+  drawMarks() {
+    const { pen, width, height } = sheet(this.marks);
+    if (!this.cursor || !this.whole) return;
+    const x = this.timeline.share(this.cursor.time) * width;
+    const line = (share, strong) => {
+      const y = Math.round(share * height) + 0.5;
+      pen.strokeStyle = "#fff";
+      pen.lineWidth = strong ? 3 : 2;
+      stroke(pen, 0, y, width, y);
+      pen.strokeStyle = strong ? DEEP : INK;
+      pen.lineWidth = 1;
+      stroke(pen, 0, y, width, y);
+    };
+    line(this.share(this.cursor.frequency), true);
+    pen.strokeStyle = DEEP;
+    stroke(pen, Math.round(x) + 0.5, 0, Math.round(x) + 0.5, height);
+    if (!this.harmonic) return;
+    for (let k = 2; k <= HARMONICS; k++) {
+      const frequency = k * this.cursor.frequency;
+      if (frequency > this.whole.high) break;
+      line(this.share(frequency), false);
+      if (k > 10) continue;
+      pen.fillStyle = "#ffffffd0";
+      pen.fillRect(width - 22, this.share(frequency) * height - 6, 20, 12);
+      pen.fillStyle = INK;
+      pen.textBaseline = "middle";
+      pen.fillText(`${k}f`, width - 19, this.share(frequency) * height);
+    }
+  }
+}
+
+function stroke(pen, x1, y1, x2, y2) {
+  pen.beginPath();
+  pen.moveTo(x1, y1);
+  pen.lineTo(x2, y2);
+  pen.stroke();
+}

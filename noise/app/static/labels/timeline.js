@@ -1,0 +1,105 @@
+// The time axis that all lanes of a recording share: what is in view, where it is, what is chosen.
+
+const SHORTEST = 0.005; // in view [s]
+
+export class Timeline extends EventTarget {
+  constructor() {
+    super();
+    this.reset(1);
+  }
+
+  reset(duration) {
+    this.duration = duration;
+    this.start = 0;
+    this.end = duration;
+    this.position = 0;
+    this.selection = null; // { start, end }
+    this.#tell("view");
+  }
+
+  get span() { return this.end - this.start; }
+
+  share(time) { return (time - this.start) / this.span; }
+
+  time(share) { return Math.min(this.duration, Math.max(0, this.start + share * this.span)); }
+
+  look(start, end) {
+    const span = Math.min(this.duration, Math.max(end - start, Math.min(SHORTEST, this.duration)));
+    const first = Math.min(Math.max(0, start), this.duration - span);
+    if (first === this.start && first + span === this.end) return;
+    this.start = first;
+    this.end = first + span;
+    this.#tell("view");
+  }
+
+  zoom(factor, about = this.position) {
+    const middle = about >= this.start && about <= this.end ? about : (this.start + this.end) / 2;
+    this.look(middle - (middle - this.start) / factor, middle + (this.end - middle) / factor);
+  }
+
+  pan(share) { this.look(this.start + share * this.span, this.end + share * this.span); }
+
+  whole() { this.look(0, this.duration); }
+
+  // With a tenth of what is on either side.
+  fit(start, end) { this.look(start - 0.1 * (end - start), end + 0.1 * (end - start)); }
+
+  // Keep a time in view.
+  follow(time) {
+    if (time < this.start || time > this.end) this.look(time - 0.1 * this.span, time + 0.9 * this.span);
+  }
+
+  go(time) {
+    this.position = Math.min(this.duration, Math.max(0, time));
+    this.#tell("position");
+  }
+
+  select(start, end) {
+    this.selection = start === null ? null : { start: Math.max(0, Math.min(start, end)), end: Math.min(this.duration, Math.max(start, end)) };
+    this.#tell("selection");
+  }
+
+  #tell(what) { this.dispatchEvent(new Event(what)); }
+}
+
+// A canvas as fine as the screen, whose unit is the pixel of the page.
+export function sheet(canvas) {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const fine = window.devicePixelRatio || 1;
+  const [w, h] = [Math.round(width * fine), Math.round(height * fine)];
+  if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
+  const pen = canvas.getContext("2d");
+  pen.setTransform(fine, 0, 0, fine, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  pen.font = "11px system-ui, sans-serif";
+  return { pen, width, height };
+}
+
+// Round numbers between two, at most so many.
+export function ticks(low, high, most) {
+  const rough = (high - low) / Math.max(1, most);
+  const ten = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((one) => one * ten).find((one) => one >= rough * 0.999);
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(k * step);
+  return { step, found };
+}
+
+export function seconds(time, step = 0.001) {
+  return time.toFixed(Math.max(0, Math.min(4, Math.ceil(-Math.log10(step) - 1e-9))));
+}
+
+export const INK = "#1d2329", SOFT = "#55606b", LINE = "#d9dee3", DEEP = "#0b57a4";
+
+export function drawTimes(canvas, timeline) {
+  const { pen, width } = sheet(canvas);
+  pen.fillStyle = SOFT;
+  pen.textBaseline = "middle";
+  const { step, found } = ticks(timeline.start, timeline.end, width / 80);
+  for (const time of found) {
+    const x = timeline.share(time) * width;
+    pen.fillRect(Math.min(width - 1, Math.round(x)), 0, 1, 4);
+    pen.textAlign = x < 16 ? "left" : x > width - 16 ? "right" : "center";
+    pen.fillText(seconds(time, step), x, 12);
+  }
+}

@@ -1,0 +1,76 @@
+"""Simulated samples kept in a file: to simulate them takes longer than to learn from them."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from noise.base.atomic import atomic
+from noise.batch.identity import program_identity
+from noise.training.classifier.described_samples import Sample
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+__all__ = ["load_samples", "save_samples"]
+
+
+def save_samples(path: Path, call: Sequence[object], samples: Sequence[Sample]) -> None:
+    """Keep samples.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in .npz.
+    call : sequence
+        What decides the samples beside the program, as JSON can hold it.
+    samples : sequence of Sample
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be written.
+    """
+    with atomic(path) as temporary:
+        np.savez_compressed(
+            temporary,
+            said=np.array(_said(call)),
+            features=np.concatenate([sample.features for sample in samples]),
+            windows=np.array([len(sample.features) for sample in samples]),
+            label=np.array([sample.label for sample in samples]),
+            ambiguous=np.array([sample.ambiguous for sample in samples]),
+            name=np.array([sample.name for sample in samples]),
+        )
+
+
+def load_samples(path: Path, call: Sequence[object]) -> list[Sample] | None:
+    """Return the samples of a call; None where the file has not those, or is none.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> one = Sample(np.zeros((2, 3), dtype=np.float32), "creak", False, "bushing")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_samples(Path(folder) / "kept.npz", (0, 1), [one])
+    ...     (found,) = load_samples(Path(folder) / "kept.npz", (0, 1))
+    ...     found.features.shape, found.label, load_samples(Path(folder) / "kept.npz", (0, 2))
+    ((2, 3), 'creak', None)
+    """
+    try:
+        with np.load(path, allow_pickle=False) as kept:
+            if str(kept["said"]) != _said(call):
+                return None
+            parts = np.split(kept["features"], np.cumsum(kept["windows"])[:-1])
+            told = (kept[name].tolist() for name in ("label", "ambiguous", "name"))
+            return [Sample(*one) for one in zip(parts, *told, strict=True)]
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):  # none, or damaged
+        return None
+
+
+def _said(call: Sequence[object]) -> str:
+    return json.dumps([program_identity(), *call])

@@ -1,0 +1,163 @@
+"""Who gets an answer from the app, and to what; how it ends."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import signal
+import socket
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.helpers.labelled_folder import made_row, write_folder
+from tests.helpers.opened_app import PATIENCE, opened_app
+
+NAMES = ("a.wav", "b.wav", "<img src=x onerror=alert(1)>.wav")
+
+
+@pytest.fixture(scope="module")
+def app(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("recordings")
+    rows = [
+        made_row("a.wav", "creak", 0.0, 1.0, level_dba=60.0, p_none=float("nan")),
+        made_row("a.wav", "squeal", 1.0, 3.0, level_dba=50.0, support_stiffness_Nm_rad=1e999),
+        made_row("b.wav", "none", level_dba=40.0),
+    ]
+    write_folder(folder, NAMES, rows)
+    (folder.parent / "secret.wav").write_bytes(b"secret")
+    with opened_app(folder) as running:
+        yield running
+
+
+def listed(app, query):
+    return [one["name"] for one in app.json(f"api/recordings?{query}")["rows"]]
+
+
+@pytest.mark.parametrize(
+    "path", ["", "api/recordings", "static/api.js", "api/recordings/0/segments"]
+)
+@pytest.mark.parametrize(
+    "said",
+    [
+        {"token": ""},
+        {"token": "x"},
+        {"Host": "bushing.example"},
+        {"Host": "127.0.0.1"},
+        {"Origin": "http://bushing.example"},
+        {"Origin": "null"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Cookie": "bushing-noise=x", "token": ""},
+    ],
+)
+def test_what_does_not_come_from_the_printed_address_gets_nothing(app, path, said):
+    status, answer = app.request(path, **said)
+    assert status == 403
+    assert answer.startswith(b"refused: wrong ")
+
+
+def test_the_page_gets_answers_by_its_cookie_beside_those_of_other_programs(app):
+    port = urlsplit(app.base).port
+    where = urlsplit(app.base)
+    for others, status in (("a,b=c; x", 200), ("", 200), (f"bushing-noise-{port}=x; ", 403)):
+        asked = http.client.HTTPConnection(where.hostname, where.port, timeout=PATIENCE)
+        cookie = f"{others}; bushing-noise-{port}={app.token}"
+        asked.request("GET", "/api/recordings", headers={"Cookie": cookie})
+        assert asked.getresponse().status == status
+
+
+def test_a_correction_from_another_site_changes_nothing(app):
+    rows = {"rows": [{"start_s": 0.0, "end_s": 1.0, "label": "creak"}]}
+    before = app.json("api/recordings/1/segments")
+    assert app.request("api/recordings/1/segments", rows, token="x")[0] == 403
+    assert app.request("api/recordings/1/segments", rows, Origin="http://x.example")[0] == 403
+    assert app.json("api/recordings/1/segments") == before
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "static/../gate.py",
+        "static/..%2fgate.py",
+        "static/%2e%2e/gate.py",
+        "static//etc/passwd",
+        "../secret.wav",
+        "a.wav",
+        "labels.csv",
+        "api/recordings/..%2f..%2fsecret.wav/segments",
+        "api/recordings/9/segments",
+        "api/recordings/-1/segments",
+        "api/recordings/99999999999999999999/segments",
+    ],
+)
+def test_nothing_but_what_was_opened_is_served(app, path):
+    where = urlsplit(app.base)
+    asked = http.client.HTTPConnection(where.hostname, where.port, timeout=PATIENCE)
+    asked.request("GET", f"/{path}?token={app.token}")  # as it is written, without being resolved
+    answer = asked.getresponse()
+    assert answer.status in (400, 404)
+    assert len(answer.read()) < 200
+
+
+def test_it_listens_on_the_loopback_address_only(app):
+    port = urlsplit(app.base).port
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        asked.connect(("192.0.2.1", 9))  # nothing is sent; it tells this machine's address
+        own = asked.getsockname()[0]
+    if own.startswith("127."):
+        pytest.skip("this machine has no other address")
+    with pytest.raises(OSError, match="refused"):
+        socket.create_connection((own, port), timeout=PATIENCE)
+
+
+def test_a_recording_is_found_under_every_label_in_it(app):
+    answer = app.json("api/recordings?label=creak")
+    assert [one["name"] for one in answer["rows"]] == ["a.wav"]
+    assert answer["rows"][0]["label"] == "squeal"
+    assert answer["rows"][0]["labels"] == ["squeal", "creak"]
+    assert answer["counts"]["creak"] == answer["counts"]["squeal"] == 1
+    assert listed(app, "label=squeal") == ["a.wav"]
+    assert listed(app, "label=unlabelled") == [NAMES[2]]
+
+
+def test_the_list_is_sorted_with_nothing_last(app):
+    assert listed(app, "sort=level&order=asc") == ["b.wav", "a.wav", NAMES[2]]
+    assert listed(app, "sort=level&order=desc") == ["a.wav", "b.wav", NAMES[2]]
+    assert listed(app, "text=A.W&sort=name") == ["a.wav"]
+    assert listed(app, "first=1&count=1&sort=name") == ["a.wav"]
+
+
+@pytest.mark.parametrize("query", ["label=hiss", "sort=size", "order=up", "first=-1", "count=1e3"])
+def test_what_is_asked_wrongly_is_said_in_one_line(app, query):
+    status, said = app.request(f"api/recordings?{query}")
+    assert status == 400
+    assert query.split("=")[0] in json.loads(said)["error"]
+
+
+def test_numbers_that_are_none_are_no_json(app):
+    def refuse(word):
+        raise AssertionError(word)
+
+    (shown,) = app.json("api/recordings?text=a.wav")["rows"]
+    _, said = app.request(f"api/recordings/{shown['id']}/segments")
+    rows = json.loads(said, parse_constant=refuse)["rows"]
+    assert [row["support_stiffness_Nm_rad"] for row in rows] == [None, "fixed"]
+
+
+@pytest.mark.parametrize("body", [b"{", b"[" * 100_000, b"\xff", b'"' + b"x" * (5 << 20) + b'"'])
+def test_a_body_that_is_none_is_refused_and_the_server_lives(app, body):
+    where = urlsplit(app.base)
+    asked = http.client.HTTPConnection(where.hostname, where.port, timeout=PATIENCE)
+    asked.request("POST", f"/api/undo?token={app.token}", body)
+    assert asked.getresponse().status == 400
+    assert app.json("api/recordings")["total"] == 3
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "button"])
+def test_it_ends_when_told_by_button_key_or_terminal(tmp_path, end):
+    with opened_app(write_folder(tmp_path, ("a.wav",))) as app:
+        if end == "button":
+            assert app.json("api/stop", {}) == {"stopped": True}
+        else:
+            app.process.send_signal(end)
+        assert app.process.wait(PATIENCE) == 0

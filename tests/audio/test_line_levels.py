@@ -1,0 +1,89 @@
+"""Levels of lines over time and frequency."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from noise.audio.line_levels import Grid, line_levels, strongest_line
+
+RATE = 48000.0
+
+
+def reader(samples):
+    return lambda first, last: samples[first:last]
+
+
+def tone(frequency, n=24000):
+    return np.sqrt(2.0) * np.sin(2 * np.pi * frequency * np.arange(n) / RATE)
+
+
+def levels_of(samples, grid):
+    return line_levels(reader(samples), samples.size, RATE, 1.0, grid)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(200.0, 15e3))
+def test_a_steady_tone_has_its_own_level_in_its_own_row(frequency):
+    grid = Grid(4000, 20000, 20, 200, 50.0, 20e3, 2048, padding=2)
+    column = levels_of(tone(frequency), grid)[:, 10]
+    assert column.max() == pytest.approx(0.0, abs=0.4)
+    row = np.searchsorted(grid.edges, frequency) - 1
+    strongest = grid.height - 1 - int(column.argmax())
+    wide = RATE / 2 / 2048 / frequency  # half a line of the padded frame, as a ratio
+    per_row = np.log(400.0) / 200
+    assert abs(strongest - row) <= 1 + wide / per_row
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(200.0, 15e3), st.floats(-0.02, 0.02))
+def test_the_line_near_the_cursor_is_found_to_a_thousandth(frequency, off):
+    samples = tone(frequency)
+    low, high = frequency * (1 + off - 0.03) - 50.0, frequency * (1 + off + 0.03) + 50.0
+    line = strongest_line(
+        reader(samples), samples.size, RATE, 1.0, middle=12000, length=2048, low=low, high=high
+    )
+    assert line.frequency == pytest.approx(frequency, rel=1e-3)
+    assert line.level == pytest.approx(0.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("low", "high"), [(1010.0, 1020.0), (1050.0, 1080.0), (1100.0, 1500.0)])
+def test_no_line_stands_on_a_slope_or_in_a_side_lobe(low, high):
+    samples = tone(1000.0)
+    found = strongest_line(
+        reader(samples), samples.size, RATE, 1.0, middle=12000, length=2048, low=low, high=high
+    )
+    assert found is None
+
+
+def test_no_click_falls_between_two_columns():
+    rng = np.random.default_rng(5)
+    grid = Grid(0, 96000, 30, 40, 50.0, 20e3, 1024)
+    for at in rng.integers(1000, 95000, 20):
+        samples = np.zeros(96000)
+        samples[at] = 1.0
+        found = levels_of(samples, grid).max(axis=0)
+        assert found.max() > -62.0  # where its frame is nearest, at least half of the window counts
+        assert abs(int(found.argmax()) - at * 30 // 96000) <= 1
+
+
+def test_a_part_is_as_it_is_in_the_whole():
+    samples = np.random.default_rng(3).standard_normal(48000)
+    whole = levels_of(samples, Grid(0, 48000, 96, 40, 50.0, 20e3, 1024))
+    part = levels_of(samples, Grid(24000, 36000, 24, 40, 50.0, 20e3, 1024))
+    np.testing.assert_allclose(part, whole[:, 48:72], atol=1e-3)
+
+
+def test_an_offset_is_not_seen():
+    samples = tone(1000.0)
+    grid = Grid(4000, 20000, 20, 200, 50.0, 20e3, 2048)
+    np.testing.assert_allclose(
+        levels_of(samples + 10.0, grid).max(), levels_of(samples, grid).max(), atol=0.01
+    )
+    assert levels_of(samples + 10.0, grid)[-20:].max() < -60.0
+
+
+def test_silence_and_rows_above_half_the_rate_are_levels_too():
+    grid = Grid(0, 1000, 16, 64, 20.0, 24e3, 4096)
+    assert np.isfinite(levels_of(np.zeros(1000), grid)).all()

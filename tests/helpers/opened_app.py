@@ -1,0 +1,63 @@
+"""The local app in a process of its own, as ``bushing-noise open`` starts it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import urllib.error
+import urllib.request
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+PATIENCE = 30.0
+"""Nothing that a test waits for takes longer [s]."""
+
+
+class OpenedApp:
+    """A server that runs, and requests to it."""
+
+    def __init__(self, process, address):
+        self.process = process
+        self.address = address
+        self.base, _, token = address.partition("/?token=")
+        self.token = token
+
+    def request(self, path, body=None, token=None, **headers):
+        """Status and body of the answer to GET, or to POST where there is a body."""
+        token = self.token if token is None else token
+        url = f"{self.base}/{path}{'&' if '?' in path else '?'}token={token}"
+        data = None if body is None else json.dumps(body).encode()
+        asked = urllib.request.Request(url, data, headers, method="POST" if data else "GET")
+        try:
+            with urllib.request.urlopen(asked, timeout=PATIENCE) as answer:
+                return answer.status, answer.read()
+        except urllib.error.HTTPError as refused:
+            return refused.code, refused.read()
+
+    def json(self, path, body=None):
+        """Body of an answer that has to be good."""
+        status, said = self.request(path, body)
+        assert status == 200, said
+        return json.loads(said)
+
+    def kill(self):
+        """End it as the system does that has no memory left."""
+        self.process.kill()
+        self.process.wait()
+
+
+@contextmanager
+def opened_app(*arguments) -> Iterator[OpenedApp]:
+    """Start ``bushing-noise open``, and end it after the test."""
+    command = [sys.executable, "-m", "noise", "open", "--no-browser", *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            yield OpenedApp(process, process.stdout.readline().strip())
+        finally:
+            if process.poll() is None:
+                process.terminate()
+                process.wait(PATIENCE)
