@@ -83,8 +83,8 @@ def read_array(path: Path) -> NDArray[Any]:
 
     Returns
     -------
-    ndarray
-        Of any shape and unit.
+    ndarray, shape (...)
+        In any unit, such as [Nm].
 
     Raises
     ------

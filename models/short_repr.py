@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeGuard, TypeVar
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 __all__ = ["short_repr", "short_words"]
 
@@ -27,6 +28,7 @@ def short_repr(cls: _Class) -> _Class:
 
     Examples
     --------
+    >>> import numpy as np
     >>> @short_repr
     ... @dataclasses.dataclass
     ... class Heard:
@@ -56,10 +58,11 @@ def short_words(value: object) -> str:
 
     Examples
     --------
+    >>> import numpy as np
     >>> short_words(np.zeros(3)), short_words([1.0] * 9), short_words({"a": 1})
     ('<3 float64>', '<9 float>', "{'a': 1}")
     """
-    if isinstance(value, np.ndarray):
+    if _is_array(value):
         shape = " x ".join(map(str, value.shape))
         return f"<{shape} {value.dtype}>" if shape else repr(value.item())
     if isinstance(value, str):
@@ -77,3 +80,8 @@ def short_words(value: object) -> str:
         return f"[{words}]" if isinstance(value, list) else f"({words}{',' * (len(value) == 1)})"
     words = repr(value)
     return words if len(words) <= _LONGEST_TEXT else f"<{type(value).__name__}>"
+
+
+def _is_array(value: object) -> TypeGuard[np.ndarray]:
+    """Ask without loading numpy: a module that shows nothing starts without it."""
+    return hasattr(value, "shape") and hasattr(value, "dtype") and hasattr(value, "item")

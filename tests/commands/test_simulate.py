@@ -119,7 +119,7 @@ def test_a_log_that_does_not_fit_the_run_is_noted(simulated, tmp_path, capsys, l
         (b"0,1\n0,2\n", "time does not rise"),
         (b"0,1\n1,nan\n", "no finite number"),
         (b"", "two or more samples"),
-        (b"\xff\xfe\x00", "cannot be read"),
+        (b"\xff\xfe\x00", "is damaged"),
     ],
 )
 def test_a_bad_log_is_refused(capsys, tmp_path, log, said):

@@ -80,7 +80,7 @@ def test_a_table_from_before_there_were_all_columns_still_reads(tmp_path):
         ("t.jsonl", b"[1]\n", "row 1 lacks file"),
         ("t.jsonl", b"{", "is damaged"),
         ("t.parquet", b"PAR1", "is damaged"),
-        ("nowhere.csv", None, "No such file"),
+        ("nowhere.csv", None, "there is no such file"),
     ],
 )
 def test_what_is_no_label_table_is_refused_with_the_reason(tmp_path, name, content, said):
@@ -207,7 +207,7 @@ def test_a_map_and_tracks_come_from_a_table_without_labelling(tmp_path, capsys, 
     ("given", "said"),
     [
         (["t.csv"], "say what to make of it"),
-        (["nowhere.csv", "--map", "m.png"], "nowhere.csv: cannot be read"),
+        (["nowhere.csv", "--map", "m.png"], "nowhere.csv: there is no such file"),
         (["t.csv", "--map", "m.txt"], "a picture ends in"),
         (["t.csv", "--map", "m.png", "--out", "m.csv"], "give one of them another name"),
         (["t.csv", "--map", "t.csv/m.png"], "is a file, not a folder"),
