@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.atomic import check_target
+from noise.base.exports import export_paths
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands import options as opt
 from noise.commands.batch import add_batch, check_batch, run_batch
+from noise.commands.plots import add_plots, check_plots, draw_recordings
 from noise.pictures.files import check_picture_path
 
 if TYPE_CHECKING:
@@ -82,6 +84,7 @@ def configure(parser: ArgumentParser) -> None:
         help="model that infers conditions which were not logged, made by `bushing-noise train` "
         "(default: the one that is shipped)",
     )
+    add_plots(parser)
     opt.add_calibration(parser)
     opt.add_seed(parser, "taken by all commands; labelling uses no random numbers")
 
@@ -96,16 +99,19 @@ def run(options: Namespace) -> int:
 
     jobs = find_jobs(options.paths)
     if options.audacity is not None:
-        from noise.labels.audacity import track_paths
-
-        track_paths(options.audacity, [job.name for job in jobs])
+        export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
+    if options.plot is not None:
+        check_plots(options.plot, jobs)
     from noise.labels.label_display import result_lines
     from noise.labels.labelling import Labelling
     from noise.labels.table import with_corrections
 
     def export(rows: list[dict[str, object]]) -> list[Path]:
         _note_assumed(rows)
-        return _export(options, rows)
+        written = _export(options, rows)
+        if options.plot is not None:
+            written += draw_recordings(options.plot, jobs, rows, full_scale=work.full_scale)
+        return written
 
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
@@ -172,6 +178,8 @@ def _from_tables(options: Namespace) -> int:
         raise ParameterError(
             f"{options.paths[0]}: is a table; say what to make of it with --map or --audacity"
         )
+    if options.plot is not None:
+        raise ParameterError("--plot draws recordings; name them in place of the table")
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
         write_table(options.out, COLUMNS, rows, options.excel)

@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError, RecordingError
+from noise.base.exports import export_paths
 from noise.base.tables import read_table, write_table
 from noise.classifier import LABELS
 from noise.cli import main
-from noise.labels.audacity import label_track, track_paths, write_label_tracks
+from noise.labels.audacity import label_track, write_label_tracks
 from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
 from noise.labels.labelling import COLUMNS
 from noise.labels.table import read_label_table
@@ -102,25 +103,27 @@ def test_tracks_of_a_stereo_file_are_told_apart():
 
 
 def test_one_recording_may_have_its_track_in_a_file(tmp_path):
-    assert track_paths(tmp_path / "a.txt", ["a.wav"]) == {"a.wav": tmp_path / "a.txt"}
+    assert export_paths(tmp_path / "a.txt", ["a.wav"], [".txt"], "--audacity") == {
+        "a.wav": tmp_path / "a.txt"
+    }
     with pytest.raises(ParameterError, match="2 recordings; name a folder"):
-        track_paths(tmp_path / "a.txt", ["a.wav", "b.wav"])
+        export_paths(tmp_path / "a.txt", ["a.wav", "b.wav"], [".txt"], "--audacity")
 
 
 def test_recordings_that_differ_in_the_ending_do_not_share_a_track(tmp_path):
-    paths = track_paths(tmp_path, ["a.wav", "a.flac", "b.wav"])
+    paths = export_paths(tmp_path, ["a.wav", "a.flac", "b.wav"], [".txt"], "--audacity")
     assert [path.name for path in paths.values()] == ["a.wav.txt", "a.flac.txt", "b.txt"]
 
 
 @pytest.mark.parametrize("file", ["/etc/a.wav", "../a.wav", "x/../../a.wav"])
 def test_a_track_stays_in_its_folder(tmp_path, file):
     with pytest.raises(ParameterError, match="outside"):
-        track_paths(tmp_path, [file])
+        export_paths(tmp_path, [file], [".txt"], "--audacity")
 
 
 def test_two_recordings_of_one_name_are_refused_before_the_work(tmp_path):
     with pytest.raises(ParameterError, match=r"two recordings are called a\.wav"):
-        track_paths(tmp_path, ["a.wav", "a.wav"])
+        export_paths(tmp_path, ["a.wav", "a.wav"], [".txt"], "--audacity")
 
 
 def test_the_map_counts_by_condition():
