@@ -33,7 +33,7 @@ __all__ = [
     "SOUND_QUALITY_RATE",
     "SoundQuality",
     "check_available",
-    "loudness_n10",
+    "loudness_n5",
     "sound_quality_of",
 ]
 
@@ -42,6 +42,9 @@ SOUND_QUALITY_RATE = 48000
 
 SHORTEST = 0.5
 """Shortest sound whose quality can be told [s]."""
+
+_OVER_N5 = 95.0
+"""Percentile that is exceeded in 5 % of the time [%]."""
 
 _BLOCK = 1.0
 """In which tones are sought [s]."""
@@ -140,14 +143,14 @@ def sound_quality_of(pressure: ArrayLike, rate: float) -> SoundQuality:
         roughness = float(np.mean(library.roughness_dw(x, fs, overlap=0)[0]))
         tone_to_noise, _ = _strongest_tone(library.tnr_ecma_st, x)
         prominence, frequency = _strongest_tone(library.pr_ecma_st, x)
-    n5, n10 = np.percentile(over_time, [95.0, 90.0]).tolist()
+    n5, n10 = np.percentile(over_time, [_OVER_N5, 90.0]).tolist()
     return SoundQuality(
         loudness, n5, n10, sharpness, roughness, tone_to_noise, prominence, frequency
     )
 
 
-def loudness_n10(pressure: ArrayLike, rate: float) -> float:
-    """Loudness that is exceeded in 10 % of the time, ISO 532-1 for time-varying sounds.
+def loudness_n5(pressure: ArrayLike, rate: float) -> float:
+    """Loudness that is exceeded in 5 % of the time, ISO 532-1 for time-varying sounds.
 
     `sound_quality_of` takes six times as long.
 
@@ -172,14 +175,14 @@ def loudness_n10(pressure: ArrayLike, rate: float) -> float:
     --------
     >>> tone = 2e-3 * np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(24000) / 48e3)  # 40 dB
     >>> from importlib.util import find_spec
-    >>> round(loudness_n10(tone, 48000), 1) if find_spec("mosqito") else 1.0
+    >>> round(loudness_n5(tone, 48000), 1) if find_spec("mosqito") else 1.0
     1.0
     """
     x = _long_enough(pressure, rate)
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         over_time = np.asarray(_library().loudness_zwtv(x - x.mean(), SOUND_QUALITY_RATE)[0])
-    return float(np.percentile(over_time, 90.0))
+    return float(np.percentile(over_time, _OVER_N5))
 
 
 def _long_enough(pressure: ArrayLike, rate: float) -> NDArray[np.float64]:

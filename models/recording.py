@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import Condition
 from models.errors import ParameterError
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     import numpy as np
@@ -82,6 +83,7 @@ class Channel:
         return CHANNEL_UNITS[self.kind]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Recording:
     """Samples of all channels of one run, with what is known about it.

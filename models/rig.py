@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.rig_files.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, Plate
 from models.sensors import Sensors
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -62,6 +63,7 @@ class LawSpec:
         return f"{self.name}:{values}" if values else self.name
 
 
+@short_repr
 @dataclass(frozen=True)
 class Fit:
     """Properties of the bushing at one interference fit.
@@ -156,6 +158,7 @@ class Beams:
     clamp_width: float = 0.04
 
 
+@short_repr
 @dataclass(frozen=True)
 class Rig:
     """Everything that the simulation needs to know about a test rig and its bushing.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -34,6 +35,7 @@ STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Motion:
     """Motion and torques over time, sampled at `rate`.

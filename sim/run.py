@@ -11,6 +11,7 @@ import numpy as np
 from models.errors import ParameterError
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
+from models.short_repr import short_repr
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS
@@ -45,6 +46,7 @@ LONGEST_RUN = 600.0
 """[s]; the whole run is held in memory. `sim.long_run` has no such limit."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Run:
     """What a simulated run gives.

@@ -36,6 +36,7 @@ from features.kernels.lines import (
 from features.kernels.periodicity import Period, strongest_period
 from features.kernels.spectra import welch
 from models.errors import ParameterError
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -65,6 +66,7 @@ _APART = 4.0
 _MOST = 0.5
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Harmonics:
     """Fundamental and harmonics of a vibration.

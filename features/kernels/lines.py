@@ -18,6 +18,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from features.kernels.spectra import DEFAULT_RESOLUTION
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -51,6 +52,7 @@ _LEAST_FLOOR = 1e-12
 """Lowest floor relative to the strongest bin: what rounding leaves of an exact zero."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Lines:
     """Discrete spectral lines, the strongest first.

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.conditioning import checked_signal, usable_limit
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,7 @@ _HOP = 0.01
 """Time from one estimate to the next [s]."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PitchTrack:
     """Pitch over time.
@@ -99,7 +101,7 @@ def pitch_track(
     x = checked_signal(signal, rate)
     hop = max(1, round(_HOP * rate))
     frame = 2 ** int(np.ceil(np.log2(4.0 * rate / lowest)))
-    if not np.ptp(x) > 0.0:
+    if not np.ptp(x) > 0.0 or usable_limit(rate) <= lowest:
         time = np.arange(1 + x.size // hop) * hop / rate
         return PitchTrack(time, np.full(time.size, np.nan))
     frequency, _, _ = librosa.pyin(

@@ -18,6 +18,7 @@ from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from features.kernels.conditioning import NOTHING, checked_signal
 from features.kernels.lines import interpolated
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -47,6 +48,7 @@ _LEAST_SLIPS = 2
 _LEAST_FOR_GLIDE = 5
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class TorqueSlips:
     """Slips in a torque: it rises, then suddenly drops. NaN where there are fewer than two.

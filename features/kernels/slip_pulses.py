@@ -20,6 +20,7 @@ from scipy.ndimage import gaussian_filter1d
 from features.kernels.conditioning import (
     WORKING_LIMIT,
 )
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,6 +45,7 @@ _PULSE_RANGE_DB = 25.0
 """Pulses weaker than the strongest by more than this are not counted [dB]."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Pulses:
     """Pulses in a sound or an acceleration, one at each slip of a creak.

@@ -19,6 +19,7 @@ import numpy as np
 from features.kernels.conditioning import checked_signal
 from features.kernels.segments import segment_powers
 from models.errors import ParameterError
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -38,6 +39,7 @@ _FADE_ENERGY = 0.375
 """Of the fades in a transform, per sample: the mean of sin^4."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Spectrum:
     """One-sided autospectrum.

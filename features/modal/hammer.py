@@ -22,6 +22,7 @@ import numpy as np
 from scipy.signal import csd, find_peaks, welch
 
 from models.errors import ParameterError, RecordingError
+from models.short_repr import short_repr
 from models.transfer_functions.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ _EVEN = 1e-4  # flanks of a top that is sampled evenly about its middle differ b
 _DIGITS = 9  # to which levels of a converter agree
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Hit:
     """One hit.

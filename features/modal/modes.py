@@ -7,15 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.short_repr import short_repr
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
+    from pandas import DataFrame
 
     from features.modal.lscf import Pole
 
 __all__ = ["Modes", "least_squares", "modal_basis", "modes_of_poles", "real_and_imaginary"]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Modes:
     """Modes of one or several response functions of a structure.
@@ -76,6 +80,25 @@ class Modes:
         basis = modal_basis(self.poles, np.asarray(frequency, dtype=np.float64), self.highest)
         coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
         return np.asarray(coefficients @ basis)
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row a mode as a data frame of pandas.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``frequency_hz``, ``damping_ratio`` and the order that the pole stayed through.
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        from models.data_frame import data_frame
+
+        columns = ("frequency_hz", "damping_ratio", "orders")
+        values = zip(self.frequency, self.damping_ratio, self.orders, strict=True)
+        return data_frame(columns, [dict(zip(columns, of, strict=True)) for of in values])
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitudes of the responses that the modes make up, and where the modes are.

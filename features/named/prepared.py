@@ -36,6 +36,7 @@ from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.slip_drops import TorqueSlips, torque_slips
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -75,6 +76,7 @@ class TopBand(NamedTuple):
     kurtosis: float
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Prepared:
     """One channel and what has been computed of it so far. Made by `prepare`.

@@ -14,6 +14,7 @@ import numpy as np
 from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.sound_power import power_flow
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,6 +35,7 @@ BAND = 10**0.1
 """Upper over lower edge of a band."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class BandPower:
     """Power per one-third octave.

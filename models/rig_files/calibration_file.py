@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from models.calibration import READING_UNITS, Calibration
 from models.checks import a_number, a_text, meant, refuse_unknown
 from models.errors import ParameterError
+from models.foreign_file import LARGEST_TEXT, reading
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -106,14 +107,12 @@ def read_table(path: Path, kind: str, where: str) -> Calibration:
         The file cannot be read, or is no curve that can be turned round.
     """
     where = f"{where}: {path}"
-    try:
+    with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = csv.reader(file)
             lines = [(rows.line_num, [cell.strip() for cell in row]) for row in rows if any(row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(f"{where}: cannot be read ({error})") from None
-    columns = lines[0][1] if lines else []
-    return _curve(columns, lines[1:], kind, where, path.name)
+        columns = lines[0][1] if lines else []
+        return _curve(columns, lines[1:], kind, where, path.name)
 
 
 def _curve(

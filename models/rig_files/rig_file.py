@@ -13,13 +13,13 @@ used.
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.checks import a_table, a_text, meant, refuse_unknown
 from models.errors import ParameterError
+from models.foreign_file import LARGEST_TOML, parse_toml, reading, refusing
 from models.plausible import refuse_impossible
 from models.rig import Rig
 from models.rig_files.change import changed_rig
@@ -126,12 +126,8 @@ def read_toml(path: Path, where: str) -> dict[str, Any]:
     ParameterError
         If the file cannot be read or is no TOML.
     """
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ParameterError(f"{where}: {error.strerror or error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ParameterError(f"{where}: no valid TOML: {error}") from None
+    with reading(path, "TOML", where=where, largest=LARGEST_TOML):
+        return parse_toml(path.read_text(encoding="utf-8"))
 
 
 def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:
@@ -147,7 +143,8 @@ def rig_from(content: Mapping[str, Any], folder: Path, where: str) -> Rig:
     >>> rig_from({"material": "PDMS"}, Path(), "rig").friction.name
     'lugre'
     """
-    return _laid(content, folder, where, ())[0]
+    with refusing(where, "rig file"):
+        return _laid(content, folder, where, ())[0]
 
 
 def _laid(

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 
 __all__ = ["EDGES", "HIGHEST_PLATE_FREQUENCY", "Floor", "Microphone", "Plate"]
 
@@ -23,6 +24,7 @@ LEAST_HEIGHT = 0.01
 """Of the microphone over the plate: three surface elements [m]."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Plate:
     """The baseplate that the beams' anchors stand on.

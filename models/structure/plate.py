@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from models.radiation.rayleigh import rectangle_integral
+from models.short_repr import short_repr
 from models.structure.modal import ModalModel, add_ringing
 from models.structure.plate_basis import (
     Basis,
@@ -51,6 +52,7 @@ SUSPENSION = 5.0
 """Frequency of rigid-body motions: free edges still lie on something soft [Hz]."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class PlateModes:
     """Modes of a plate by rising frequency, whatever its edges.

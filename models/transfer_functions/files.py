@@ -10,12 +10,13 @@ the same holds.
 from __future__ import annotations
 
 import csv
-import zipfile
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from models.errors import ParameterError
+from models.foreign_arrays import read_arrays
+from models.foreign_file import LARGEST_TEXT, reading
 from models.transfer_functions.transfer_function import TransferFunction
 from models.transfer_functions.uff import (
     COHERENCE,
@@ -44,6 +45,9 @@ __all__ = [
 
 ENDINGS = (".npz", ".csv", *UFF_ENDINGS)
 """Endings of the formats that responses are read from and written to."""
+
+_WHATS = {".npz": "NPZ file", ".csv": "CSV table", **dict.fromkeys(UFF_ENDINGS, "universal file")}
+"""What messages call a file by its ending."""
 
 _COLUMNS = ("frequency_hz", "real", "imag")
 
@@ -101,16 +105,14 @@ def read_transfer_function(path: Path, *, input_unit: str, output_unit: str) -> 
     """
     check_transfer_function_path(path)
     ending = path.suffix.lower()
-    try:
+    with reading(path, _WHATS[ending], largest=LARGEST_TEXT):
         if ending == ".npz":
             transfer = _read_npz(path)
         elif ending == ".csv":
             transfer = _read_csv(path, input_unit, output_unit)
         else:
             transfer = _read_uff(path, input_unit, output_unit)
-    except OSError as error:
-        raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from None
-    return check_transfer_function(transfer)
+        return check_transfer_function(transfer)
 
 
 def write_transfer_function(path: Path, transfer: TransferFunction) -> None:
@@ -196,11 +198,7 @@ def write_transfer_function_csv(file: TextIO, transfer: TransferFunction) -> Non
 
 
 def _read_npz(path: Path) -> TransferFunction:
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            held = {key: file[key] for key in file.files}
-    except (ValueError, EOFError, zipfile.BadZipFile, AttributeError) as error:
-        raise ParameterError(f"{path}: is damaged or no NPZ file ({error})") from None
+    held = read_arrays(path)
     for key in ("frequency_hz", "response", "input_unit", "output_unit"):
         if key not in held:
             raise ParameterError(f"{path}: has no {key}; it holds {', '.join(held) or 'nothing'}")
@@ -230,11 +228,8 @@ def _unit(value: NDArray[np.generic], key: str, path: Path) -> str:
 
 
 def _read_csv(path: Path, input_unit: str, output_unit: str) -> TransferFunction:
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(f"{path}: is no CSV text ({error})") from None
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
     header = [cell.strip() for cell in rows[0]] if rows else []
     for column in _COLUMNS:
         if column not in header:
@@ -271,8 +266,6 @@ def _column(rows: list[list[str]], position: int, name: str, path: Path) -> NDAr
 
 
 def _read_uff(path: Path, input_unit: str, output_unit: str) -> TransferFunction:
-    if not path.is_file():
-        raise FileNotFoundError(2, "No such file or directory")
     functions = read_uff_functions(path)
     responses = [function for function in functions if function.kind == FREQUENCY_RESPONSE]
     if len(responses) > 1:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from models.condition import same_support
 from models.errors import ParameterError
 from models.rig_files.rig_plate import HIGHEST_PLATE_FREQUENCY
+from models.short_repr import short_repr
 from models.transfer_functions.causal import causal_impulse_response
 from models.transfer_functions.coherence import trusted_band
 from models.transfer_functions.validation import same_unit
@@ -40,6 +41,7 @@ LARGEST_MISFIT = 0.5
 """Share of a response that may come before its cause; more is no noise but an error of sign."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class MeasuredResponse:
     """What was measured with one support.

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.short_repr import short_repr
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["TransferFunction"]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class TransferFunction:
     """Transfer function as a table over frequency.

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from models.errors import ParameterError, not_installed
+from models.foreign_file import LARGEST_TEXT, reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -109,15 +110,11 @@ def read_uff_functions(path: Path) -> list[UffFunction]:
         pyuff is not installed, the file is damaged, or holds no function.
     """
     pyuff = _pyuff(path)
-    try:
+    with reading(path, "universal file", largest=LARGEST_TEXT):
         file = pyuff.UFF(str(path))
         wanted = [i for i, kind in enumerate(file.get_set_types()) if kind == 58]
         sets = [file.read_sets(i) for i in wanted]
         functions = [_function(data) for data in sets]
-    except OSError:
-        raise
-    except Exception as error:  # the library raises bare exceptions
-        raise ParameterError(f"{path}: is damaged or no universal file ({error})") from None
     if not functions:
         raise ParameterError(f"{path}: is no universal file, or holds no function (dataset 58)")
     return functions

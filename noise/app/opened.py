@@ -108,12 +108,12 @@ def open_paths(
         )
     if tables and not sounds:
         sounds = [tables[0].absolute().parent]
+    if table is not None:  # the one beside the recordings is written where there is a correction
+        check_table_path(table)
+        check_target(table)
     jobs = find_jobs(sounds) if sounds else []
     first = (sounds or rigs or [Path.cwd()])[0].absolute()
     folder = first if first.is_dir() else first.parent
     if table is None and jobs:
         table = tables[0] if tables else folder / _TABLE
-    if table is not None:
-        check_table_path(table)
-        check_target(table)
     return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples)

@@ -27,6 +27,7 @@ FADE = 0.010
 
 _STOP_BAND = 100.0  # dB
 _PASS_BAND = 0.95  # of the lower Nyquist frequency
+_LARGEST_TERM = 100_000  # of that ratio: the filter is 300 times as long
 _FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right within 1e-6
 
 
@@ -128,7 +129,8 @@ def resampled(signal: NDArray[np.float64], rate: float, new_rate: float) -> NDAr
     """
     from scipy.signal import firwin, kaiser_beta, resample_poly
 
-    ratio = Fraction(new_rate / rate).limit_denominator(_FINEST_RATIO)
+    terms = max(1, min(_FINEST_RATIO, int(_LARGEST_TERM * rate / new_rate)))
+    ratio = Fraction(new_rate / rate).limit_denominator(terms)
     if ratio == 1:
         return np.array(signal, dtype=float)
     up, down = ratio.numerator, ratio.denominator

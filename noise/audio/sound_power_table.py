@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 
 __all__ = ["COLUMNS", "TOTAL", "sound_power_rows"]
 
-COLUMNS = ("band_hz", "level_db", "level_dba", "free_level_db", "free_level_dba")
+COLUMNS = (
+    "band_hz",
+    "power_level_db",
+    "power_level_dba",
+    "free_power_level_db",
+    "free_power_level_dba",
+)
 """Nominal middle of the band, sound power levels [dB re 1 pW] in a baffle and standing free."""
 
 TOTAL = "total"

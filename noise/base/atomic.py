@@ -29,7 +29,8 @@ def atomic(target: str | Path) -> Iterator[Path]:
     Parameters
     ----------
     target : str or Path
-        The file to write; parent folders are made, an older file is replaced.
+        The file to write; parent folders are made, an older file is replaced. Of a link, what it
+        leads to is replaced, and the link stays.
 
     Yields
     ------
@@ -51,13 +52,16 @@ def atomic(target: str | Path) -> Iterator[Path]:
     'speed_rad_s'
     """
     target = Path(target)
-    temporary = target.parent / f".{uuid.uuid4().hex}.part{target.suffix}"
+    place = _behind_links(target)
+    temporary = place.parent / f".{uuid.uuid4().hex}.part{target.suffix}"
     try:
-        if target.is_dir():
+        if place.is_dir():
             raise ParameterError(f"{target}: is a folder; name a file to write")
-        target.parent.mkdir(parents=True, exist_ok=True)
+        if place.exists() and not place.is_file():
+            raise ParameterError(f"{target}: is a pipe or a device; name a file to write")
+        place.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
-        temporary.replace(target)
+        temporary.replace(place)
     except OSError as error:
         reason = error.strerror or error
         raise ParameterError(f"{target}: cannot be written ({reason})") from error
@@ -96,6 +100,16 @@ def check_target(path: Path, option: str = "--out") -> None:
             pass
     except OSError:
         raise ParameterError(f"{option} {path}: the folder {above} may not be written to") from None
+
+
+def _behind_links(target: Path) -> Path:
+    """Return the file that a link leads to, which need not be there yet."""
+    if not target.is_symlink():
+        return target
+    try:
+        return target.resolve()
+    except (OSError, RuntimeError):
+        raise ParameterError(f"{target}: is a link that leads nowhere") from None
 
 
 def _remove(path: Path) -> None:

@@ -7,8 +7,6 @@ kept (``format``), the names of what it takes and gives, and under ``card`` how 
 from __future__ import annotations
 
 import json
-import zipfile
-import zlib
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -17,6 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from models.errors import ParameterError
+from models.foreign_arrays import read_arrays
+from models.foreign_file import parse_json, reading
 from noise.base.atomic import atomic
 
 if TYPE_CHECKING:
@@ -30,12 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["ModelKind", "load_model", "save_model"]
 
 _Model = TypeVar("_Model")
-
-_DAMAGES = (
-    OSError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError,
-    ValueError, KeyError, IndexError, TypeError, AttributeError,
-)  # fmt: skip
-"""What reading a file raises that is none, or not whole."""
 
 
 class ModelKind(NamedTuple):
@@ -123,10 +117,9 @@ def _shipped(kind: ModelKind, build: Callable[[Header, Arrays], _Model]) -> _Mod
 
 def _read(path: Path, kind: ModelKind, build: Callable[[Header, Arrays], _Model]) -> _Model:
     refused = f"{kind.name} {path}"
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-        header = json.loads(str(arrays.pop("header")))
+    with reading(path, f"file that `{kind.made_by}` wrote", where=refused):
+        arrays = read_arrays(path)
+        header = parse_json(str(arrays.pop("header")))
         other = header.get("kind", kind.name)
         if other != kind.name:
             raise ParameterError(f"{refused}: is a {other}, expected a {kind.name}")
@@ -136,10 +129,3 @@ def _read(path: Path, kind: ModelKind, build: Callable[[Header, Arrays], _Model]
                 f"again with `{kind.made_by} {path.name}`"
             )
         return build(header, arrays)
-    except FileNotFoundError:
-        raise ParameterError(f"{refused}: no such file") from None
-    except ParameterError:
-        raise
-    except _DAMAGES as error:
-        reason = f"lacks {error}" if isinstance(error, KeyError) else error
-        raise ParameterError(f"{refused}: no file that `{kind.made_by}` wrote ({reason})") from None

@@ -9,15 +9,21 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import time
 from collections.abc import Sized
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
+
+from noise.base.readable import readable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from typing import TextIO
 
-__all__ = ["LINES", "counted", "discard", "note", "say", "track"]
+    from tqdm import tqdm
+
+__all__ = ["LINES", "Steps", "counted", "discard", "note", "say", "steps", "track"]
 
 LINES = "BUSHING_NOISE_PROGRESS_LINES"
 """Environment variable that asks for lines ``simulating: 120 of 7360`` where there is no bar."""
@@ -27,9 +33,15 @@ _EVERY = 1.0
 
 _Item = TypeVar("_Item")
 
+_TICK = 0.5
+"""After which a bar shows anew how long it has taken [s]."""
+
 
 def say(text: str) -> None:
-    """Print one line on standard error; line breaks inside `text` become spaces.
+    """Print one line on standard error.
+
+    Line breaks inside `text` become spaces, and what would control the terminal is shown as its
+    code.
 
     Examples
     --------
@@ -37,7 +49,7 @@ def say(text: str) -> None:
     """
     if sys.stderr is None:  # closed by the caller
         return
-    line = " ".join(text.split("\n"))
+    line = readable(" ".join(text.split("\n")))
     try:
         if "tqdm" in sys.modules:
             from tqdm import tqdm
@@ -105,7 +117,7 @@ def track(
     """
     if total is None and isinstance(items, Sized):
         total = len(items)
-    if sys.stderr is None or not sys.stderr.isatty():
+    if not _on_terminal():
         say(doing if total is None else f"{doing} {counted(total, unit)}")
         yield from items if not os.environ.get(LINES) else _in_lines(items, doing, total)
         return
@@ -116,6 +128,81 @@ def track(
         items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr
     ) as advancing:
         yield from advancing
+
+
+class Steps:
+    """Work of a few steps, each told of by a line; a terminal has a bar of how many are done.
+
+    Parameters
+    ----------
+    bar : tqdm.tqdm, optional
+        Where standard error is a terminal.
+    """
+
+    def __init__(self, bar: tqdm[object] | None = None) -> None:
+        self._bar = bar
+        self._begun = 0
+
+    def __call__(self, text: str) -> None:
+        """Say that a step begins, or what came of it."""
+        say(text)
+        self._begun += 1
+        if self._bar is not None:
+            self._bar.update(self._begun - 1 - self._bar.n)
+            self.expect(self._bar.total)
+
+    def expect(self, number: int) -> None:
+        """Know better how many steps there are."""
+        if self._bar is not None:
+            self._bar.total = max(number, self._begun)
+            self._bar.refresh()
+
+
+@contextmanager
+def steps(doing: str, number: int) -> Iterator[Steps]:
+    """Show how far work is that consists of steps of any length.
+
+    Parameters
+    ----------
+    doing : str
+        What is being done, such as ``"screening"``.
+    number : int
+        Of its steps, as far as that is known; it may turn out to be more or fewer.
+
+    Yields
+    ------
+    Steps
+        To be called with a line as each step begins.
+
+    Examples
+    --------
+    >>> with steps("screening", 2) as tell:
+    ...     tell("mapping PDMS")
+    ...     tell("grading PDMS")
+    """
+    if not _on_terminal():
+        yield Steps()
+        return
+    from tqdm import tqdm
+
+    with tqdm(desc=doing, total=number, unit=" step", leave=False, file=sys.stderr) as bar:
+        ended = threading.Event()
+
+        def tick() -> None:
+            while not ended.wait(_TICK):
+                bar.refresh()
+
+        ticking = threading.Thread(target=tick, daemon=True)
+        ticking.start()
+        try:
+            yield Steps(bar)
+        finally:
+            ended.set()
+            ticking.join()
+
+
+def _on_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
 
 
 def _in_lines(items: Iterable[_Item], doing: str, total: int | None) -> Iterator[_Item]:

@@ -1,8 +1,10 @@
-"""Tables as files: CSV, JSON Lines or Parquet by the ending, CSV on standard output without one.
+"""Tables as files: CSV, Excel, JSON Lines or Parquet by the ending; CSV on standard output.
 
 One value is written alike in all formats: nothing where there is none (an undefined number is
 none, too, and an infinite one), ``true`` and ``false``, and numbers with as many digits as give the
-same number back. In CSV the infinite stiffness of a bolted clamp is the word ``fixed``.
+same number back. In CSV and in a workbook the infinite stiffness of a bolted clamp is the word
+``fixed``; in CSV a text that a spreadsheet would take for a formula (it begins with ``=``, ``+``,
+``-``, ``@``, a tab or a carriage return) has an apostrophe before it, which reading takes away.
 A table appears whole or not at all, and a target that cannot be written is refused before the work
 whose result it is to hold.
 """
@@ -17,8 +19,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError, RecordingError, not_installed
+from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
+from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
 from noise.base.atomic import atomic
+from noise.base.csv_text import finite_or_fixed, read_csv, write_csv
+from noise.base.excel_csv import excel_signs, separator_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -26,43 +31,74 @@ if TYPE_CHECKING:
 
     Cell = bool | int | float | str | None
 
-__all__ = ["TABLE_ENDINGS", "check_table_path", "plain_cell", "read_table", "write_table"]
+__all__ = [
+    "TABLE_ENDINGS",
+    "check_table_path",
+    "plain_cell",
+    "read_table",
+    "table_columns",
+    "table_endings",
+    "write_table",
+]
 
-TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
+TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
 
-_SUPPORT, _FIXED = "support_stiffness", "fixed"
-"""How the columns begin whose infinity is the bolted clamp, and what it is called."""
+_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
+"""Cells that a Parquet file may hold: so many, and so many a byte."""
+
+_LONGEST_LINE = 1 << 20
+"""Characters of a line that are looked at for the columns."""
 
 
-def check_table_path(path: str | Path | None) -> None:
+def table_endings(*more: str) -> str:
+    """Return the endings of tables in words, with those that something else has as well.
+
+    Examples
+    --------
+    >>> table_endings()
+    '.csv, .xlsx, .jsonl or .parquet'
+    """
+    *first, last = (*TABLE_ENDINGS, *more)
+    return f"{', '.join(first)} or {last}"
+
+
+def check_table_path(path: str | Path | None, excel: str | None = None) -> None:
     """Refuse a path that no table can be written to, before the work is done.
 
     Parameters
     ----------
     path : path-like or None
         None is standard output.
+    excel : str, optional
+        Language of the Excel that is to open it, as for `write_table`.
 
     Raises
     ------
     ParameterError
         The ending is none of `TABLE_ENDINGS`, the path is a folder, or the library that writes the
-        format is not installed.
+        format is not installed; with `excel`, it is no CSV.
 
     Examples
     --------
-    >>> check_table_path("features.xlsx")
+    >>> check_table_path("features.ods")
     Traceback (most recent call last):
-    models.errors.ParameterError: features.xlsx: tables end in .csv, .jsonl or .parquet
+    models.errors.ParameterError: features.ods: tables end in .csv, .xlsx, .jsonl or .parquet
     """
     if path is None:
         return
     path = Path(path)
     ending = path.suffix.lower()
     if ending not in TABLE_ENDINGS:
-        raise ParameterError(f"{path}: tables end in .csv, .jsonl or .parquet")
+        raise ParameterError(f"{path}: tables end in {table_endings()}")
     if path.is_dir():
         raise ParameterError(f"{path}: is a folder; name a file to write")
+    if excel is not None and ending != ".csv":
+        raise ParameterError(f"{path}: --excel says how a .csv is written; leave it out")
+    if ending == ".xlsx":
+        from noise.base.workbook import check_openpyxl
+
+        check_openpyxl(path)
     if ending == ".parquet":
         try:
             import pyarrow as pa  # noqa: F401
@@ -73,7 +109,10 @@ def check_table_path(path: str | Path | None) -> None:
 
 
 def write_table(
-    path: str | Path | None, columns: Sequence[str], rows: Iterable[Mapping[str, object]]
+    path: str | Path | None,
+    columns: Sequence[str],
+    rows: Iterable[Mapping[str, object]],
+    excel: str | None = None,
 ) -> None:
     """Write a table.
 
@@ -85,6 +124,8 @@ def write_table(
         All columns in their order; keys of a row that are not among them are left out.
     rows : iterable of mapping
         Column to value: a number, a text, a truth value or None. A missing column is None.
+    excel : str, optional
+        One of `noise.base.excel_csv.EXCEL_LANGUAGES`: CSV as Excel in that language opens it.
 
     Raises
     ------
@@ -100,22 +141,33 @@ def write_table(
     bad.wav,
     """
     cells = [[_cell(row.get(column)) for column in columns] for row in rows]
+    signs = None if excel is None else excel_signs(excel)
     if path is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file for the table")
-        _write_csv(sys.stdout, columns, cells)
+        write_csv(sys.stdout, columns, cells, signs)
         sys.stdout.flush()
         return
     path = Path(path)
-    check_table_path(path)
+    check_table_path(path, excel)
     ending = path.suffix.lower()
     with atomic(path) as temporary:
         if ending == ".parquet":
             _write_parquet(temporary, columns, cells)
-            return
-        # Names of files may hold what no UTF-8 can: it is written as a backslash and its code.
-        with temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
-            (_write_csv if ending == ".csv" else _write_json_lines)(file, columns, cells)
+        elif ending == ".xlsx":
+            from noise.base.workbook import write_workbook
+
+            finite = [list(map(finite_or_fixed, columns, row)) for row in cells]
+            write_workbook(temporary, columns, finite, path.stem)
+        else:
+            # Names of files may hold what no UTF-8 can: it is a backslash and its code.
+            with temporary.open(
+                "w", encoding="utf-8", errors="backslashreplace", newline=""
+            ) as file:
+                if ending == ".csv":
+                    write_csv(file, columns, cells, signs)
+                else:
+                    _write_json_lines(file, columns, cells)
 
 
 def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
@@ -149,22 +201,62 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     (['file', 'label'], [{'file': 'run07.wav', 'label': 'creak'}])
     """
     check_table_path(path)
-    try:
-        if path.suffix.lower() == ".parquet":
-            from pyarrow import parquet
+    ending = path.suffix.lower()
+    with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
+        if ending == ".parquet":
+            return _read_parquet(path)
+        if ending == ".xlsx":
+            from noise.base.workbook import read_workbook
 
-            table = parquet.read_table(path)
-            return list(table.column_names), table.to_pylist()
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            if path.suffix.lower() == ".jsonl":
-                return [], [json.loads(line) for line in file if line.strip()]
-            reader = csv.DictReader(file)
-            rows = [{str(column): value for column, value in row.items()} for row in reader]
-            return list(reader.fieldnames or ()), rows
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, csv.Error) as error:
-        raise RecordingError(f"{path}: is damaged or no table ({error})") from None
+            return read_workbook(path)
+        if ending == ".csv":
+            with path.open(encoding="utf-8", newline="") as file:
+                return read_csv(file)
+        with path.open(encoding="utf-8-sig") as file:
+            return [], [parse_json(line) for line in file if line.strip()]
+
+
+def _read_parquet(path: Path) -> tuple[list[str], list[dict[str, object]]]:
+    from pyarrow import parquet
+
+    with parquet.ParquetFile(path) as file:
+        announced = file.metadata.num_rows * file.metadata.num_columns
+        if announced > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
+            raise ExcessError(f"announces {announced} cells, more than a file of its size holds")
+        table = file.read()
+    return list(table.column_names), table.to_pylist()
+
+
+def table_columns(path: Path) -> set[str]:
+    """Return the columns of a table; none where it is no table or cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_table(Path(folder) / "t.csv", ["file"], [])
+    ...     table_columns(Path(folder) / "t.csv")
+    {'file'}
+    """
+    ending = path.suffix.lower()
+    try:
+        with reading(path, "table"):
+            if ending == ".parquet":
+                from pyarrow import parquet
+
+                return set(parquet.read_schema(path).names)
+            if ending == ".xlsx":
+                from noise.base.workbook import read_workbook
+
+                return set(read_workbook(path)[0])
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                header = file.readline(_LONGEST_LINE)
+            if ending == ".jsonl":
+                first = parse_json(header or "{}")
+                return set(first) if isinstance(first, dict) else set()
+            return set(next(csv.reader([header], delimiter=separator_of(header)), ()))
+    except BushingNoiseError:
+        return set()
 
 
 def plain_cell(value: object) -> Cell:
@@ -189,22 +281,6 @@ def plain_cell(value: object) -> Cell:
 def _cell(value: object) -> Cell:
     plain = plain_cell(value)
     return None if isinstance(plain, float) and math.isnan(plain) else plain
-
-
-def _write_csv(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(columns)
-    for row in rows:
-        writer.writerow(map(_csv_cell, columns, row))
-
-
-def _csv_cell(column: str, value: Cell) -> Cell:
-    """Return what stands in a cell of CSV; an infinite number is none, but for the bolted clamp."""
-    if isinstance(value, bool):
-        return json.dumps(value)
-    if isinstance(value, float) and math.isinf(value):
-        return _FIXED if value > 0.0 and column.startswith(_SUPPORT) else None
-    return value
 
 
 def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 from numba import njit
 
 from models.compilation import COMPILED, PART
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -154,6 +155,7 @@ def _add_leaves(
             scores[row, classes[tree]] += added[leaf]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class BoostedTrees(Trees):
     """Trees whose leaves add to the scores of classes.
@@ -224,6 +226,7 @@ class BoostedTrees(Trees):
         return cls(**{field.name: arrays[field.name] for field in fields(cls)})
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class QuantileForest(Trees):
     """Regression trees whose leaves keep what is asked for as a distribution.

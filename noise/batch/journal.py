@@ -38,7 +38,8 @@ _FORMAT = 1
 class Journal:
     """What is done of a table; see `open_journal`."""
 
-    def __init__(self, file: FileIO, entries: Entries) -> None:
+    def __init__(self, path: Path, file: FileIO, entries: Entries) -> None:
+        self._path = path
         self._file = file
         self._entries = entries
 
@@ -55,8 +56,9 @@ class Journal:
         if identity is None or done.error is not None:
             return
         entry = [_key(job), identity, done.calibrated, done.rows]
-        self._file.write(json.dumps(entry).encode() + b"\n")
-        os.fsync(self._file.fileno())
+        with _writing(self._path):
+            _write(self._file, json.dumps(entry).encode() + b"\n")
+            os.fsync(self._file.fileno())
 
 
 class JournalReader:
@@ -72,6 +74,7 @@ class JournalReader:
     def __init__(self, table: Path, work: Work) -> None:
         self._path = journal_path(table)
         self._header = _header(work)
+        self._n_columns = len(work.columns)
         self._read = 0
 
     def news(self, jobs: Sequence[Job]) -> dict[int, Done]:
@@ -89,7 +92,7 @@ class JournalReader:
             return {}
         whole = content[: content.rfind(b"\n") + 1]
         self._read = max(self._read, len(self._header)) + len(whole)
-        return _known(_entries(whole), jobs) if whole else {}
+        return _known(_entries(whole, self._n_columns), jobs) if whole else {}
 
 
 def journal_path(table: Path) -> Path:
@@ -131,19 +134,18 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
     ...     run = Path(folder) / "run07.wav"
     ...     run.touch()
     ...     job, work = Job(0, run, "run07.wav"), Featuring()
+    ...     done = Done([["run07.wav", *[1.5] * (len(work.columns) - 1)]], True)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
-    ...         journal.add(job, file_identity(run), Done([["run07.wav", 1.5]], True))
+    ...         journal.add(job, file_identity(run), done)
     ...     with open_journal(Path(folder) / "t.csv", work) as journal:
-    ...         journal.find(job)
-    Done(rows=[['run07.wav', 1.5]], calibrated=True, error=None)
+    ...         journal.find(job) == done
+    True
     """
     path = journal_path(table)
     header = _header(work)
-    try:
+    with _writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         file = path.open("a+b", buffering=0)
-    except OSError as error:
-        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
     with file:
         _claim(file, table)
         file.seek(0)
@@ -151,12 +153,27 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
         # What follows the last line break was torn off when the process was killed.
         whole = content[: content.rfind(b"\n") + 1]
         if not whole.startswith(header):
-            file.truncate(0)
-            file.write(header)
+            with _writing(path):
+                file.truncate(0)
+                _write(file, header)
             whole = header
         elif len(whole) < len(content):
             file.truncate(len(whole))
-        yield Journal(file, _entries(whole[len(header) :]))
+        yield Journal(path, file, _entries(whole[len(header) :], len(work.columns)))
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+
+def _write(file: FileIO, data: bytes) -> None:
+    """Write all of it: of what a disk has no more room for, the system takes a part."""
+    while data:
+        data = data[file.write(data) :]
 
 
 def _find(entries: Entries, job: Job) -> Done | None:
@@ -173,14 +190,15 @@ def _header(work: Work) -> bytes:
     return json.dumps([_FORMAT, work_identity(work)]).encode() + b"\n"
 
 
-def _entries(content: bytes) -> Entries:
+def _entries(content: bytes, n_columns: int) -> Entries:
     entries = {}
     for line in content.splitlines():
         try:
             key, identity, calibrated, rows = json.loads(line)
-        except ValueError:  # damaged on the disk: the recording is done again
+            if {len(row) for row in rows} <= {n_columns} and isinstance(calibrated, bool):
+                entries[key] = identity, Done(rows, calibrated)
+        except (ValueError, TypeError, RecursionError):  # damaged: the recording is done again
             continue
-        entries[key] = identity, Done(rows, calibrated)
     return entries
 
 

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from models.errors import BushingNoiseError, ParameterError
+from models.foreign_file import one_line
+from noise.base.readable import readable
 from noise.base.tables import plain_cell
 from noise.batch.identity import file_identity
 from noise.recordings import find_recordings
@@ -207,7 +209,7 @@ def perform(work: Work, path: Path, name: str) -> Done:
 
 def refusal(work: Work, name: str, message: str) -> Done:
     """Return what comes of a recording that is refused."""
-    said = {"file": name, "error": message}
+    said = {"file": name, "error": readable(message)}
     return Done([[said.get(column) for column in work.columns]], calibrated=True, error=message)
 
 
@@ -216,4 +218,4 @@ def _message(error: Exception) -> str:
         return " ".join(str(error).split("\n"))
     if isinstance(error, MemoryError):
         return "needs more memory than there is"
-    return f"unexpected, please report: {type(error).__name__}: {error}"
+    return one_line(f"unexpected, please report: {type(error).__name__}: {error}")

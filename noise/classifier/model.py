@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from models.short_repr import short_repr
 from noise.base.label_names import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
@@ -26,7 +27,7 @@ __all__ = [
 ]  # fmt: skip
 
 _KIND = ModelKind(
-    "classifier", 3, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
+    "classifier", 4, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
 )
 
 _FLOOR = 1e-3
@@ -59,6 +60,7 @@ class Calibration:
         return np.asarray(p / p.sum(axis=1, keepdims=True))
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Classifier:
     """Boosted trees over named features, with calibrated probabilities.
@@ -72,8 +74,9 @@ class Classifier:
         For sound alone, and for sound with what else was measured.
     card : mapping
         How it was trained: seed, counts, scores.
-    threshold : float
-        Probability [-] from which a noise is named; below it the label is ``unknown``.
+    thresholds : tuple of 3 floats
+        Probability [-] from which creak, squawk and squeal are named; below it the label is
+        ``unknown``.
 
     Examples
     --------
@@ -87,7 +90,7 @@ class Classifier:
     trees: BoostedTrees
     calibrations: tuple[Calibration, Calibration]
     card: Mapping[str, object]
-    threshold: float = 0.5
+    thresholds: tuple[float, float, float] = (0.5, 0.5, 0.5)
 
     classes = LABELS
 
@@ -120,10 +123,10 @@ class Classifier:
         Examples
         --------
         >>> shipped = load_classifier()
-        >>> shipped.sensitive(2.0).threshold < shipped.threshold
+        >>> max(shipped.sensitive(2.0).thresholds) < max(shipped.thresholds)
         True
         """
-        return replace(self, threshold=at_sensitivity(self.threshold, sensitivity))
+        return replace(self, thresholds=at_sensitivity(self.thresholds, sensitivity))
 
     def save(self, path: str | Path) -> None:
         """Write the classifier into an NPZ file, whole or not at all.
@@ -137,7 +140,7 @@ class Classifier:
             "labels": LABELS,
             "feature_names": self.feature_names,
             "calibrations": [asdict(calibration) for calibration in self.calibrations],
-            "threshold": self.threshold,
+            "thresholds": self.thresholds,
             "card": dict(self.card),
         }
         save_model(path, _KIND, header, self.trees.arrays())
@@ -152,23 +155,25 @@ class Classifier:
         return model_display("Classifier", facts, self.card)
 
 
-def at_sensitivity(threshold: float, sensitivity: float) -> float:
-    """Return the probability from which a noise is named at other odds [-].
+def at_sensitivity(
+    thresholds: tuple[float, float, float], sensitivity: float
+) -> tuple[float, float, float]:
+    """Return the probabilities from which noises are named at other odds [-].
 
     Parameters
     ----------
-    threshold : float
-        Probability at a sensitivity of 1 [-].
+    thresholds : tuple of 3 floats
+        Probability of each at a sensitivity of 1 [-].
     sensitivity : float
         [ratio of odds]
 
     Examples
     --------
-    >>> at_sensitivity(0.75, 3.0)
-    0.5
+    >>> np.round(at_sensitivity((0.75, 0.75, 0.5), 3.0), 2).tolist()
+    [0.5, 0.5, 0.25]
     """
-    odds = threshold / (1.0 - threshold) / sensitivity
-    return odds / (1.0 + odds)
+    creak, squawk, squeal = (1.0 / (1.0 + sensitivity * (1.0 / p - 1.0)) for p in thresholds)
+    return creak, squawk, squeal
 
 
 def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> NDArray[np.bool_]:
@@ -215,11 +220,11 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Cla
     sound, all_channels = (_calibration(stored) for stored in header["calibrations"])
     if tuple(header["labels"]) != LABELS or trees.base.shape != (len(LABELS),):
         raise ValueError("its labels are others")
-    threshold = float(header["threshold"])
-    if not 0.0 < threshold < 1.0:
-        raise ValueError("its threshold is no probability")
+    creak, squawk, squeal = (float(p) for p in header["thresholds"])
+    if not all(0.0 < p < 1.0 for p in (creak, squawk, squeal)):
+        raise ValueError("a threshold of it is no probability")
     names = tuple(header["feature_names"])
-    return Classifier(names, trees, (sound, all_channels), header["card"], threshold)
+    return Classifier(names, trees, (sound, all_channels), header["card"], (creak, squawk, squeal))
 
 
 def _calibration(stored: Mapping[str, Any]) -> Calibration:

@@ -7,6 +7,7 @@ where the last one ended, however it ended; without, there is nowhere to keep it
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
@@ -15,12 +16,12 @@ from typing import TYPE_CHECKING
 from noise.base.atomic import check_target
 from noise.base.lock import locked
 from noise.base.progress import counted, note, say, track
-from noise.base.tables import check_table_path, write_table
-from noise.commands.options import refuse, whole_number
+from noise.base.tables import check_table_path, table_endings, write_table
+from noise.commands.options import MOST_WORKERS, add_excel, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from noise.batch import Done, Job, Journal, Work
 
@@ -45,7 +46,7 @@ def add_batch(parser: ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="TABLE",
-        help="file for the table: .csv, .jsonl or .parquet (default: CSV on standard output). The "
+        help=f"file for the table: {table_endings()} (default: CSV on standard output). The "
         "same call again goes on where the last one ended, and later does only what is new, "
         "changed or was refused",
     )
@@ -54,10 +55,11 @@ def add_batch(parser: ArgumentParser) -> None:
         action="store_true",
         help="do all recordings again, whatever earlier calls with the same --out did",
     )
+    add_excel(parser)
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
-        type=whole_number(1),
+        type=whole_number(1, most=MOST_WORKERS),
         default=1,
         metavar="N",
         help="processes that share the work (default: 1); the table is the same",
@@ -72,7 +74,7 @@ def add_batch(parser: ArgumentParser) -> None:
 
 def check_batch(options: Namespace) -> None:
     """Refuse what could not be done, before anything is read."""
-    check_table_path(options.out)
+    check_table_path(options.out, options.excel)
     if options.out is not None:
         check_target(options.out)
     if options.scheduler is not None:
@@ -87,6 +89,7 @@ def run_batch(
     jobs: Sequence[Job],
     also: Callable[[Rows], Sequence[Path]] = lambda _: (),
     keep: Callable[[Path | None, Rows], Rows] = lambda _, rows: rows,
+    lines: Callable[[Rows], Iterable[str]] | None = None,
 ) -> int:
     """Go through the recordings, write the table, return the exit code.
 
@@ -103,6 +106,9 @@ def run_batch(
     keep : callable
         From the table's path and its new rows to those that are written: what must stay of the
         table that is there.
+    lines : callable
+        From the rows of the table to a line a recording for standard output, unless that is the
+        table; a terminal gets them in place of a table.
 
     Raises
     ------
@@ -111,6 +117,9 @@ def run_batch(
     """
     from noise.batch import open_journal
 
+    out = options.out
+    # Nobody reads a table of forty columns on a terminal; whoever wants it pipes or names it.
+    to_read = out is None and lines is not None and sys.stdout is not None and sys.stdout.isatty()
     work.prepare()
     outcomes: list[Done | None] = [None] * len(jobs)
     stopped = 0
@@ -128,15 +137,20 @@ def run_batch(
         there = [done for done in outcomes if done is not None]
         _note_uncalibrated(there)
         try:
-            written = _write(options.out, work, there, also, keep)
+            rows, written = _write(options, work, there, also, keep, table=not to_read)
         except KeyboardInterrupt as interrupt:
             stopped = _exit_code(interrupt)
-            written = _write(options.out, work, there, also, keep)
+            rows, written = _write(options, work, there, also, keep, table=not to_read)
     refused = sum(done.error is not None for done in there)
     read = f"{len(there)} of " * bool(stopped) + counted(len(jobs), "recording")
     say(f"{'interrupted: ' * bool(stopped)}{read}, {refused} refused")
+    if lines is not None and (to_read or out is not None):
+        for line in lines(rows):
+            print(line)
+    if to_read:
+        say("--out labels.csv, or a pipe, takes the whole table")
     for path in written:
-        if options.out is not None:
+        if out is not None:
             print(path)
         else:  # standard output is the table
             say(str(path))
@@ -164,19 +178,22 @@ def _progress(
 
 
 def _write(
-    out: Path | None,
+    options: Namespace,
     work: Work,
     outcomes: Sequence[Done],
     also: Callable[[Rows], Sequence[Path]],
     keep: Callable[[Path | None, Rows], Rows],
-) -> list[Path]:
-    columns = work.columns
+    *,
+    table: bool,
+) -> tuple[Rows, list[Path]]:
+    columns, out = work.columns, options.out
     rows: Rows = [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
     # Nobody may change the table between the look at what stays of it and the writing.
     with nullcontext() if out is None else locked(out):
         rows = keep(out, rows)
-        write_table(out, columns, rows)
-    return [*([] if out is None else [out]), *also(rows)]
+        if table:
+            write_table(out, columns, rows, options.excel)
+    return rows, [*([] if out is None else [out]), *also(rows)]
 
 
 def _note_uncalibrated(outcomes: Sequence[Done]) -> None:

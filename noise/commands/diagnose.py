@@ -5,16 +5,21 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from noise.base.progress import note, say
+from noise.base.progress import note, say, steps
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
+    from noise.base.progress import Steps
+    from noise.diagnosis.case import Case
     from noise.diagnosis.improvement import Improvement
     from noise.diagnosis.outcome import Diagnosis
 
 __all__ = ["configure", "run"]
+
+_QUICK_STEPS, _STEPS = 5, 12
+"""That a diagnosis takes, without fits and with those of some five hypotheses."""
 
 
 def configure(parser: ArgumentParser) -> None:
@@ -60,15 +65,31 @@ def run(options: Namespace) -> int:
     """Diagnose and write."""
     if options.out is not None:
         opt.check_folder(options.out, file="report.html")
-    say("preparing")
+    with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as tell:
+        case, diagnosis = _diagnosed(options, tell)
+        if options.out is not None:
+            tell("writing the report")
+            written = _write(options, diagnosis)
+    if options.out is None:
+        import json
+
+        from noise.diagnosis.outcome_json import as_json
+
+        print(json.dumps(as_json(diagnosis), indent=2))
+    else:
+        for path in written:
+            print(path)
+    _tell(options, diagnosis)
+    return 1 if case.refused else 0
+
+
+def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis]:
+    tell("preparing")
     from models.rig_files.rig_file import load_rig
     from noise.base.user_effects import effect_library
     from noise.diagnosis.case import read_case
     from noise.diagnosis.diagnose import case_remarks, diagnose_case
     from noise.diagnosis.improved_file import check_base
-    from noise.diagnosis.outcome_json import as_json
-    from noise.diagnosis.text.found import finding_of
-    from noise.diagnosis.text.sentences import answer, closed_sentence
 
     library = effect_library(options.effects)
     rig = opt.changed(load_rig(options.rig), options.change)
@@ -80,14 +101,16 @@ def run(options: Namespace) -> int:
     for text in case_remarks(case, library):
         note(text)
     diagnosis = diagnose_case(
-        case, quick=options.quick, library=library, seed=options.seed or 0, progress=say
+        case, quick=options.quick, library=library, seed=options.seed or 0, progress=tell
     )
-    if options.out is None:
-        import json
+    return case, diagnosis
 
-        print(json.dumps(as_json(diagnosis), indent=2))
-    else:
-        _write(options, diagnosis)
+
+def _tell(options: Namespace, diagnosis: Diagnosis) -> None:
+    """Say the answer in sentences."""
+    from noise.diagnosis.text.found import finding_of
+    from noise.diagnosis.text.sentences import answer, closed_sentence
+
     for sentence in answer(diagnosis):
         say(sentence)
     finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
@@ -99,10 +122,9 @@ def run(options: Namespace) -> int:
         say(improved_sentence(diagnosis.improvement))
         for call in _next(options, diagnosis.improvement):
             say(f"next: {call}")
-    return 1 if case.refused else 0
 
 
-def _write(options: Namespace, diagnosis: Diagnosis) -> None:
+def _write(options: Namespace, diagnosis: Diagnosis) -> list[Path]:
     from models.rig_files.rig_text import base_name
     from models.rig_files.shipped import material_of
     from noise.diagnosis.improved_file import NAME, improved_text
@@ -114,8 +136,8 @@ def _write(options: Namespace, diagnosis: Diagnosis) -> None:
         improved = improved_text(found, base, dict(options.change or ()))
     commands = [] if found is None else _next(options, found)
     write_diagnosis(options.out, diagnosis, improved, commands)
-    for name in ("report.html", "diagnosis.json", *([NAME] if improved is not None else [])):
-        print(options.out / name)
+    names = ("report.html", "diagnosis.json", *([NAME] if improved is not None else []))
+    return [options.out / name for name in names]
 
 
 def _next(options: Namespace, improvement: Improvement) -> list[str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from noise.commands import options as opt
 from noise.commands.batch import add_batch, check_batch, run_batch
+from noise.commands.plots import add_plots, check_plots, draw_recordings
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -44,6 +45,7 @@ def configure(parser: ArgumentParser) -> None:
         "seconds and what the classifier of `bushing-noise label` is given of it, in the units "
         "that features.WINDOW_FEATURES and, for the torque, features.FEATURES state",
     )
+    add_plots(parser)
     opt.add_calibration(parser)
     opt.add_seed(parser, "taken by all commands; features use no random numbers")
 
@@ -54,7 +56,15 @@ def run(options: Namespace) -> int:
     from noise.batch import find_jobs
 
     work = Featuring(opt.full_scale_of(options), options.pitch, options.windows)
-    return run_batch(options, work, find_jobs(options.paths))
+    jobs = find_jobs(options.paths)
+    if options.plot is None:
+        return run_batch(options, work, jobs)
+    check_plots(options.plot, jobs)
+
+    def draw(_: list[dict[str, object]]) -> list[Path]:
+        return draw_recordings(options.plot, jobs, full_scale=work.full_scale)
+
+    return run_batch(options, work, jobs, also=draw)
 
 
 @dataclass(frozen=True)
@@ -139,10 +149,12 @@ def _windows(path: Path, channel: str, blocks: RecordingBlocks) -> Iterator[dict
 def _pitch(recording: Recording) -> dict[str, float]:
     """Pitch of the first pressure channel."""
     from features.kernels.pitch import pitch_track
+    from noise.recordings.blocks import RecordingBlocks
 
     row = recording.first("pressure")
     if row is None:
         return {}
-    track = pitch_track(recording.samples[row], recording.rate)
+    blocks = RecordingBlocks.of(recording)
+    track = pitch_track(blocks.read(0, blocks.n_samples)[row], blocks.rate)
     values = (track.median, track.range, track.voiced_share)
     return dict(zip(_PITCH_COLUMNS, values, strict=True))

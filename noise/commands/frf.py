@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError, RecordingError
 from noise.base.atomic import atomic, check_target
 from noise.base.progress import counted, note, say, track
-from noise.base.tables import check_table_path, write_table
+from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def configure(parser: ArgumentParser) -> None:
         "--modes",
         type=Path,
         metavar="TABLE",
-        help="fit modes and write them: .csv, .jsonl or .parquet",
+        help=f"fit modes and write them: {table_endings()}",
     )
     parser.add_argument(
         "--arm",
@@ -95,7 +95,7 @@ def configure(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--band",
-        type=_band,
+        type=opt.band,
         metavar="LOW..HIGH",
         help="band in Hz in which modes are fitted (default: where the coherence can be trusted)",
     )
@@ -107,6 +107,7 @@ def configure(parser: ArgumentParser) -> None:
         help="tell the bands in which the coherence is lower than this (default: "
         f"{_DEFAULT_COHERENCE:g})",
     )
+    opt.add_excel(parser)
     opt.add_seed(parser, "accepted as by every command; nothing here is random")
 
 
@@ -151,7 +152,7 @@ def _check(options: Namespace) -> None:
         check_transfer_function_path(options.out)
         check_target(options.out)
     if options.modes is not None:
-        check_table_path(options.modes)
+        check_table_path(options.modes, options.excel)
         check_target(options.modes)
     elif options.band is not None:
         raise ParameterError("--band is given without --modes, for which it is")
@@ -220,7 +221,7 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
             write_transfer_function(outputs.enter_context(atomic(options.out)), transfer)
         if modes is not None:
             table = outputs.enter_context(atomic(options.modes))
-            write_table(table, _MODE_COLUMNS, _mode_rows(modes, transfer))
+            write_table(table, _MODE_COLUMNS, _mode_rows(modes, transfer), options.excel)
     if options.out is None and options.modes is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file with --out")
@@ -297,14 +298,3 @@ def _channel(text: str) -> str:
         return Channel(text).name
     except ParameterError as error:
         raise ArgumentTypeError(f"is {text!r}: {error}") from None
-
-
-def _band(text: str) -> tuple[float, float]:
-    low, dots, high = text.partition("..")
-    try:
-        band = float(low), float(high)
-    except ValueError:
-        band = 0.0, 0.0
-    if not dots or not 0.0 <= band[0] < band[1] < float("inf"):
-        raise ArgumentTypeError(f"is {text!r}, expected LOW..HIGH in Hz, such as 100..5000")
-    return band

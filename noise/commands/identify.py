@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.atomic import check_target
-from noise.base.progress import note, say
+from noise.base.progress import note, say, steps
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
+    from noise.base.progress import Steps
     from noise.identification.outcome import Identification
 
 __all__ = ["configure", "run"]
@@ -59,9 +60,29 @@ def run(options: Namespace) -> int:
         check_target(options.out / "report.html")
     if not options.data and options.numbers is None:
         raise ParameterError("identify: name recordings, or --numbers TABLE.csv")
-    say("preparing")
+    with steps("identifying", 1) as tell:
+        found, refused = _identified(options, tell)
+        if found is not None and options.out is not None:
+            tell("writing the report")
+            _write(found, options.out)
+    if found is None:
+        return 1
+    for text in found.notes:
+        note(text)
+    if options.out is None:
+        print(found.rig_toml, end="")
+    else:
+        for name in ("report.html", "rig.toml", "identification.json"):
+            print(options.out / name)
+    return 1 if refused else 0
+
+
+def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None, bool]:
+    """Return what was found, None where there is nothing, and whether recordings were refused."""
+    tell("preparing")
     from noise.identification.identify import NothingSlipsError, identify_rig
     from noise.identification.known import known_beforehand
+    from noise.identification.law_candidates import CANDIDATES
     from noise.identification.measured import Measurements, read_measurements
     from noise.identification.table_number import read_numbers
 
@@ -75,26 +96,19 @@ def run(options: Namespace) -> int:
         say(f"{name}: {reason}")
     if not (measurements.used or measurements.static or table):
         say("no recording that a rig can be identified from; nothing is written")
-        return 1
+        return None, True
+    tell.expect(len(measurements.used) + 2 * len(CANDIDATES) + 2)
     try:
         found = identify_rig(
-            measurements, beforehand, table=table, seed=options.seed or 0, progress=say
+            measurements, beforehand, table=table, seed=options.seed or 0, progress=tell
         )
     except NothingSlipsError as error:
         say(f"{', '.join(one.name for one in measurements.used)}: {error}; nothing is written")
-        return 1
-    for text in found.notes:
-        note(text)
-    return _written(found, options.out) or (1 if measurements.refused else 0)
+        return None, True
+    return found, bool(measurements.refused)
 
 
-def _written(found: Identification, out: Path | None) -> int:
-    if out is None:
-        print(found.rig_toml, end="")
-        return 0
+def _write(found: Identification, out: Path) -> None:
     from noise.pages.identification.page import write_identification
 
     write_identification(out, found)
-    for name in ("report.html", "rig.toml", "identification.json"):
-        print(out / name)
-    return 0

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.atomic import check_target
+from noise.base.exports import export_paths
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands import options as opt
 from noise.commands.batch import add_batch, check_batch, run_batch
+from noise.commands.plots import add_plots, check_plots, draw_recordings
 from noise.pictures.files import check_picture_path
 
 if TYPE_CHECKING:
@@ -34,7 +36,8 @@ def configure(parser: ArgumentParser) -> None:
         "calibrated), A-weighted and over the background, and the operating condition it belongs "
         "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "
         "fluorocarbon bushing like the shipped one, or missing. A file that cannot be read has the "
-        "reason in the column error. Label tables in place of recordings are joined, for --map and "
+        "reason in the column error. On a terminal, and beside --out, there is one line a "
+        "recording. Label tables in place of recordings are joined, for --map and "
         "--audacity."
     )
     add_batch(parser)
@@ -68,12 +71,20 @@ def configure(parser: ArgumentParser) -> None:
         "names more that are none; how many is told",
     )
     parser.add_argument(
+        "--loudness",
+        action="store_true",
+        help="tell the loudness N5 of calibrated segments as well (ISO 532-1), in the column "
+        "loudness_n5_sone, of those from half a second to ten minutes; takes a second a second of "
+        'sound, and needs pip install "bushing-noise[sound-quality]"',
+    )
+    parser.add_argument(
         "--inference",
         type=Path,
         metavar="FILE.npz",
         help="model that infers conditions which were not logged, made by `bushing-noise train` "
         "(default: the one that is shipped)",
     )
+    add_plots(parser)
     opt.add_calibration(parser)
     opt.add_seed(parser, "taken by all commands; labelling uses no random numbers")
 
@@ -88,24 +99,31 @@ def run(options: Namespace) -> int:
 
     jobs = find_jobs(options.paths)
     if options.audacity is not None:
-        from noise.labels.audacity import track_paths
-
-        track_paths(options.audacity, [job.name for job in jobs])
+        export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
+    if options.plot is not None:
+        check_plots(options.plot, jobs)
+    from noise.labels.label_display import result_lines
     from noise.labels.labelling import Labelling
     from noise.labels.table import with_corrections
 
     def export(rows: list[dict[str, object]]) -> list[Path]:
         _note_assumed(rows)
-        return _export(options, rows)
+        written = _export(options, rows)
+        if options.plot is not None:
+            written += draw_recordings(options.plot, jobs, rows, full_scale=work.full_scale)
+        return written
 
     models = (options.classifier, options.inference)
     if options.scheduler is not None:  # other machines have other working folders
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(
-        *models, full_scale=opt.full_scale_of(options), sensitivity=options.sensitivity
+        *models,
+        full_scale=opt.full_scale_of(options),
+        sensitivity=options.sensitivity,
+        loudness=options.loudness,
     )
     _note_sensitivity(work)
-    return run_batch(options, work, jobs, also=export, keep=with_corrections)
+    return run_batch(options, work, jobs, also=export, keep=with_corrections, lines=result_lines)
 
 
 def _note_sensitivity(work: Labelling) -> None:
@@ -160,9 +178,11 @@ def _from_tables(options: Namespace) -> int:
         raise ParameterError(
             f"{options.paths[0]}: is a table; say what to make of it with --map or --audacity"
         )
+    if options.plot is not None:
+        raise ParameterError("--plot draws recordings; name them in place of the table")
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
-        write_table(options.out, COLUMNS, rows)
+        write_table(options.out, COLUMNS, rows, options.excel)
         print(options.out)
     for path in _export(options, rows):
         print(path)
@@ -190,6 +210,6 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         title = f"Labels by condition: {counted(number, 'recording')}"
         write_picture(options.map, plot_conditions(places, title=title))
         table = options.map.with_suffix(".csv")
-        write_table(table, MAP_COLUMNS, map_rows(places))
+        write_table(table, MAP_COLUMNS, map_rows(places), options.excel)
         written += [options.map, table]
     return written

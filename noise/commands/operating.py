@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
+from models.foreign_file import LARGEST_TEXT, reading
 from noise.base.progress import note, say
 from noise.base.remarks import (
     NEVER_SLIPS,
@@ -257,13 +258,13 @@ def _shaft(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
 def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
     from sim.shaft import LoggedSpeed
 
-    try:
-        time, speed = _read_log(path)
-        logged = LoggedSpeed(time, speed)
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(f"--speed {path}: cannot be read ({error})") from None
-    except ParameterError as error:
-        raise ParameterError(f"--speed {path}: {error}") from None
+    where = f"--speed {path}"
+    with reading(path, "CSV table", where=where, largest=LARGEST_TEXT):
+        try:
+            time, speed = _read_log(path)
+            logged = LoggedSpeed(time, speed)
+        except ParameterError as error:
+            raise ParameterError(f"{where}: {error}") from None
     if time[0] > 0.0 or time[-1] < seconds:
         note(
             f"--speed {path} covers {time[0]:g} to {time[-1]:g} s, the run 0 to {seconds:g} s; "

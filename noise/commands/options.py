@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = [
-    "add_calibration", "add_change", "add_seed", "changed", "check_folder", "full_scale_of",
-    "number", "number_or_none", "refuse", "whole_number",
+    "add_calibration", "add_change", "add_excel", "add_seed", "band", "changed", "check_folder",
+    "full_scale_of", "number", "number_or_none", "refuse", "whole_number",
 ]  # fmt: skip
 
 
@@ -60,7 +60,13 @@ def number(
     return parse
 
 
-def whole_number(least: int, *, more: str = "") -> Callable[[str], int]:
+_LONGEST_NUMBER = 18  # digits
+
+MOST_WORKERS = 1024
+"""Processes or threads that a command starts at most: beyond it systems refuse to start more."""
+
+
+def whole_number(least: int, *, most: int | None = None, more: str = "") -> Callable[[str], int]:
     """Return a parser of whole numbers from `least` on; `more` ends what it says it expected.
 
     Examples
@@ -70,13 +76,32 @@ def whole_number(least: int, *, more: str = "") -> Callable[[str], int]:
     """
 
     def parse(text: str) -> int:
-        if not text.strip().isdecimal() or int(text) < least:
-            raise ArgumentTypeError(
-                f"is {text!r}, expected a whole number of {least} or more{more}"
-            )
-        return int(text)
+        plain = text.strip()
+        decimal = plain.isdecimal() and len(plain) <= _LONGEST_NUMBER
+        if not decimal or int(plain) < least or (most is not None and int(plain) > most):
+            span = f"of {least} or more" if most is None else f"from {least} to {most}"
+            raise ArgumentTypeError(f"is {text!r}, expected a whole number {span}{more}")
+        return int(plain)
 
     return parse
+
+
+def band(text: str) -> tuple[float, float]:
+    """Read a band of frequencies [Hz].
+
+    Examples
+    --------
+    >>> band("200..2000")
+    (200.0, 2000.0)
+    """
+    low, dots, high = text.partition("..")
+    try:
+        ends = float(low), float(high)
+    except ValueError:
+        ends = 0.0, 0.0
+    if not dots or not 0.0 <= ends[0] < ends[1] < float("inf"):
+        raise ArgumentTypeError(f"is {text!r}, expected LOW..HIGH in Hz, such as 100..5000")
+    return ends
 
 
 def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
@@ -106,6 +131,22 @@ def add_seed(parser: ArgumentParser, use: str) -> None:
         default=0,
         metavar="N",
         help=f"{use} (a whole number; default: 0)",
+    )
+
+
+def add_excel(parser: ArgumentParser) -> None:
+    """Add ``--excel``, for every command that writes a table."""
+    from noise.base.excel_csv import EXCEL_LANGUAGES
+
+    parser.add_argument(
+        "--excel",
+        type=str.lower,
+        choices=EXCEL_LANGUAGES,
+        metavar="LANGUAGE",
+        help="write .csv as Excel in a language opens it at a double click, with a byte-order "
+        "mark: de has a semicolon between cells and a decimal comma, en comma and point, de-ch "
+        "semicolon and point, system what this computer is set to (default: plain CSV; .xlsx "
+        "needs none of this)",
     )
 
 

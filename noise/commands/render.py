@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
     from models.recording import Recording
+    from noise.audio.filters import SoundFilter
     from noise.audio.rendering import Survey
     from noise.commands.render_sources import Source
 
@@ -115,11 +116,28 @@ def configure(parser: ArgumentParser) -> None:
         "peaks allow below -1 dB true peak (EBU R 128)",
     )
     parser.add_argument(
+        "--band",
+        type=_band,
+        metavar="LOW..HIGH",
+        help="listen to these frequencies in Hz alone, such as 200..2000; zero-phase, 6 dB down at "
+        "the ends and 48 dB an octave beyond; levels are then those of the band, and how far they "
+        "lie below the whole sound is told (default: all)",
+    )
+    parser.add_argument(
+        "--notch",
+        type=opt.number(least=10.0, most=200e3),
+        action="append",
+        metavar="HZ",
+        help="take a tone of this frequency out, and what lies 3 %% beside it; zero-phase; may be "
+        "given several times (default: none)",
+    )
+    parser.add_argument(
         "--sound-quality",
         action="store_true",
         help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
         "needs the extra sound-quality, and some seconds a second of sound",
     )
+    opt.add_excel(parser)
     opt.add_calibration(parser)
     add_condition(parser)
     opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
@@ -132,15 +150,28 @@ def _repeats(text: str) -> int:
     return int(value)
 
 
+def _band(text: str) -> tuple[float, float]:
+    low, high = opt.band(text)
+    if low <= 0.0:
+        raise ArgumentTypeError(f"is {text!r}, expected a band that begins above 0 Hz")
+    return low, high
+
+
 class _Plan(NamedTuple):
-    """One file to be: what it is called, and the runs that are heard in it."""
+    """One file to be: what it is called, and the runs that are heard in it, through a filter."""
 
     name: str
     target: Path
     runs: tuple[tuple[Source, int], ...]
+    through: SoundFilter
 
     def recordings(self) -> list[Recording]:
-        return [source.recording(number) for source, number in self.runs]
+        whole = [source.recording(number) for source, number in self.runs]
+        if not self.through:
+            return whole
+        from noise.audio.filters import filtered
+
+        return [filtered(one, self.through) for one in whole]
 
 
 def run(options: Namespace) -> int:
@@ -180,16 +211,20 @@ def _folder(options: Namespace, sources: list[Source]) -> Path | None:
 
 def _plans(options: Namespace, sources: list[Source], folder: Path | None) -> list[_Plan]:
     from noise.audio.files import audio_path
+    from noise.audio.filters import SoundFilter
 
+    through = SoundFilter(options.band, tuple(options.notch or ()))
     numbers = range(options.repeats)
     if folder is not None:
         return [
-            _Plan(one.name, audio_path(folder / one.name), tuple((one, n) for n in numbers))
+            _Plan(
+                one.name, audio_path(folder / one.name), tuple((one, n) for n in numbers), through
+            )
             for one in sources
         ]
     target = audio_path(options.out)
     runs = tuple((source, number) for number in numbers for source in sources)
-    return [_Plan(target.stem if options.ab else sources[0].name, target, runs)]
+    return [_Plan(target.stem if options.ab else sources[0].name, target, runs, through)]
 
 
 def _keep_inputs(out: Path, sources: list[Source], plans: list[_Plan]) -> None:
@@ -215,11 +250,13 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
 
     surveys: dict[str, Survey] = {}
     refused: dict[str, str] = {}
+    filters: dict[str, list[str]] = {}
     shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
     for plan in track(plans, "measuring", unit="sound"):
         try:
+            recordings = plan.recordings()
             surveys[plan.name] = survey(
-                plan.recordings(),
+                recordings,
                 **shape,
                 quality=options.sound_quality,
                 loudness=options.match_loudness,
@@ -229,6 +266,11 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
                 raise
             refused[plan.name] = str(error)
             opt.refuse(error, plan.name)
+            continue
+        if plan.through:
+            filters[plan.name] = [one.notes[-1].removeprefix("filtered: ") for one in recordings]
+            for words in dict.fromkeys(filters[plan.name]):
+                say(f"{plan.name}: {words}")
     scales = full_scales(
         surveys, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
@@ -253,12 +295,21 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
             note=faint_of.get(plan.name),
         )
         name = plan.target.name if folder is None else plan.target.relative_to(folder).as_posix()
-        rows += [{"file": name, **row, "note": faint_of.get(plan.name)} for row in written.rows]
+        told = filters.get(plan.name, [""] * len(written.rows))
+        rows += [
+            {"file": name, **row, "filter": words or None, "note": faint_of.get(plan.name)}
+            for row, words in zip(written.rows, told, strict=True)
+        ]
         _tell(plan, survey_of, scale.value, written.summary, alone=folder is None)
         print(plan.target)
         print(plan.target.with_suffix(".json"))
     if folder is not None:
-        write_table(folder / "levels.csv", ("file", *COLUMNS, "note", "error"), rows)
+        write_table(
+            folder / "levels.csv",
+            ("file", *COLUMNS, "filter", "note", "error"),
+            rows,
+            options.excel,
+        )
         print(folder / "levels.csv")
     return 1 if refused else 0
 

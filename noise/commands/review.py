@@ -34,7 +34,7 @@ def configure(parser: ArgumentParser) -> None:
         nargs="+",
         type=Path,
         metavar="PATH",
-        help="recording; label table (.csv, .jsonl, .parquet); map.csv of a screen; "
+        help="recording; label table (.csv, .xlsx, .jsonl, .parquet); map.csv of a screen; "
         "diagnosis.json; rig file of a screen's design (DESIGN.toml), for its sounds; or a folder "
         "that is searched for all of these at any depth",
     )

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.progress import say
+from noise.base.progress import say, steps
 from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
+    from noise.base.progress import Steps
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
 
@@ -94,7 +95,7 @@ def configure(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--loudness",
         action="store_true",
-        help="tell loudness N10 as well (ISO 532-1): heard at the loudest point of each region, "
+        help="tell loudness N5 as well (ISO 532-1): heard at the loudest point of each region, "
         'carried on by level; needs pip install "bushing-noise[sound-quality]"',
     )
     parts = parser.add_mutually_exclusive_group()
@@ -122,7 +123,7 @@ def configure(parser: ArgumentParser) -> None:
     shared = parser.add_mutually_exclusive_group()
     shared.add_argument(
         "--workers",
-        type=opt.whole_number(1),
+        type=opt.whole_number(1, most=opt.MOST_WORKERS),
         default=-1,
         metavar="N",
         help="threads (default: one a core)",
@@ -130,6 +131,7 @@ def configure(parser: ArgumentParser) -> None:
     shared.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
     )
+    opt.add_excel(parser)
     opt.add_seed(parser, "of the parts within tolerances")
 
 
@@ -137,17 +139,41 @@ def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
         opt.check_folder(options.out, file="map.csv")
-    say("preparing")
+    from noise.screening.design.environments import environment
+
+    given = _given(options)
+    environments = [name for name in options.environment.split(",") if name.strip()]
+    for name in environments:
+        environment(name)  # refused before everything is loaded
+    of_each = 2 if options.tolerances is False else 3  # map, grade, parts
+    number = 1 + of_each * len(options.designs) * len(environments)
+    with steps("screening", number) as tell:
+        found = _screened(options, given, environments, tell)
+    from noise.screening.tables.summary import summary_lines
+
+    for name, reason in (*found.refused, *found.failed):
+        say(f"{name}: {reason}")
+    for line in summary_lines(found):
+        print(line)
+    if options.out is not None:
+        with steps("writing", 2) as tell:
+            written = _write(options, found, tell)
+        for path in written:
+            print(path)
+    return 1 if found.refused or found.failed else 0
+
+
+def _screened(options: Namespace, given: Use, environments: list[str], tell: Steps) -> Screening:
+    tell("preparing")
     import numpy as np
 
     from noise.screening.screen import DEFAULT_SIMULATIONS, screen
-    from noise.screening.tables.summary import summary_lines
 
     simulations = options.simulations or DEFAULT_SIMULATIONS
-    found = screen(
+    return screen(
         options.designs,
-        _given(options),
-        environments=[name for name in options.environment.split(",") if name.strip()],
+        given,
+        environments=environments,
         loudness=options.loudness,
         tolerances=options.tolerances,
         rng=np.random.default_rng(options.seed or 0),
@@ -155,15 +181,8 @@ def run(options: Namespace) -> int:
         simulations=None if math.isinf(simulations) else int(simulations),
         workers=options.workers,
         scheduler=options.scheduler,
-        progress=say,
+        progress=tell,
     )
-    for name, reason in (*found.refused, *found.failed):
-        say(f"{name}: {reason}")
-    for line in summary_lines(found):
-        print(line)
-    if options.out is not None:
-        _write(options, found)
-    return 1 if found.refused or found.failed else 0
 
 
 def _given(options: Namespace) -> Use:
@@ -196,7 +215,7 @@ def _swinging(text: str) -> Swinging:
     return Swinging(math.radians(amplitude), text_values(frequency, "--oscillate", FREQUENCY))
 
 
-def _write(options: Namespace, found: Screening) -> None:
+def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
     from noise.base.tables import write_table
     from noise.pages.screening.page import write_screening
     from noise.pictures.files import write_picture
@@ -205,24 +224,27 @@ def _write(options: Namespace, found: Screening) -> None:
     from noise.screening.tables.tables import screening_tables
 
     folder = options.out
+    written: list[Path] = []
+    tell("drawing the maps")
     for name, (columns, rows) in screening_tables(found).items():
-        write_table(folder / name, columns, rows)
-        print(folder / name)
+        write_table(folder / name, columns, rows, options.excel)
+        written.append(folder / name)
     for name, path in found.files:
         try:
-            print(copy_design_file(name, path, folder / "designs"))
+            written.append(copy_design_file(name, path, folder / "designs"))
         except ParameterError as error:
             say(str(error))
     single = len(found.maps) == 1
     for number, mapped in enumerate(found.maps, start=1):
         path = folder / ("map.png" if single else f"map-{number}.png")
         write_picture(path, plot_screen(mapped))
-        print(path)
+        written.append(path)
+    tell("making the sounds of the report")
     write_screening(
         folder / "report.html", found, sounds=options.sounds, megabytes=options.megabytes,
         seed=options.seed or 0, workers=options.workers,
     )  # fmt: skip
-    print(folder / "report.html")
+    return [*written, folder / "report.html"]
 
 
 def _simulations(text: str) -> float:

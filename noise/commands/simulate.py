@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from models.errors import ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import note, say
-from noise.base.tables import check_table_path, write_table
+from noise.base.tables import check_table_path, table_endings, write_table
 from noise.commands import options as opt
 from noise.commands.condition_options import add_condition
 from noise.commands.operating import is_long, run_arguments, with_notes
@@ -75,13 +75,15 @@ def configure(parser: ArgumentParser) -> None:
         "--sound-power",
         type=Path,
         metavar="TABLE",
-        help="write the sound power that the plate's upper side radiates, as .csv, .jsonl or "
-        ".parquet: one-third octaves from 50 Hz to 10 kHz and their sum, in dB and dB(A) re 1 pW; "
-        "level_db is of the plate in a rigid baffle, as the sound pressure is, free_level_db of "
-        "the plate standing free; below the critical frequency (shipped plate: 1.2 kHz) they lie 2 "
-        "to 17 dB apart, and a rig's plate between them, above they are the same; of runs from "
+        help="write the sound power that the plate's upper side radiates, as "
+        f"{table_endings()}: one-third octaves from 50 Hz to 10 kHz and their sum, in dB and "
+        "dB(A) re 1 pW; power_level_db is of the plate in a rigid baffle, as the sound pressure "
+        "is, free_power_level_db of the plate standing free; below the critical frequency (shipped "
+        "plate: 1.2 kHz) they lie 2 to 17 dB apart, and a rig's plate between them, above they are "
+        "the same; of runs from "
         f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s",
     )
+    opt.add_excel(parser)
     opt.add_seed(parser, "seed of the sensors' noise")
 
 
@@ -92,7 +94,7 @@ def run(options: Namespace) -> int:
     if options.plot is not None:
         _check_plot(options.plot)
     if options.sound_power is not None:
-        check_table_path(options.sound_power)
+        check_table_path(options.sound_power, options.excel)
         check_target(options.sound_power, "--sound-power")
     for option in ("plot", "sound_power"):
         if getattr(options, option) is not None:
@@ -121,7 +123,7 @@ def run(options: Namespace) -> int:
         write_picture(options.plot, plot_run(simulated))
         print(options.plot)
     if options.sound_power is not None:
-        _write_sound_power(options.sound_power, simulated, arguments)
+        _write_sound_power(options.sound_power, simulated, arguments, options.excel)
         print(options.sound_power)
     return 0
 
@@ -176,7 +178,9 @@ def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str,
     return 0
 
 
-def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any]) -> None:
+def _write_sound_power(
+    path: Path, simulated: Run, arguments: Mapping[str, Any], excel: str | None
+) -> None:
     """Write the table, and tell its last row."""
     from noise.audio.sound_power_table import COLUMNS, sound_power_rows
     from sim.analysis.sound_power import motion_sound_power
@@ -189,8 +193,8 @@ def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any])
         arguments["rig"], simulated.motion, **{name: arguments[name] for name in given}
     )
     rows = sound_power_rows(power)
-    write_table(path, COLUMNS, rows)
-    total, free = rows[-1]["level_dba"], rows[-1]["free_level_dba"]
+    write_table(path, COLUMNS, rows, excel)
+    total, free = rows[-1]["power_level_dba"], rows[-1]["free_power_level_dba"]
     if total is None:
         say("the plate radiates no sound")
     else:

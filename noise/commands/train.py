@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from models.errors import ParameterError
 from noise.base.atomic import check_target
-from noise.base.progress import counted, say, track
+from noise.base.progress import counted, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
 from noise.commands import options as opt
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
     from collections.abc import Iterable, Mapping, Sequence
 
+    from noise.base.progress import Steps
     from noise.classifier import Classifier
     from noise.training.classifier.own_samples import OwnSample
 
@@ -98,23 +100,28 @@ def run(options: Namespace) -> int:
                 f"--inference {options.inference}: is what --out names for the classifier; give "
                 "one of them another name"
             )
-    say("preparing")
-    added, refused = _own(options.add or ())
-    classifier = _trained(options, added)
-    classifier.save(options.out)
+    with steps("training", 3 if options.inference is None else 5) as tell:
+        tell("preparing")
+        added, refused = _own(options.add or ())
+        tell("simulating what to learn from")
+        classifier = _trained(options, added, tell)
+        classifier.save(options.out)
+        if options.inference is not None:
+            from noise.training.inference.fit import train_inference
+
+            tell("simulating what to infer from")
+            model = train_inference(seed=options.seed, progress=partial(_progress, tell))
+            model.save(options.inference)
     say(f"trained: {_scores(classifier.card)}")
     if added:
         say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
     print(options.out)
     if options.inference is not None:
-        from noise.training.inference.fit import train_inference
-
-        train_inference(seed=options.seed, progress=_progress).save(options.inference)
         print(options.inference)
     return int(refused)
 
 
-def _trained(options: Namespace, added: Sequence[OwnSample]) -> Classifier:
+def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Classifier:
     from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 
     n = options.samples
@@ -125,7 +132,7 @@ def _trained(options: Namespace, added: Sequence[OwnSample]) -> Classifier:
         added=added,
         surroundings=options.surroundings,
         keep=options.keep,
-        progress=_progress,
+        progress=partial(_progress, tell),
     )
 
 
@@ -162,9 +169,9 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     return samples, bool(refusals)
 
 
-def _progress(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+def _progress(tell: Steps, samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
     yield from track(samples, "simulating", total=total, unit="training sample")
-    say("learning")
+    tell("growing trees, and scoring them by what they have not seen")
 
 
 def _scores(card: Mapping[str, object]) -> str:

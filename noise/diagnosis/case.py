@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import known_condition, same_support
 from models.errors import BushingNoiseError, ParameterError
+from noise.diagnosis.bench.channels import misplaced_torque
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
 from noise.diagnosis.bench.units import length_unit
 from noise.diagnosis.preparation.prepare import prepared
@@ -51,6 +52,8 @@ class Case:
         What was done to the recordings, a line each.
     faults : tuple of str
         Channels that are dead, and left out, or clip, one line each.
+    misplaced : str
+        Which channel holds the torque in its place, told before anything was cut; empty if none.
     """
 
     rig: Rig
@@ -59,6 +62,7 @@ class Case:
     refused: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
+    misplaced: str = ""
 
 
 def read_case(paths: Sequence[Path], rig: Rig) -> Case:
@@ -101,11 +105,12 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         refused += [(name, "all its channels are dead") for name, left in pairs if left is None]
         names = [name for name, left in pairs if left is not None]
         recordings = [left for _, left in pairs if left is not None]
+    misplaced = misplaced_torque(recordings, rig)
     ready = prepared(rig, recordings)
     refused += [(names[i], reason) for i, reason in ready.left_out.items()]
     kept = tuple(name for i, name in enumerate(names) if i not in ready.left_out)
     return Case(
-        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, faults=tuple(faults)
+        ready.rig, kept, ready.recordings, tuple(refused), ready.notes, tuple(faults), misplaced
     )
 
 

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 
 from models.condition import known_condition
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
+from noise.diagnosis.assumed_fit import assumed_fit
 from noise.diagnosis.bench.check import bench_findings
+from noise.diagnosis.bench.silent import unchecked_units
 from noise.diagnosis.causes.location import differences, locate, stage_findings
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.causes.stage_nulls import load_stage_nulls
@@ -29,7 +31,7 @@ from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
@@ -99,7 +101,7 @@ def diagnose_case(
                 case, first.table, posterior, first.hypotheses, library=library, seed=seed
             )
             first = first.with_hypotheses(hypotheses)
-        stages = stage_findings(first.table, nulls)
+        stages = stage_findings(first.table, nulls, first.flat)
         judged = judge(case, first, stages, library, seed, tell)
         answer = _stated(case, first, judged, nulls, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
@@ -116,15 +118,20 @@ def _stated(
 ) -> Diagnosis:
     """State a verdict: where it lies, what else it could be, what to measure next."""
     verdict, probabilities = judged.verdict, judged.probabilities
-    findings = stage_findings(first.table, nulls)
+    findings = stage_findings(first.table, nulls, first.flat)
+    faults = _faults(case, first.flat)
     ranked = [name for name in _ranked(probabilities) if name in library]
     stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
     if stage is not None and findings[stage].p_value >= _AS_REPEATS:
         stage = None  # it shows elsewhere
-    place = locate(first.table, nulls, stage)
+    place = locate(first.table, nulls, stage, first.flat)
     return Diagnosis(
         verdict=verdict,
-        equivalent=equivalent_pairs(ranked, probabilities, _kinds(case)),
+        equivalent=tuple(
+            pair
+            for pair in equivalent_pairs(ranked, probabilities, _kinds(case))
+            if not (first.flat and "clipping" in pair)  # flat peaks tell it from all else
+        ),
         location=place if verdict else None,
         stages=findings,
         effects=tuple(
@@ -140,19 +147,32 @@ def _stated(
         p_value=first.gap.p_value,
         seconds=0.0,
         notes=(
-            *case.faults,
+            *faults,
             *map(_listed, first.suspected),
+            *unchecked_units(case, library),
             *_notes(case),
             *first.unlearned,
             *case_remarks(case, library),
         ),
-        differences=differences(first.table, nulls),
+        differences=differences(first.table, nulls, first.flat),
         hypotheses=tuple(
             HypothesisFinding(tuple(sorted(hypothesis)), p)
             for hypothesis, p in islice(judged.hypotheses.items(), _SHOWN)
         ),
         agreement=_agreement(case, first.gap),
-        faults=case.faults,
+        faults=faults,
+    )
+
+
+def _faults(case: Case, flat: Sequence[str]) -> tuple[str, ...]:
+    """Say which channels are dead, clip at a range, or have flat peaks: each channel once."""
+    return (
+        *case.faults,
+        *(
+            f"channel {kind} looks clipped: its peaks are flat, and those of the simulation are not"
+            for kind in flat
+            if not any(text.startswith(f"channel {kind} clips") for text in case.faults)
+        ),
     )
 
 
@@ -226,6 +246,7 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     at = [known_condition(recording.condition) for recording in case.recordings]
     heat = sorted({c.temperature for c in at if c.temperature is not None})
     found = [
+        assumed_fit(case.rig, [c.interference for c in at]),
         *use_remarks(
             case.rig,
             speed=[c.speed for c in at],

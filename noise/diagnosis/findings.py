@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from models.short_repr import short_repr
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -196,6 +198,7 @@ class LabelsAndLevels:
         return getattr(self, f"label_{role}"), getattr(self, f"level_{role}")
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Illustration:
     """One held-out recording beside its simulations, for pictures and players."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from noise.diagnosis.bench.flat_tops import flat_channels
 from noise.diagnosis.causes.joint import joint_probabilities, marginals, with_none
 from noise.diagnosis.causes.unlearned import poor_responses, unlearned_sensors
 from noise.diagnosis.causes.unseen import unseen_causes
 from noise.diagnosis.causes.verdict import UNUSUAL, likeliest, needs_explaining
 from noise.diagnosis.evidence.summary import case_table
-from noise.diagnosis.fit.case_comparison import CaseComparison
+from noise.diagnosis.fit.case_comparison import CaseComparison, Model
 from sim.constant_version import constant_version
 
 if TYPE_CHECKING:
@@ -55,6 +56,8 @@ class FirstAnswer:
         Effects that the rig file lists and that what is left looks like all the same.
     unlearned : tuple of str
         What is said of sensors that the probabilities were not learned with.
+    flat : tuple of str
+        Kinds of channel that are overloaded, as `noise.diagnosis.bench.flat_tops` tells.
     """
 
     comparison: CaseComparison
@@ -64,6 +67,7 @@ class FirstAnswer:
     verdict: tuple[str, ...]
     suspected: tuple[str, ...]
     unlearned: tuple[str, ...]
+    flat: tuple[str, ...] = ()
 
     @property
     def table(self) -> CaseTable:
@@ -144,7 +148,8 @@ def first_answer(
     hypotheses = joint_probabilities(probabilities)
     if unlearned and gap.p_value > UNUSUAL:
         hypotheses = with_none(hypotheses, _WITHIN_REPEATS)
-    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), unlearned)
+    flat = flat_channels(case.recordings, lambda one: comparison.simulated(Model(), one, seed))
+    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), unlearned, flat)
     answer = answer.with_hypotheses(hypotheses)
     if not needs_explaining(probabilities["none"], posterior.alarm, gap, learned=not unlearned):
         return replace(answer, verdict=())

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from models.short_repr import short_repr
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["Improvement"]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Improvement:
     """What closes a gap, as a rig file can say it.

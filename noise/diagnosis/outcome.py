@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from models.short_repr import short_repr
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from matplotlib.axes import Axes
+    from pandas import DataFrame
 
     from models.rig import Rig
     from noise.diagnosis.findings import (
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["Diagnosis"]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
     """The whole answer.
@@ -127,6 +131,25 @@ class Diagnosis:
         from noise.diagnosis.text.diagnosis_display import draw_causes
 
         return draw_causes(self, ax)
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row an effect as a data frame of pandas, as ``diagnosis.json`` names it.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The most probable first; its parameters are a dictionary.
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        from models.data_frame import data_frame
+        from noise.diagnosis.outcome_json import as_json
+
+        effects = as_json(self)["effects"]
+        return data_frame([*effects[0]] if effects else ["name"], effects)
 
     def _repr_html_(self) -> str:
         from noise.diagnosis.text.diagnosis_display import diagnosis_html

@@ -19,6 +19,7 @@ import numpy as np
 from scipy.ndimage import binary_erosion
 from scipy.optimize import least_squares
 
+from models.short_repr import short_repr
 from noise.identification.motion import torque_spectrum
 from sim.bushing import LumpedBushing
 
@@ -88,6 +89,7 @@ class Known:
     share_error: float = 0.02
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Phases:
     """Where a contact sticks and slides; boolean arrays of shape (n,), transitions in neither."""

@@ -130,6 +130,7 @@ def choose_law(
     trained = [i for i in range(len(subjects)) if i not in held]
     sketches: dict[str, Sketch] = {}
     for candidate in CANDIDATES:
+        progress(f"law {candidate.name}: a first look")
         said = evidence[candidate.sticks] if evidence else ()
         model = LawModel(candidate, tuple(subjects[i] for i in trained), known, said)
         alike = [s for s in sketches.values() if s.model.candidate.sticks == candidate.sticks]

@@ -10,6 +10,7 @@ from scipy.fft import irfft, rfft, rfftfreq
 
 from models.condition import KnownCondition
 from models.errors import BushingNoiseError, ParameterError
+from models.short_repr import short_repr
 from noise.diagnosis.bench.conditions import speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.static_test import static_test
@@ -40,6 +41,7 @@ _SPEED_BAND = 25.0
 """Up to which the shaft's speed is followed [Hz]; an encoder's noise lies above."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Measured:
     """A recording as the identification reads it.

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.ndimage import uniform_filter1d
 
+from models.short_repr import short_repr
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ _SMOOTHED = 150.0
 """Width over which a spectrum is smoothed to be told from noise [Hz]."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Contact:
     """Contact over time; arrays of shape (n,).
@@ -49,6 +51,7 @@ class Contact:
     sliding_speed: NDArray[np.float64]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class TorqueSpectrum:
     """A torque ready for reconstruction.

@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from models.condition import FIXED
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import numpy as np
     from numpy.typing import NDArray
+    from pandas import DataFrame
 
     from noise.identification.bushing_fit import BushingFit
     from noise.identification.levels import Levels
@@ -83,6 +85,7 @@ class LawScore:
     parameters: Mapping[str, float]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Seen:
     """One recording and what it said by itself.
@@ -105,6 +108,7 @@ class Seen:
     forecast: Forecast | None = None
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Forecast:
     """What the law foretells of an excerpt of a recording.
@@ -122,6 +126,12 @@ class Forecast:
     foretold: NDArray[np.float64]
 
 
+_NUMBER_COLUMNS = (
+    "name", "unit", "interference_mm", "support_stiffness_Nm_rad",
+    "value", "low", "high", "recordings",
+)  # fmt: skip
+
+
 def values_of(fit: BushingFit, levels: Levels) -> dict[str, float]:
     """Name what one recording said [SI units]."""
     return {
@@ -134,6 +144,7 @@ def values_of(fit: BushingFit, levels: Levels) -> dict[str, float]:
     }
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Identification:
     """An identified rig.
@@ -201,6 +212,23 @@ class Identification:
             ):  # fmt: skip
                 return one
         raise KeyError(name)
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row a number as a data frame of pandas, as ``identification.json`` names it.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Values in their own units, with their intervals of 90 %.
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        from models.data_frame import data_frame
+
+        return data_frame(_NUMBER_COLUMNS, map(_number, self.numbers))
 
 
 def as_json(found: Identification) -> dict[str, Any]:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
+from models.short_repr import short_repr
 from noise.identification.evidence import Evidence
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ _CLEAR = 0.1
 """Share of the band's power that a ring-down explains."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class RingDown:
     """Free decay of the torque.

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 from noise.identification.evidence import Evidence, elastomer_stiffness
 from noise.identification.ring_down import find_ring_down, ring_evidence
 
@@ -60,6 +61,7 @@ _LEAST_ERROR = 0.002
 """Relative standard error that no regression goes below: nobody's encoder is better [-]."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class StaticTest:
     """What a static test says.

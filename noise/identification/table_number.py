@@ -10,6 +10,7 @@ import numpy as np
 
 from models.condition import FIXED
 from models.errors import ParameterError
+from models.foreign_file import refusing
 from noise.base.tables import read_table
 from noise.identification.quantities import QUANTITIES
 
@@ -103,7 +104,8 @@ def read_numbers(path: Path) -> tuple[TableNumber, ...]:
     _, rows = read_table(path)
     if not rows:
         raise ParameterError(f"{path}: holds no row; columns are {', '.join(COLUMNS)}")
-    return tuple(_number(row, f"{path}: row {i}") for i, row in enumerate(rows, start=1))
+    with refusing(str(path), "table of numbers"):
+        return tuple(_number(row, f"{path}: row {i}") for i, row in enumerate(rows, start=1))
 
 
 def _number(row: Mapping[str, object], where: str) -> TableNumber:

@@ -20,6 +20,7 @@ import numpy as np
 
 from features.registry import recording_features
 from models.html_table import html_table
+from models.short_repr import short_repr
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import QuantileForest
 from noise.inference.inputs import (
@@ -105,6 +106,7 @@ class Inferred(dict[str, Interval]):
         return html_table("Inferred, with bounds of 90 %", rows, header=header)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Inference:
     """Quantile forests for the three conditions, with calibrated intervals.

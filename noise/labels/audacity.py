@@ -9,17 +9,18 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
-from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError, RecordingError
+from models.errors import RecordingError
+from models.foreign_file import LARGEST_JSON, reading
 from noise.base.atomic import atomic
+from noise.base.exports import export_paths
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
 
-__all__ = ["label_track", "read_label_track", "track_paths", "write_label_tracks"]
+__all__ = ["label_track", "read_label_track", "write_label_tracks"]
 
 
 def label_track(rows: Iterable[Mapping[str, object]]) -> str:
@@ -66,18 +67,15 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
     Examples
     --------
     >>> import tempfile
+    >>> from pathlib import Path
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "run07.txt"
     ...     _ = path.write_text("0.5\t2.25\tcreak\n1\t2\ttrack 2: squeal\n")
     ...     read_label_track(path)
     [(0.5, 2.25, 'all', 'creak'), (1.0, 2.0, '2', 'squeal')]
     """
-    try:
+    with reading(path, "label track", error=RecordingError, largest=LARGEST_JSON):
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except UnicodeDecodeError:
-        raise RecordingError(f"{path}: is no text, so no label track") from None
     found: list[tuple[float, float, str, str]] = []
     for number, line in enumerate(lines, 1):
         if not line.strip() or line.startswith("\\"):
@@ -98,60 +96,13 @@ def read_label_track(path: Path) -> list[tuple[float, float, str, str]]:
     return found
 
 
-def track_paths(target: Path, files: Sequence[str]) -> dict[str, Path]:
-    """Return where the label track of each recording goes.
-
-    Parameters
-    ----------
-    target : Path
-        A folder, in which they lie as the recordings do in theirs; or a file that ends in .txt,
-        for one recording.
-    files : sequence of str
-        As the label table calls them.
-
-    Raises
-    ------
-    ParameterError
-        Two recordings have the same name, or there are several for one file.
-
-    Examples
-    --------
-    >>> paths = track_paths(Path("tracks"), ["day1/run07.wav"])
-    >>> paths["day1/run07.wav"].as_posix()
-    'tracks/day1/run07.txt'
-    """
-    if target.suffix.lower() == ".txt":
-        if len(set(files)) > 1:
-            raise ParameterError(
-                f"--audacity {target}: is one file, but there are {len(set(files))} recordings; "
-                f"name a folder"
-            )
-        return dict.fromkeys(files, target)
-    times = Counter(files)
-    for file in files:
-        if times[file] > 1:
-            raise ParameterError(
-                f"--audacity {target}: two recordings are called {file}; label the folder that "
-                f"holds them both"
-            )
-        if PurePosixPath(file).is_absolute() or ".." in PurePosixPath(file).parts:
-            raise ParameterError(f"--audacity {target}: {file} lies outside of the folder labelled")
-    # Recordings that differ in the ending alone keep it.
-    short = [PurePosixPath(file).with_suffix(".txt") for file in files]
-    alike = Counter(short)
-    return {
-        file: target / (name if alike[name] == 1 else f"{file}.txt")
-        for file, name in zip(files, short, strict=True)
-    }
-
-
 def write_label_tracks(target: Path, rows: Sequence[Mapping[str, object]]) -> list[Path]:
     """Write the label track of each recording of a table, each whole or not at all.
 
     Parameters
     ----------
     target : Path
-        As for `track_paths`.
+        As for `noise.base.exports.export_paths`, of .txt.
     rows : sequence of mapping
         Of the label table.
 
@@ -164,7 +115,7 @@ def write_label_tracks(target: Path, rows: Sequence[Mapping[str, object]]) -> li
     for row in rows:
         if row["label"] is not None:
             grouped.setdefault(str(row["file"]), []).append(row)
-    paths = track_paths(target, list(grouped))
+    paths = export_paths(target, list(grouped), (".txt",), "--audacity")
     for file, of_file in grouped.items():
         with atomic(paths[file]) as temporary:
             temporary.write_text(label_track(of_file), encoding="utf-8", newline="\n")

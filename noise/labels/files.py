@@ -43,10 +43,10 @@ def label(
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     out : path, optional
-        File for the table: .csv, .jsonl or .parquet. As with ``bushing-noise label --out``, a
-        journal beside it keeps each recording that is done: whichever of the two is called next
-        with the same table goes on where the last call ended, however it ended. What somebody has
-        corrected in the table stays as it is.
+        File for the table: .csv, .xlsx, .jsonl or .parquet. As with
+        ``bushing-noise label --out``, a journal beside it keeps each recording that is done:
+        whichever of the two is called next with the same table goes on where the last call ended,
+        however it ended. What somebody has corrected in the table stays as it is.
     fresh : bool
         Whether to do all recordings again, whatever earlier calls with the same `out` did.
     workers : int

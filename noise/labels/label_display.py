@@ -1,16 +1,18 @@
-"""Display of labels: bars over time, tables in HTML, and what inferred conditions rely on."""
+"""Display of labels: a line a file, bars over time, tables in HTML, what conditions rely on."""
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from models.drawing import axes_or_new
 from models.errors import ParameterError
 from models.html_table import html_table
 from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
+from noise.base.label_names import NAMED
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from matplotlib.axes import Axes
 
@@ -21,6 +23,9 @@ __all__ = [
     "MOST_TRACKS",
     "assumes_material",
     "draw_tracks",
+    "labels_in",
+    "naming_row",
+    "result_lines",
     "segments_html",
     "table_html",
 ]
@@ -118,6 +123,89 @@ def assumes_material(row: Mapping[str, object]) -> bool:
     return "inferred" in sources and row.get("material_source") != "logged"
 
 
+def naming_row(rows: Sequence[Mapping[str, object]]) -> Mapping[str, object] | None:
+    """Return the longest row that is not ``none``, by which a file is named.
+
+    Examples
+    --------
+    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
+    >>> naming_row([short, {"label": "none", "start_s": 1.0, "end_s": 9.0}])["label"]
+    'creak'
+    """
+    labelled = [row for row in rows if row.get("label") is not None]
+    loud = [row for row in labelled if row["label"] != "none"]
+    return max(loud or labelled, key=_length, default=None)
+
+
+def labels_in(rows: Sequence[Mapping[str, object]]) -> tuple[str, ...]:
+    """Return all labels of a recording: the one that names it, then by their longest row.
+
+    ``none`` comes last.
+
+    Examples
+    --------
+    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
+    >>> long = {"label": "squeal", "start_s": 1.0, "end_s": 3.0}
+    >>> labels_in([{"label": "none", "start_s": 3.0, "end_s": 9.0}, short, long])
+    ('squeal', 'creak', 'none')
+    """
+    longest: dict[str, float] = {}
+    for row in rows:
+        if row["label"] is not None:
+            label = str(row["label"])
+            longest[label] = max(_length(row), longest.get(label, 0.0))
+    return tuple(sorted(longest, key=lambda label: (label == "none", -longest[label])))
+
+
+def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:
+    """Yield one line a file: its label, frequency, level, place in time and probability.
+
+    Parameters
+    ----------
+    rows : iterable of mapping
+        Of the label table, those of one file behind one another.
+
+    Yields
+    ------
+    str
+        Of the segment that names the file, with what else is heard in it; or why it was refused.
+
+    Examples
+    --------
+    >>> row = {"file": "run07.wav", "label": "squeal", "start_s": 1.99, "end_s": 6.01,
+    ...        "frequency_hz": 974.2, "level_dba": 59.9, "p_squeal": 0.93}
+    >>> list(result_lines([row, {"file": "b.wav", "label": None, "error": "is empty"}]))
+    ['run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93', 'b.wav  refused: is empty']
+    """
+    for file, of_file in groupby(rows, key=lambda row: row["file"]):
+        segments = list(of_file)
+        row = naming_row(segments)
+        if row is None:
+            yield f"{file}  refused: {segments[0].get('error')}"
+            continue
+        others = {str(one["label"]): None for one in segments if one["label"] in NAMED}
+        others.pop(str(row["label"]), None)
+        also = f"  also {', '.join(others)}" if others else ""
+        yield f"{file}  {'  '.join(_result_words(row))}{also}"
+
+
+def _result_words(row: Mapping[str, object]) -> Iterator[str]:
+    label, hertz, start, end = (row.get(c) for c in ("label", "frequency_hz", "start_s", "end_s"))
+    yield f"{label} {hertz:.0f} Hz" if isinstance(hertz, float) else str(label)
+    for column, unit in (("level_dba", "dB(A)"), ("level_dbfs", "dBFS")):
+        level = row.get(column)
+        if isinstance(level, float):
+            yield f"{level:.1f} {unit}"
+            break
+    if isinstance(start, float) and isinstance(end, float):
+        yield f"{start:.2f}-{end:.2f} s"
+    probability = row.get(f"p_{label}")
+    if row.get("label_source") == "human":
+        yield "by hand"
+    elif isinstance(probability, float):
+        yield f"p {probability:.2f}"
+
+
 def segments_html(segments: Sequence[Segment]) -> str:
     """Return the labelled segments of a recording as a table in HTML.
 
@@ -169,6 +257,13 @@ def table_html(table: Sequence[Mapping[str, object]]) -> str:
     if any(assumes_material(row) for row in table):
         caption += f"; conditions with bounds are inferred, {ASSUMED} where no material is logged"
     return html_table(caption, rows, header=header)
+
+
+def _length(row: Mapping[str, object]) -> float:
+    start, end = row.get("start_s"), row.get("end_s")
+    if isinstance(start, int | float) and isinstance(end, int | float):
+        return float(end - start)
+    return 0.0
 
 
 def _time(start: object, end: object) -> str:

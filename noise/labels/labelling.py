@@ -18,6 +18,8 @@ import numpy as np
 from noise.base.label_names import LABELS, NAMED
 from noise.batch.identity import file_digest
 from noise.classifier import load_classifier
+from noise.labels.label_display import ASSUMED, assumes_material
+from noise.labels.loudness import with_loudness
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
@@ -36,7 +38,14 @@ if TYPE_CHECKING:
     from noise.labels.segments import Segment
     from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = ["COLUMNS", "Labelling", "label_rows", "names_no_channels"]
+__all__ = [
+    "COLUMNS",
+    "SEGMENT_COLUMNS",
+    "Labelling",
+    "label_rows",
+    "names_no_channels",
+    "segment_cells",
+]
 
 _SPEED_BLOCK = 0.02
 """Length over which the angle is averaged before its slope is taken [s]."""
@@ -47,6 +56,9 @@ _BLOCKS_AT_ONCE = 500
 _AS_STATED = 0.005
 """A measured speed that is off by no more is the one that was stated [-]."""
 
+_DIGITS = 4
+"""Of a measured speed, of which an angle tells no more."""
+
 _CONDITIONS = {
     "speed_rad_s": "speed",
     "interference_mm": "interference",
@@ -54,12 +66,18 @@ _CONDITIONS = {
 }
 """Columns, and the fields of a condition that they hold."""
 
-COLUMNS = (
-    "file", "channel", "start_s", "end_s", "label",
+SEGMENT_COLUMNS = (
+    "channel", "start_s", "end_s", "label",
     *(f"p_{label}" for label in LABELS),
-    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "snr_dba", "level_dbfs", "calibrated",
+    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "loudness_n5_sone", "snr_dba",
+    "level_dbfs",
+)  # fmt: skip
+"""What a segment says by itself."""
+
+COLUMNS = (
+    "file", *SEGMENT_COLUMNS, "calibrated",
     *(f"{name}{part}" for name in _CONDITIONS for part in ("", "_low", "_high", "_source")),
-    "material", "material_source", "label_source", "error",
+    "material", "material_source", "label_source", "note", "error",
 )  # fmt: skip
 """Columns of the table, all of them always there."""
 
@@ -76,6 +94,8 @@ class Labelling:
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     sensitivity : float
         Odds at which a noise is named, over the classifier's own [ratio].
+    loudness : bool
+        Whether the loudness N5 of each segment is told as well.
 
     Examples
     --------
@@ -87,6 +107,7 @@ class Labelling:
     inference: Path | None = None
     full_scale: PascalPerFullScale | None = None
     sensitivity: float = 1.0
+    loudness: bool = False
 
     doing = "labelling"
 
@@ -97,13 +118,21 @@ class Labelling:
 
     def prepare(self) -> None:
         """Load the classifier and, where the user names one, what infers conditions."""
+        if self.loudness:
+            from features.sound_quality import check_available
+
+            check_available()
         _ = self._loaded, self._inference
 
     def identity(self) -> dict[str, object]:
         """Return what decides the rows: the options, and the models by their content."""
         # The shipped ones are part of the program.
         models = {"classifier": self.classifier, "inference": self.inference}
-        said: dict[str, object] = {"full_scale": self.full_scale, "sensitivity": self.sensitivity}
+        said: dict[str, object] = {
+            "full_scale": self.full_scale,
+            "sensitivity": self.sensitivity,
+            "loudness": self.loudness,
+        }
         for name, path in models.items():
             said[name] = None if path is None else file_digest(path)
         return said
@@ -120,6 +149,8 @@ class Labelling:
         with open_blocks(path, full_scale=self.full_scale) as blocks:
             recording = blocks or read_recording(path, full_scale=self.full_scale)
             segments = label_recording(recording, self._loaded, per_track=names_no_channels(path))
+            if self.loudness:
+                segments = with_loudness(RecordingBlocks.of(recording), segments)
             rows = label_rows(name, recording, segments, self._inference)
             return rows, recording.calibrated
 
@@ -143,6 +174,7 @@ class Labelling:
             "inference": self.inference,
             "full_scale": self.full_scale,
             "sensitivity": self.sensitivity,
+            "loudness": self.loudness,
         }
 
 
@@ -191,13 +223,17 @@ def label_rows(
     return [_row(name, blocks, segment, inference) for segment in segments]
 
 
-def _row(
-    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
-) -> dict[str, object]:
-    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
-    row: dict[str, object] = {
-        **dict.fromkeys(COLUMNS),
-        "file": name,
+def segment_cells(segment: Segment) -> dict[str, object]:
+    """Return what a segment says by itself, by `SEGMENT_COLUMNS`.
+
+    Examples
+    --------
+    >>> from noise.labels.segments import Segment
+    >>> quiet = Segment("all", 0.0, 2.0, "none", {"none": 0.9}, None, 31.234, None)
+    >>> segment_cells(quiet)["level_db"]
+    31.23
+    """
+    return {
         "channel": segment.channel,
         "start_s": round(segment.start, 6),
         "end_s": round(segment.end, 6),
@@ -207,8 +243,20 @@ def _row(
         "level_db": _rounded(segment.level, 2),
         "level_dba": _rounded(segment.level_a, 2),
         "l_afmax_dba": _rounded(segment.level_af_max, 2),
+        "loudness_n5_sone": _rounded(segment.loudness_n5, 4),
         "snr_dba": _rounded(segment.snr, 2),
         "level_dbfs": _rounded(segment.level_dbfs, 2),
+    }
+
+
+def _row(
+    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
+) -> dict[str, object]:
+    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
+    row: dict[str, object] = {
+        **dict.fromkeys(COLUMNS),
+        "file": name,
+        **segment_cells(segment),
         "calibrated": blocks.calibrated,
         "material": condition.material,
         "material_source": "logged" if condition.material else "missing",
@@ -225,6 +273,8 @@ def _row(
             row[f"{column}_low"] = _in_unit(column, interval.low)
             row[f"{column}_high"] = _in_unit(column, interval.high)
             row[f"{column}_source"] = "inferred"
+    if assumes_material(row):
+        row["note"] = f"conditions inferred {ASSUMED}"
     return row
 
 
@@ -272,7 +322,7 @@ def _segment_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
         return stated
     if stated is not None and abs(abs(measured) - abs(stated)) <= _AS_STATED * abs(stated):
         return math.copysign(stated, measured)
-    return measured
+    return float(f"{measured:.{_DIGITS}g}")
 
 
 def _measured_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:

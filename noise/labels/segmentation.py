@@ -19,9 +19,13 @@ from features.windows.frames import FRAME, FRAME_COLUMNS
 from features.windows.table import HOP
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-__all__ = ["NOISES", "change_points", "clearest", "labelled_stretches", "viterbi_path"]
+__all__ = [
+    "NOISES", "change_points", "clearest", "labelled_stretches", "named", "viterbi_path"
+]  # fmt: skip
 
 NOISES = 3
 """The first labels are the noises."""
@@ -92,7 +96,7 @@ def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
 
 
 def labelled_stretches(
-    probabilities: NDArray[np.float64], threshold: float | None = None
+    probabilities: NDArray[np.float64], thresholds: Sequence[float] | None = None
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the stretches of the Viterbi path, each called what is heard where it is clearest.
 
@@ -100,9 +104,9 @@ def labelled_stretches(
     ----------
     probabilities : ndarray, shape (n_windows, n_labels)
         [-]; each row sums to 1; noises first, ``unknown`` last.
-    threshold : float, optional
-        Probability [-] from which a noise is named; below it a stretch is ``unknown``. By default
-        the likeliest label is said.
+    thresholds : sequence of 3 floats, optional
+        Probability [-] from which each noise is named, as of `named`. By default the likeliest
+        label is said.
 
     Returns
     -------
@@ -117,7 +121,7 @@ def labelled_stretches(
     >>> edges, names = labelled_stretches(np.array([none] * 4 + [creak] * 6))
     >>> edges.tolist(), names.tolist()
     ([0, 4, 10], [3, 0])
-    >>> labelled_stretches(np.array([none] * 4 + [creak] * 6), threshold=0.85)[1].tolist()
+    >>> labelled_stretches(np.array([none] * 4 + [creak] * 6), [0.85, 0.5, 0.5])[1].tolist()
     [3, 4]
     """
     n = len(probabilities)
@@ -125,12 +129,39 @@ def labelled_stretches(
     edges = np.concatenate([[0], changes, [n]])
     group = np.repeat(np.arange(edges.size - 1), np.diff(edges))
     p = clearest(probabilities, group)
-    names, noises = p.argmax(axis=1), p[:, :NOISES]
-    if threshold is not None:
-        names[names < NOISES] = p.shape[1] - 1
-        names = np.where(noises.max(axis=1) >= threshold, noises.argmax(axis=1), names)
+    names = p.argmax(axis=1) if thresholds is None else named(p, thresholds)
     first = np.concatenate([[True], names[1:] != names[:-1]])
     return np.concatenate([edges[:-1][first], [n]]), names[first]
+
+
+def named(p: NDArray[np.float64], thresholds: Sequence[float]) -> NDArray[np.intp]:
+    """Name what is probable enough: a noise from its own threshold on.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n, n_labels)
+        [-]; noises first, ``unknown`` last.
+    thresholds : sequence of 3 floats
+        Probability [-] from which each noise is named: one that is taken for others more easily
+        has to be surer.
+
+    Returns
+    -------
+    ndarray of int, shape (n,)
+        Columns of `p`: the likeliest noise that reaches its threshold, else the likeliest of the
+        others; ``unknown`` where a noise is likeliest and not probable enough.
+
+    Examples
+    --------
+    >>> p = np.array([[0.6, 0.1, 0.2, 0.0, 0.1], [0.2, 0.1, 0.6, 0.1, 0.0]])
+    >>> named(p, [0.5, 0.7, 0.7]).tolist()
+    [0, 4]
+    """
+    names, noises = p.argmax(axis=1), p[:, :NOISES]
+    names[names < NOISES] = p.shape[1] - 1
+    enough = np.where(noises >= np.asarray(thresholds), noises, -1.0)
+    reached: NDArray[np.intp] = np.where(enough.max(axis=1) > -1.0, enough.argmax(axis=1), names)
+    return reached
 
 
 def clearest(probabilities: NDArray[np.float64], group: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+    from pandas import DataFrame
 
     from models.recording import Recording
     from noise.classifier import Classifier
@@ -45,6 +46,10 @@ _SURELY = 6.0
 """What is louder than silence by so much in its described part needs no second look [dB]."""
 
 
+_MOST_SHOWN = 4
+"""Segments that are named one by one where they are printed."""
+
+
 @dataclass(frozen=True)
 class Segment:
     """A stretch of a recording with one label.
@@ -57,7 +62,7 @@ class Segment:
         [s]
     label : str
         The most probable of `noise.classifier.LABELS`, but ``unknown`` where that is a noise below
-        the classifier's threshold; not of a recording at a stated operating condition, where
+        the classifier's threshold of it; not of a recording at a stated operating condition, where
         nothing but a bushing is expected to sound.
     probabilities : mapping of str to float
         Of all labels [-], where the segment sounds most like a noise
@@ -72,6 +77,9 @@ class Segment:
     level_a, level_af_max : float or None
         A-weighted level, and the largest with the time weighting F [dB(A) re 20 uPa]; ``None``
         where not calibrated.
+    loudness_n5 : float or None
+        Loudness exceeded in 5 % of its time, ISO 532-1 [sone]; ``None`` where it was not asked
+        for, where not calibrated, and of less than half a second or more than ten minutes.
     snr : float or None
         The A-weighted level over that of the background [dB(A)], which is L_A90 of the recording
         outside of creaks, squawks and squeals; ``None`` where there is no such part.
@@ -93,6 +101,7 @@ class Segment:
     level_a: float | None = None
     level_af_max: float | None = None
     snr: float | None = None
+    loudness_n5: float | None = None
 
 
 class Segments(list[Segment]):
@@ -128,6 +137,28 @@ class Segments(list[Segment]):
         for one in self:
             tracks.setdefault(one.channel, []).append((one.start, one.end, one.label))
         return draw_tracks(tracks, ax)
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row a segment as a data frame of pandas, in the columns of a label table.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        from models.data_frame import data_frame
+        from noise.labels.labelling import SEGMENT_COLUMNS, segment_cells
+
+        return data_frame(SEGMENT_COLUMNS, map(segment_cells, self))
+
+    def __repr__(self) -> str:
+        shown = [f"{one.label} {one.start:.4g} to {one.end:.4g} s" for one in self[:_MOST_SHOWN]]
+        more = ["..."] * (len(self) > _MOST_SHOWN)
+        return f"Segments({len(self)}: {', '.join(shown + more)})"
 
     def _repr_html_(self) -> str:
         from noise.labels.label_display import segments_html
@@ -223,7 +254,7 @@ def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> lis
         probabilities /= probabilities.sum(axis=1, keepdims=True)
     silent = _silent_windows(blocks, found)
     probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    edges, names = labelled_stretches(probabilities, None if known else classifier.threshold)
+    edges, names = labelled_stretches(probabilities, None if known else classifier.thresholds)
     group = np.repeat(np.arange(names.size), np.diff(edges))
     heard = clearest(probabilities, group)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)

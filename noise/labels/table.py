@@ -8,10 +8,13 @@ stays in it when the recordings are labelled again.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
+from models.foreign_file import refusing
 from noise.base.label_names import LABELS
+from noise.base.progress import counted
 from noise.base.tables import check_table_path, read_table, write_table
 from noise.labels.labelling import COLUMNS
 
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.axes import Axes
+    from pandas import DataFrame
 
 __all__ = [
     "HUMAN",
@@ -34,7 +38,7 @@ HUMAN = "human"
 """The `label_source` of what somebody has said."""
 
 _TEXTS = {
-    "file", "channel", "label", "material", "error",
+    "file", "channel", "label", "material", "note", "error",
     *(column for column in COLUMNS if column.endswith("_source")),
 }  # fmt: skip
 _NEEDED = ("file", "label")
@@ -44,13 +48,16 @@ _SUPPORT = "support_stiffness_Nm_rad"
 class LabelTable(list[dict[str, object]]):
     """The label table of recordings: one row a segment, by `COLUMNS`.
 
-    A table of pandas or polars is made of it as of any list of dictionaries.
+    A table of polars is made of it as of any list of dictionaries; one of pandas as well, or with
+    the columns' order kept by `to_pandas`.
 
     Examples
     --------
     >>> row = {"file": "run07.wav", "label": "creak", "start_s": 0.0, "end_s": 1.0, "error": None}
     >>> LabelTable([row, {"file": "b.wav", "label": None, "error": "is empty"}]).refused
     {'b.wav': 'is empty'}
+    >>> LabelTable([row])
+    LabelTable(1 file; segments: 1 creak)
     """
 
     @property
@@ -64,7 +71,7 @@ class LabelTable(list[dict[str, object]]):
         Parameters
         ----------
         path : str or Path
-            Ends in .csv, .jsonl or .parquet.
+            Ends in .csv, .xlsx, .jsonl or .parquet.
 
         Raises
         ------
@@ -101,6 +108,29 @@ class LabelTable(list[dict[str, object]]):
                 tracks.setdefault(f"{row['file']}{track}", []).append((start, end, label))
         return draw_tracks(tracks, ax)
 
+    def to_pandas(self) -> DataFrame:
+        """Return the table as a data frame of pandas, by `COLUMNS`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The bolted clamp's support stiffness is ``inf``.
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        from models.data_frame import data_frame
+
+        return data_frame(COLUMNS, self)
+
+    def __repr__(self) -> str:
+        counts = Counter(str(row.get("label") or "refused") for row in self)
+        files = counted(len({row.get("file") for row in self}), "file")
+        found = ", ".join(f"{number} {label}" for label, number in counts.most_common())
+        return f"LabelTable({files}; segments: {found or 'none'})"
+
     def _repr_html_(self) -> str:
         from noise.labels.label_display import table_html
 
@@ -113,7 +143,7 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     Parameters
     ----------
     path : Path
-        CSV, JSON Lines or Parquet, by its ending.
+        CSV, Excel, JSON Lines or Parquet, by its ending.
     refusals : list of str, optional
         Takes one line for each row that cannot be used, which is left out; without it, such a row
         is an error.
@@ -147,8 +177,10 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
         raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
     checked = []
     for number, row in enumerate(rows, 1):
+        where = f"{path}: row {number}"
         try:
-            checked.append(_checked(row, f"{path}: row {number}"))
+            with refusing(where, "row of a label table", RecordingError):
+                checked.append(_checked(row, where))
         except RecordingError as error:
             if refusals is None:
                 raise

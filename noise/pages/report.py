@@ -16,6 +16,7 @@ import numpy as np
 import soundfile
 
 from models.errors import ParameterError, RecordingError
+from models.short_repr import short_repr
 from noise.audio.sound import resampled
 from noise.base.label_names import LABELS
 from noise.diagnosis.text.words import percent
@@ -35,6 +36,7 @@ __all__ = ["ReportEntry", "write_report"]
 _LAST_BIT = 2.0**-15  # of 16; a sound that exceeds full scale by no more is not clipped audibly
 
 
+@short_repr
 @dataclass(frozen=True)
 class ReportEntry:
     """One recording on the review page.

@@ -14,6 +14,7 @@ import numpy as np
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
+from models.short_repr import short_repr
 from noise.pictures.window import oscillates
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.slips import find_slips
@@ -38,6 +39,7 @@ _LOWEST, _HIGHEST = 20.0, 4e3
 """Where lines are sought [Hz]: the torque has little above 2 kHz (5.2.3)."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class SweptTorque:
     """Torques of one rig over speeds and supports; arrays have shape (n_supports, n_speeds).

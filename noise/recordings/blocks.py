@@ -9,7 +9,7 @@ of measurement systems are held by their own libraries: those are read whole.
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -19,9 +19,12 @@ import numpy as np
 import soundfile
 
 from models.errors import RecordingError
+from models.foreign_file import refusing
 from models.recording import Channel, Recording
+from noise.recordings.decimation import decimated
 from noise.recordings.files import MIN_SAMPLES, READERS, RawSamples
-from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes
+from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE
+from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes, open_sound
 from noise.recordings.meaning import check_finite, describe
 
 if TYPE_CHECKING:
@@ -52,7 +55,7 @@ class RecordingBlocks:
     Parameters
     ----------
     rate : float
-        Sampling rate [Hz].
+        Sampling rate [Hz], at most `noise.recordings.decimation.HIGHEST_WORKED`.
     channels : tuple of Channel
     condition : Condition
     calibrated : bool
@@ -83,15 +86,15 @@ class RecordingBlocks:
         """Return a recording in memory as one of which parts can be had."""
         if isinstance(recording, RecordingBlocks):
             return recording
-        return cls(
-            recording.rate,
-            recording.channels,
-            recording.condition,
-            recording.calibrated,
-            recording.name,
-            recording.samples.shape[1],
+        read, n_samples, rate = decimated(
             lambda first, last: recording.samples[:, first:last],
+            recording.samples.shape[1],
+            recording.rate,
         )
+        return cls(
+            rate, recording.channels, recording.condition, recording.calibrated, recording.name,
+            n_samples, read,
+        )  # fmt: skip
 
     def cut(self, first: int, last: int) -> Recording:
         """Return the part from sample `first` up to `last`."""
@@ -150,24 +153,32 @@ def open_blocks(
     True
     """
     path = Path(path)
+    with ExitStack() as stack:
+        with refusing(str(path), "recording", RecordingError):
+            blocks = _open(path, full_scale, stack)
+        yield blocks
+
+
+def _open(
+    path: Path, full_scale: PascalPerFullScale | None, stack: ExitStack
+) -> RecordingBlocks | None:
     sound = _opened(path)
     if sound is None:
-        yield None
-        return
-    with sound:
-        raw = RawSamples(
-            samples=np.empty((int(sound.channels), 0)),
-            rate=float(sound.samplerate),
-            fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
-            description=bext_description(path),
-            comment=sound.comment,
-        )
-        meaning = describe(path, raw, full_scale)
-        file = _File(path, sound, meaning.channels)
-        yield RecordingBlocks(
-            raw.rate, meaning.channels, meaning.condition, meaning.calibrated, path.name,
-            int(sound.frames), file.read,
-        )  # fmt: skip
+        return None
+    stack.enter_context(sound)
+    raw = RawSamples(
+        samples=np.empty((int(sound.channels), 0)),
+        rate=float(sound.samplerate),
+        fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
+        description=bext_description(path),
+        comment=sound.comment,
+    )
+    meaning = describe(path, raw, full_scale)
+    file = _File(path, sound, meaning.channels)
+    read, n_samples, rate = decimated(file.read, int(sound.frames), raw.rate)
+    return RecordingBlocks(
+        rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, read
+    )
 
 
 def _opened(path: Path) -> Any:
@@ -177,12 +188,13 @@ def _opened(path: Path) -> Any:
             "noise.recordings.formats.sound_file:"
         ):
             return None
-        if missing_bytes(path):
+        if not path.is_file() or missing_bytes(path):
             return None
-        sound = soundfile.SoundFile(path)
+        sound = open_sound(path)
         n = int(sound.frames)
         size = 8 * n * int(sound.channels)
         possible = MIN_SAMPLES <= n <= DENSEST * path.stat().st_size
+        possible &= LOWEST_RATE <= sound.samplerate <= HIGHEST_RATE
         if size >= _LARGE and possible and sound.format != "MP3":
             return sound
         sound.close()

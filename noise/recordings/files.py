@@ -18,7 +18,11 @@ import numpy as np
 
 from models.condition import Condition
 from models.errors import ParameterError, RecordingError
+from models.foreign_file import reading, refusing
 from models.recording import Recording
+from noise.base.readable import readable
+from noise.recordings.folders import files_below
+from noise.recordings.formats.sampling import check_rate
 from noise.recordings.meaning import check_finite, chosen_rows, describe
 
 if TYPE_CHECKING:
@@ -142,6 +146,15 @@ def read_recording(
     ('run07.wav', 30.0, 5.0)
     """
     path = Path(path)
+    with refusing(str(path), "recording", RecordingError):
+        return _read_recording(path, full_scale, calibrations)
+
+
+def _read_recording(
+    path: Path,
+    full_scale: PascalPerFullScale | None,
+    calibrations: Mapping[str, Calibration] | None,
+) -> Recording:
     raw = read_raw(path)
     meaning = describe(path, raw, full_scale, calibrations)
     n_samples = raw.samples.shape[1]
@@ -187,13 +200,14 @@ def find_recordings(
     ----------
     paths : path-like or iterable of path-like
         A file stands for itself, whatever its ending. In a folder hidden files and folders and
-        unknown endings are passed over.
+        unknown endings are passed over, and links to folders are followed.
 
     Returns
     -------
     list of (Path, str)
         Each file with its name relative to the folder named, with forward slashes; the bare name
-        where the file itself was named. Paths in the order given, sorted within a folder.
+        where the file itself was named; what cannot be shown of it as `noise.base.readable` has
+        it. Paths in the order given, sorted within a folder.
 
     Raises
     ------
@@ -215,22 +229,18 @@ def find_recordings(
     for path in map(Path, named):
         try:
             if path.is_dir():
-                found += sorted(_inside(path), key=lambda entry: entry[1])
+                found += [
+                    (file, readable(name))
+                    for file, name in files_below(path)
+                    if file.suffix.lower() in READERS
+                ]
             elif path.exists():
-                found.append((path, path.name))
+                found.append((path, readable(path.name)))
             else:
                 raise ParameterError(f"{path}: there is no such file or folder")
         except OSError as error:
             raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from error
     return found
-
-
-def _inside(folder: Path) -> Iterable[tuple[Path, str]]:
-    for path in folder.rglob("*"):
-        relative = path.relative_to(folder)
-        hidden = any(part.startswith(".") for part in relative.parts)
-        if not hidden and path.suffix.lower() in READERS and path.is_file():
-            yield path, relative.as_posix()
 
 
 def read_raw(path: Path) -> RawSamples:
@@ -241,18 +251,7 @@ def read_raw(path: Path) -> RawSamples:
     RecordingError
         It cannot be read.
     """
-    return chosen_rows(path, _read_raw(path))
-
-
-def _read_raw(path: Path) -> RawSamples:
-    """Read a file with the reader of its ending."""
-    try:
-        if path.is_dir():
-            raise RecordingError(f"{path}: is a folder, not a recording")
-        if not path.exists():
-            raise RecordingError(f"{path}: there is no such file")
-        if not path.is_file():
-            raise RecordingError(f"{path}: is no regular file")
+    with reading(path, "recording", error=RecordingError):
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: is empty (0 bytes)")
         if path.suffix.lower() not in READERS:
@@ -260,8 +259,6 @@ def _read_raw(path: Path) -> RawSamples:
             raise RecordingError(f"{path}: has no ending of a recording; known are {known}")
         module, _, function = READERS[path.suffix.lower()].partition(":")
         reader: Callable[[Path], RawSamples] = getattr(import_module(module), function)
-        return reader(path)
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from error
-    except MemoryError as error:
-        raise RecordingError(f"{path}: needs more memory than there is") from error
+        raw = reader(path)
+        check_rate(raw.rate, str(path))
+        return chosen_rows(path, raw)

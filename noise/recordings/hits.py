@@ -13,9 +13,12 @@ import numpy as np
 
 from features.modal.hammer import Hit
 from models.errors import ParameterError, RecordingError
+from models.foreign_arrays import read_array
+from models.foreign_file import LARGEST_TEXT, reading, refusing
 from models.recording import CHANNEL_UNITS, Channel
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import MIN_SAMPLES, READERS
+from noise.recordings.formats.sampling import check_rate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -108,8 +111,9 @@ def read_hit(
     """
     wanted = Channel(response or RESPONSES[0])
     if path.suffix.lower() in _TABLES:
-        time, force, answer = _table(path)
-        rate = _rate(path, time)
+        with refusing(str(path), "table of numbers", RecordingError):
+            time, force, answer = _table(path)
+            rate = _rate(path, time)
         unit = wanted.unit
     else:
         recording = read_recording(path)
@@ -141,16 +145,9 @@ def _channel(path: Path, recording: Recording, name: str) -> NDArray[np.float64]
 
 def _table(path: Path) -> NDArray[np.float64]:
     """Time, force and response, shape (3, n)."""
-    try:
-        if path.suffix.lower() == ".npy":
-            values = np.load(path, allow_pickle=False)
-        else:
-            values = _numbers(path)
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, EOFError) as error:
-        raise RecordingError(f"{path}: is damaged or no table of numbers ({error})") from None
-    if not isinstance(values, np.ndarray) or values.ndim != 2 or 3 not in values.shape:
+    with reading(path, "table of numbers", error=RecordingError, largest=LARGEST_TEXT):
+        values = read_array(path) if path.suffix.lower() == ".npy" else _numbers(path)
+    if values.ndim != 2 or 3 not in values.shape:
         raise RecordingError(
             f"{path}: has shape {np.shape(values)}, expected three rows or columns: time, force, "
             "response"
@@ -195,4 +192,6 @@ def _rate(path: Path, time: NDArray[np.float64]) -> float:
         raise RecordingError(f"{path}: time does not rise evenly")
     rate = float(1.0 / step)
     whole = round(rate)
-    return float(whole) if abs(whole - rate) <= _ROUNDING * rate else rate
+    rate = float(whole) if abs(whole - rate) <= _ROUNDING * rate else rate
+    check_rate(rate, str(path))
+    return rate

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, NoReturn
 from models.calibration import READING_UNITS
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
+from models.foreign_file import LARGEST_JSON, one_line, parse_json, reading
 from models.recording import CHANNEL_UNITS, Channel
 
 if TYPE_CHECKING:
@@ -101,11 +102,8 @@ def read_sidecar(path: Path) -> Sidecar:
     ...     read_sidecar(path).condition.interference
     0.00025
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        _refuse(str(path), f"cannot be read ({error.strerror or error})")
-    return parse_sidecar(data, str(path))
+    with reading(path, "sidecar", error=RecordingError, largest=LARGEST_JSON):
+        return parse_sidecar(path.read_bytes(), str(path))
 
 
 def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
@@ -130,9 +128,9 @@ def parse_sidecar(data: str | bytes, where: str = "sidecar") -> Sidecar:
     models.errors.RecordingError: run07.json: channel 'torque' has unit 'kN m', expected 'N m'
     """
     try:
-        content = json.loads(data)
-    except (ValueError, RecursionError) as error:
-        _refuse(where, f"is no JSON ({error})")
+        content = parse_json(data)
+    except ValueError as error:
+        _refuse(where, f"is no JSON ({one_line(error)})")
     if not isinstance(content, dict):
         _refuse(where, f"holds {show(content)}, expected an object {{...}}")
     calibrated = content.get("calibrated")

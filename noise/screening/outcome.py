@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 from noise.screening.design.environments import DRY
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.axes import Axes
+    from pandas import DataFrame
 
     from noise.screening.design.design import Design
     from noise.screening.map.grid import Grid
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["Screening"]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Screening:
     """What a screen found.
@@ -157,6 +160,33 @@ class Screening:
         _check_index("support", support, len(found.grid.support_stiffness))
         _check_index("temperature", temperature, len(found.grid.temperature))
         return plot_map(found, ax, support=support, temperature=temperature)
+
+    def to_pandas(self, table: str = "designs") -> DataFrame:
+        """Return one of the tables that ``bushing-noise screen --out`` writes, as a data frame.
+
+        Parameters
+        ----------
+        table : str
+            ``designs``, ``map``, ``critical_speeds``; ``sensitivities`` and ``advice`` where
+            tolerances were looked at.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        ParameterError
+            There is no such table, or pandas is not installed.
+        """
+        from models.data_frame import data_frame
+        from noise.screening.tables.tables import screening_tables
+
+        tables = screening_tables(self)
+        if f"{table}.csv" not in tables:
+            there = ", ".join(name.removesuffix(".csv") for name in tables)
+            raise ParameterError(f"there is no table {table!r}; there are {there}")
+        return data_frame(*tables[f"{table}.csv"])
 
     def _repr_html_(self) -> str:
         """Show the ranking."""

@@ -18,6 +18,7 @@ from joblib import Parallel, delayed
 
 from models.errors import ParameterError
 from models.rig import Rig
+from models.short_repr import short_repr
 from sim.acquisition import Acquisition, sample
 from sim.analysis.sweep_features import FEATURES, motion_features, plain_features
 from sim.analysis.sweep_systems import packed_systems
@@ -45,6 +46,7 @@ _CHUNK = 64
 """Runs of the plain model in one compiled call."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Sweep:
     """Many conditions of one or several rigs.

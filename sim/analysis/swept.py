@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+    from pandas import DataFrame
 
 __all__ = ["FEATURE_WORDS", "SweptFeatures", "conditions_html"]
 
@@ -120,6 +121,47 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
             if 1 < len(curves) <= _MOST_NAMED:
                 axes.legend(loc="best")
         return axes
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row a run as a data frame of pandas: its conditions, then its features.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``material``, ``speed_rad_s`` (or how the shaft turned, in words), ``interference_mm``,
+            ``support_stiffness_Nm_rad`` (``inf`` for the bolted clamp), and the features by name.
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+
+        Examples
+        --------
+        >>> from importlib.util import find_spec
+        >>> from models.rig_files.rig_file import load_material_rig
+        >>> from sim.analysis.sweep import Sweep
+        >>> found = Sweep(load_material_rig("PDMS"), [1.0, 5.0], seconds=0.01).features()
+        >>> if find_spec("pandas"):
+        ...     assert found.to_pandas()["speed_rad_s"].tolist() == [1.0, 5.0]
+        """
+        from models.data_frame import data_frame
+
+        rows = [
+            {
+                "material": run["rig"].material,
+                "speed_rad_s": run["speed"] if isinstance(run["speed"], float) else _words(run)[-1],
+                "interference_mm": round(1e3 * run["interference"], 6),
+                "support_stiffness_Nm_rad": run["support_stiffness"],
+                **{name: float(self[name].ravel()[index]) for name in self},
+            }
+            for index, run in enumerate(_runs(self.conditions))
+        ]
+        return data_frame([*rows[0]] if rows else [*self], rows)
+
+    def __repr__(self) -> str:
+        shape = " x ".join(map(str, self.conditions["rig"].shape)) or "one"
+        return f"SweptFeatures({', '.join(self)}; {shape} runs)"
 
     def _repr_html_(self) -> str:
         columns = [self[name].ravel() for name in self]

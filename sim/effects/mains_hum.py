@@ -11,7 +11,9 @@ have the rms 1:
   capacitors are charged only near the peaks (Schade 1943, Proc. IRE 31, 341); lines at 2 f, 4 f ...
 
 The default frequency is Europe's; 60 Hz are those of the thesis's laboratory in the United States,
-16.7 Hz of railways, 400 Hz of aircraft. Levels are assumed. Amount zero is no hum.
+16.7 Hz of railways, 400 Hz of aircraft. Levels are assumed. Amount zero is no hum. An encoder
+counts lines and picks up none, so the angle has none by default; a potentiometer as the thesis's,
+10 rad to the volt (Appendix B), reads 1e-3 rad for 0.1 mV.
 
 >>> values = {"amount": 1.0, "frequency": 50.0, "pressure_level": 94.0, "acceleration": 0.1,
 ...           "torque": 0.05, "angle": 1e-3}
@@ -82,7 +84,7 @@ EFFECT = Effect(
         "pressure_level": Parameter(60.0, "dB re 20 uPa", -40.0, 130.0, "what the hum reads as"),
         "acceleration": Parameter(0.5, "m/s2", 0.0, 1e3, "rms"),
         "torque": Parameter(0.1, "Nm", 0.0, 100.0, "rms"),
-        "angle": Parameter(1e-3, "rad", 0.0, 1.0, "rms"),
+        "angle": Parameter(0.0, "rad", 0.0, 1.0, "rms; none of an encoder"),
     },
     strength="amount",
     sensors=_sensors,

@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 from itertools import count
 
+import numpy as np
 import pytest
 
 from models.errors import ParameterError, RecordingError
+from models.recording import Channel, Recording
 from noise.app.labels.said import Said, read_said
 from noise.app.labels.store import Labels
 from noise.base.tables import write_table
@@ -16,6 +18,7 @@ from noise.batch.identity import file_identity
 from noise.batch.work import Done
 from noise.labels.labelling import COLUMNS, Labelling
 from noise.labels.table import read_label_table, with_corrections
+from noise.recordings import write_recording
 from tests.helpers.labelled_folder import made_row as row, write_folder
 
 NAMES = ("a.wav", "b.wav", "c.wav")
@@ -153,3 +156,14 @@ def test_a_table_that_cannot_be_written_leaves_all_as_it_was(tabled, monkeypatch
         labels.correct(0, [Said(0.0, 2.0, "creak")])
     assert labels.rows(0)[0]["label"] == "none"
     assert next(calls) == 1
+
+
+def test_a_segment_with_new_borders_has_the_numbers_that_label_would_give_it(tmp_path):
+    time = np.arange(48_000) / 16_000.0
+    tone = np.where(time < 1.5, 0.01, 1.0) * np.sin(2.0 * np.pi * 800.0 * time)
+    write_recording(tmp_path / "a.wav", Recording(tone[None], 16_000.0, (Channel("pressure"),)))
+    write_folder(tmp_path, (), [row("a.wav", end=3.0, level_db=88.0, frequency_hz=None)])
+    quiet, loud = labels_of(tmp_path).correct(0, [Said(0.0, 1.5, "none"), Said(1.5, 3.0, "squeal")])
+    assert loud["level_db"] - quiet["level_db"] == pytest.approx(40.0, abs=0.1)
+    assert loud["level_db"] == pytest.approx(90.97, abs=0.02)
+    assert loud["frequency_hz"] == pytest.approx(800.0, rel=0.01)

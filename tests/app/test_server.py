@@ -56,6 +56,16 @@ def test_what_does_not_come_from_the_printed_address_gets_nothing(app, path, sai
     assert answer.startswith(b"refused: wrong ")
 
 
+def test_the_page_gets_answers_by_its_cookie_beside_those_of_other_programs(app):
+    port = urlsplit(app.base).port
+    where = urlsplit(app.base)
+    for others, status in (("a,b=c; x", 200), ("", 200), (f"bushing-noise-{port}=x; ", 403)):
+        asked = http.client.HTTPConnection(where.hostname, where.port, timeout=PATIENCE)
+        cookie = f"{others}; bushing-noise-{port}={app.token}"
+        asked.request("GET", "/api/recordings", headers={"Cookie": cookie})
+        assert asked.getresponse().status == status
+
+
 def test_a_correction_from_another_site_changes_nothing(app):
     rows = {"rows": [{"start_s": 0.0, "end_s": 1.0, "label": "creak"}]}
     before = app.json("api/recordings/1/segments")

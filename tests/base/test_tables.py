@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.base.tables import check_table_path, write_table
+from noise.base.tables import check_table_path, read_table, table_columns, write_table
 
 COLUMNS = ("file", "level_db", "count", "calibrated", "error")
 ROWS = [
@@ -87,9 +87,9 @@ def test_the_ending_decides_in_either_case_and_folders_are_made(tmp_path):
     assert read_json_lines(target) == [{"a": 1}]
 
 
-@pytest.mark.parametrize("name", ["t.xlsx", "t", "t.json", "."])
+@pytest.mark.parametrize("name", ["t.ods", "t", "t.json", "."])
 def test_other_endings_are_refused(tmp_path, name):
-    with pytest.raises(ParameterError, match=r"\.csv, \.jsonl or \.parquet"):
+    with pytest.raises(ParameterError, match=r"\.csv, \.xlsx, \.jsonl or \.parquet"):
         write_table(tmp_path / name, ["a"], [])
     with pytest.raises(ParameterError):
         check_table_path(tmp_path / name)
@@ -121,3 +121,67 @@ def test_a_table_that_fails_half_way_leaves_the_old_one(tmp_path):
         write_table(target, ["a"], rows())
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+NAMES = ("=1+1.wav", "+cmd.wav", "-2.wav", "@sum.wav", "ärger; 1,5.wav", "'s.wav", "a\x07b.wav")
+LEVELS = [{"file": name, "level_db": 59.9 + n, "count": n} for n, name in enumerate(NAMES)]
+
+
+def test_a_workbook_has_numbers_text_and_a_frozen_header_and_no_formula(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    write_table(tmp_path / "t.xlsx", COLUMNS, LEVELS)
+    sheet = openpyxl.load_workbook(tmp_path / "t.xlsx").active
+    assert (sheet.title, sheet.freeze_panes, sheet.max_row) == ("t", "A2", len(NAMES) + 1)
+    assert [cell.value for cell in sheet[1]] == list(COLUMNS)
+    for row, name in zip(sheet.iter_rows(min_row=2), NAMES, strict=True):
+        assert [cell.data_type for cell in row[:3]] == ["s", "n", "n"]
+        assert row[0].value == name.replace("\x07", "\\x07")
+
+
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".parquet", ".jsonl"])
+def test_every_format_is_read_as_it_was_written(tmp_path, ending):
+    path = tmp_path / f"t{ending}"
+    write_table(path, ("file", "level_db", "support_stiffness_Nm_rad"), LEVELS[:-1])
+    _, rows = read_table(path)
+    assert [row["file"] for row in rows] == list(NAMES[:-1])
+    assert [float(row["level_db"]) for row in rows] == [row["level_db"] for row in LEVELS[:-1]]
+    assert table_columns(path) == {"file", "level_db", "support_stiffness_Nm_rad"}
+
+
+@pytest.mark.parametrize("ending", [".csv", ".xlsx"])
+def test_a_bolted_clamp_is_fixed_and_any_other_infinity_is_nothing(tmp_path, ending):
+    path = tmp_path / f"t{ending}"
+    columns = ("support_stiffness_Nm_rad", "level_db", "label")
+    write_table(path, columns, [dict.fromkeys(columns[:2], math.inf) | {"label": "none"}])
+    _, (row,) = read_table(path)
+    assert (row["support_stiffness_Nm_rad"], row["level_db"] or None) == ("fixed", None)
+
+
+@pytest.mark.parametrize(
+    ("language", "line"),
+    [
+        ("de", "'=1+1.wav;59,9;0;;"),
+        ("en", "'=1+1.wav,59.9,0,,"),
+        ("de-ch", "'=1+1.wav;59.9;0;;"),
+    ],
+)
+def test_csv_for_excel_has_the_signs_of_its_language_and_no_formula(tmp_path, language, line):
+    path = tmp_path / "t.csv"
+    write_table(path, COLUMNS, LEVELS, language)
+    assert path.read_bytes().startswith(b"\xef\xbb\xbffile")
+    assert path.read_text(encoding="utf-8-sig").splitlines()[1] == line
+    _, rows = read_table(path)
+    assert [row["file"] for row in rows] == list(NAMES)
+    assert [float(row["level_db"]) for row in rows] == [row["level_db"] for row in LEVELS]
+    assert table_columns(path) == set(COLUMNS)
+
+
+def test_excel_languages_are_for_csv_alone(tmp_path):
+    with pytest.raises(ParameterError, match="leave it out"):
+        check_table_path(tmp_path / "t.parquet", "de")
+
+
+def test_missing_openpyxl_is_told_with_the_command_that_installs_it(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[excel\]"'):
+        write_table(tmp_path / "t.xlsx", ["a"], [])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 
 import pytest
 
@@ -140,3 +141,36 @@ def test_names_that_are_no_text_are_kept(work, tmp_path):
     assert json.loads(journal_path(tmp_path / "t.csv").read_text().splitlines()[1])
     with open_journal(tmp_path / "t.csv", work) as journal:
         assert journal.find(job) == done
+
+
+def test_a_full_disk_says_that_it_is_the_journal_and_what_is_in_it_can_be_gone_on_with(
+    work, jobs, tmp_path
+):
+    table = tmp_path / "t.csv"
+    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    with open_journal(table, work) as journal:
+        (_, first), *others = perform_all(work, jobs[:1] + jobs[2:])
+        journal.add(jobs[0], file_identity(jobs[0].path), first)
+        size = journal_path(table).stat().st_size
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size + 50, hard))
+        try:
+            with pytest.raises(ParameterError, match=r"\.t\.csv\.journal: cannot be written \(F"):
+                journal.add(jobs[2], file_identity(jobs[2].path), others[0][1])
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
+    assert journal_path(table).stat().st_size == size + 50
+    assert [done is None for done in keep(table, work, jobs)] == [False, *[True] * 5]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [b"[", b"1", b"null", b"[1, 2, 3]", b'["a", [1, 2], true, 5]', b'["a", [1, 2], true, [5]]',
+     b'["a", [1, 2], true, [["x"]]]', b"[" * 5000, b'[["a"], [1, 2], true, [["x", 1, null]]]',
+     b"\xff\xfe"],
+)  # fmt: skip
+def test_a_line_of_the_journal_that_is_none_is_passed_over(work, jobs, tmp_path, line):
+    table = tmp_path / "t.csv"
+    keep(table, work, jobs)
+    with journal_path(table).open("ab") as file:
+        file.write(line + b"\n")
+    assert [done is None for done in keep(table, work, jobs)] == [False, True, *[False] * 4]

@@ -129,7 +129,7 @@ def test_a_recording_named_twice_is_a_row_once(runs, labelled):
     assert [row["file"] for row in read_table("t.csv")] == ["a.wav"]
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 @pytest.mark.parametrize("again", [[], ["--fresh"]])
 def test_what_somebody_corrected_stays_when_recordings_are_labelled_again(
     runs, labelled, ending, again
@@ -247,7 +247,7 @@ def test_a_defect_in_one_file_does_not_end_the_batch(runs, monkeypatch, capsys):
     [
         (["nowhere"], "nowhere: there is no such file"),
         (["empty"], "empty: there are no recordings"),
-        (["runs", "--out", "t.txt"], "t.txt: tables end in .csv, .jsonl or .parquet"),
+        (["runs", "--out", "t.txt"], "t.txt: tables end in .csv, .xlsx, .jsonl or .parquet"),
         (["runs", "--out", "runs/a.wav/t.csv"], "is a file, not a folder"),
         (["runs", "--full-scale", "0"], "--full-scale"),
         (["runs", "--workers", "0"], "--workers is '0', expected a whole number"),
@@ -282,7 +282,7 @@ def test_a_classifier_of_ones_own_is_used(runs, labelled):
 
 def test_a_missing_classifier_is_refused(runs, capsys):
     assert main(["label", "runs", "--classifier", "nowhere.npz"]) == 2
-    assert "nowhere.npz: no such file" in capsys.readouterr().err
+    assert "nowhere.npz: there is no such file" in capsys.readouterr().err
 
 
 def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, labelled, capsys):

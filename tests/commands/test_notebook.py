@@ -311,4 +311,4 @@ def test_labelling_files_in_one_call_gives_the_table_of_the_command(tmp_path):
     with pytest.raises(ParameterError, match="workers = 0"):
         noise.label(tmp_path, workers=0)
     with pytest.raises(ParameterError, match="tables end in"):
-        noise.label(tmp_path, out=tmp_path / "labels.xlsx")
+        noise.label(tmp_path, out=tmp_path / "labels.ods")

@@ -74,7 +74,7 @@ def test_a_thousand_recordings_survive_three_kills(tmp_path):
     assert out.read_bytes() == undisturbed(tmp_path).read_bytes()
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 @pytest.mark.slow
 def test_the_table_is_the_same_with_two_processes(tmp_path, ending):
     make_recordings(tmp_path / "runs", 12, 2, 0.5)

@@ -119,7 +119,7 @@ def test_a_log_that_does_not_fit_the_run_is_noted(simulated, tmp_path, capsys, l
         (b"0,1\n0,2\n", "time does not rise"),
         (b"0,1\n1,nan\n", "no finite number"),
         (b"", "two or more samples"),
-        (b"\xff\xfe\x00", "cannot be read"),
+        (b"\xff\xfe\x00", "is damaged"),
     ],
 )
 def test_a_bad_log_is_refused(capsys, tmp_path, log, said):
@@ -241,7 +241,7 @@ def test_simulate_tells_the_sound_power(capsys, tmp_path):
     assert out == f"{table}\n"
     assert "dB(A) re 1 pW in a baffle" in err
     header, *rows = table.read_text(encoding="utf-8").splitlines()
-    assert header.split(",")[:3] == ["band_hz", "level_db", "level_dba"]
+    assert header.split(",")[:3] == ["band_hz", "power_level_db", "power_level_dba"]
     levels = {band: float(level) for band, level, *_ in (row.split(",") for row in rows) if level}
     assert max(levels, key=levels.get) == "total"
     assert levels["1000"] == pytest.approx(levels["total"], abs=1.0)  # a squeal
@@ -250,7 +250,7 @@ def test_simulate_tells_the_sound_power(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (("power.xlsx",), "tables end in .csv, .jsonl or .parquet"),
+        (("power.ods",), "tables end in .csv, .xlsx, .jsonl or .parquet"),
         (("power.csv", "--seconds", "0.1"), "--sound-power: --seconds 0.1 is too short"),
         (("power.csv", "--seconds", "61"), "--sound-power takes the whole run in memory"),
     ],

@@ -22,7 +22,7 @@ from sim.parameters import Parameter
 from tests.helpers.small_rigs import RIG, at, run
 
 CONDITIONS = [at(v, FIXED) for v in (1.0, 1.6, 2.5)]
-HUM = ("mains_hum", {"amount": 1.0, "angle": 0.0})
+HUM = ("mains_hum", {"amount": 1.0})
 EXCLUSIVE = ("none", "parameters", "unknown")
 
 

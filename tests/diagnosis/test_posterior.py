@@ -128,7 +128,7 @@ def test_a_file_of_another_kind_is_refused_in_one_line(posterior, tmp_path, kind
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(ParameterError, match=r"nowhere\.npz: no such file"):
+    with pytest.raises(ParameterError, match=r"nowhere\.npz: there is no such file"):
         load_posterior(tmp_path / "nowhere.npz")
 
 

@@ -68,6 +68,10 @@ def quoted(text):
     return re.findall(r"(?<!\*)\*([^*\n]+)\*(?!\*)", prose(text))
 
 
+SERVING = ("open",)
+"""Commands that go on until they are stopped: they have tests of their own."""
+
+
 def walk(folder, dear=()):
     """Do all blocks in a folder, but the commands named, and what needs their output."""
     said, lacking = [], set()
@@ -75,7 +79,7 @@ def walk(folder, dear=()):
         for block in blocks(readme()):
             if block.kind == "commands":
                 for line in block.commands:
-                    if line[0] in dear or _needs(line[1:], lacking):
+                    if line[0] in (*dear, *SERVING) or _needs(line[1:], lacking):
                         lacking |= _made(line)
                     else:
                         said.append(_call(line))

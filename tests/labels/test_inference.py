@@ -282,7 +282,7 @@ def test_trees_that_never_end_are_refused(tmp_path):
         load_inference(tmp_path / "loop.npz")
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 def test_bounds_up_to_the_bolted_clamp_are_read_back(tmp_path, ending):
     support = "support_stiffness_Nm_rad"
     row = dict.fromkeys(COLUMNS) | {

@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError, RecordingError
+from noise.base.exports import export_paths
 from noise.base.tables import read_table, write_table
 from noise.classifier import LABELS
 from noise.cli import main
-from noise.labels.audacity import label_track, track_paths, write_label_tracks
+from noise.labels.audacity import label_track, write_label_tracks
 from noise.labels.conditions import MAP_COLUMNS, conditions_map, map_rows
 from noise.labels.labelling import COLUMNS
 from noise.labels.table import read_label_table
@@ -42,7 +43,7 @@ TABLE = [
 NEWER = ("level_dba", "l_afmax_dba", "snr_dba", "label_source")
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
     path = tmp_path / f"labels{ending}"
     write_table(path, COLUMNS, TABLE)
@@ -53,13 +54,13 @@ def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
     assert [r["calibrated"] for r in back] == [True] * 4 + [None]
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 def test_no_table_holds_an_infinity(tmp_path, ending):
     path = tmp_path / f"labels{ending}"
     write_table(path, COLUMNS, [TABLE[1] | {"level_db": math.inf}])
     _, (back,) = read_table(path)
     assert not back["level_db"]
-    assert back["support_stiffness_Nm_rad"] == ("fixed" if ending == ".csv" else None)
+    assert back["support_stiffness_Nm_rad"] == ("fixed" if ending in (".csv", ".xlsx") else None)
 
 
 def test_a_table_from_before_there_were_all_columns_still_reads(tmp_path):
@@ -79,7 +80,7 @@ def test_a_table_from_before_there_were_all_columns_still_reads(tmp_path):
         ("t.jsonl", b"[1]\n", "row 1 lacks file"),
         ("t.jsonl", b"{", "is damaged"),
         ("t.parquet", b"PAR1", "is damaged"),
-        ("nowhere.csv", None, "No such file"),
+        ("nowhere.csv", None, "there is no such file"),
     ],
 )
 def test_what_is_no_label_table_is_refused_with_the_reason(tmp_path, name, content, said):
@@ -102,25 +103,27 @@ def test_tracks_of_a_stereo_file_are_told_apart():
 
 
 def test_one_recording_may_have_its_track_in_a_file(tmp_path):
-    assert track_paths(tmp_path / "a.txt", ["a.wav"]) == {"a.wav": tmp_path / "a.txt"}
+    assert export_paths(tmp_path / "a.txt", ["a.wav"], [".txt"], "--audacity") == {
+        "a.wav": tmp_path / "a.txt"
+    }
     with pytest.raises(ParameterError, match="2 recordings; name a folder"):
-        track_paths(tmp_path / "a.txt", ["a.wav", "b.wav"])
+        export_paths(tmp_path / "a.txt", ["a.wav", "b.wav"], [".txt"], "--audacity")
 
 
 def test_recordings_that_differ_in_the_ending_do_not_share_a_track(tmp_path):
-    paths = track_paths(tmp_path, ["a.wav", "a.flac", "b.wav"])
+    paths = export_paths(tmp_path, ["a.wav", "a.flac", "b.wav"], [".txt"], "--audacity")
     assert [path.name for path in paths.values()] == ["a.wav.txt", "a.flac.txt", "b.txt"]
 
 
 @pytest.mark.parametrize("file", ["/etc/a.wav", "../a.wav", "x/../../a.wav"])
 def test_a_track_stays_in_its_folder(tmp_path, file):
     with pytest.raises(ParameterError, match="outside"):
-        track_paths(tmp_path, [file])
+        export_paths(tmp_path, [file], [".txt"], "--audacity")
 
 
 def test_two_recordings_of_one_name_are_refused_before_the_work(tmp_path):
     with pytest.raises(ParameterError, match=r"two recordings are called a\.wav"):
-        track_paths(tmp_path, ["a.wav", "a.wav"])
+        export_paths(tmp_path, ["a.wav", "a.wav"], [".txt"], "--audacity")
 
 
 def test_the_map_counts_by_condition():
@@ -204,7 +207,7 @@ def test_a_map_and_tracks_come_from_a_table_without_labelling(tmp_path, capsys, 
     ("given", "said"),
     [
         (["t.csv"], "say what to make of it"),
-        (["nowhere.csv", "--map", "m.png"], "nowhere.csv: cannot be read"),
+        (["nowhere.csv", "--map", "m.png"], "nowhere.csv: there is no such file"),
         (["t.csv", "--map", "m.txt"], "a picture ends in"),
         (["t.csv", "--map", "m.png", "--out", "m.csv"], "give one of them another name"),
         (["t.csv", "--map", "t.csv/m.png"], "is a file, not a folder"),

@@ -107,7 +107,7 @@ def test_speed_is_that_of_the_segment_where_the_angle_was_recorded():
     assert speeds == pytest.approx([1.0, 3.0], rel=0.02)
 
 
-@pytest.mark.parametrize(("stated", "given"), [(3.0, 3.0), (-3.0, 3.0), (3.1, 2.99997)])
+@pytest.mark.parametrize(("stated", "given"), [(3.0, 3.0), (-3.0, 3.0), (3.1, 3.0), (None, 3.0)])
 def test_a_speed_is_written_as_it_was_logged_where_the_angle_agrees(stated, given):
     angle = 2.99997 * np.arange(2000) / 1000.0
     recording = Recording(angle[None], 1000.0, (Channel("angle"),), Condition(speed=stated))

@@ -103,7 +103,7 @@ def test_the_cell_of_the_thesis_gives_82_newton_metres_a_volt(tmp_path):
 @pytest.mark.parametrize(
     ("text", "cell", "parts"),
     [
-        ('calibration = { torque = "cel.csv" }', CELL, ("cel.csv", "cannot be read")),
+        ('calibration = { torque = "cel.csv" }', CELL, ("cel.csv", "there is no such file")),
         ('calibration = { torqe = "cell.csv" }', CELL, ("did you mean 'torque'",)),
         ("calibration = { torque = 82 }", CELL, ("torque = 82", '"cell.csv"', "sensitivity")),
         ("calibration = { torque = {} }", CELL, ("sensitivity is missing",)),

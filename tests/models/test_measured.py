@@ -119,7 +119,7 @@ def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
         (("torque_to_acceleration", "torque_to_force"), "unknown key 'torque_to_force'"),
         (('torque_to_acceleration = "a.npz"', ""), "names no response"),
         (('"a.npz"', "3"), "torque_to_acceleration = 3 must be a text"),
-        (('"a.npz"', '"b.npz"'), "b.npz: cannot be read"),
+        (('"a.npz"', '"b.npz"'), "b.npz: there is no such file"),
         (("torque_to_acceleration", "torque_to_pressure"), "output_unit is 'm/s^2'; it must be"),
         (('"a.npz"', '"short.npz"'), "short.npz: stops at 3000 Hz; it must reach from 100 to 5000"),
         (('"a.npz"', '"late.npz"'), "late.npz: starts at 500 Hz; it must reach from 100 to 5000"),

@@ -95,7 +95,7 @@ def test_between_fits_properties_are_interpolated_and_outside_held():
         (("effects = []", 'effects = "none"'), "effects must be a list"),
         (("effects = []", 'effects = ["slip_pulse:loud"]'), "NAME:key=value"),
         (('name = "bench"', "name = 3"), "name = 3 must be a text"),
-        (("[[fit]]", "[fit"), "no valid TOML"),
+        (("[[fit]]", "[fit"), "no TOML"),
         (("[[fit]]", "[plate]\nthickness_m = -1\n[[fit]]"), "thickness_m = -1"),
         (("[[fit]]", "[plate]\nclamp_position_m = [9, 0]\n[[fit]]"), "lies off the plate"),
         (("[[fit]]", "[microphone]\nposition_m = [0, 0, -1]\n[[fit]]"), "above the plate"),

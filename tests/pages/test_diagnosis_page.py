@@ -206,7 +206,7 @@ def test_the_sounds_of_a_report_can_be_read_back_with_label_and_level(tmp_path):
     found = reported_entries(tmp_path / "report.html", diagnosis)
     entries = illustration_entries(diagnosis.illustrations[0], diagnosis.labels_and_levels)
     for entry, back in zip(entries.values(), found, strict=False):
-        assert (back.title, back.label) == (entry.title, entry.label)
+        assert (back.title, back.labels) == (entry.title, entry.labels)
         assert entry.note in back.note
         assert back.sound == pytest.approx(entry.sound, abs=2e-4)
     assert reported_entries(tmp_path / "gone.html", diagnosis) == []

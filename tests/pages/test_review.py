@@ -18,6 +18,7 @@ from noise.base.label_looks import LABEL_LOOKS
 from noise.cli import main
 from noise.pages.diagnosis.page import write_diagnosis
 from noise.pages.engine.equal_loudness import equal_factors
+from noise.pages.review import recorded
 from noise.pages.review.build import review
 from noise.recordings import write_recording
 from tests.helpers.made_diagnoses import one_effect
@@ -123,8 +124,42 @@ def test_the_budget_shortens_all_sounds_alike_and_is_kept(tmp_path):
     lengths = {round(one["duration"], 3) for one in page.about.values()}
     assert lengths == {round(short.shortened, 3)}
     assert page.sound("run0")[0].size == round(short.shortened * RATE)
-    with pytest.raises(ParameterError, match="do not fit"):
+    with pytest.raises(ParameterError, match="do not fit") as refused:
         review(tmp_path / "runs", tmp_path / "none.html", classify=False, megabytes=0.4)
+    least = float(re.search(r"they need about (\S+) MB", str(refused.value))[1])
+    made = review(tmp_path / "runs", tmp_path / "least.html", classify=False, megabytes=least)
+    assert made.sounds == 3
+    assert made.path.stat().st_size <= 1e6 * least
+
+
+def test_a_page_too_small_for_its_own_frame_says_what_is_needed(campaign):
+    with pytest.raises(ParameterError, match=r"into 0\.01 MB; they need about 0\.\d MB"):
+        review(campaign, campaign / "none.html", classify=False, megabytes=0.01)
+
+
+@pytest.mark.parametrize("here", [".", "./"])
+def test_the_folder_that_one_is_in_can_be_reviewed(campaign, monkeypatch, here):
+    named = review(campaign / "recordings", campaign / "named.html", classify=False)
+    monkeypatch.chdir(campaign / "recordings")
+    made = review(here, campaign / "here.html", classify=False)
+    assert made.path.read_bytes() == named.path.read_bytes()
+
+
+def test_a_recording_that_goes_away_while_the_others_are_read_is_one_refusal(campaign, monkeypatch):
+    first = sorted((campaign / "recordings").glob("*.wav"))[0]
+    opened = recorded.open_blocks
+
+    def going_away(path, **options):
+        if path == first:  # after it was found, while it is read
+            raise FileNotFoundError(2, "No such file or directory", str(path))
+        return opened(path, **options)
+
+    monkeypatch.setattr(recorded, "open_blocks", going_away)
+    made = review(campaign, campaign / "review.html", classify=False)
+    assert made.sounds == 2
+    assert [(one.name, one.reason) for one in made.refused] == [
+        (str(first), "cannot be read (No such file or directory)")
+    ]
 
 
 def test_of_a_long_recording_the_stretch_that_names_it_is_played(tmp_path):

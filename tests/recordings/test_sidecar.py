@@ -198,7 +198,7 @@ def test_the_sidecar_is_the_file_of_the_same_stem(tmp_path):
 
 
 def test_a_sidecar_that_cannot_be_opened_is_refused(tmp_path):
-    with pytest.raises(RecordingError, match="cannot be read"):
+    with pytest.raises(RecordingError, match="is a folder, not a file"):
         read_sidecar(tmp_path)
 
 

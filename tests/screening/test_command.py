@@ -38,7 +38,7 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     assert len(points) == 6
     assert set(points[0]) >= {
         "design", "environment", "temperature_C", "speed_rad_s", "interference_mm",
-        "support_stiffness_Nm_rad", "regime", "label", "level_dba", "loudness", "how",
+        "support_stiffness_Nm_rad", "regime", "label", "level_dba", "loudness_n5_sone", "how",
     }  # fmt: skip
     quiet, loud = points[0], points[3]
     assert (quiet["design"], quiet["label"], quiet["level_dba"]) == ("PDMS", "none", "")

@@ -113,8 +113,8 @@ def test_the_table_sums_its_bands():
     *bands, total = rows
     assert (len(bands), total["band_hz"]) == (24, TOTAL)
     loudest = next(row for row in bands if row["band_hz"] == "630")
-    assert total["level_db"] == pytest.approx(loudest["level_db"], abs=0.1)
-    assert loudest["level_dba"] == pytest.approx(loudest["level_db"] - 1.9, abs=0.1)
+    assert total["power_level_db"] == pytest.approx(loudest["power_level_db"], abs=0.1)
+    assert loudest["power_level_dba"] == pytest.approx(loudest["power_level_db"] - 1.9, abs=0.1)
 
 
 def test_a_run_too_short_for_the_lowest_band_is_refused():

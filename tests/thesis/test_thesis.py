@@ -261,7 +261,7 @@ def test_the_command_writes_the_page(short, tmp_path):
     assert "| potentiometer_slope |" in (tmp_path / "t.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", ["t.xlsx", "t"])
+@pytest.mark.parametrize("name", ["t.docx", "t"])
 def test_an_ending_that_no_table_has_is_refused_before_the_work(name, tmp_path, capsys):
     assert main(["thesis", "--out", str(tmp_path / name)]) == 2
     assert ".md" in capsys.readouterr().err

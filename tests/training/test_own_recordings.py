@@ -65,6 +65,26 @@ def test_a_label_track_is_finer_than_a_table_and_a_table_than_a_folder(tmp_path)
     assert labels_of(windows) == [("a.wav", "squeal"), ("b.wav", "creak"), ("c.wav", "none")]
 
 
+def test_of_a_table_that_somebody_has_corrected_the_corrections_count_alone(tmp_path):
+    for name in ("a", "b", "creak/c"):
+        write(tmp_path / name)
+    table = tmp_path / "labels.csv"
+    rows = ["a.wav,squeal,human", "b.wav,squawk,classifier", "creak/c.wav,none,classifier"]
+    table.write_text("\n".join(["file,label,label_source", *rows]) + "\n")
+    assert labels_of(read_labelled(tmp_path)[0]) == [("a.wav", "squeal"), ("c.wav", "creak")]
+    assert labels_of(read_labelled(table)[0]) == [("a.wav", "squeal")]
+    assert read_labelled(tmp_path)[1] == read_labelled(table)[1] == []
+
+
+def test_a_table_alone_names_what_is_not_there(tmp_path):
+    write(tmp_path / "a")
+    table = tmp_path / "labels.csv"
+    table.write_text("file,label\na.wav,creak\ngone.wav,creak\n")
+    windows, refusals = read_labelled(table)
+    assert labels_of(windows) == [("a.wav", "creak")]
+    assert refusals == [f"{table}: names gone.wav, which is not there"]
+
+
 def test_a_track_of_several_is_taken_by_itself(tmp_path):
     path = write(tmp_path / "a", tracks=2)
     (tmp_path / "a.wav.txt").write_text("0\t1\ttrack 2: squawk\n")

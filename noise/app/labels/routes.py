@@ -8,6 +8,7 @@ from starlette.responses import JSONResponse
 from starlette.routing import Route
 
 from noise.app.labels.asked import read_asked, whole_number
+from noise.app.labels.describing import Describing
 from noise.app.labels.labelling_run import LabellingRun
 from noise.app.labels.next_check import NextCheck
 from noise.app.labels.said import read_said
@@ -36,7 +37,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
     labels = Labels(opened.jobs, opened.table, Labelling(classifier))
     run = LabellingRun(labels, opened, classifier)
     opened.leaving.callback(run.stop)
-    check = NextCheck()
+    describing = Describing()
+    opened.leaving.callback(describing.stop)
+    check = NextCheck(opened.jobs, describing)
     training = TrainingRun(labels, run, opened)
     opened.leaving.callback(training.stop)
 

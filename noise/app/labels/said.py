@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Row = dict[str, object]
 
-__all__ = ["Said", "as_rows", "read_said"]
+__all__ = ["Said", "as_rows", "news", "read_said"]
 
 _MOST = 10_000
 """Segments of one recording that a request may bring."""
@@ -102,7 +102,15 @@ def _seconds(row: dict[object, object], key: str) -> float:
     raise ParameterError(f"{key} {str(value)[:40]}: must be a number of seconds")
 
 
-def as_rows(said: Sequence[Said], name: str, before: Sequence[Row]) -> list[Row]:
+def news(said: Sequence[Said], before: Sequence[Row]) -> list[Said]:
+    """Return those segments that no row was before."""
+    there = {(*_place(row), row["label"]) for row in before}
+    return [one for one in said if (one.channel, one.start, one.end, one.label) not in there]
+
+
+def as_rows(
+    said: Sequence[Said], name: str, before: Sequence[Row], measured: Sequence[Row] = ()
+) -> list[Row]:
     """Return the rows of a recording after a correction.
 
     Parameters
@@ -112,6 +120,8 @@ def as_rows(said: Sequence[Said], name: str, before: Sequence[Row]) -> list[Row]
         Of the recording in the table.
     before : sequence of dict
         Its rows until now.
+    measured : sequence of dict
+        Rows of the segments as they were measured, as far as they were.
 
     Returns
     -------
@@ -127,6 +137,7 @@ def as_rows(said: Sequence[Said], name: str, before: Sequence[Row]) -> list[Row]
     ('creak', 50.0, 'human')
     """
     there = {_place(row): row for row in before if row["label"] is not None}
+    numbers = {_place(row): row for row in measured}
     rows = []
     for one in said:
         old = there.get((one.channel, one.start, one.end))
@@ -134,6 +145,7 @@ def as_rows(said: Sequence[Said], name: str, before: Sequence[Row]) -> list[Row]
             rows.append(old | ({"label_source": HUMAN} if one.confirmed else {}))
             continue
         row: Row = dict.fromkeys(COLUMNS) if old is None else old | _without_opinion(old)
+        row |= numbers.get((one.channel, one.start, one.end), {})
         row |= {"file": name, "channel": one.channel, "start_s": one.start, "end_s": one.end}
         rows.append(row | {"label": one.label, "label_source": HUMAN, "error": None})
     if rows == [row for row in before if row["label"] is not None]:

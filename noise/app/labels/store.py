@@ -9,13 +9,14 @@ from __future__ import annotations
 from threading import RLock
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError
+from models.errors import BushingNoiseError, ParameterError
 from noise.app.labels.kept_table import KeptTable
-from noise.app.labels.said import as_rows
+from noise.app.labels.said import as_rows, news
 from noise.app.labels.summary import summary
 from noise.base.lock import locked
 from noise.batch import JournalReader
 from noise.labels.labelling import COLUMNS, Labelling
+from noise.labels.said_segments import said_rows
 from noise.labels.table import with_corrected_rows
 
 if TYPE_CHECKING:
@@ -122,10 +123,12 @@ class Labels:
         RecordingError
             Somebody else has made something of the table that is none.
         """
+        job = self._jobs[index]
+        measured = _measured(job, said, self.rows(index))
         with self._lock, locked(self.path):
             self.refresh()
             before = self._rows[index]
-            self._write(index, as_rows(said, self._jobs[index].name, before))
+            self._write(index, as_rows(said, job.name, before, measured))
             self._undo.append((index, before))
             return self._rows[index]
 
@@ -174,6 +177,20 @@ class Labels:
         news = {index: _rows(done) for index, done in self._journal.news(self._jobs).items()}
         self._classified |= news
         return news
+
+
+def _measured(job: Job, said: Sequence[Said], before: Sequence[Row]) -> list[Row]:
+    """Measure a recording's segments where some are new; none where it cannot be."""
+    if not news(said, before):
+        return []
+    drawn = [(one.channel, one.start, one.end, one.label) for one in said]
+    try:
+        measured = said_rows(job.path, job.name, drawn)
+    except (BushingNoiseError, OSError):  # the correction counts without numbers, too
+        return []
+    # Who gave a calibration to `label` that the file does not have is not contradicted.
+    known = any(row.get("calibrated") is True for row in before)
+    return [row for row in measured if row["calibrated"] or not known]
 
 
 def _rows(done: Done) -> list[Row]:

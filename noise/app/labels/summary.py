@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from noise.app.labels.next_check import doubt
+from noise.labels.label_display import labels_in, naming_row
 from noise.labels.table import HUMAN
-from noise.pages.engine.entry import labels_in, naming_row
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.recording import CHANNEL_UNITS
 from noise.diagnosis.bench.units import factor_words, unit_of
 
 if TYPE_CHECKING:
@@ -22,9 +23,16 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from noise.diagnosis.bench.levels import Levels, PathFit
 
-__all__ = ["backwards", "swapped_channels", "turned_channels", "wrong_units"]
+__all__ = [
+    "backwards", "is_told", "misplaced_torque", "swapped_channels", "turned_channels",
+    "wrong_units",
+]  # fmt: skip
 
-_UNITS = {"torque": "N m", "acceleration": "m/s^2", "pressure": "Pa", "angle": "rad"}
+_KINDS = ("torque", "acceleration", "pressure", "angle")
+
+_RISE = 0.3
+"""From its beginning to its end, over its mean, of what rises all the time [-]: an angle by twice
+as much and more, whatever a torque drifts by."""
 
 _OUTPUTS = ("acceleration", "pressure")
 
@@ -64,10 +72,8 @@ _RISING = 0.5
 
 def swapped_channels(recordings: Sequence[Recording], rig: Rig, levels: Sequence[Levels]) -> str:
     """Say which two channels are each other's; empty if none."""
-    found = [_stands_for_torque(r, rig) for r in recordings]
-    other = max(set(found), key=found.count) if found else ""
-    if other and found.count(other) >= 0.8 * len(found):
-        return f"channels torque and {other} look swapped"
+    if misplaced := misplaced_torque(recordings, rig):
+        return misplaced
     crossed, straight = [], []
     for one in _slipping(levels):
         if ("acceleration", "pressure") not in one.paths:
@@ -88,19 +94,36 @@ _CROSSED = (("acceleration", "pressure"), ("pressure", "acceleration"))
 _STRAIGHT = (("acceleration", "acceleration"), ("pressure", "pressure"))
 
 
+def misplaced_torque(recordings: Sequence[Recording], rig: Rig) -> str:
+    """Say which channel holds the torque in its place; empty if none.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        With known conditions, whole: a start is looked for in torque and angle, and cut by them.
+    rig : Rig
+    """
+    found = [_stands_for_torque(r, rig) for r in recordings]
+    other = max(set(found), key=found.count) if found else ""
+    if other and found.count(other) >= 0.8 * len(found):
+        return f"channels torque and {other} look swapped"
+    return ""
+
+
 def _stands_for_torque(recording: Recording, rig: Rig) -> str:
     """Return the channel that has the mean and the steadiness of a torque that another lacks."""
     condition = recording.condition
     assert condition.interference is not None  # `usable` made it so
     kinetic = rig.fit(condition.interference).kinetic_torque
     found = []
-    for kind in _UNITS:
+    for kind in _KINDS:
         row = recording.first(kind)
         if row is not None:
             x = np.asarray(recording.samples[row], dtype=np.float64)
             mean, spread = abs(float(x.mean())), float(x.std())
             n = max(1, x.size // 10)
-            ramp = abs(float(x[-n:].mean() - x[:n].mean())) > 2.5 * spread
+            rise = abs(float(x[-n:].mean() - x[:n].mean()))
+            ramp = rise > max(2.5 * spread, _RISE * mean)
             if kinetic / 2.0 < mean < 3.0 * kinetic and spread < 0.5 * mean and not ramp:
                 found.append(kind)
     return found[0] if found and "torque" not in found else ""
@@ -157,6 +180,20 @@ def _torque_of_paths(levels: Sequence[Levels]) -> str:
     return unit_of("torque", math.exp(sum(middle) / 2.0))
 
 
+def is_told(kind: str, levels: Sequence[Levels]) -> bool:
+    """Tell whether recordings say how large a channel should be: one that slips, two that follow.
+
+    Parameters
+    ----------
+    kind : str
+        Of the channel.
+    levels : sequence of Levels
+    """
+    own = [(one, fit) for one in levels if (fit := one.paths.get((kind, kind)))]
+    follow = sum(_clear(fit) for _, fit in own)
+    return follow >= min(2, len(levels)) or any(one.swing > SWINGING for one, _ in own)
+
+
 def _clear(fit: PathFit) -> bool:
     return min(fit.explained, abs(fit.alike)) > _ALIKE
 
@@ -193,7 +230,7 @@ def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[st
 def _unit_words(kind: str, unit: str, factor: float, against: str) -> str:
     if unit:
         times = factor if factor > 1.0 else 1.0 / factor
-        return f"channel {kind} looks like {unit}, not {_UNITS[kind]} (factor {times:.2g})"
+        return f"channel {kind} looks like {unit}, not {CHANNEL_UNITS[kind]} (factor {times:.2g})"
     return f"channel {kind} is {factor_words(factor)} against {against}"
 
 

@@ -19,6 +19,7 @@ from noise.diagnosis.bench.conditions import shuffled_conditions, wrong_speed
 from noise.diagnosis.bench.faults import dead_channels
 from noise.diagnosis.bench.levels import levels_of
 from noise.diagnosis.bench.materials import another_level, another_material
+from noise.diagnosis.bench.silent import noise_findings
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 
 if TYPE_CHECKING:
@@ -51,6 +52,8 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
     """
     if dead := tuple(dead_channels(case.names, case.recordings)):
         return dead
+    if case.misplaced:
+        return (case.misplaced,)
     cache = TransferFunctionCache(case.rig, library)
     levels = [levels_of(recording, case.rig, cache) for recording in case.recordings]
     if swapped := swapped_channels(case.recordings, case.rig, levels):
@@ -59,7 +62,10 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
         return (reversed_,)
     if shuffled := shuffled_conditions(case, levels):
         return (shuffled,)
-    found = [*turned_channels(levels), *wrong_units(levels), wrong_speed(levels)]
+    found = [
+        *turned_channels(levels), *wrong_units(levels), *noise_findings(case, levels),
+        wrong_speed(levels),
+    ]  # fmt: skip
     if found := [text for text in found if text]:
         return tuple(found)
     level = another_level(levels)

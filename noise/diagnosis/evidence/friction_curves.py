@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.short_repr import short_repr
 from noise.base.interval import SURE_90
 from noise.diagnosis.evidence.channel_summary import shaft_speed
 from noise.diagnosis.evidence.contact_summary import slip_starts
@@ -41,6 +42,7 @@ _NEAR = 6e-4
 """Before a slip's start, in which its torque is looked for [s]."""
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class TorqueCurve:
     """A mean torque and its 90 % interval.

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import soundfile
 
-from models.errors import RecordingError
+from models.errors import ParameterError, RecordingError
+from models.foreign_file import LARGEST_TEXT, reading, refusing
 from noise.audio.sound import audible
 from noise.diagnosis.findings import ROLES
 from noise.diagnosis.text.words import number
@@ -90,20 +91,18 @@ def reported_entries(report: Path, diagnosis: Diagnosis) -> list[Entry]:
         A sound is damaged.
     """
     try:
-        text = report.read_text(encoding="utf-8")
-    except (OSError, ValueError):
+        with reading(report, "report", largest=LARGEST_TEXT):
+            found = _Sounds()
+            found.feed(report.read_text(encoding="utf-8"))
+    except ParameterError:
         return []
-    found = _Sounds()
-    found.feed(text)
     entries = []
     for values, content in found.found:
         name, role = values["data-recording"], values["data-role"]
-        try:
+        with refusing(f"{report}: {name}", "sound", RecordingError):
             flac = io.BytesIO(base64.b64decode(content))
             fractions, _ = soundfile.read(flac, dtype="float32")
             sound = np.float32(values["data-full-scale"]) * fractions
-        except (ValueError, soundfile.LibsndfileError) as error:
-            raise RecordingError(f"sound {name} of the report is damaged ({error})") from None
         note = "from the report of the diagnosis"
         entries.append(_entry(name, role, sound, diagnosis.labels_and_levels, note))
     return entries

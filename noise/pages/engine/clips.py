@@ -41,6 +41,9 @@ SHORTEST = 1.0
 BYTES_A_SECOND = 120_000.0
 """What a second of loud noise takes up on the page at most."""
 
+_ROUNDED_UP, _STEP = 1.05, 100_000.0
+"""What is said to be needed: so much more, in whole steps of so many bytes."""
+
 _BITS = 16
 _BASE64 = 4.0 / 3.0
 
@@ -162,6 +165,7 @@ def make_clips(
     gain: Gain,
     *,
     budget: float = math.inf,
+    beside: float = 0.0,
     dither: np.random.Generator | None = None,
 ) -> tuple[dict[str, Clip], float | None]:
     """Encode sounds, shortened where they would exceed a budget.
@@ -172,7 +176,9 @@ def make_clips(
         By id.
     gain : Gain
     budget : float
-        What the sounds may take up on the page [byte].
+        What the page may take up [byte].
+    beside : float
+        What of it is no sound [byte].
     dither : numpy.random.Generator, optional
         By default there is no dither, and silence stays digital zero.
 
@@ -205,18 +211,20 @@ def make_clips(
             if entry.sound is not None
         }
 
+    room = budget - beside
     clips = cut_to(math.inf)
-    if _weight(clips) <= budget:
+    if not clips or _weight(clips) <= room:
         return clips, None
-    length = _length_that_fits(list(clips.values()), budget)
+    length = _length_that_fits(list(clips.values()), room) if room > 0.0 else 0.0
     if length < SHORTEST:
+        least = math.ceil(_ROUNDED_UP * (beside + _weight(cut_to(SHORTEST))) / _STEP) * _STEP
         raise ParameterError(
-            f"{len(clips)} sounds of {SHORTEST:g} s each do not fit "
-            f"into {budget / 1e6:.3g} MB that are left for them; allow more, or name fewer"
+            f"{len(clips)} sounds of {SHORTEST:g} s each do not fit into {budget / 1e6:.3g} MB; "
+            f"they need about {least / 1e6:.3g} MB; allow more, or name fewer"
         )
     while True:
         clips = cut_to(length)
-        if _weight(clips) <= budget or length <= SHORTEST:
+        if _weight(clips) <= room or length <= SHORTEST:
             return clips, length
         length = max(SHORTEST, 0.9 * length)  # the loud parts were kept
 

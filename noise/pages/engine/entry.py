@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from models.condition import Condition
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
+from noise.labels.label_display import labels_in, naming_row
+from noise.pictures.clip_levels import RATE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -23,12 +25,9 @@ if TYPE_CHECKING:
     Row = Mapping[str, object]
 
 __all__ = [
-    "RATE", "Entry", "Part", "label_counts", "labels_in", "labels_sentence",
-    "naming_row", "stretch_start",
+    "RATE", "Entry", "Part", "label_counts", "labels_sentence",
+    "stretch_start",
 ]  # fmt: skip
-
-RATE = 48000
-"""Of the sounds on a page [Hz]."""
 
 
 @dataclass(frozen=True)
@@ -101,40 +100,6 @@ class Entry:
         return labels_in(self.rows)
 
 
-def naming_row(rows: Sequence[Row]) -> Row | None:
-    """Return the longest row that is not ``none``, by which a file is named.
-
-    Examples
-    --------
-    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
-    >>> naming_row([short, {"label": "none", "start_s": 1.0, "end_s": 9.0}])["label"]
-    'creak'
-    """
-    labelled = [row for row in rows if row["label"] is not None]
-    loud = [row for row in labelled if row["label"] != "none"]
-    return max(loud or labelled, key=_length, default=None)
-
-
-def labels_in(rows: Iterable[Row]) -> tuple[str, ...]:
-    """Return all labels of a recording: the one that names it, then by their longest row.
-
-    ``none`` comes last.
-
-    Examples
-    --------
-    >>> short = {"label": "creak", "start_s": 0.0, "end_s": 1.0}
-    >>> long = {"label": "squeal", "start_s": 1.0, "end_s": 3.0}
-    >>> labels_in([{"label": "none", "start_s": 3.0, "end_s": 9.0}, short, long])
-    ('squeal', 'creak', 'none')
-    """
-    longest: dict[str, float] = {}
-    for row in rows:
-        if row["label"] is not None:
-            label = str(row["label"])
-            longest[label] = max(_length(row), longest.get(label, 0.0))
-    return tuple(sorted(longest, key=lambda label: (label == "none", -longest[label])))
-
-
 def stretch_start(rows: Sequence[Row], duration: float, length: float) -> float:
     """Where a stretch of `length` begins that shows what a recording is named for [s].
 
@@ -174,10 +139,6 @@ def labels_sentence(entries: Sequence[Entry]) -> str:
     """
     words = [f"{number} {label or 'without a label'}" for label, number in label_counts(entries)]
     return f"{counted(len(entries), 'recording')}: {', '.join(words)}"
-
-
-def _length(row: Row) -> float:
-    return _number(row.get("end_s"), 0.0) - _number(row.get("start_s"), 0.0)
 
 
 def _number(value: object, missing: float) -> float:

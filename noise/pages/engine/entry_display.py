@@ -8,16 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from models.recording import REFERENCE_PRESSURE
 from noise.labels.label_display import ASSUMED, assumes_material
-from noise.pages.engine.spectrogram import (
-    HIGHEST,
-    LOWEST,
-    RANGE,
-    TICKS,
-    clip_levels,
-    picture,
-    top,
-)
+from noise.pages.engine.spectrogram import RANGE, TICKS, picture, top
 from noise.pages.engine.ticks import round_ticks
+from noise.pictures.clip_levels import HIGHEST, LOWEST, clip_levels
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

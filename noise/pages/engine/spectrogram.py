@@ -14,55 +14,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from noise.audio.line_levels import Grid, line_levels
-from noise.pages.engine.entry import RATE
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-__all__ = ["HIGHEST", "LOWEST", "RANGE", "TICKS", "clip_levels", "picture", "scale_picture", "top"]
-
-LOWEST, HIGHEST = 50.0, 20e3
-"""Of the frequency axis [Hz]."""
+__all__ = ["RANGE", "TICKS", "picture", "scale_picture", "top"]
 
 RANGE = 70.0
 """From the darkest colour to white [dB]."""
 
 TICKS = {100: "100", 200: "200", 500: "500", 1000: "1k", 2000: "2k", 5000: "5k", 10000: "10k"}
 
-_WIDTH, _HEIGHT = 600, 150
 _COLOURS = 16
-_LENGTH = 2048
-
-
-def clip_levels(samples: NDArray[np.float32], reference: float) -> NDArray[np.float64]:
-    """Levels of lines over time and logarithmic frequency.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n,)
-        In any unit, such as [Pa].
-    reference : float
-        Of the levels, in the unit of the samples, such as [Pa].
-
-    Returns
-    -------
-    ndarray, shape (150, n_columns)
-        The largest line in each row and column [dB re `reference`], the highest frequency first;
-        a steady tone has its own level.
-
-    Examples
-    --------
-    >>> tone = np.sin(2 * np.pi * 984.375 * np.arange(48000) / 48e3).astype(np.float32)
-    >>> levels = clip_levels(tone, 1.0)
-    >>> round(float(levels.max())), levels.shape[0]
-    (-3, 150)
-    """
-    width = int(min(_WIDTH, max(16, samples.size // 96)))
-    grid = Grid(0, samples.size, width, _HEIGHT, LOWEST, HIGHEST, _LENGTH)
-    return line_levels(lambda first, last: samples[first:last], samples.size, RATE, reference, grid)
 
 
 def top(levels: Sequence[NDArray[np.float64]]) -> float:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
+from models.short_repr import short_repr
 from noise.base.progress import counted
 from noise.pages.engine.clips import common_gain, make_clips
 from noise.pages.engine.entry import label_counts, labels_sentence
@@ -37,6 +38,7 @@ __all__ = ["Review", "review"]
 _PAGE = "report.html"
 
 
+@short_repr
 @dataclass(frozen=True)
 class Review:
     """A page that was written.
@@ -156,8 +158,10 @@ def review(
     gain = common_gain(entries.values(), pascal_per_full_scale)
     n_maps = 0 if compared is None else compared.n_maps
     drawn = 0.0 if compared is None else compared.weight
-    left = budget - PAGE_BYTES - CARD_BYTES * len(entries) - drawn
-    clips, shortened = make_clips(entries, gain, budget=left, dither=np.random.default_rng(seed))
+    beside = PAGE_BYTES + CARD_BYTES * len(entries) + drawn
+    clips, shortened = make_clips(
+        entries, gain, budget=budget, beside=beside, dither=np.random.default_rng(seed)
+    )
     rows = [{**row, "file": key} for key in groups[0] for row in entries[key].rows]
     titles = {key: entry.title for key, entry in entries.items()}
     of_recordings, unplaced = recorded_maps(rows, titles, clips)

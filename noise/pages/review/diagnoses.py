@@ -6,10 +6,10 @@ What it says is in ``diagnosis.json``. What it lets hear, measured beside simula
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import RecordingError
+from models.foreign_file import LARGEST_JSON, parse_json, reading
 from noise.diagnosis.outcome_json import from_json
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
@@ -72,19 +72,12 @@ def read_diagnosis(path: Path) -> DiagnosisDisplay:
     ...     read_diagnosis(Path(name) / "diagnosis.json").headline
     'No gap'
     """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except ValueError as error:
-        raise RecordingError(f"{path}: is damaged or no JSON ({error})") from None
-    if not isinstance(data, dict) or "verdict" not in data or "probabilities" not in data:
-        raise RecordingError(f"{path}: has no verdict and probabilities, so is no diagnosis")
-    try:
+    with reading(path, "diagnosis", error=RecordingError, largest=LARGEST_JSON):
+        data = parse_json(path.read_text(encoding="utf-8"))
+        if not isinstance(data, dict) or "verdict" not in data or "probabilities" not in data:
+            raise RecordingError(f"{path}: has no verdict and probabilities, so is no diagnosis")
         diagnosis = from_json(data)
         words = headline(diagnosis), answer(diagnosis)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise RecordingError(f"{path}: is damaged ({type(error).__name__}: {error})") from None
     return DiagnosisDisplay(
         path.parent.resolve().name,
         *words,

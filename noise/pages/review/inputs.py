@@ -8,16 +8,17 @@ is better than none.
 
 from __future__ import annotations
 
-import csv
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
-from noise.base.tables import TABLE_ENDINGS
+from noise.base.readable import readable
+from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.labels.table import read_label_table
 from noise.recordings import find_recordings
 from noise.recordings.files import READERS
+from noise.recordings.folders import files_below
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -54,7 +55,7 @@ class Refusal:
         >>> Refusal.of(Path("run07.wav"), "run07.wav: is empty").reason
         'is empty'
         """
-        return cls(str(path), str(error).removeprefix(f"{path}: "))
+        return cls(readable(str(path)), readable(str(error).removeprefix(f"{path}: ")))
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class LabelTable:
         """
         resolved = recording.resolve()
         beside = tuple(r for r in self.rows if self._named(r) == resolved)
-        ending = resolved.as_posix()
+        ending = readable(resolved.as_posix())  # as tables have it
         return beside or tuple(r for r in self.rows if ending.endswith(f"/{r['file']}"))
 
     def _named(self, row: Row) -> Path:
@@ -166,7 +167,7 @@ _KINDS = ("screen", "diagnosis", "design")
 def _kind_of_file(path: Path) -> str | None:
     ending = path.suffix.lower()
     if ending in TABLE_ENDINGS:
-        return "screen" if _columns(path) >= _OF_A_SCREEN else "table"
+        return "screen" if table_columns(path) >= _OF_A_SCREEN else "table"
     return {".json": "diagnosis", ".toml": "design"}.get(ending)
 
 
@@ -178,44 +179,24 @@ def _is_sidecar(path: Path) -> bool:
 
 
 def _inside(folder: Path) -> Iterator[tuple[str, Path]]:
-    for path in sorted(folder.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-        if hidden or not path.is_file():
-            continue
+    for path, _ in sorted(files_below(folder)):
         if path.name == DIAGNOSIS:
             yield "diagnosis", path
         elif path.suffix.lower() in TABLE_ENDINGS:
-            columns = _columns(path)
+            columns = table_columns(path)
             if columns >= _OF_A_SCREEN:
                 yield "screen", path
             elif columns >= _OF_LABELS:
                 yield "table", path
 
 
-def _columns(path: Path) -> set[str]:
-    """Columns of a table; of none where it is no table or cannot be read."""
-    try:
-        if path.suffix.lower() == ".parquet":
-            from pyarrow import parquet
-
-            return set(parquet.read_schema(path).names)
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            if path.suffix.lower() == ".jsonl":
-                import json
-
-                first = json.loads(file.readline() or "{}")
-                return set(first) if isinstance(first, dict) else set()
-            return set(next(csv.reader(file), ()))
-    except (OSError, ValueError, csv.Error, ImportError):
-        return set()
-
-
 def _originals(found: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
     """Leave out ``audio/run07.wav`` beside ``recordings/run07.wav``: the same made to be heard."""
     there = {path.resolve() for path, _ in found}
     for path, name in found:
-        original = path.parent.with_name("recordings") / path.name
-        if not (path.parent.name == "audio" and original.resolve() in there):
+        folder = path.parent.resolve()
+        original = folder.parent / "recordings" / path.name
+        if not (folder.name == "audio" and original.resolve() in there):
             yield path, name
 
 

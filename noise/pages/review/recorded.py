@@ -173,6 +173,8 @@ def _read_entry(
             sound, why = _sound(blocks, offset, longest)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
+    except OSError as error:  # it was there when the folder was searched
+        return Refusal.of(path, f"cannot be read ({error.strerror or error})")
     return Entry(
         name, tuple(rows), blocks.condition, duration, sound, offset,
         blocks.calibrated, "; ".join(filter(None, (note, why))),

@@ -11,12 +11,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
+from models.foreign_file import refusing
 from noise.base.label_names import LABELS
 from noise.base.tables import read_table
 from noise.labels.table import cell_number
 from noise.pages.screening.screen_maps import ScreenMap, ScreenPoint
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 __all__ = ["read_screen"]
@@ -56,6 +58,11 @@ def read_screen(path: Path) -> list[ScreenMap]:
     [('old', '5 rad/s, 0.279 mm: squawk'), ('new', '5 rad/s, 0.279 mm: none')]
     """
     _, rows = read_table(path)
+    with refusing(str(path), "map of a screen", RecordingError):
+        return _maps(path, rows)
+
+
+def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
     if not rows:
         raise RecordingError(f"{path}: has no rows, so is no map of a screen")
     maps: dict[tuple[str, str, str, float | None, float | None], list[ScreenPoint]] = {}
@@ -84,7 +91,7 @@ def read_screen(path: Path) -> list[ScreenMap]:
                 speed, fit, label,
                 str(row.get("regime") or ""),
                 number("level_dba"),
-                number("loudness"),
+                number("loudness_n5_sone"),
                 str(row.get("how") or ""),
                 number("frequency_hz") or None,
                 str(row.get("note") or ""),

@@ -33,7 +33,7 @@ class ScreenPoint(NamedTuple):
     regime, how : str
         Of friction; how it is known.
     level, loudness : float or None
-        L_Aeq [dB re 20 uPa] and N10 [sone].
+        L_Aeq [dB re 20 uPa] and N5 [sone].
     frequency : float or None
         At which the shaft swings [Hz]; None where it turns.
     note : str
@@ -56,7 +56,7 @@ class ScreenPoint(NamedTuple):
         told = [f"{self.speed:.3g} rad/s, {self.interference:.3g} mm: {self.label}"]
         told += [self.regime.replace("_", " ")] if self.regime else []
         told += [f"{self.level:.0f} dB(A)"] if self.level is not None else []
-        told += [f"{self.loudness:.3g} sone"] if self.loudness is not None else []
+        told += [f"N5 {self.loudness:.3g} sone"] if self.loudness is not None else []
         return ", ".join(told)
 
 

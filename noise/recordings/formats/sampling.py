@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["SAME_RATE", "even_rate", "whole_rate"]
+__all__ = ["HIGHEST_RATE", "LOWEST_RATE", "SAME_RATE", "check_rate", "even_rate", "whole_rate"]
+
+LOWEST_RATE, HIGHEST_RATE = 1.0, 10e6
+"""Sampling rates that are possible [Hz]; filters and windows grow with them."""
 
 SAME_RATE = 1e-6
 """Share by which rates may differ that are the same."""
@@ -27,21 +30,38 @@ _BLOCK = 1 << 16  # samples
 _JITTER = 0.05  # of a step, by which time stamps may miss their place
 
 
+def check_rate(rate: float, where: str) -> None:
+    """Refuse a sampling rate [Hz] that no recording of sound or motion has.
+
+    Raises
+    ------
+    RecordingError
+        It lies outside of `LOWEST_RATE` to `HIGHEST_RATE`, or is no number.
+
+    Examples
+    --------
+    >>> check_rate(1e8, "run.wav")
+    Traceback (most recent call last):
+    models.errors.RecordingError: run.wav: sampling rate is 1e+08 Hz, expected 1 Hz to 10 MHz
+    """
+    if not LOWEST_RATE <= rate <= HIGHEST_RATE:
+        raise RecordingError(f"{where}: sampling rate is {rate:g} Hz, expected 1 Hz to 10 MHz")
+
+
 def whole_rate(rate: float, where: str) -> float:
     """Bring a sampling rate [Hz] to a whole number where it misses one by rounding.
 
     Raises
     ------
     RecordingError
-        It is no positive number.
+        It is not possible, see `check_rate`.
 
     Examples
     --------
     >>> whole_rate(1 / 1.953125e-05, "run.tdms"), whole_rate(610.35, "run.tdms")
     (51200.0, 610.35)
     """
-    if not 0.0 < rate < math.inf:
-        raise RecordingError(f"{where}: sampling rate is {rate!r} Hz, expected a positive number")
+    check_rate(rate, where)
     whole = float(round(rate))
     return whole if abs(whole - rate) < SAME_RATE * rate else rate
 

@@ -29,7 +29,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["DENSEST", "Chunk", "bext_description", "chunks", "missing_bytes", "read_sound_file"]
+__all__ = [
+    "DENSEST", "Chunk", "bext_description", "chunks", "missing_bytes", "open_sound",
+    "read_sound_file",
+]  # fmt: skip
 
 _BLOCK = 1 << 16  # samples a channel
 DENSEST = 8192
@@ -74,7 +77,7 @@ def read_sound_file(path: Path) -> RawSamples:
             f"there are"
         )
     try:
-        with soundfile.SoundFile(path) as sound:
+        with open_sound(path) as sound:
             return RawSamples(
                 samples=_samples(path, sound),
                 rate=float(sound.samplerate),
@@ -85,6 +88,17 @@ def read_sound_file(path: Path) -> RawSamples:
     except soundfile.LibsndfileError as error:
         reason = error.error_string.rstrip(".")
         raise RecordingError(f"{path}: is damaged or no sound file ({reason})") from error
+
+
+def open_sound(path: Path) -> Any:
+    """Open a sound file whatever its name, of which the library takes texts in UTF-8 alone.
+
+    Raises
+    ------
+    soundfile.LibsndfileError
+        It is none.
+    """
+    return soundfile.SoundFile(path if os.name == "nt" else os.fsencode(path))
 
 
 def _samples(path: Path, sound: Any) -> NDArray[np.float64]:

@@ -27,8 +27,10 @@ from typing import TYPE_CHECKING
 
 from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
+from models.foreign_file import refusing
 from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
 from models.rig_files.shipped import material_names
+from models.short_repr import short_repr
 from noise.screening.design.axis_values import (
     FREQUENCY,
     SPEED,
@@ -111,6 +113,7 @@ class Use:
     swinging: Swinging | None = None
 
 
+@short_repr
 @dataclass(frozen=True)
 class Design:
     """A bushing on its rig, how it is used, and how it varies.
@@ -173,6 +176,11 @@ def load_design(given: str | Path) -> Design:
             )
         return Design(name, load_material_rig(name))
     where = f"design {path}"
+    with refusing(where, "design"):
+        return _read_design(path, where)
+
+
+def _read_design(path: Path, where: str) -> Design:
     content = read_toml(path, where)
     table = a_table(content.pop("design", {}), "design", where)
     tolerances = content.pop("tolerances", {})

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import FIXED
+from models.short_repr import short_repr
 from noise.screening.design.axis_values import SPEED_STEP, axis_words, spread
 from noise.screening.design.design import Swinging, Use
 from noise.screening.design.environments import DRY, environment
@@ -45,6 +46,7 @@ _BEYOND = 1.5
 """A map reaches from the slowest of `DEFAULT_SPEEDS`, or of use, so far beyond the fastest use."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Grid:
     """Conditions of a map.

@@ -1,4 +1,4 @@
-"""Loudness of a map's noises: N10 of one point a region, scaled to the rest by level.
+"""Loudness of a map's noises: N5 of one point a region, scaled to the rest by level.
 
 The procedure of ISO 532-1 for time-varying sounds takes as long as twenty runs, so it hears one
 point of each region of one label: the loudest. From there loudness goes with level by Stevens'
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import ndimage
 
-from features.sound_quality import SHORTEST, loudness_n10
+from features.sound_quality import SHORTEST, loudness_n5
 from noise.screening.map.point import point_sound, shaft_motion
 from noise.screening.ranking.ranking import loudness_weight
 
@@ -36,7 +36,7 @@ class _LoudPoint:
 
 
 def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
-    """Return the map with the loudness N10 of its noises.
+    """Return the map with the loudness N5 of its noises.
 
     Parameters
     ----------
@@ -66,8 +66,8 @@ def with_loudness(found: DesignMap, rig: Rig) -> DesignMap:
         )
         rate = sound.motion.rate
         cycles = int(np.ceil(SHORTEST * rate / sound.pressure.size))  # of a fast swing
-        n10 = loudness_n10(np.tile(sound.pressure, cycles), rate)
-        heard.append(_LoudPoint(label, float(found.level_max[where]), n10))
+        n5 = loudness_n5(np.tile(sound.pressure, cycles), rate)
+        heard.append(_LoudPoint(label, float(found.level_max[where]), n5))
     loudness = np.full(found.level_max.shape, np.nan)
     for label in {one.label for one in heard}:
         of_label = [one for one in heard if one.label == label]

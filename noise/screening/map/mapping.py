@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from models.short_repr import short_repr
 from noise.screening.map.batches import LABELS, Batch
 from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES
@@ -42,6 +43,7 @@ _NONE = LABELS.index("none")
 _STEADY = REGIMES.index(Regime.STEADY_SLIDING)
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class DesignMap:
     """What a design does over a grid; all arrays but the axes have the grid's shape.
@@ -57,7 +59,7 @@ class DesignMap:
     level, level_max : ndarray, shape of the grid
         L_Aeq and L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
     loudness : ndarray, shape of the grid
-        N10 [sone]; NaN where it was not asked for.
+        N5 [sone]; NaN where it was not asked for.
     how : ndarray of str, shape of the grid
         ``simulated``, ``stability``, ``refined`` or ``unchanged``.
     growth : ndarray, shape of the grid

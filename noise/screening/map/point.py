@@ -22,10 +22,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.bands import band_levels
-from features.kernels.levels import a_weighted, fast_levels
+from features.kernels.levels import a_weighted, fast_levels, weighted_levels
 from models.radiation.rig_response import impulse_responses
-from models.recording import REFERENCE_PRESSURE
 from models.rig import damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
 from noise.screening.map.fast_intervals import fast_intervals
@@ -279,9 +277,10 @@ def _sound(plan: Plan, motion: Motion, paths: ImpulseResponses) -> Sound:
 def _levels(sound: Sound) -> tuple[float, float]:
     """L_Aeq and L_AFmax [dB re 20 uPa]."""
     rate, start = sound.motion.rate, sound.before.size
-    weighted = a_weighted(np.concatenate([sound.before, sound.pressure]), rate)
-    mean_square = np.mean(weighted[start:] ** 2)
-    level = float(band_levels(mean_square, REFERENCE_PRESSURE))
+    heard = sound.pressure
+    level = weighted_levels(lambda first, last: heard[first:last], heard.size, rate).level_a
+    # The meter has been running, for the noise has lasted.
+    weighted = a_weighted(np.concatenate([sound.before, heard]), rate)
     return level, float(fast_levels(weighted, rate)[start:].max())
 
 

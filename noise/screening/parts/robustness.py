@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import uniform
 
+from models.short_repr import short_repr
 from noise.screening.design.tolerances import Tolerance
 from noise.screening.parts.advice import increase_margin, remove_noise
 from noise.screening.parts.design_variable import DesignVariable
@@ -66,6 +67,7 @@ DESIGN_VARIABLES = (
 _QUIET = "none"
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Robustness:
     """What a design's tolerances do, and which change would help.

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError
+from models.short_repr import short_repr
 from noise.screening.design.design import Use
 from noise.screening.design.environments import environment, in_environment
 from noise.screening.map.grid import DEFAULT_SPEEDS
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["Statistics", "as_mapped", "statistics_of"]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Statistics:
     """What a screen tells of a design in one environment beyond its map.

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 from noise.screening.map.batches import LABELS
 from noise.screening.parts.advice_words import advice_words
 from noise.screening.parts.estimate import Estimate
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = ["Standing", "loudness_weight", "refuse_unlike", "standings"]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Standing:
     """How a design does in one environment and motion.

@@ -130,7 +130,7 @@ _MAP: Columns = {
     "label": lambda found, at: str(found.label[at]),
     "level_dba": lambda found, at: round(float(found.level[at]), 2),
     "l_afmax_dba": lambda found, at: round(float(found.level_max[at]), 2),
-    "loudness": lambda found, at: round(float(found.loudness[at]), 3),
+    "loudness_n5_sone": lambda found, at: round(float(found.loudness[at]), 3),
     "how": lambda found, at: str(found.how[at]),
     "note": lambda found, at: found.note[at] or None,
 }

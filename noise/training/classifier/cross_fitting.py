@@ -16,7 +16,7 @@ import numpy as np
 from features.windows.table import HOP
 from noise.base.label_names import LABELS
 from noise.classifier.model import Classifier, at_sensitivity, has_more_than_sound
-from noise.labels.segmentation import NOISES, clearest
+from noise.labels.segmentation import NOISES, clearest, named as labels_named
 from noise.labels.windows import FEATURE_NAMES
 from noise.training.classifier.described_samples import Sample
 from noise.training.classifier.masked_rows import (
@@ -29,7 +29,7 @@ from noise.training.classifier.masked_rows import (
 from noise.training.classifier.operating_point import (
     false_names,
     fit_calibration,
-    fit_threshold,
+    fit_thresholds,
     scores,
 )
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
@@ -68,7 +68,7 @@ class LeftOut:
 
 
 def grown(sounds: Sequence[Sample | OwnSample], seed: int) -> tuple[Classifier, LeftOut]:
-    """Grow trees, calibrate them by trees that knew other kinds alone, and find the threshold.
+    """Grow trees, calibrate them by trees that knew other kinds alone, and find the thresholds.
 
     Parameters
     ----------
@@ -115,10 +115,10 @@ def grown(sounds: Sequence[Sample | OwnSample], seed: int) -> tuple[Classifier, 
     left_out = LeftOut(
         calibrated[0], [p if s else None for p, s in zip(calibrated[1], several, strict=True)]
     )
-    threshold = fit_threshold(_real_backgrounds(sounds, left_out))
+    thresholds = fit_thresholds(_real_backgrounds(sounds, left_out))
     names = tuple(name for name, k in zip(FEATURE_NAMES, known, strict=True) if k)
     trees = trees_of(np.ones(y.size, dtype=bool))
-    return Classifier(names, trees, (calibrations[0], calibrations[1]), {}, threshold), left_out
+    return Classifier(names, trees, (calibrations[0], calibrations[1]), {}, thresholds), left_out
 
 
 def with_trees_of(
@@ -136,7 +136,7 @@ def with_trees_of(
     columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
     trees = _trees(x[:, columns], y, weight, seed)
     return Classifier(
-        classifier.feature_names, trees, classifier.calibrations, {}, classifier.threshold
+        classifier.feature_names, trees, classifier.calibrations, {}, classifier.thresholds
     )
 
 
@@ -182,7 +182,7 @@ def _real_backgrounds(
 
 
 def left_out_scores(
-    sounds: Sequence[Sample | OwnSample], left_out: LeftOut, threshold: float
+    sounds: Sequence[Sample | OwnSample], left_out: LeftOut, thresholds: tuple[float, float, float]
 ) -> dict[str, object]:
     """Scores of kinds and of sources that the trees and the calibration had not known.
 
@@ -191,8 +191,8 @@ def left_out_scores(
     sounds : sequence of Sample or OwnSample
     left_out : LeftOut
         Of these sounds.
-    threshold : float
-        Probability [-] from which a noise is named.
+    thresholds : tuple of 3 floats
+        Probability [-] from which each noise is named.
 
     Returns
     -------
@@ -217,7 +217,7 @@ def left_out_scores(
     ]
     recall = {}
     for label in LABELS[:NOISES]:
-        right = [_name(p, threshold) == LABELS.index(label) for s, p in heard if s.label == label]
+        right = [_name(p, thresholds) == LABELS.index(label) for s, p in heard if s.label == label]
         if right:
             recall[label] = {"n": len(right), "recall": round(float(np.mean(right)), 4)}
     backgrounds = _real_backgrounds(sounds, left_out)
@@ -226,7 +226,9 @@ def left_out_scores(
             "recall": recall,
             "background_hours": round(sum(map(len, backgrounds)) * HOP / 3600.0, 3),
             "false_names_an_hour": {
-                f"{s:g}": round(false_names(backgrounds, at_sensitivity(threshold, s)), 1)
+                f"{s:g}": round(
+                    float(false_names(backgrounds, at_sensitivity(thresholds, s)).sum()), 1
+                )
                 for s in _SENSITIVITIES
             },
         }
@@ -241,15 +243,13 @@ def named(p: NDArray[np.float64], classifier: Classifier) -> int:
     p : ndarray, shape (n_windows, 5)
         Probabilities [-].
     classifier : Classifier
-        Whose threshold counts.
+        Whose thresholds count.
     """
-    return _name(p, classifier.threshold)
+    return _name(p, classifier.thresholds)
 
 
-def _name(p: NDArray[np.float64], threshold: float) -> int:
-    (whole,) = _clearest(p)
-    noise = int(whole[:NOISES].argmax())
-    return noise if whole[noise] >= threshold else NOISES + int(whole[NOISES:].argmax())
+def _name(p: NDArray[np.float64], thresholds: Sequence[float]) -> int:
+    return int(labels_named(_clearest(p), thresholds)[0])
 
 
 def _clearest(p: NDArray[np.float64]) -> NDArray[np.float64]:

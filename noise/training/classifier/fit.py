@@ -169,7 +169,7 @@ def learn(
     }
     known: list[Sample | OwnSample] = [*training, *real]
     classifier, left_out = grown([*known, *added], seed)
-    said |= left_out_scores([*known, *added], left_out, classifier.threshold)
+    said |= left_out_scores([*known, *added], left_out, classifier.thresholds)
     if added:
         without = with_trees_of(classifier, known, seed)
         before = [

@@ -2,7 +2,8 @@
 
 Six numbers are fitted on what trees said that had seen nothing of the kind or the source: the log
 loss of each sample where it sounds most like a noise is the smallest. A noise is named where it is
-more probable than a threshold, so high that real backgrounds are seldom named in an hour.
+more probable than a threshold of its own, so high that real backgrounds are seldom called so: one
+that everyday sounds are seldom taken for need not be as sure as another.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["FALSE_NAMES_AN_HOUR", "false_names", "fit_calibration", "fit_threshold", "scores"]
+__all__ = ["FALSE_NAMES_AN_HOUR", "false_names", "fit_calibration", "fit_thresholds", "scores"]
 
-FALSE_NAMES_AN_HOUR = 12.0
-"""So many segments of real backgrounds are called a noise, at most."""
+FALSE_NAMES_AN_HOUR = 5.0
+"""So many segments of real backgrounds are called each of the noises, at most."""
 
 _LEAST, _MOST = 0.5, 0.97
 """Threshold between which none is sought [-]: a noise that is named is likelier than all else."""
@@ -78,8 +79,10 @@ def fit_calibration(
     return calibration(minimize(loss, np.zeros(labels + 1), method="L-BFGS-B", bounds=bounds).x)
 
 
-def fit_threshold(backgrounds: Sequence[NDArray[np.float64]]) -> float:
-    """Find the lowest threshold that names no more than `FALSE_NAMES_AN_HOUR`.
+def fit_thresholds(
+    backgrounds: Sequence[NDArray[np.float64]],
+) -> tuple[float, float, float]:
+    """Find the lowest threshold of each noise that names no more than `FALSE_NAMES_AN_HOUR`.
 
     Parameters
     ----------
@@ -88,43 +91,49 @@ def fit_threshold(backgrounds: Sequence[NDArray[np.float64]]) -> float:
 
     Returns
     -------
-    float
+    tuple of 3 floats
         Probability [-].
 
     Examples
     --------
-    >>> clear, doubtful = [0.0, 0.0, 0.0, 0.1, 0.9], [0.7, 0.0, 0.0, 0.0, 0.3]
-    >>> fit_threshold([np.array([clear] * 900), np.array([doubtful] * 900)]) < 0.52
-    True
+    >>> clear, creaky = [0.0, 0.0, 0.0, 0.1, 0.9], [0.7, 0.0, 0.0, 0.0, 0.3]
+    >>> found = fit_thresholds([np.array([clear] * 900), *[np.array([creaky] * 9)] * 9])
+    >>> np.round(found, 2).tolist()
+    [0.7, 0.5, 0.5]
     """
-    tried = np.arange(_LEAST, _MOST, 0.01)
-    named = (false_names(backgrounds, threshold) for threshold in tried.tolist())
-    few = [count <= FALSE_NAMES_AN_HOUR for count in named]
-    return float(tried[few.index(True)]) if any(few) else _MOST
+    tried = np.arange(_LEAST, _MOST, 0.01).tolist()
+    counts = np.array([false_names(backgrounds, (t, t, t)) for t in tried])
+    few = np.concatenate([counts <= FALSE_NAMES_AN_HOUR, np.ones((1, NOISES), dtype=bool)])
+    creak, squawk, squeal = ([*tried, _MOST][first] for first in few.argmax(axis=0).tolist())
+    return creak, squawk, squeal
 
 
-def false_names(backgrounds: Sequence[NDArray[np.float64]], threshold: float) -> float:
+def false_names(
+    backgrounds: Sequence[NDArray[np.float64]], thresholds: Sequence[float]
+) -> NDArray[np.float64]:
     """Count segments that are called a noise.
 
     Parameters
     ----------
     backgrounds : sequence of ndarray, shape (n_windows, n_labels)
         Probabilities [-] of the windows of each sound that is no noise.
-    threshold : float
-        Probability [-] from which a noise is named.
+    thresholds : sequence of 3 floats
+        Probability [-] from which each noise is named.
 
     Returns
     -------
-    float
-        [1/h]
+    ndarray, shape (3,)
+        Of creak, squawk and squeal [1/h].
 
     Examples
     --------
-    >>> false_names([np.tile([0.7, 0.0, 0.0, 0.0, 0.3], (14_400, 1))], threshold=0.6)
-    1.0
+    >>> hour = np.tile([0.7, 0.0, 0.0, 0.0, 0.3], (14_400, 1))
+    >>> false_names([hour], [0.6, 0.5, 0.5]).tolist()
+    [1.0, 0.0, 0.0]
     """
-    found = sum(int(np.sum(labelled_stretches(p, threshold)[1] < NOISES)) for p in backgrounds)
-    return found * 3600.0 / (HOP * max(1, sum(map(len, backgrounds))))
+    names = [labelled_stretches(p, thresholds)[1] for p in backgrounds]
+    found = np.bincount(np.concatenate([*names, np.arange(0)]), minlength=NOISES)[:NOISES]
+    return np.asarray(found * 3600.0 / (HOP * max(1, sum(map(len, backgrounds)))))
 
 
 def scores(p: NDArray[np.float64], y: NDArray[np.int64], unknown: int) -> dict[str, object]:

@@ -117,28 +117,26 @@ def read_labelled(source: Path) -> tuple[list[OwnWindow], list[str]]:
         tabled = _from_tables(source, {path.resolve() for path in recordings}, refusals)
     for path in recordings:
         try:
-            stretches = _from_track(path, refusals) if source.is_dir() else []
-            if not stretches and path.resolve() in tabled:
-                stretches = tabled[path.resolve()]  # none where nobody has corrected it
-            elif not stretches:
-                stretches = _from_folders(path, source)
-            windows += _windows(path, stretches, refusals)
+            said = tabled.get(path.resolve())
+            if source.is_dir():
+                said = _from_track(path, refusals) or said or _from_folders(path, source) or said
+            if said is None:
+                known = ", ".join(LABELS)
+                raise RecordingError(
+                    f"{path}: has no label; put it into a folder called {known}, or beside a "
+                    "label table or a label track"
+                )
+            windows += _windows(path, said, refusals)  # none of what nobody has corrected
         except (BushingNoiseError, OSError) as error:
             refusals.append(_naming(path, str(error)))
     return windows, refusals
 
 
 def _from_folders(path: Path, folder: Path) -> list[_Stretch]:
-    """Return what the nearest folder that is named as a label says."""
+    """Return what the nearest folder that is named as a label says; nothing where none is."""
     above = (*reversed(path.relative_to(folder).parts[:-1]), folder.resolve().name)
     label = next((name.lower() for name in above if name.lower() in LABELS), None)
-    if label is None:
-        known = ", ".join(LABELS)
-        raise RecordingError(
-            f"{path}: has no label; put it into a folder called {known}, or beside a label table "
-            "or a label track"
-        )
-    return [_Stretch(label)]
+    return [] if label is None else [_Stretch(label)]
 
 
 def _from_track(path: Path, refusals: list[str]) -> list[_Stretch]:

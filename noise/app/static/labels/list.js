@@ -120,7 +120,8 @@ class RecordingList {
 
   #inView() {
     const first = Math.max(0, Math.floor(this.box.scrollTop / ROW) - BEYOND);
-    const last = Math.min(this.total, Math.ceil((this.box.scrollTop + this.box.clientHeight) / ROW) + BEYOND);
+    const height = Math.min(this.box.clientHeight, screen.height); // it has none of its own before its style is there
+    const last = Math.min(this.total, Math.ceil((this.box.scrollTop + height) / ROW) + BEYOND);
     return [first, last];
   }
 
@@ -138,7 +139,8 @@ class RecordingList {
     this.space.style.height = `${total * ROW}px`;
     this.#tell(counts, state);
     this.draw();
-    if (state.running) this.timer = setTimeout(() => this.load(), POLL);
+    // Somebody may label on the command line, too.
+    if (state.running || state.done < state.total) this.timer = setTimeout(() => this.load(), state.running ? POLL : 5 * POLL);
   }
 
   async #fetch(number) {
@@ -159,12 +161,13 @@ class RecordingList {
       button.hidden = !number && !ALWAYS.includes(kind) && this.label !== kind;
     }
     const left = state.total - state.done;
+    this.running = state.running;
     this.progress.hidden = !state.running;
     this.progress.max = Math.max(1, state.total);
     this.progress.value = state.done;
     this.labelButton.hidden = state.running || !left;
     this.labelButton.textContent = state.done ? `Label ${left.toLocaleString("en")} more` : `Label ${left.toLocaleString("en")}`;
-    this.stateLine.textContent = state.running ? `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")} labelled` : state.message;
+    this.stateLine.textContent = state.running ? `${state.done.toLocaleString("en")} of ${state.total.toLocaleString("en")} labelled` : state.message || (state.classifier ? `by ${state.classifier}` : "");
     this.box.setAttribute("aria-label", `Recordings, ${this.total}`);
     this.training.tell(counts.corrected ?? 0);
   }
@@ -187,7 +190,8 @@ class RecordingList {
       const turn = this.pool.length;
       const at = first + ((place - (first % turn) + turn) % turn);
       node.hidden = at >= last;
-      if (!node.hidden) this.#fill(node, at);
+      if (node.hidden) node.removeAttribute("aria-selected");
+      else this.#fill(node, at);
     }
     for (let number = Math.floor(first / PAGE); number * PAGE < last; number++) {
       if (!this.pages.has(number)) this.#fetch(number);

@@ -1,0 +1,163 @@
+"""Orders of a turning shaft: how loud what happens so many times a revolution is, by speed.
+
+A slip that the shaft's turning sets off stays at its order while the speed changes; a resonance
+stays at its frequency and crosses the orders. Each frame of the signal is short enough for the
+speed to hardly change in it; frames of about the same speed are averaged by their power.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from features.kernels.conditioning import checked_signal
+from models.errors import ParameterError
+from models.recording import REFERENCE_PRESSURE
+from models.short_repr import short_repr
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["OrderMap", "order_map", "speed_of_angle"]
+
+_FRAME, _HOP = 0.085, 0.02
+"""[s]"""
+
+_LOWEST, _HIGHEST = 20.0, 10e3
+"""Frequencies that orders are told of [Hz]."""
+
+_SLOWEST = 0.1
+"""Speeds below this share of the largest are left out: an order of theirs is no frequency yet."""
+
+_WIDEST = 0.3
+"""Share of the largest speed up to which the orders reach the highest frequency."""
+
+_ORDERS, _SPEEDS = 150, 80
+"""Cells of a map at most."""
+
+_SMOOTHED = 0.02
+"""Over which an angle's slope is taken [s]."""
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class OrderMap:
+    """Levels by speed and order.
+
+    Parameters
+    ----------
+    speed_edges : ndarray, shape (n_speeds + 1,)
+        Magnitude of the shaft's speed [rad/s], rising.
+    order_edges : ndarray, shape (n_orders + 1,)
+        Cycles a revolution [-], rising.
+    level : ndarray, shape (n_orders, n_speeds)
+        Strongest line in each cell [dB]; NaN where nothing was measured.
+    """
+
+    speed_edges: NDArray[np.float64]
+    order_edges: NDArray[np.float64]
+    level: NDArray[np.float64]
+
+
+def order_map(
+    signal: ArrayLike, rate: float, speed: ArrayLike, *, reference: float = REFERENCE_PRESSURE
+) -> OrderMap:
+    """Levels of a signal by the shaft's speed and by order.
+
+    Parameters
+    ----------
+    signal : array_like, shape (n_samples,)
+        In any unit, such as [Pa].
+    rate : float
+        Sampling rate [Hz].
+    speed : array_like, shape (n_samples,)
+        Of the shaft [rad/s], in either direction.
+    reference : float
+        Of the levels, in the [unit] of the signal.
+
+    Returns
+    -------
+    OrderMap
+
+    Raises
+    ------
+    ParameterError
+        A signal that cannot be analysed or is shorter than a frame, or a shaft that stands.
+
+    Examples
+    --------
+    >>> speed = np.linspace(2.0, 10.0, 96000)
+    >>> turned = np.cumsum(speed) / 48e3
+    >>> found = order_map(np.sin(2000 * turned), 48e3, speed)  # 2000 times a revolution
+    >>> strongest = found.order_edges[np.nanargmax(found.level, axis=0)]
+    >>> bool(np.all(np.abs(strongest / 2000 - 1) < 0.1))
+    True
+    """
+    x = checked_signal(signal, rate)
+    magnitude = np.abs(np.asarray(speed, dtype=np.float64))
+    length, hop = round(_FRAME * rate), max(1, round(_HOP * rate))
+    if x.size < length or magnitude.size != x.size:
+        raise ParameterError(
+            f"an order map needs a speed for each sample, and {_FRAME:g} s or more of them"
+        )
+    starts = np.arange(0, x.size - length + 1, hop)
+    mean = np.array([magnitude[start : start + length].mean() for start in starts])
+    fastest = float(mean.max())
+    if not fastest > 0.0:
+        raise ParameterError("the shaft stands, so there are no orders")
+    used = np.flatnonzero(mean >= _SLOWEST * fastest)
+    n_speeds = int(np.clip(used.size // 3, 1, _SPEEDS))
+    speeds = np.linspace(float(mean[used].min()), fastest * (1.0 + 1e-9), n_speeds + 1)
+    highest = min(_HIGHEST, 0.5 * rate)
+    orders = 2.0 * np.pi * np.geomspace(_LOWEST, highest / _WIDEST, _ORDERS + 1) / fastest
+    bins = np.fft.rfftfreq(length, 1.0 / rate)
+    window = np.hanning(length)
+    power, count = np.zeros((_ORDERS, n_speeds)), np.zeros((_ORDERS, n_speeds))
+    column_of = np.clip(np.searchsorted(speeds, mean, "right") - 1, 0, n_speeds - 1)
+    for number in used:
+        part = x[starts[number] : starts[number] + length]
+        lines = 2.0 * np.abs(np.fft.rfft((part - part.mean()) * window) / window.sum()) ** 2
+        edges = orders * mean[number] / (2.0 * np.pi)
+        inside = (edges[:-1] >= _LOWEST) & (edges[1:] <= highest)
+        if not inside.any():
+            continue
+        ends = np.searchsorted(bins, edges)
+        nearest = np.rint(np.sqrt(edges[:-1] * edges[1:]) / bins[1]).astype(int)
+        largest = np.maximum.reduceat(np.append(lines, 0.0), np.minimum(ends[:-1], lines.size))
+        # At low frequencies some orders lie between two lines.
+        between = lines[np.minimum(nearest, lines.size - 1)]
+        found = np.where(np.diff(ends) > 0, largest, between)
+        power[inside, column_of[number]] += found[inside]
+        count[inside, column_of[number]] += 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        level = 10.0 * np.log10(power / count / reference**2)
+    return OrderMap(speeds, orders, np.where(np.isfinite(level), level, np.nan))
+
+
+def speed_of_angle(angle: ArrayLike, rate: float) -> NDArray[np.float64]:
+    """Speed of a shaft whose angle was recorded.
+
+    Parameters
+    ----------
+    angle : array_like, shape (n_samples,)
+        [rad]
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n_samples,)
+        [rad/s], its slope over a fiftieth of a second.
+
+    Examples
+    --------
+    >>> float(speed_of_angle(5.0 * np.arange(1000) / 1e3, 1e3).round(6).max())
+    5.0
+    """
+    turned = np.asarray(angle, dtype=np.float64)
+    half = max(1, round(0.5 * _SMOOTHED * rate))
+    at = np.arange(turned.size)
+    before, after = np.maximum(at - half, 0), np.minimum(at + half, turned.size - 1)
+    return np.asarray((turned[after] - turned[before]) * rate / np.maximum(after - before, 1))

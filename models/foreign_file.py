@@ -1,0 +1,263 @@
+"""Files from outside: looked at before they are opened, and read without trust.
+
+Every reader goes through here. What is no plain file (a pipe, a device, a folder) is refused
+without being opened, since opening it may wait forever. Sizes are bounded before anything is set
+aside for them: of the file, and of how deep its lists lie in one another; for arrays see
+`models.foreign_arrays`. And whatever a library raises over a damaged file becomes one error of one
+line that names the file.
+"""
+
+from __future__ import annotations
+
+import json
+import stat
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from models.errors import BushingNoiseError, ParameterError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+__all__ = [
+    "LARGEST_JSON", "LARGEST_TEXT", "LARGEST_TOML", "ExcessError", "check_plain_file", "one_line",
+    "parse_json", "parse_toml", "reading", "refusing",
+]  # fmt: skip
+
+LARGEST_TEXT = 1 << 30
+"""Of a table in text, which is read line by line [byte]."""
+
+LARGEST_TOML = 2 << 20
+"""Of a TOML file, whose parser takes about a second a megabyte [byte]."""
+
+LARGEST_JSON = 64 << 20
+"""Of a JSON file, which is held as a whole [byte]."""
+
+_DEEPEST = 100  # lists and tables within one another
+_MOST_DOTS = 200  # of a key of TOML: the time to read it grows with their square
+_LONGEST_REASON = 200  # letters
+
+_KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
+}
+
+
+class ExcessError(ValueError):
+    """A file asks for more than it may; the message goes on from its name."""
+
+
+@contextmanager
+def reading(
+    path: Path,
+    what: str,
+    *,
+    where: str | None = None,
+    error: type[BushingNoiseError] = ParameterError,
+    largest: int | None = None,
+) -> Iterator[None]:
+    """Read a file from outside within this block: what goes wrong there is one line about it.
+
+    Parameters
+    ----------
+    path : Path
+        Refused without being opened unless it is a plain file.
+    what : str
+        What it should be, such as ``"NPZ file"``.
+    where : str, optional
+        What messages call the file; by default its path.
+    error : type
+        Of the error; errors of `models.errors` pass as they are.
+    largest : int, optional
+        Size up to which it is opened [byte].
+
+    Raises
+    ------
+    BushingNoiseError
+        Of the type `error`.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> with reading(Path("nowhere.npz"), "NPZ file"):
+    ...     raise AssertionError
+    Traceback (most recent call last):
+    models.errors.ParameterError: nowhere.npz: there is no such file
+    """
+    where = str(path) if where is None else where
+    with refusing(where, what, error):
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            kind = _KINDS.get(stat.S_IFMT(status.st_mode), "something else")
+            raise ExcessError(f"is {kind}, not a file")
+        if largest is not None and status.st_size > largest:
+            raise ExcessError(
+                f"has {status.st_size / 1e6:.0f} MB, and {largest / 1e6:.0f} MB are the most that "
+                f"is read of a {what}"
+            )
+        yield
+
+
+@contextmanager
+def refusing(
+    where: str, what: str, error: type[BushingNoiseError] = ParameterError
+) -> Iterator[None]:
+    """Make one line of whatever is raised in this block over values from a file.
+
+    Parameters
+    ----------
+    where, what, error
+        As for `reading`.
+
+    Raises
+    ------
+    BushingNoiseError
+        Of the type `error`.
+
+    Examples
+    --------
+    >>> with refusing("rig file a.toml", "rig file"):
+    ...     float(10 ** 400)
+    Traceback (most recent call last):
+    models.errors.ParameterError: rig file a.toml: is damaged or no rig file (OverflowError: int ...
+    """
+    try:
+        yield
+    except BushingNoiseError:
+        raise
+    except ExcessError as raised:
+        raise error(f"{where}: {raised}") from None
+    except FileNotFoundError:
+        raise error(f"{where}: there is no such file") from None
+    except OSError as raised:
+        raise error(f"{where}: cannot be read ({one_line(raised.strerror or raised)})") from raised
+    except MemoryError as raised:
+        raise error(f"{where}: needs more memory than there is") from raised
+    except RecursionError as raised:
+        raise error(f"{where}: is no {what} (too deep)") from raised
+    except Exception as raised:  # libraries raise whatever comes to them
+        raise error(f"{where}: is damaged or no {what} ({_reason(raised)})") from raised
+
+
+def check_plain_file(
+    path: Path, *, where: str | None = None, error: type[BushingNoiseError] = ParameterError
+) -> None:
+    """Refuse what is no plain file, such as a pipe, without opening it; missing ones as well.
+
+    Parameters
+    ----------
+    path : Path
+    where : str, optional
+        What messages call the file; by default its path.
+    error : type
+        Of the error.
+
+    Raises
+    ------
+    BushingNoiseError
+        Of the type `error`.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> check_plain_file(Path("/dev"))
+    Traceback (most recent call last):
+    models.errors.ParameterError: /dev: is a folder, not a file
+    """
+    with reading(path, "file", where=where, error=error):
+        pass
+
+
+def one_line(text: object) -> str:
+    r"""Return a message as one line of bounded length.
+
+    Examples
+    --------
+    >>> one_line("Error:\n  in line 2")
+    'Error: in line 2'
+    """
+    line = " ".join(str(text).split())
+    return line if len(line) <= _LONGEST_REASON else f"{line[:_LONGEST_REASON]}..."
+
+
+def parse_json(text: str | bytes) -> Any:
+    """Parse JSON that is not too deep.
+
+    Parameters
+    ----------
+    text : str or bytes
+        Bytes in UTF-8, UTF-16 or UTF-32.
+
+    Raises
+    ------
+    ValueError
+        It is no JSON, or too deep.
+
+    Examples
+    --------
+    >>> parse_json('{"speed_rad_s": 5.0}')
+    {'speed_rad_s': 5.0}
+    """
+    try:
+        return _not_too_deep(json.loads(text))
+    except RecursionError:
+        raise _too_deep() from None
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """Parse TOML that is not too deep.
+
+    Parameters
+    ----------
+    text : str
+
+    Raises
+    ------
+    ValueError
+        It is no TOML, or too deep.
+
+    Examples
+    --------
+    >>> parse_toml("beams.length_m = 0.42")
+    {'beams': {'length_m': 0.42}}
+    """
+    import re
+    import tomllib
+
+    for line in text.splitlines():
+        if line.count(".") > _MOST_DOTS and not line.lstrip().startswith("#"):
+            parts = re.split(r"[=,{}\[\]]", line)
+            if max(part.count(".") for part in parts) > _MOST_DOTS:
+                raise _too_deep()
+    try:
+        content: dict[str, Any] = _not_too_deep(tomllib.loads(text))
+    except RecursionError:
+        raise _too_deep() from None
+    return content
+
+
+def _not_too_deep(value: Any) -> Any:
+    level = [value] if isinstance(value, dict | list) else []
+    for _ in range(_DEEPEST):
+        held = (item.values() if isinstance(item, dict) else item for item in level)
+        level = [each for group in held for each in group if isinstance(each, dict | list)]
+        if not level:
+            return value
+    raise _too_deep()
+
+
+def _too_deep() -> ExcessError:
+    return ExcessError(f"holds lists or tables more than {_DEEPEST} deep in one another")
+
+
+def _reason(raised: Exception) -> str:
+    if isinstance(raised, KeyError):
+        return one_line(f"lacks {raised}")
+    said = one_line(raised)
+    if said and isinstance(raised, ValueError):
+        return said
+    return f"{type(raised).__name__}: {said}" if said else type(raised).__name__

@@ -1,0 +1,152 @@
+"""Tables as Excel workbooks: one sheet, the header frozen, numbers as numbers, no formula ever.
+
+Text stays text whatever it begins with: a recording called ``=cmd.wav`` is its name, no formula.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from typing import TYPE_CHECKING, Any
+
+from models.errors import ParameterError, not_installed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from noise.base.tables import Cell
+
+__all__ = ["check_openpyxl", "read_workbook", "write_workbook"]
+
+_LONGEST = 32_767
+"""Characters that a cell holds."""
+
+_MOST_ROWS = 1_048_576
+"""Of a sheet."""
+
+_WIDEST, _NARROWEST = 48, 8
+"""Of columns [characters]."""
+
+_LOOKED_AT = 200
+"""Rows by which the width of a column is chosen."""
+
+
+def check_openpyxl(path: Path) -> None:
+    """Refuse a workbook that cannot be read or written without the extra.
+
+    Raises
+    ------
+    ParameterError
+        openpyxl is not installed.
+
+    Examples
+    --------
+    >>> from importlib.util import find_spec
+    >>> from pathlib import Path
+    >>> if find_spec("openpyxl"):
+    ...     check_openpyxl(Path("labels.xlsx"))
+    """
+    try:
+        import openpyxl  # noqa: F401
+    except ImportError:
+        raise ParameterError(
+            not_installed(f"{path}: an Excel workbook needs", "openpyxl", "excel")
+        ) from None
+
+
+def write_workbook(
+    path: Path, columns: Sequence[str], rows: Sequence[Sequence[Cell]], sheet: str
+) -> None:
+    """Write a table as a workbook.
+
+    Parameters
+    ----------
+    path : Path
+    columns : sequence of str
+    rows : sequence of sequence
+        Numbers are finite.
+    sheet : str
+        What its sheet is called.
+
+    Raises
+    ------
+    ParameterError
+        The table has more rows than a sheet.
+    """
+    if len(rows) >= _MOST_ROWS:
+        raise ParameterError(
+            f"{len(rows)} rows are more than an Excel sheet has ({_MOST_ROWS}); name a .csv or "
+            ".parquet"
+        )
+    from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.styles import Font
+    from openpyxl.utils import get_column_letter
+
+    book = Workbook(write_only=True)
+    page = book.create_sheet(_sheet_name(sheet))
+    page.freeze_panes = "A2"
+    for number, column in enumerate(columns):
+        cells = (column, *(row[number] for row in rows[:_LOOKED_AT]))
+        longest = max(len(str(cell)) for cell in cells if cell is not None)
+        letter = get_column_letter(number + 1)
+        page.column_dimensions[letter].width = min(max(longest, _NARROWEST), _WIDEST) + 2
+
+    def cell(value: Cell) -> Any:
+        if not isinstance(value, str):
+            return value
+        of_text = WriteOnlyCell(page)
+        of_text.value = _writable(value)
+        of_text.data_type = "s"  # what begins like a formula is none
+        return of_text
+
+    head = [cell(column) for column in columns]
+    for one in head:
+        one.font = Font(bold=True)
+    page.append(head)
+    for row in rows:
+        page.append([cell(value) for value in row])
+    if columns:
+        page.auto_filter.ref = f"A1:{get_column_letter(len(columns))}{len(rows) + 1}"
+    book.properties.creator = "bushing-noise"
+    book.save(path)
+
+
+def read_workbook(path: Path) -> tuple[list[str], list[dict[str, object]]]:
+    """Read the first sheet of a workbook: the names of its columns, and its rows.
+
+    Raises
+    ------
+    ValueError
+        It is damaged, or no workbook.
+    """
+    from openpyxl import load_workbook
+    from openpyxl.utils.exceptions import InvalidFileException
+
+    try:
+        with path.open("rb") as file:
+            book = load_workbook(file, read_only=True, data_only=True)
+            lines = list(book.worksheets[0].iter_rows(values_only=True)) if book.worksheets else []
+    except (InvalidFileException, zipfile.BadZipFile, KeyError) as error:
+        raise ValueError(str(error)) from None
+    columns = [str(name) for name in lines[0] if name is not None] if lines else []
+    width = len(columns)
+    rows = [
+        dict(zip(columns, line[:width], strict=False))
+        for line in lines[1:]
+        if any(value is not None for value in line)
+    ]
+    return columns, rows
+
+
+def _sheet_name(name: str) -> str:
+    """Return a name that a sheet may have."""
+    return "".join("_" if letter in r"[]:*?/\'" else letter for letter in name)[:31] or "table"
+
+
+def _writable(text: str) -> str:
+    """Return a text without what no cell can hold."""
+    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
+
+    plain = text.encode("utf-8", "backslashreplace").decode()
+    return str(ILLEGAL_CHARACTERS_RE.sub(lambda found: repr(found.group())[1:-1], plain)[:_LONGEST])

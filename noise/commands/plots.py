@@ -1,0 +1,105 @@
+"""Option ``--plot`` of the commands that go through recordings: a picture of each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from models.errors import BushingNoiseError, ParameterError
+from noise.base.atomic import check_target
+from noise.base.exports import export_paths
+from noise.base.progress import note, track
+from noise.pictures.files import PICTURE_ENDINGS
+
+if TYPE_CHECKING:
+    from argparse import ArgumentParser
+    from collections.abc import Mapping, Sequence
+
+    from noise.batch import Job
+    from noise.recordings.meaning import PascalPerFullScale
+
+__all__ = ["add_plots", "check_plots", "draw_recordings"]
+
+_LONGEST = 600.0
+"""Of a picture [s]; a longer recording is drawn as far as that."""
+
+
+def add_plots(parser: ArgumentParser) -> None:
+    """Add ``--plot``."""
+    parser.add_argument(
+        "--plot",
+        type=Path,
+        metavar="FOLDER|PICTURE",
+        help="draw each recording: spectrogram, A-weighted level over time (F), speed of the shaft "
+        "and, where that was recorded and changes, order map; .png files in a folder, or the one "
+        "picture (.png, .svg or .pdf) where there is one recording; of the first "
+        f"{_LONGEST / 60.0:g} minutes of each",
+    )
+
+
+def check_plots(target: Path, jobs: Sequence[Job]) -> None:
+    """Refuse pictures that cannot be written, before the work.
+
+    Raises
+    ------
+    ParameterError
+        There are several recordings for one picture, or two of one name, or the place cannot be
+        written to.
+    """
+    try:
+        paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
+    except ParameterError:
+        if target.suffix.lower() not in PICTURE_ENDINGS and target.suffix:
+            kinds = ", ".join(PICTURE_ENDINGS)
+            raise ParameterError(f"--plot {target}: a picture ends in {kinds}") from None
+        raise
+    if target.is_file() and target.suffix.lower() not in PICTURE_ENDINGS:
+        raise ParameterError(f"--plot {target}: is a file; name a folder or a picture")
+    for path in paths.values():
+        check_target(path, "--plot")
+        break
+
+
+def draw_recordings(
+    target: Path,
+    jobs: Sequence[Job],
+    rows: Sequence[Mapping[str, object]] = (),
+    *,
+    full_scale: PascalPerFullScale | None = None,
+) -> list[Path]:
+    """Draw recordings, with their labels where there are any; return the pictures.
+
+    Parameters
+    ----------
+    target : Path
+    jobs : sequence of Job
+    rows : sequence of mapping
+        Of the label table.
+    full_scale : float or tuple of float, optional
+        As for `noise.recordings.read_recording`.
+    """
+    from noise.pictures.files import write_picture
+    from noise.pictures.recorded import plot_recording
+    from noise.recordings import read_recording
+    from noise.recordings.blocks import RecordingBlocks, open_blocks
+
+    paths = export_paths(target, [job.name for job in jobs], PICTURE_ENDINGS, "--plot")
+    refused = {row.get("file") for row in rows if row.get("error")}
+    written = []
+    for job in track(jobs, "drawing"):
+        if job.name in refused:
+            continue
+        try:
+            with open_blocks(job.path, full_scale=full_scale) as opened:
+                blocks = opened or RecordingBlocks.of(
+                    read_recording(job.path, full_scale=full_scale)
+                )
+                shown = min(blocks.n_samples, round(_LONGEST * blocks.rate))
+                recording = blocks.cut(0, shown)
+            of_it = [row for row in rows if row.get("file") == job.name]
+            write_picture(paths[job.name], plot_recording(recording, of_it))
+        except BushingNoiseError as error:
+            note(f"{job.name} is not drawn: {error}")
+            continue
+        written.append(paths[job.name])
+    return written

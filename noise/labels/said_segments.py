@@ -1,0 +1,106 @@
+"""Numbers of segments that a person has drawn: levels, frequency, condition, as `label` does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from noise.labels.labelling import label_rows, names_no_channels
+from noise.labels.levels import sound_levels, with_weighted_levels
+from noise.labels.segments import Segment
+from noise.labels.table import HUMAN
+from noise.labels.windows import can_be_described, describe, segment_frequency, tracks
+from noise.recordings import read_recording
+from noise.recordings.blocks import RecordingBlocks, open_blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from noise.recordings.meaning import PascalPerFullScale
+
+__all__ = ["LONGEST_MEASURED", "said_rows"]
+
+LONGEST_MEASURED = 120.0
+"""Recordings that are longer are not measured while a person waits [s]."""
+
+
+def said_rows(
+    path: Path,
+    name: str,
+    segments: Sequence[tuple[str, float, float, str]],
+    full_scale: PascalPerFullScale | None = None,
+) -> list[dict[str, object]]:
+    """Return a row for each segment of a recording that a person has drawn.
+
+    Parameters
+    ----------
+    path : Path
+    name : str
+        File as the table names it.
+    segments : sequence of (str, float, float, str)
+        Channel, start [s], end [s] and label of all segments.
+    full_scale : float or tuple of float, optional
+        Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+
+    Returns
+    -------
+    list of dict
+        By `noise.labels.labelling.COLUMNS`, without probabilities; those of a recording that is
+        longer than `LONGEST_MEASURED`, of a channel that it does not have, and beyond its end are
+        left out.
+
+    Raises
+    ------
+    RecordingError
+        It cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import numpy as np
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings import write_recording
+    >>> tone = np.sin(2.0 * np.pi * 800.0 * np.arange(32_000) / 16_000.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     run = Recording(tone[None], 16_000.0, (Channel("pressure"),))
+    ...     path = write_recording(Path(folder) / "run07", run)
+    ...     (row,) = said_rows(path, "run07.wav", [("all", 0.5, 1.5, "squeal")])
+    >>> round(row["frequency_hz"], -1), row["level_db"], row["label_source"], row["p_squeal"]
+    (800.0, 90.97, 'human', None)
+    """
+    with open_blocks(path, full_scale=full_scale) as opened:
+        recording = opened or RecordingBlocks.of(read_recording(path, full_scale=full_scale))
+        if recording.n_samples > LONGEST_MEASURED * recording.rate:
+            return []
+        found = [
+            segment
+            for channel, track in tracks(recording, per_track=names_no_channels(path))
+            for segment in with_weighted_levels(track, _measured(track, channel, segments))
+        ]
+        rows = label_rows(name, recording, found)
+        return [row | {"label_source": HUMAN} for row in rows]
+
+
+def _measured(
+    track: RecordingBlocks, channel: str, segments: Sequence[tuple[str, float, float, str]]
+) -> list[Segment]:
+    measured = []
+    for at, start, end, label in segments:
+        first, last = round(start * track.rate), min(round(end * track.rate), track.n_samples)
+        if at != channel or last - first < 2:
+            continue
+        blocks = RecordingBlocks.of(track.cut(first, last))
+        level = level_dbfs = frequency = None
+        if can_be_described(blocks):
+            found = describe(blocks)
+            frequency = segment_frequency(found.features, label)
+            row = blocks.first("pressure")
+            if row is not None:
+                level, level_dbfs = sound_levels(
+                    found.cells.rms_db(0, found.cells.count),
+                    calibrated=blocks.calibrated,
+                    full_scale=blocks.channels[row].full_scale,
+                )
+        measured.append(Segment(channel, start, end, label, {}, frequency, level, level_dbfs))
+    return measured

@@ -1,0 +1,202 @@
+"""The list of recordings in a browser: filter, find, order, scroll, keys; names that are markup."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from models.recording import Channel, Recording
+from noise.recordings import write_recording
+from tests.helpers.browser import chromium
+from tests.helpers.labelled_folder import many_rows, write_folder
+from tests.helpers.opened_app import opened_app
+
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+MANY = 1000
+EVIL = "<img src=x onerror=alert(1)>.wav"
+MOUNT = """async () => {
+  const { mountList } = await import("/static/labels/list.js");
+  const holder = document.createElement("div");
+  holder.style.height = "100%";
+  document.getElementById("view-labels").replaceChildren(holder);
+  window.opens = [];
+  window.list = mountList(holder, { onOpen: (id) => opens.push(id) });
+}"""
+ROW = ".rows [role=option]:visible"
+CHOSEN = ".rows [aria-selected=true]"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as started:
+        yield started
+
+
+def written(folder, number):
+    names = [EVIL, *(f"run{n:04d}.wav" for n in range(1, number))]
+    return write_folder(folder, names, many_rows(names[1:], np.random.default_rng(0)))
+
+
+@pytest.fixture(scope="module")
+def app(tmp_path_factory):
+    with opened_app(written(tmp_path_factory.mktemp("many"), MANY)) as running:
+        yield running
+
+
+def mounted(browser, app, width=1280):
+    """Open the page with nothing but the list in it."""
+    page = browser.new_page(viewport={"width": width, "height": 800})
+    page.complaints = []
+    page.on("console", lambda message: page.complaints.append(message.text))
+    page.on("pageerror", lambda error: page.complaints.append(str(error)))
+    page.on("dialog", lambda dialog: page.complaints.append(dialog.message))
+    page.goto(app.address)
+    page.wait_for_function("() => document.querySelector('#view-labels:not([hidden])')")
+    page.wait_for_load_state("networkidle")
+    page.evaluate(MOUNT)
+    page.wait_for_selector(f"{ROW} >> text=.wav")
+    return page
+
+
+@pytest.fixture
+def page(browser, app):
+    fresh = mounted(browser, app)
+    yield fresh
+    assert fresh.complaints == []
+    fresh.close()
+
+
+def shown(page):
+    return [text.strip() for text in page.locator(ROW).all_inner_texts()]
+
+
+def test_only_what_is_in_view_is_drawn_and_the_last_row_is_reached(page):
+    assert page.locator(".rows [role=option]").count() < 60
+    page.locator(".rows").evaluate("(rows) => { rows.scrollTop = rows.scrollHeight; }")
+    page.wait_for_selector(f"{ROW} >> text=run0999.wav")
+    assert page.locator(".rows [role=option]").count() < 60
+
+
+def test_a_label_shows_every_recording_that_it_is_in(page, app):
+    button = page.get_by_role("button", name="squeal", exact=False).first
+    number = app.json("api/recordings?label=squeal")["total"]
+    assert button.inner_text().split() == ["squeal", f"{number:,}"]
+    button.click()
+    page.wait_for_function("(n) => list.total === n", arg=number)
+    assert button.get_attribute("aria-pressed") == "true"
+    assert all("squeal" in text for text in shown(page))
+    assert any("+ squeal" in text for text in shown(page))
+
+
+def test_a_name_is_found_and_one_that_is_markup_harms_nobody(page):
+    page.get_by_role("searchbox").fill("onerror")
+    page.wait_for_function("() => list.total === 1")
+    assert shown(page)[0].startswith(EVIL)
+    assert page.locator("img").count() == 0
+
+
+def test_the_loudest_come_first_where_asked(page, app):
+    page.get_by_role("combobox").select_option(label="level, loudest first")
+    loudest = app.json("api/recordings?sort=level&order=desc")["rows"][0]
+    page.wait_for_selector(f"{ROW} >> text={loudest['name']}")
+    assert f"{loudest['level_dba']:.1f} dB(A)" in shown(page)[0]
+
+
+def test_keys_go_through_the_list_and_open(page):
+    page.get_by_role("listbox").focus()
+    for key in ("ArrowDown", "ArrowDown", "Enter", "End", "Enter"):
+        page.keyboard.press(key)
+        page.wait_for_function("() => list.row(list.at)")
+    assert page.evaluate("opens") == [2, MANY - 1]
+    assert "run0999.wav" in page.locator(CHOSEN).inner_text()
+
+
+def test_a_correction_by_anybody_is_in_the_list_when_it_is_asked_for_again(page, app):
+    rows = [{"start_s": 0.0, "end_s": 5.0, "label": "squawk", "label_source": "human"}]
+    app.json("api/recordings/1/segments", {"rows": rows})
+    page.evaluate(
+        "async () => { const { refresh } = await import('/static/labels/list.js');"
+        " await refresh(1); }"
+    )
+    assert "squawk, corrected" in page.locator(CHOSEN).inner_text()
+    app.json("api/undo", {})
+
+
+def test_it_fits_the_window_and_an_accessibility_checker_finds_nothing(page):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not there")
+    page.locator(".training summary").click()
+    for width in (390, 1280):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        found = axe.Axe().run(page, options={"runOnly": {"type": "tag", "values": RULES}}).response
+        assert [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]] == []
+
+
+@pytest.mark.slow
+def test_thousands_are_there_within_a_second_and_scroll_at_fifty_frames_a_second(browser, tmp_path):
+    with opened_app(written(tmp_path, 5000)) as app:
+        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page.goto(app.address)
+        seconds = page.evaluate(
+            f"""async () => {{
+              const start = performance.now();
+              await ({MOUNT})();
+              while (!document.querySelector("[role=option] b")?.textContent.endsWith(".wav"))
+                await new Promise(requestAnimationFrame);
+              return (performance.now() - start) / 1000;
+            }}"""
+        )
+        frames = page.evaluate(
+            """() => new Promise((done) => {
+              const rows = document.querySelector(".rows"), times = [];
+              const step = (now) => {
+                times.push(now);
+                rows.scrollTop += 137;
+                times.length < 300 ? requestAnimationFrame(step) : done(times);
+              };
+              requestAnimationFrame(step);
+            })"""
+        )
+        assert seconds <= 1.0
+        assert 1000.0 * (len(frames) - 1) / (frames[-1] - frames[0]) >= 50.0
+
+
+def test_labels_arrive_while_they_are_computed_and_the_table_holds_them(browser, tmp_path):
+    hiss = np.random.default_rng(0).normal(size=(1, 8000))
+    for name in ("a", "b"):
+        write_recording(tmp_path / f"{name}.wav", Recording(hiss, 16_000.0, (Channel("pressure"),)))
+    write_folder(tmp_path, ("bad.wav",))
+    with opened_app(tmp_path) as app:
+        page = mounted(browser, app)
+        rows = [{"start_s": 0.0, "end_s": 0.5, "label": "creak"}]
+        app.json("api/recordings/1/segments", {"rows": rows})
+        page.get_by_role("button", name="Label 3", exact=True).click()
+        page.wait_for_selector(f"{ROW} >> text=refused")
+        page.wait_for_function("() => !list.running")
+        texts = shown(page)
+        assert "creak, corrected" in texts[1]
+        assert any(label in texts[0] for label in ("none", "unknown"))
+        assert app.json("api/recordings")["state"]["done"] == 3
+        page.close()
+    table = (tmp_path / "labels.csv").read_text().splitlines()
+    assert len(table) == 4
+
+
+def test_what_was_learned_is_told_beside_what_was_known_before(page):
+    squeal = {
+        "label": "squeal",
+        "windows": 12,
+        "enough": False,
+        "recall_before": 0.25,
+        "recall": 0.75,
+        "false_names_before": 3,
+        "false_names": 1,
+    }
+    state = {"running": False, "done": 0, "of": 0, "corrected": 4, "message": "Learned."}
+    told = state | {"scores": {"files": 4, "labels": [squeal]}}
+    page.route("**/api/train", lambda route: route.fulfill(json=told))
+    page.locator(".training summary").click()
+    row = page.locator(".training tbody tr")
+    row.wait_for()
+    assert row.inner_text().split() == ["squeal", "*", "12", "25", "%", "75", "%", "3", "1"]
+    assert "learned without its file" in page.locator(".training figcaption").inner_text()

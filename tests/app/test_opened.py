@@ -1,0 +1,77 @@
+"""What is opened: recordings, tables and rigs, and which table is written."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+
+from models.errors import ParameterError
+from noise.app.opened import open_paths
+from noise.cli import main
+from tests.helpers.labelled_folder import made_row, write_folder
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return write_folder(tmp_path / "runs", ("a.wav", "b.wav"), [made_row("a.wav")])
+
+
+def test_a_folder_has_its_recordings_and_the_table_in_it(folder):
+    opened = open_paths([folder])
+    assert [job.name for job in opened.jobs] == ["a.wav", "b.wav"]
+    assert opened.table == folder / "labels.csv"
+    assert opened.job(1).path == folder / "b.wav"
+    with pytest.raises(ParameterError, match="no recording 2"):
+        opened.job(2)
+
+
+def test_a_table_brings_the_recordings_beside_it_and_is_the_one_that_is_corrected(folder):
+    (folder / "labels.csv").rename(folder / "checked.csv")
+    opened = open_paths([folder / "checked.csv"])
+    assert (len(opened.jobs), opened.table) == (2, folder / "checked.csv")
+
+
+def test_several_paths_and_a_rig_are_opened_together(folder, tmp_path):
+    other = write_folder(tmp_path / "more", ("c.wav",))
+    (tmp_path / "rig.toml").write_text('base = "fluorocarbon"\n')
+    opened = open_paths([folder, other / "c.wav", tmp_path / "rig.toml"], tmp_path / "all.csv")
+    assert [job.name for job in opened.jobs] == ["a.wav", "b.wav", "c.wav"]
+    assert (opened.rigs, opened.table) == ((tmp_path / "rig.toml",), tmp_path / "all.csv")
+
+
+def test_nothing_may_be_opened_for_a_design_alone():
+    opened = open_paths([])
+    assert (opened.jobs, opened.table) == ((), None)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["gone"], "gone does not exist"),
+        (["runs/labels.csv", "--out", "other.csv"], "corrections go into the label table"),
+        (["runs", "--out", "labels.xls"], "tables end in"),
+        (["runs", "--out", "runs/a.wav/labels.csv"], "is a file, not a folder"),
+        (["runs", "--port", "70000"], "must be from 0 to 65535"),
+        (["empty"], "there are no recordings in it"),
+        (["bad"], "is no label table"),
+    ],
+)
+def test_what_cannot_be_opened_is_said_in_one_line(
+    folder, tmp_path, monkeypatch, capsys, arguments, reason
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    write_folder(tmp_path / "bad", ("a.wav",))
+    (tmp_path / "bad" / "labels.csv").write_text("x\n1\n")
+    assert main(["open", "--no-browser", *arguments]) == 2
+    said = capsys.readouterr().err.strip().splitlines()
+    assert len(said) == 1
+    assert reason in said[0]
+
+
+def test_a_port_that_is_taken_is_said(folder, capsys):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        assert main(["open", str(folder), "--no-browser", "--port", port]) == 2
+    assert f"--port {port}: " in capsys.readouterr().err

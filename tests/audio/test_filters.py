@@ -1,0 +1,104 @@
+"""Filters to listen through: what they keep, what they take out, and that they shift nothing."""
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.errors import ParameterError
+from models.recording import Channel, Recording
+from noise.audio.filters import SoundFilter, filtered
+from noise.cli import main
+from noise.recordings import write_recording
+
+RATE = 48_000
+TIME = np.arange(2 * RATE) / RATE
+INSIDE = slice(RATE // 2, -RATE // 2)
+
+
+def tone(frequency):
+    return np.sqrt(2.0) * np.sin(2.0 * np.pi * frequency * TIME)
+
+
+def left(through, frequency):
+    """Level of a tone behind the filter, over that before it [dB]."""
+    kept = through.of(tone(frequency), float(RATE))[INSIDE]
+    return 20.0 * np.log10(np.sqrt(np.mean(kept**2)) + 1e-12)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(50.0, 2000.0), st.floats(1.5, 8.0))
+def test_a_band_keeps_what_lies_in_it_is_6_db_down_at_its_ends_and_takes_out_the_rest(low, ratio):
+    through = SoundFilter((low, low * ratio))
+    assert left(through, low * np.sqrt(ratio)) == pytest.approx(0.0, abs=1.5)
+    assert left(through, low) == pytest.approx(-6.0, abs=0.3)
+    assert left(through, low * ratio) == pytest.approx(-6.0, abs=0.3)
+    assert left(through, low / 2.0) < -40.0
+
+
+@pytest.mark.parametrize("frequency", [300.0, 974.0, 8000.0])
+def test_a_notch_takes_out_its_tone_and_leaves_its_neighbours(frequency):
+    through = SoundFilter(notches=(frequency,))
+    for near in (0.995, 1.0, 1.005):
+        assert left(through, near * frequency) < -60.0
+    for beside in (0.9, 1.1):
+        assert left(through, beside * frequency) == pytest.approx(0.0, abs=0.2)
+
+
+def test_a_slip_stays_where_it_was():
+    click = np.zeros(RATE)
+    click[RATE // 2] = 1.0
+    for through in (SoundFilter((200.0, 4000.0)), SoundFilter(notches=(974.0,))):
+        kept = through.of(click, float(RATE))
+        assert int(np.argmax(np.abs(kept))) == RATE // 2
+        before, after = kept[RATE // 2 - 9999 : RATE // 2], kept[RATE // 2 + 1 : RATE // 2 + 10000]
+        assert before[::-1] == pytest.approx(after, abs=1e-6)
+
+
+def test_a_frequency_beyond_the_recording_is_refused_by_its_name():
+    hiss = Recording(np.zeros((1, 100)), 8000.0, (Channel("pressure"),), name="run07")
+    with pytest.raises(ParameterError, match=r"run07: a filter at 4000 Hz .* stay below 4000 Hz"):
+        filtered(hiss, SoundFilter((200.0, 4000.0)))
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    sound = tone(100.0) + tone(974.0)
+    write_recording(tmp_path / "run", Recording(sound[None], float(RATE), (Channel("pressure"),)))
+    return tmp_path
+
+
+def test_render_tells_what_the_filter_takes_away_and_levels_of_what_is_left(run, capsys):
+    assert main(["render", "run.wav", "--band", "500..2000", "--out", "band.wav"]) == 0
+    words = "500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound"
+    assert f"run: {words}" in capsys.readouterr().err
+    told = json.loads(Path("band.json").read_text())
+    (part,) = told["parts"]
+    assert part["level_db"] == pytest.approx(93.98, abs=0.05)
+    assert part["notes"] == [f"filtered: {words}"]
+
+
+def test_filters_of_a_set_stand_in_its_table(run):
+    squeal = Recording(tone(974.0)[None], float(RATE), (Channel("pressure"),))
+    write_recording(run / "other", squeal)
+    call = ["render", "run.wav", "other.wav", "--notch", "974", "--notch", "3000", "--out", "set"]
+    assert main(call) == 0
+    with (run / "set" / "levels.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert all(
+        row["filter"].startswith("all without 974 and 3000 Hz, zero-phase; ") for row in rows
+    )
+    assert float(rows[0]["level_db"]) == pytest.approx(93.98, abs=0.05)
+    below = float(re.search(r"; ([\d.]+) dB below", rows[1]["filter"])[1])
+    assert below > 40.0  # it begins and ends at once, which is more than its tone
+
+
+@pytest.mark.parametrize("band", ["2000..200", "0..200", "200", "a..b"])
+def test_a_band_that_is_none_is_refused(run, capsys, band):
+    assert main(["render", "run.wav", "--band", band, "--out", "x.wav"]) == 2
+    assert "--band is " in capsys.readouterr().err

@@ -1,0 +1,93 @@
+"""Names that hold anything: shown on a terminal, written to tables, found again."""
+
+from __future__ import annotations
+
+import csv
+import os
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import given, strategies as st
+
+from noise.base.progress import note, say
+from noise.base.readable import readable
+from noise.base.tables import read_table, write_table
+from noise.cli import main
+from noise.labels.table import read_label_table, with_corrections
+from noise.recordings import find_recordings, read_recording
+
+NO_UTF8 = os.fsdecode(b"caf\xe9.wav")
+FORMULAS = ("=1+1.wav", "+run.wav", "-run.wav", "@run.wav", "'=run.wav", "''-run.wav", "'run.wav")
+
+
+@given(st.text() | st.binary().map(os.fsdecode))
+def test_what_is_shown_can_be_written_and_controls_no_terminal(text):
+    shown = readable(text)
+    shown.encode("utf-8")
+    assert not any(ord(letter) < 0x20 or 0x7F <= ord(letter) < 0xA0 for letter in shown)
+    assert readable(shown) == shown
+
+
+@pytest.mark.parametrize("text", ["run 07.wav", "Buchse-Größe.wav", "軸受.wav", "a'b=c.wav"])
+def test_names_that_can_be_shown_stay_as_they_are(text):
+    assert readable(text) == text
+
+
+def test_messages_bring_no_control_characters_to_the_terminal(capsys):
+    say("\x1b]0;title\x07\x1b[2Jrun.wav:\nis empty\x9b31m")
+    note("\r\b\x7f")
+    told = capsys.readouterr().err
+    assert told.replace("\n", "").isprintable()
+    assert r"\x1b]0;title\x07\x1b[2Jrun.wav: is empty\x9b31m" in told
+
+
+@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+def test_names_that_a_spreadsheet_takes_for_formulas_come_back_as_they_were(tmp_path, ending):
+    names = [*FORMULAS, "run.wav", "\tx"]
+    path = tmp_path / f"t{ending}"
+    write_table(path, ["file", "level"], [{"file": name, "level": -1.5} for name in names])
+    assert [row["file"] for row in read_table(path)[1]] == names
+
+
+def test_no_text_of_a_csv_table_begins_a_formula_and_numbers_stay_numbers(tmp_path):
+    path = tmp_path / "t.csv"
+    write_table(path, ["file", "level"], [{"file": name, "level": -1.5} for name in FORMULAS])
+    with path.open(newline="") as file:
+        _, *rows = csv.reader(file)
+    assert not any(row[0].startswith(("=", "+", "-", "@", "\t", "\r")) for row in rows)
+    assert {row[1] for row in rows} == {"-1.5"}
+
+
+@pytest.fixture
+def odd(tmp_path):
+    """Recordings of odd names, in a folder."""
+    folder = tmp_path / "runs"
+    folder.mkdir()
+    for name in (NO_UTF8, "=1+1.wav", "\x1b[2J.wav"):
+        with (folder / name).open("wb") as file:
+            soundfile.write(file, np.full((4800, 1), 0.1), 48_000, format="WAV")
+    return folder
+
+
+def test_a_recording_whose_name_is_no_utf8_is_read(odd):
+    assert read_recording(odd / NO_UTF8).samples.shape == (1, 4800)
+
+
+def test_recordings_of_odd_names_are_labelled_once_and_corrections_stay_theirs(
+    odd, tmp_path, capsys
+):
+    table = tmp_path / "labels.csv"
+    assert main(["label", str(odd), "--out", str(table)]) == 0
+    rows = read_label_table(table)
+    assert [row["file"] for row in rows] == [r"\x1b[2J.wav", "=1+1.wav", r"caf\xe9.wav"]
+    assert {row["file"] for row in rows} == {name for _, name in find_recordings(odd)}
+    assert "\x1b" not in table.read_text(encoding="utf-8")
+    for row in rows:
+        row |= {"label": "squeal", "label_source": "human"}
+    write_table(table, list(rows[0]), rows)
+    again = [{**row, "label": "none", "label_source": "classifier"} for row in rows]
+    assert {row["label"] for row in with_corrections(table, again)} == {"squeal"}
+    capsys.readouterr()
+    assert main(["label", str(odd), "--out", str(table)]) == 0
+    assert "3 of 3 recordings are done already" in capsys.readouterr().err

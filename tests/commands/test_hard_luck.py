@@ -1,0 +1,90 @@
+"""Commands called at a bad moment, or with what no machine has: one line, and the exit code."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from noise.cli import main
+
+ROOT = Path(__file__).parents[2]
+
+SCRIPT = """
+import os, signal, sys
+
+class Interrupt:
+    def find_spec(self, name, path=None, target=None):
+        if name == os.environ["AT"]:
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupt())
+from noise.__main__ import run
+run()
+"""
+
+
+@pytest.mark.parametrize(
+    "at", ["models", "noise.__main__", "noise.cli", "noise.commands.features", "features"]
+)
+def test_an_interrupt_while_a_command_is_loaded_is_one_line(tmp_path, at):
+    script = tmp_path / "bushing-noise"
+    script.write_text(SCRIPT)
+    done = subprocess.run(
+        [sys.executable, script, "features", str(tmp_path)],
+        capture_output=True, text=True, env={**os.environ, "AT": at, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert done.stderr == "bushing-noise: interrupted\n"
+    assert done.returncode == 130
+
+
+@pytest.mark.parametrize("command", ["screen", "label", "features"])
+@pytest.mark.parametrize("number", ["0", "1025", "100000", "9" * 5000])
+def test_more_workers_than_any_machine_starts_are_refused(tmp_path, capsys, command, number):
+    assert main([command, str(tmp_path), "--workers", number]) == 2
+    assert "expected a whole number from 1 to 1024" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--speed", "5..x"], ["--interference", "11"], ["--temperature", "a"],
+     ["--support-stiffness", "-1"], ["--oscillate", "15"], ["--environment", "mars"]],
+)  # fmt: skip
+def test_a_screen_refuses_bad_conditions_before_it_loads_the_simulator(options):
+    started = time.perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "noise", "screen", "PDMS", *options],
+        capture_output=True, text=True, cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert time.perf_counter() - started < 10.0
+    assert done.returncode == 2
+    loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert not {"numba", "scipy", "sim"} & loaded
+
+
+@pytest.mark.parametrize(
+    "call",
+    [["label", "{pipe}.wav"], ["features", "{pipe}.wav"],
+     ["render", "{pipe}.wav", "--out", "a.wav"],
+     ["label", "{run}.wav", "--classifier", "{pipe}.npz"],
+     ["label", "{run}.wav", "--inference", "{pipe}.npz"],
+     ["simulate", "--rig", "{pipe}.toml", "--speed", "5", "--out", "a.wav"],
+     ["screen", "{pipe}.toml"],
+     ["frf", "{pipe}.npy"], ["review", "{pipe}.csv", "--out", "a"],
+     ["review", "{pipe}.json", "--out", "a"], ["label", "{pipe}.csv", "--audacity", "a"],
+     ["diagnose", "{run}.wav", "--rig", "{pipe}.toml"]],
+)  # fmt: skip
+def test_a_pipe_is_refused_by_every_command_and_not_waited_for(tmp_path, monkeypatch, capsys, call):
+    import numpy as np
+    import soundfile
+
+    monkeypatch.chdir(tmp_path)
+    for ending in (".wav", ".npz", ".toml", ".npy", ".csv", ".json"):
+        os.mkfifo(f"pipe{ending}")
+    soundfile.write("run.wav", np.full(2000, 0.1), 48_000)
+    assert main([part.format(pipe="pipe", run="run") for part in call]) in (1, 2)
+    assert "is a pipe, not a file" in capsys.readouterr().err

@@ -1,0 +1,171 @@
+"""The gate for files from outside: what is no file, what is too large, and what libraries raise."""
+
+from __future__ import annotations
+
+import io
+import os
+import socket
+import struct
+import zipfile
+import zlib
+from tokenize import TokenError
+
+import numpy as np
+import pytest
+
+from models.errors import ParameterError, RecordingError
+from models.foreign_arrays import read_array, read_arrays
+from models.foreign_file import check_plain_file, parse_json, parse_toml, reading, refusing
+
+
+def refusal(path, read=read_arrays, what="NPZ file"):
+    with pytest.raises(ParameterError) as refused, reading(path, what):
+        read(path)
+    message = str(refused.value)
+    assert message.startswith(f"{path}: ")
+    assert "\n" not in message
+    return message.removeprefix(f"{path}: ")
+
+
+def test_a_pipe_is_refused_without_being_opened(tmp_path):
+    os.mkfifo(tmp_path / "run.wav")
+    with pytest.raises(ParameterError, match="is a pipe, not a file"):
+        check_plain_file(tmp_path / "run.wav")
+
+
+def test_a_socket_a_device_and_a_folder_are_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # paths of sockets are short
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind("s.wav")
+        with pytest.raises(RecordingError, match="is a socket, not a file"):
+            check_plain_file(tmp_path / "s.wav", error=RecordingError)
+    with pytest.raises(ParameterError, match="/dev/zero: is a device, not a file"):
+        check_plain_file(type(tmp_path)("/dev/zero"))
+    with pytest.raises(ParameterError, match="rig file x: is a folder, not a file"):
+        check_plain_file(tmp_path, where="rig file x")
+
+
+def test_a_link_counts_as_what_it_leads_to(tmp_path):
+    (tmp_path / "here.npz").symlink_to(tmp_path / "there.npz")
+    assert refusal(tmp_path / "here.npz") == "there is no such file"
+    (tmp_path / "loop.npz").symlink_to(tmp_path / "loop.npz")
+    assert refusal(tmp_path / "loop.npz").startswith("cannot be read (")
+
+
+def test_a_file_that_is_too_large_is_not_opened(tmp_path):
+    path = tmp_path / "rig.toml"
+    with path.open("wb") as file:
+        file.truncate(3_000_000)
+    with (
+        pytest.raises(ParameterError, match="has 3 MB, and 1 MB are the most"),
+        reading(path, "TOML file", largest=1_000_000),
+    ):
+        raise AssertionError
+
+
+@pytest.mark.parametrize(
+    "raised",
+    [
+        TokenError("EOF in multi-line statement", (2, 0)), zlib.error("invalid block type"),
+        zipfile.BadZipFile("Bad magic number"), NotImplementedError("strong encryption"),
+        RecursionError("maximum"), MemoryError(), EOFError(), KeyError("header"),
+        struct.error("unpack requires"), ValueError("first line\n  second line\n"),
+        RuntimeError("password required"), OverflowError("int too large"), AssertionError(),
+        UnicodeDecodeError("utf-8", b"\xff", 0, 1, "invalid start byte"), OSError("no errno"),
+        ValueError("long " * 1000),
+    ],
+)  # fmt: skip
+def test_whatever_a_library_raises_is_one_line_that_names_the_file(raised):
+    with pytest.raises(RecordingError) as refused, refusing("run.h5", "recording", RecordingError):
+        raise raised
+    message = str(refused.value)
+    assert message.startswith("run.h5: ")
+    assert "\n" not in message
+    assert len(message) < 300
+
+
+def test_an_interrupt_is_no_damage_of_a_file():
+    with pytest.raises(KeyboardInterrupt), refusing("run.h5", "recording"):
+        raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("array", [
+    np.zeros((0, 3)), np.array("a text"), np.array(3.0), np.array(["a", "bc"]), np.array(""),
+    np.asfortranarray(np.arange(6.0).reshape(2, 3)), np.array([1 + 2j]), np.array(b"bytes"),
+    np.arange(4, dtype=">i2"), np.array([True, False]),
+])  # fmt: skip
+def test_arrays_are_read_as_numpy_reads_them(tmp_path, array):
+    np.savez_compressed(tmp_path / "a.npz", x=array)
+    np.save(tmp_path / "a.npy", array)
+    for found in (read_arrays(tmp_path / "a.npz")["x"], read_array(tmp_path / "a.npy")):
+        expected = np.load(tmp_path / "a.npy")
+        assert found.dtype == expected.dtype
+        assert found.flags.f_contiguous == expected.flags.f_contiguous
+        np.testing.assert_array_equal(found, expected, strict=True)
+
+
+def npz(path, members, compression=zipfile.ZIP_DEFLATED):
+    with zipfile.ZipFile(path, "w", compression) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+def npy(array):
+    file = io.BytesIO()
+    np.save(file, array)
+    return file.getvalue()
+
+
+def test_a_file_that_inflates_beyond_measure_is_refused_before_it_does(tmp_path):
+    path = tmp_path / "bomb.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for i in range(5):
+            with archive.open(f"{i}.npy", "w") as member:
+                for _ in range(20):
+                    member.write(bytes(1 << 20))
+    assert path.stat().st_size < 200_000
+    assert refusal(path).startswith("would inflate from 0.102 MB to 105 MB")
+
+
+def test_a_header_that_announces_more_than_there_is_is_refused(tmp_path):
+    content = npy(np.zeros(10)).replace(b"(10,), }", b"(10000000000,), }")
+    assert "announces 80000000000 bytes" in refusal(npz(tmp_path / "a.npz", {"x.npy": content}))
+    (tmp_path / "a.npy").write_bytes(content)
+    assert "announces 80000000000 bytes" in refusal(tmp_path / "a.npy", read_array)
+
+
+@pytest.mark.parametrize("members", [
+    {"x.npy": b""}, {"x.npy": b"no magic at all, but long enough for one"}, {"readme.txt": b"hi"},
+    {"x.npy": npy(np.zeros(9))[:-5]}, {"x.npy": npy(np.zeros(9)).replace(b"(9,)", b"(9, ")},
+    {"x.npy": npy(np.zeros(9)).replace(b"'descr'", b"'dexcr'")},
+    {"x.npy": npy(np.zeros(9)).replace(b"(9,)", b"(-9,)"[:4])},
+    {"x.npy": npy(np.zeros(9)).replace(b"<f8", b"|O8")},
+])  # fmt: skip
+def test_a_member_that_is_no_array_is_refused(tmp_path, members):
+    assert "damaged" in refusal(npz(tmp_path / "a.npz", members)) or members
+
+
+@pytest.mark.parametrize("compression", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_what_inflates_without_bounds_is_not_inflated(tmp_path, compression):
+    path = npz(tmp_path / "a.npz", {"x.npy": npy(np.zeros(9))}, compression)
+    assert "compressed in a way that is not known" in refusal(path)
+
+
+@pytest.mark.parametrize(("parse", "text"), [
+    (parse_json, "[" * 200 + "]" * 200), (parse_json, "[" * 100_000), (parse_json, '{"a":' * 5000),
+    (parse_toml, "a = " + "[" * 200 + "]" * 200), (parse_toml, "a = " + "[" * 20_000),
+    (parse_toml, ".".join("a" * 201) + " = 1"), (parse_toml, ".".join("a" * 50_000) + " = 1"),
+    (parse_toml, "[" + ".".join("a" * 50_000) + "]"),
+    (parse_toml, "x = {" + ".".join("a" * 50_000) + " = 1}"),
+])  # fmt: skip
+def test_what_is_too_deep_is_refused_at_once(parse, text):
+    with pytest.raises(ValueError, match="more than 100 deep in one another"):
+        parse(text)
+
+
+def test_dots_that_are_no_depth_are_let_through():
+    rows = ", ".join(["1.5"] * 1000)
+    text = f"# {'.' * 300}\nx = [{rows}]\ntitle = 'contents, {'.' * 100}'"
+    assert len(parse_toml(text)["x"]) == 1000
+    assert parse_json('{"a": [[[[1]]]]}') == {"a": [[[[1]]]]}

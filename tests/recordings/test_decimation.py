@@ -1,0 +1,69 @@
+"""Recordings sampled far above all that is heard: the same sound, at a rate that is bounded."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import soundfile
+from hypothesis import given, strategies as st
+
+from models.errors import RecordingError
+from models.recording import Channel, Recording
+from noise.recordings import read_recording
+from noise.recordings.blocks import RecordingBlocks
+from noise.recordings.decimation import HIGHEST_WORKED, decimated
+from noise.recordings.hits import read_hit
+
+
+@pytest.mark.parametrize("rate", [400_001.0, 1e6, 9_999_991.0, 1e7])
+def test_a_tone_keeps_level_and_time_and_what_is_above_is_gone(rate):
+    t = np.arange(round(0.02 * rate)) / rate
+    tone = np.sin(2.0 * np.pi * 5000.0 * t)
+    beyond = np.sin(2.0 * np.pi * 0.49 * rate * t) if rate > 8e5 else 0.0
+    run = Recording((tone + beyond)[np.newaxis], rate, (Channel("pressure"),))
+    blocks = RecordingBlocks.of(run)
+    assert blocks.rate <= HIGHEST_WORKED
+    found = blocks.read(0, blocks.n_samples)[0]
+    at = np.arange(blocks.n_samples) / blocks.rate
+    middle = slice(50, -50)
+    np.testing.assert_allclose(found[middle], np.sin(2.0 * np.pi * 5000.0 * at)[middle], atol=2e-3)
+
+
+@given(st.integers(0, 300), st.integers(1, 300), st.sampled_from([5e5, 3.3e6]))
+def test_a_part_is_what_the_whole_has_there(first, length, rate):
+    samples = np.random.default_rng(1).normal(size=(2, 4000))
+    read, n, _ = decimated(lambda a, b: samples[:, a:b], 4000, rate)
+    first = min(first, n - 1)
+    last = min(n, first + length)
+    np.testing.assert_array_equal(read(first, last), read(0, n)[:, first:last])
+
+
+def test_rates_up_to_the_bound_are_left_as_they_are():
+    run = Recording(np.ones((1, 100)), 384e3, (Channel("pressure"),))
+    blocks = RecordingBlocks.of(run)
+    assert (blocks.rate, blocks.n_samples) == (384e3, 100)
+    assert blocks.read(0, 100).base is run.samples
+
+
+@pytest.mark.parametrize("rate", [10_000_001, 100_000_000])
+def test_a_rate_that_nothing_is_sampled_at_is_refused(tmp_path, rate):
+    path = tmp_path / "run.wav"
+    soundfile.write(path, np.full(2000, 0.1), rate)
+    with pytest.raises(RecordingError, match=r"sampling rate is 1e\+0. Hz, expected 1 Hz to 10"):
+        read_recording(path)
+
+
+@pytest.mark.parametrize("rate", [1e-6, 0.5, 1e9, 1e300])
+def test_so_is_one_of_a_logger_and_one_of_a_hit(tmp_path, rate):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "run.h5"
+    with h5py.File(path, "w") as file:
+        file["pressure"] = np.ones(100)
+        file["pressure"].attrs["unit"] = "Pa"
+        file.attrs["rate_Hz"] = rate
+    with pytest.raises(RecordingError, match="Hz, expected 1 Hz to 10 MHz"):
+        read_recording(path)
+    table = np.stack([np.arange(100) / rate, np.ones(100), np.zeros(100)])
+    np.save(tmp_path / "hit.npy", table)
+    with pytest.raises(RecordingError, match=r"Hz, expected 1 Hz to 10 MHz|does not rise evenly"):
+        read_hit(tmp_path / "hit.npy")

@@ -1,0 +1,63 @@
+"""Folders searched at any depth: links, loops, and what goes away."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from noise.recordings import find_recordings
+from noise.recordings.folders import files_below
+
+
+@pytest.fixture
+def day(tmp_path):
+    folder = tmp_path / "day1"
+    folder.mkdir()
+    for name in ("run07.wav", "run08.wav"):
+        (folder / name).touch()
+    return folder
+
+
+def names(folder):
+    return [name for _, name in find_recordings(folder)]
+
+
+def test_a_link_to_a_folder_elsewhere_is_followed(day, tmp_path):
+    (tmp_path / "campaign").mkdir()
+    (tmp_path / "campaign" / "monday").symlink_to(day)
+    assert names(tmp_path / "campaign") == ["monday/run07.wav", "monday/run08.wav"]
+
+
+def test_links_in_a_circle_end_where_they_began(day):
+    (day / "again").symlink_to(day)
+    (day / "above").symlink_to(day.parent)
+    assert names(day) == ["run07.wav", "run08.wav"]
+
+
+def test_a_folder_that_is_there_keeps_its_own_name_whatever_links_lead_to_it(day, tmp_path):
+    (tmp_path / "a-link").symlink_to(day)
+    assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
+
+
+def test_a_link_to_nowhere_and_what_is_hidden_are_left_out(day):
+    (day / "run09.wav").symlink_to(day / "gone.wav")
+    (day / ".trash").mkdir()
+    (day / ".trash" / "run01.wav").touch()
+    (day / ".run02.wav").touch()
+    assert names(day) == ["run07.wav", "run08.wav"]
+
+
+def test_a_folder_that_goes_away_while_it_is_searched_costs_no_other(day, tmp_path, monkeypatch):
+    (tmp_path / "day2").mkdir()
+    (tmp_path / "day2" / "run10.wav").touch()
+    listed = os.scandir
+
+    def vanishing(place):
+        if Path(place).name == "day2":
+            raise FileNotFoundError(2, "No such file or directory", str(place))
+        return listed(place)
+
+    monkeypatch.setattr(os, "scandir", vanishing)
+    assert [name for _, name in files_below(tmp_path)] == ["day1/run07.wav", "day1/run08.wav"]
