@@ -125,8 +125,7 @@ def line_levels(
         at = starts[column * each : (column + columns) * each]
         part = _part(read, n, int(at[0]), int(at[-1]) + grid.length)
         frames = np.lib.stride_tricks.sliding_window_view(part, grid.length)[at - at[0]]
-        # An offset is nothing to hear, and would leak.
-        lines = fft.rfft((frames - frames.mean(axis=1, keepdims=True)) * window, padded, axis=1)
+        lines = fft.rfft(_without_offset(frames, window), padded, axis=1)
         strength = (lines.real**2 + lines.imag**2).reshape(-1, each, bins.size).max(axis=1)
         # One more, for a row that ends with the last line.
         strength = np.pad(strength, ((0, 0), (0, 1)))
@@ -192,7 +191,7 @@ def strongest_line(
     start = middle - length // 2
     frame = _part(read, n, start, start + length)
     levels = _levels(
-        np.abs(fft.rfft((frame - frame.mean()) * _window(length), padded)).astype(np.float64) ** 2,
+        np.abs(fft.rfft(_without_offset(frame, _window(length)), padded)).astype(np.float64) ** 2,
         reference,
     )
     first = max(1, math.ceil(low * padded / rate))
@@ -212,6 +211,17 @@ def _window(length: int) -> NDArray[np.float32]:
     """Under which the square of a line's magnitude is the mean square of its tone."""
     window = np.hanning(length)
     return np.asarray(window * (math.sqrt(2.0) / window.sum()), dtype=np.float32)
+
+
+def _without_offset(
+    frames: NDArray[np.float32], window: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """Frames under a window, without the line at zero: an offset is nothing to hear, and leaks.
+
+    Of a tone the mean under the window is nothing, which the plain mean is not.
+    """
+    offset = frames @ window / window.sum()
+    return (frames - offset[..., None]) * window
 
 
 def _part(

@@ -87,3 +87,9 @@ def test_an_offset_is_not_seen():
 def test_silence_and_rows_above_half_the_rate_are_levels_too():
     grid = Grid(0, 1000, 16, 64, 20.0, 24e3, 4096)
     assert np.isfinite(levels_of(np.zeros(1000), grid)).all()
+
+
+def test_a_tone_is_nothing_at_low_frequencies_however_the_frames_cut_it():
+    tone = np.sin(2 * np.pi * 1003.0 * np.arange(RATE) / RATE) + 0.5
+    levels = line_levels(reader(tone), RATE, RATE, 1.0, Grid(4800, 43200, 20, 40, 50.0, 20e3, 2048))
+    assert levels[-10:].max() < -95.0  # below 220 Hz

@@ -25,6 +25,7 @@ export class LevelCourse {
     this.high = 5 * Math.ceil((most + 1) / 5);
     this.low = Math.max(this.high - 90, Math.min(this.high - LEAST_RANGE, 5 * Math.floor(least / 5)));
     this.draw();
+    this.plot.dataset.drawn = id;
   }
 
   level(time) {
