@@ -8,6 +8,7 @@ stays in it when the recordings are labelled again.
 from __future__ import annotations
 
 import math
+import os
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -312,7 +313,11 @@ def check_name(value: object, column: str, where: str) -> None:
     Traceback (most recent call last):
     models.errors.RecordingError: labels.csv: row 1 has file 'a\x00b', which is the name of none
     """
-    if "\0" in str(value):
+    try:
+        possible = b"\0" not in os.fsencode(str(value))
+    except UnicodeEncodeError:
+        possible = False
+    if not possible:
         raise RecordingError(f"{where} has {column} {value!r}, which is the name of none")
 
 

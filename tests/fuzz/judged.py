@@ -9,7 +9,7 @@ import shutil
 import sys
 import traceback
 import warnings
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -163,16 +163,17 @@ def _processes() -> list[str]:
     """This process and those that it has started, as Linux names them."""
     if not sys.platform.startswith("linux"):
         return []
-    children = Path("/proc/self/task").glob("*/children")
-    return ["self", *(pid for one in children for pid in one.read_text().split())]
+    found = ["self"]
+    for one in Path("/proc/self/task").glob("*/children"):
+        with suppress(OSError):  # the thread has ended
+            found += one.read_text().split()
+    return found
 
 
 def _forget_peaks() -> None:
     for pid in _processes():
-        try:
+        with suppress(OSError):  # it has ended
             Path(f"/proc/{pid}/clear_refs").write_text("5")
-        except OSError:  # it has ended
-            continue
 
 
 def _peaks() -> list[int]:
