@@ -1,7 +1,8 @@
 """The exceptions of bushing-noise, as few as callers need to tell apart.
 
 Every message names the place (file, channel, field), the value found and what would be right,
-in one line: the command line shows it as it is.
+in one line: the command line shows it as it is. Values come from files, and may be of any length
+and hold line breaks; so the root makes of each message one line that can be read.
 """
 
 from __future__ import annotations
@@ -9,8 +10,27 @@ from __future__ import annotations
 __all__ = ["BushingNoiseError", "ParameterError", "RecordingError", "not_installed"]
 
 
+_LONGEST = 2000
+"""Letters of a message, of which the end is left out."""
+
+
 class BushingNoiseError(Exception):
-    """Root of all errors that bushing-noise raises on purpose."""
+    r"""Root of all errors that bushing-noise raises on purpose.
+
+    Parameters
+    ----------
+    message : str
+        Becomes one line of bounded length.
+
+    Examples
+    --------
+    >>> print(BushingNoiseError("run07.json: unit is 'N\nm'; it must be one of a channel's"))
+    run07.json: unit is 'N m'; it must be one of a channel's
+    """
+
+    def __init__(self, message: str = "") -> None:
+        line = " ".join(str(message).splitlines())
+        super().__init__(line if len(line) <= _LONGEST else f"{line[:_LONGEST]} ...")
 
 
 class ParameterError(BushingNoiseError, ValueError):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.lib import format as npy
 
-from models.foreign_file import ExcessError
+from models.foreign_file import ExcessError, check_inflation
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["read_array", "read_arrays"]
-
-_ALLOWANCE, _MOST = 64 << 20, 100
-"""Arrays may inflate to so many bytes, or to so many times the size of their file."""
 
 _HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 _ENDING = ".npy"
@@ -58,14 +55,10 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
     ...     read_arrays(Path(folder) / "a.npz")
     {'torque': array([1., 1., 1.])}
     """
-    size = path.stat().st_size
+    check_inflation(path)
+    arrays: dict[str, NDArray[Any]] = {}
     with zipfile.ZipFile(path) as archive:
-        members = archive.infolist()
-        total = sum(member.file_size for member in members)
-        if total > max(_ALLOWANCE, _MOST * size):
-            raise ExcessError(f"would inflate from {size / 1e6:.3g} MB to {total / 1e6:.3g} MB")
-        arrays: dict[str, NDArray[Any]] = {}
-        for member in members:
+        for member in archive.infolist():
             if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
                 raise ValueError(f"{member.filename} is compressed in a way that is not known")
             with archive.open(member) as file:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 __all__ = [
-    "LARGEST_JSON", "LARGEST_TEXT", "LARGEST_TOML", "ExcessError", "check_plain_file", "one_line",
-    "parse_json", "parse_toml", "reading", "refusing",
+    "LARGEST_JSON", "LARGEST_TEXT", "LARGEST_TOML", "ExcessError", "check_inflation",
+    "check_plain_file", "one_line", "parse_json", "parse_toml", "reading", "refusing",
 ]  # fmt: skip
 
 LARGEST_TEXT = 1 << 30
@@ -33,6 +33,9 @@ LARGEST_TOML = 2 << 20
 
 LARGEST_JSON = 64 << 20
 """Of a JSON file, which is held as a whole [byte]."""
+
+_ALLOWANCE, _MOST = 64 << 20, 100
+"""An archive may inflate to so many bytes, or to so many times its size."""
 
 _DEEPEST = 100  # lists and tables within one another
 _MOST_DOTS = 200  # of a key of TOML: the time to read it grows with their square
@@ -170,6 +173,28 @@ def check_plain_file(
     """
     with reading(path, "file", where=where, error=error):
         pass
+
+
+def check_inflation(path: Path) -> None:
+    """Refuse a ZIP archive whose members would inflate beyond measure.
+
+    Parameters
+    ----------
+    path : Path
+        Of an NPZ file, a workbook.
+
+    Raises
+    ------
+    ValueError
+        They would. What the library raises over no archive is left to `reading`.
+    """
+    import zipfile
+
+    size = path.stat().st_size
+    with zipfile.ZipFile(path) as archive:
+        total = sum(member.file_size for member in archive.infolist())
+    if total > max(_ALLOWANCE, _MOST * size):
+        raise ExcessError(f"would inflate from {size / 1e6:.3g} MB to {total / 1e6:.3g} MB")
 
 
 def one_line(text: object) -> str:

@@ -21,6 +21,12 @@ __all__ = ["check_transfer_function", "check_units", "same_unit"]
 FEWEST_LINES = 8
 """Fewer lines describe no resonance."""
 
+_LARGEST = 1e15
+"""Of a response, in any unit, and of a frequency [Hz]."""
+
+_LEAST_STEP = 1e-9
+"""Between two lines, of the highest frequency [-]; less is lost in rounding."""
+
 
 def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
     """Refuse a response that nothing can be done with.
@@ -54,19 +60,22 @@ def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
                 f"{transfer.name}: {key} has shape {values.shape}, frequency_hz {f.shape}; "
                 "they must be alike"
             )
-        if not np.isfinite(values).all():
-            first = int(np.argmin(np.isfinite(values)))
+        possible = np.abs(values) < _LARGEST  # no NaN is
+        if not possible.all():
+            first = int(np.argmin(possible))
             raise ParameterError(
-                f"{transfer.name}: {key} is {values[first]} at line {first + 1}; it must be finite"
+                f"{transfer.name}: {key} is {values[first]} at line {first + 1}; it must be "
+                f"finite, and below {_LARGEST:g}"
             )
     if f[0] < 0.0:
         raise ParameterError(
             f"{transfer.name}: frequency_hz starts at {f[0]:g} Hz; it must be 0 or more"
         )
     steps = np.diff(f)
-    if not (steps > 0.0).all():
-        first = int(np.argmin(steps > 0.0))
-        verb = "stays at" if steps[first] == 0 else f"falls from {f[first]:g} to"
+    rising = steps > _LEAST_STEP * f[-1]
+    if not rising.all():
+        first = int(np.argmin(rising))
+        verb = "stays at" if steps[first] >= 0 else f"falls from {f[first]:g} to"
         raise ParameterError(
             f"{transfer.name}: frequency_hz {verb} {f[first + 1]:g} Hz at line {first + 2}; "
             "it must rise"

@@ -20,14 +20,17 @@ if TYPE_CHECKING:
 
     from models.recording import Channel, Recording
 
-__all__ = ["FADE", "audible", "playable", "pressure_channel", "resampled"]
+__all__ = ["FADE", "LOWEST_HEARD", "audible", "playable", "pressure_channel", "resampled"]
 
 FADE = 0.010
 """Half a Hann window at either end [s]."""
 
+LOWEST_HEARD = 40.0
+"""Sampling rate below which no frequency is left that is heard [Hz]."""
+
 _STOP_BAND = 100.0  # dB
 _PASS_BAND = 0.95  # of the lower Nyquist frequency
-_LARGEST_TERM = 100_000  # of that ratio: the filter is 300 times as long
+_LARGEST_TERM = 20_000  # of that ratio: the filter is 300 times as long
 _FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right within 1e-6
 
 
@@ -51,7 +54,7 @@ def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> N
     Raises
     ------
     ParameterError
-        The recording has no pressure channel.
+        The recording has no pressure channel, or nothing to be heard.
 
     Examples
     --------
@@ -101,7 +104,7 @@ def pressure_channel(recording: Recording) -> Channel:
     Raises
     ------
     ParameterError
-        There is none.
+        There is none, or what it is sampled at leaves nothing to be heard.
 
     Examples
     --------
@@ -110,6 +113,11 @@ def pressure_channel(recording: Recording) -> Channel:
     >>> pressure_channel(run).name
     'pressure_2'
     """
+    if recording.rate < LOWEST_HEARD:
+        raise ParameterError(
+            f"recording {recording.name!r} is sampled at {recording.rate:g} Hz, so nothing in it "
+            f"can be heard; {LOWEST_HEARD:g} Hz at least"
+        )
     for channel in recording.channels:
         if channel.kind == "pressure":
             return channel

@@ -64,8 +64,12 @@ def say(text: str) -> None:
 
 def discard(stream: TextIO) -> None:
     """Point a stream that can no longer be written nowhere, so that nothing is left to fail."""
+    try:
+        number = stream.fileno()
+    except OSError:  # of a notebook, or in memory
+        return
     nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, stream.fileno())
+    os.dup2(nowhere, number)
     os.close(nowhere)
 
 

@@ -1,8 +1,9 @@
 r"""Names and messages as they may be shown: on a terminal, in a table, on a page.
 
-Names of files may hold anything. Bytes that are no UTF-8 cannot be written as text, and characters
-that control a terminal can clear it, or write into its title; both are shown as a backslash and
-their code, such as ``\xe9`` or ``\x1b``.
+Names of files may hold anything. Bytes that are no UTF-8 cannot be written as text, characters that
+control a terminal can clear it, or write into its title, and those that turn the direction of
+writing make a name look like another; all are shown as a backslash and their code, such as ``\xe9``
+or ``\x1b``.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import re
 
 __all__ = ["readable"]
 
-_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 
 def readable(text: str) -> str:

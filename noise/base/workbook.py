@@ -5,10 +5,10 @@ Text stays text whatever it begins with: a recording called ``=cmd.wav`` is its 
 
 from __future__ import annotations
 
-import zipfile
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError, not_installed
+from models.foreign_file import ExcessError, check_inflation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +29,10 @@ _WIDEST, _NARROWEST = 48, 8
 
 _LOOKED_AT = 200
 """Rows by which the width of a column is chosen."""
+
+
+_FEW_CELLS, _MOST_CELLS = 100_000, 10
+"""What is read at most, and that for each byte of the file [cells]."""
 
 
 def check_openpyxl(path: Path) -> None:
@@ -118,17 +122,15 @@ def read_workbook(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     Raises
     ------
     ValueError
-        It is damaged, or no workbook.
+        It claims more cells than it can hold. What the libraries raise over a damaged one is left
+        to `models.foreign_file.reading`.
     """
     from openpyxl import load_workbook
-    from openpyxl.utils.exceptions import InvalidFileException
 
-    try:
-        with path.open("rb") as file:
-            book = load_workbook(file, read_only=True, data_only=True)
-            lines = list(book.worksheets[0].iter_rows(values_only=True)) if book.worksheets else []
-    except (InvalidFileException, zipfile.BadZipFile, KeyError) as error:
-        raise ValueError(str(error)) from None
+    check_inflation(path)
+    with path.open("rb") as file:
+        book = load_workbook(file, read_only=True, data_only=True)
+        lines = _lines(book.worksheets[0], path.stat().st_size) if book.worksheets else []
     columns = [str(name) for name in lines[0] if name is not None] if lines else []
     width = len(columns)
     rows = [
@@ -137,6 +139,17 @@ def read_workbook(path: Path) -> tuple[list[str], list[dict[str, object]]]:
         if any(value is not None for value in line)
     ]
     return columns, rows
+
+
+def _lines(sheet: Any, size: int) -> list[tuple[object, ...]]:
+    """Return the rows of a sheet, of which its file may claim to hold any number."""
+    lines, cells = [], 0
+    for line in sheet.iter_rows(max_row=_MOST_ROWS, values_only=True):
+        cells += 1 + len(line)
+        if cells > _FEW_CELLS + _MOST_CELLS * size:
+            raise ExcessError(f"claims more than {cells} cells, more than a file of its size holds")
+        lines.append(line)
+    return lines
 
 
 def _sheet_name(name: str) -> str:

@@ -8,6 +8,7 @@ stays in it when the recordings are labelled again.
 from __future__ import annotations
 
 import math
+import os
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,7 @@ __all__ = [
     "HUMAN",
     "LabelTable",
     "cell_number",
+    "check_name",
     "read_label_table",
     "with_corrected_rows",
     "with_corrections",
@@ -42,6 +44,7 @@ _TEXTS = {
     *(column for column in COLUMNS if column.endswith("_source")),
 }  # fmt: skip
 _NEEDED = ("file", "label")
+_LARGEST = 1e12  # number in a cell, of any unit
 _SUPPORT = "support_stiffness_Nm_rad"
 
 
@@ -192,6 +195,7 @@ def _checked(row: object, where: str) -> dict[str, object]:
     if not isinstance(row, dict) or any(column not in row for column in _NEEDED):
         raise RecordingError(f"{where} lacks {' or '.join(_NEEDED)}, so this is no label table")
     checked = {column: _value(row, column, where) for column in COLUMNS}
+    check_name(checked["file"], "file", where)
     if checked["label"] not in (*LABELS, None):
         known = ", ".join(LABELS)
         raise RecordingError(f"{where} has label {checked['label']!r}, expected {known}")
@@ -289,9 +293,32 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
         return str(value)
     if column == "calibrated":
         return value in (True, "true", "True")
-    if value == "fixed" and column.startswith(_SUPPORT):
+    if value in ("fixed", math.inf) and column.startswith(_SUPPORT):
         return math.inf
     return cell_number(row, column, where)
+
+
+def check_name(value: object, column: str, where: str) -> None:
+    r"""Refuse the name of a file in a table that no file can have.
+
+    Raises
+    ------
+    RecordingError
+        No system has such a name; the message names where it stands.
+
+    Examples
+    --------
+    >>> check_name("day1/run07.wav", "file", "labels.csv: row 1")
+    >>> check_name("a\0b", "file", "labels.csv: row 1")
+    Traceback (most recent call last):
+    models.errors.RecordingError: labels.csv: row 1 has file 'a\x00b', which is the name of none
+    """
+    try:
+        possible = b"\0" not in os.fsencode(str(value))
+    except UnicodeEncodeError:
+        possible = False
+    if not possible:
+        raise RecordingError(f"{where} has {column} {value!r}, which is the name of none")
 
 
 def cell_number(row: Mapping[str, object], column: str, where: str) -> float | None:
@@ -315,4 +342,6 @@ def cell_number(row: Mapping[str, object], column: str, where: str) -> float | N
         number = float(str(value))
     except ValueError:
         raise RecordingError(f"{where} has {column} {value!r}, expected a number") from None
+    if abs(number) > _LARGEST:
+        raise RecordingError(f"{where} has {column} {value!r}, expected a number that is possible")
     return None if math.isnan(number) else number

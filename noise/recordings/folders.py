@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["files_below"]
+__all__ = ["files_below", "is_file"]
 
 
 def files_below(folder: Path) -> list[tuple[Path, str]]:
@@ -56,6 +56,20 @@ def files_below(folder: Path) -> list[tuple[Path, str]]:
         waiting = sorted(links)
     named = ((path, path.relative_to(folder).as_posix()) for path in found)
     return sorted(named, key=lambda entry: entry[1])
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a file, of a path that a table or a page may have made up.
+
+    Examples
+    --------
+    >>> is_file(Path("x" * 5000))
+    False
+    """
+    try:
+        return path.is_file()
+    except OSError:  # such as a name that is too long for the system
+        return False
 
 
 def _walked(top: Path, seen: set[tuple[int, int]], links: list[Path]) -> Iterator[Path]:

@@ -16,7 +16,7 @@ import numpy as np
 import soundfile
 
 from models.errors import ParameterError, RecordingError
-from models.foreign_file import LARGEST_TEXT, reading, refusing
+from models.foreign_file import LARGEST_JSON, reading, refusing
 from noise.audio.sound import audible
 from noise.diagnosis.findings import ROLES
 from noise.diagnosis.text.words import number
@@ -91,7 +91,7 @@ def reported_entries(report: Path, diagnosis: Diagnosis) -> list[Entry]:
         A sound is damaged.
     """
     try:
-        with reading(report, "report", largest=LARGEST_TEXT):
+        with reading(report, "report", largest=LARGEST_JSON):
             found = _Sounds()
             found.feed(report.read_text(encoding="utf-8"))
     except ParameterError:

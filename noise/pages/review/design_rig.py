@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
+from noise.recordings.folders import is_file
 from noise.screening.design.design import load_design
 from noise.screening.design.environments import DRY, environment, in_environment
 
@@ -37,7 +38,7 @@ def rig_of(screened: ScreenMap, folder: Path, designs: Sequence[Path]) -> Rig:
     name = screened.design
     files = [path for path in designs if path.stem == name or _named(path) == name]
     beside = (folder / "designs" / f"{name}.toml", folder / f"{name}.toml")
-    files += [path for path in beside if path.is_file()]
+    files += [path for path in beside if is_file(path)]
     surroundings = environment(screened.environment or DRY)
     if files:
         return in_environment(load_design(files[0]).rig, surroundings)

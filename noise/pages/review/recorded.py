@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, RecordingError
-from noise.audio.sound import audible
+from noise.audio.sound import LOWEST_HEARD, audible
 from noise.base.progress import track
 from noise.classifier import load_classifier
 from noise.labels.labelling import label_rows
@@ -20,6 +20,7 @@ from noise.pages.engine.entry import RATE, Entry, stretch_start
 from noise.pages.review.inputs import Refusal
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.folders import is_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -99,7 +100,7 @@ def _named_by_tables(tables: Sequence[LabelTable], given: Sequence[Path]) -> lis
             if name in there:
                 continue
             for path in (table.path.parent / name, *_below(table.path.parent, name)):
-                if path.is_file():
+                if is_file(path):
                     found.setdefault(path.resolve(), (path, name))
                     break
     return list(found.values())
@@ -187,6 +188,8 @@ def _sound(
     row = blocks.first("pressure")
     if row is None:
         return None, "no sound pressure to be heard"
+    if blocks.rate < LOWEST_HEARD:
+        return None, f"sampled at {blocks.rate:g} Hz, so nothing can be heard"
     first = round(offset * blocks.rate)
     last = min(blocks.n_samples, first + round(longest * blocks.rate))
     sound = audible(blocks.cut(first, last), RATE)

@@ -14,7 +14,7 @@ from models.errors import RecordingError
 from models.foreign_file import refusing
 from noise.base.label_names import LABELS
 from noise.base.tables import read_table
-from noise.labels.table import cell_number
+from noise.labels.table import cell_number, check_name
 from noise.pages.screening.screen_maps import ScreenMap, ScreenPoint
 
 if TYPE_CHECKING:
@@ -75,6 +75,7 @@ def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
         label = str(row["label"])
         if label not in LABELS:
             raise RecordingError(f"{where} has label {label!r}, expected {', '.join(LABELS)}")
+        check_name(row["design"], "design", where)
         number = partial(cell_number, row, where=where)
         key = (
             str(row["design"]),
@@ -103,6 +104,6 @@ def _maps(path: Path, rows: Sequence[dict[str, object]]) -> list[ScreenMap]:
 def _support(row: dict[str, object], where: str) -> float | None:
     if _SUPPORT not in row:
         return None
-    if row[_SUPPORT] in (None, "", "fixed"):
+    if row[_SUPPORT] in (None, "", "fixed", math.inf):
         return math.inf
     return cell_number(row, _SUPPORT, where)

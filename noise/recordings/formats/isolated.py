@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["read_isolated", "serve"]
 
-_PATIENCE = 30.0
+_PATIENCE = 15.0
 """How long a file may take, beside its size [s]."""
 
 _SLOWEST = 1e6

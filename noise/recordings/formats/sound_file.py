@@ -14,6 +14,8 @@ whatever cannot be followed ends the walk, and judging the file is left to the l
 from __future__ import annotations
 
 import os
+import threading
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, BinaryIO
 
@@ -98,7 +100,43 @@ def open_sound(path: Path) -> Any:
     soundfile.LibsndfileError
         It is none.
     """
-    return soundfile.SoundFile(path if os.name == "nt" else os.fsencode(path))
+    kind = _Quiet if path.suffix.lower() == ".mp3" else soundfile.SoundFile
+    return kind(path if os.name == "nt" else os.fsencode(path))
+
+
+class _Quiet(soundfile.SoundFile):  # type: ignore[misc]  # the library has no types
+    """A sound file whose library prints what it thinks of it (mpg123): that goes nowhere."""
+
+    def __init__(self, file: str | bytes | Path) -> None:
+        with _silence():
+            super().__init__(file)
+
+    def read(self, *given: Any, **named: Any) -> Any:
+        """Read samples."""
+        with _silence():
+            return super().read(*given, **named)
+
+
+_silencing = threading.Lock()
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Close standard error to libraries that write past Python."""
+    with _silencing:
+        try:
+            kept = os.dup(2)
+        except OSError:  # it is closed
+            yield
+            return
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 2)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            os.close(nowhere)
 
 
 def _samples(path: Path, sound: Any) -> NDArray[np.float64]:

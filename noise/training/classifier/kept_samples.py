@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.errors import ParameterError
+from models.foreign_arrays import read_arrays
+from models.foreign_file import reading
 from noise.base.atomic import atomic
 from noise.batch.identity import program_identity
 from noise.training.classifier.described_samples import Sample
@@ -62,13 +64,14 @@ def load_samples(path: Path, call: Sequence[object]) -> list[Sample] | None:
     ((2, 3), 'creak', None)
     """
     try:
-        with np.load(path, allow_pickle=False) as kept:
+        with reading(path, "file of samples"):
+            kept = read_arrays(path)
             if str(kept["said"]) != _said(call):
                 return None
             parts = np.split(kept["features"], np.cumsum(kept["windows"])[:-1])
             told = (kept[name].tolist() for name in ("label", "ambiguous", "name"))
             return [Sample(*one) for one in zip(parts, *told, strict=True)]
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):  # none, or damaged
+    except ParameterError:  # none, or damaged
         return None
 
 

@@ -24,6 +24,7 @@ from noise.labels.audacity import read_label_track
 from noise.labels.table import HUMAN, read_label_table
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.folders import files_below, is_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -162,10 +163,8 @@ def _from_tables(
 ) -> dict[Path, list[_Stretch]]:
     """Return what the label tables say, by recording; files are relative to their table."""
     said: dict[Path, list[_Stretch]] = {}
-    tables = (path for path in folder.rglob("*") if path.suffix.lower() in TABLE_ENDINGS)
+    tables = (path for path, _ in files_below(folder) if path.suffix.lower() in TABLE_ENDINGS)
     for table in sorted(tables):
-        if not table.is_file() or table.name.startswith("."):
-            continue
         try:
             found = _from_table(table, folder, recordings, refusals)
         except BushingNoiseError as error:
@@ -190,7 +189,7 @@ def _from_table(
     for row in rows:
         file = str(row["file"])
         places = [p.resolve() for p in (table.parent / file, folder / file)]
-        there = [p for p in places if (p.is_file() if recordings is None else p in recordings)]
+        there = [p for p in places if (is_file(p) if recordings is None else p in recordings)]
         if not there:
             unknown.add(file)
             continue
