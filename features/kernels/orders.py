@@ -1,8 +1,8 @@
 """Orders of a turning shaft: how loud what happens so many times a revolution is, by speed.
 
 A slip that the shaft's turning sets off stays at its order while the speed changes; a resonance
-stays at its frequency and crosses the orders. Each frame of the signal is short enough for the
-speed to hardly change in it; frames of about the same speed are averaged by their power.
+stays at its frequency and crosses the orders. Frames of about the same speed are averaged by their
+power; one in which the speed changes much, as where a swing turns, belongs to none and is left out.
 """
 
 from __future__ import annotations
@@ -31,11 +31,20 @@ _LOWEST, _HIGHEST = 20.0, 10e3
 _SLOWEST = 0.1
 """Speeds below this share of the largest are left out: an order of theirs is no frequency yet."""
 
+_STEADY = 0.3
+"""Of its mean that the speed changes in a frame at most [-]."""
+
+_GAPS = 0.05
+"""Share of the columns that may be empty; more are made wider."""
+
 _WIDEST = 0.3
 """Share of the largest speed up to which the orders reach the highest frequency."""
 
 _ORDERS, _SPEEDS = 150, 80
 """Cells of a map at most."""
+
+_LOOKS = 16
+"""At the speed, in a frame."""
 
 _SMOOTHED = 0.02
 """Over which an angle's slope is taken [s]."""
@@ -103,13 +112,15 @@ def order_map(
             f"an order map needs a speed for each sample, and {_FRAME:g} s or more of them"
         )
     starts = np.arange(0, x.size - length + 1, hop)
-    mean = np.array([magnitude[start : start + length].mean() for start in starts])
+    frames = magnitude[starts[:, np.newaxis] + np.arange(0, length, max(1, length // _LOOKS))]
+    mean = frames.mean(axis=1)
     fastest = float(mean.max())
     if not fastest > 0.0:
         raise ParameterError("the shaft stands, so there are no orders")
-    used = np.flatnonzero(mean >= _SLOWEST * fastest)
-    n_speeds = int(np.clip(used.size // 3, 1, _SPEEDS))
-    speeds = np.linspace(float(mean[used].min()), fastest * (1.0 + 1e-9), n_speeds + 1)
+    moving, steady = mean >= _SLOWEST * fastest, np.ptp(frames, axis=1) <= _STEADY * mean
+    used = np.flatnonzero(moving & steady if (moving & steady).any() else moving)
+    speeds = _columns(mean[used])
+    n_speeds = speeds.size - 1
     highest = min(_HIGHEST, 0.5 * rate)
     orders = 2.0 * np.pi * np.geomspace(_LOWEST, highest / _WIDEST, _ORDERS + 1) / fastest
     bins = np.fft.rfftfreq(length, 1.0 / rate)
@@ -134,6 +145,18 @@ def order_map(
     with np.errstate(divide="ignore", invalid="ignore"):
         level = 10.0 * np.log10(power / count / reference**2)
     return OrderMap(speeds, orders, np.where(np.isfinite(level), level, np.nan))
+
+
+def _columns(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return edges as many as the frames' speeds fill."""
+    low, high = float(speeds.min()), float(speeds.max()) * (1.0 + 1e-9)
+    number = int(np.clip(speeds.size // 3, 1, _SPEEDS))
+    while True:
+        edges = np.linspace(low, high, number + 1)
+        empty = np.count_nonzero(np.histogram(speeds, edges)[0] == 0)
+        if number == 1 or empty <= _GAPS * number:
+            return edges
+        number = max(1, number * 4 // 5)
 
 
 def speed_of_angle(angle: ArrayLike, rate: float) -> NDArray[np.float64]:

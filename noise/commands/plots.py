@@ -30,9 +30,9 @@ def add_plots(parser: ArgumentParser) -> None:
         "--plot",
         type=Path,
         metavar="FOLDER|PICTURE",
-        help="draw each recording: spectrogram, A-weighted level over time (F), speed of the shaft "
-        "and, where that was recorded and changes, order map; .png files in a folder, or the one "
-        "picture (.png, .svg or .pdf) where there is one recording; of the first "
+        help="draw each recording: spectrogram, A-weighted level over time (F), speed of the "
+        "shaft and, where that was recorded and changes slowly, order map; .png files in a folder, "
+        "or the one picture (.png, .svg or .pdf) where there is one recording; of the first "
         f"{_LONGEST / 60.0:g} minutes of each",
     )
 

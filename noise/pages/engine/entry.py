@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from features.kernels.orders import OrderMap
+
     Row = Mapping[str, object]
 
 __all__ = [
@@ -59,6 +61,8 @@ class Entry:
     offset : float
         Where that stretch begins [s].
     calibrated : bool
+    orders : OrderMap, optional
+        Of a sound whose shaft's speed was recorded and changes.
     note : str
         Where the labels come from, or why there is no sound.
     data : mapping of str to str
@@ -73,6 +77,7 @@ class Entry:
     offset: float = 0.0
     calibrated: bool = True
     note: str = ""
+    orders: OrderMap | None = None
     data: Mapping[str, str] = field(default_factory=dict)
 
     @property

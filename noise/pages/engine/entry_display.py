@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from models.recording import REFERENCE_PRESSURE
 from noise.labels.label_display import ASSUMED, assumes_material
+from noise.pages.engine.over_time import level_displays, orders_display
 from noise.pages.engine.spectrogram import RANGE, TICKS, picture, top
 from noise.pages.engine.ticks import round_ticks
-from noise.pictures.clip_levels import HIGHEST, LOWEST, clip_levels
+from noise.pictures.clip_levels import HIGHEST, LOWEST, RATE, clip_levels
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from noise.pages.engine.clips import Clip
     from noise.pages.engine.entry import Entry, Row
+    from noise.pages.engine.over_time import LevelDisplay, OrdersDisplay
 
 __all__ = [
     "Band", "EntryDisplay", "Fact", "draw_entries", "entry_display", "facts_of", "frequency_ticks",
@@ -70,6 +72,9 @@ class EntryDisplay:
         Of the time axis: share of the clip [%], and seconds of the recording.
     alt : str
         What the spectrogram shows.
+    level : LevelDisplay, optional
+        A-weighted, Fast, over the time of the clip.
+    orders : OrdersDisplay, optional
     """
 
     id: str
@@ -82,6 +87,8 @@ class EntryDisplay:
     tracks: tuple[tuple[str, tuple[Band, ...]], ...]
     ticks: tuple[tuple[float, str], ...]
     alt: str
+    level: LevelDisplay | None = None
+    orders: OrdersDisplay | None = None
 
 
 def draw_entries(
@@ -110,21 +117,30 @@ def draw_entries(
     ('run07', [])
     """
     pictures: dict[str, bytes] = {}
+    over_time: dict[str, LevelDisplay] = {}
+    orders: dict[str, OrdersDisplay] = {}
     scale_words = []
     for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
                                         (False, 1.0, "dBFS")):  # fmt: skip
-        levels = {
-            key: clip_levels(clip.samples, reference)
-            for key, clip in clips.items()
-            if entries[key].calibrated == calibrated
-        }
+        of_it = {key: clip for key, clip in clips.items() if entries[key].calibrated == calibrated}
+        levels = {key: clip_levels(clip.samples, reference) for key, clip in of_it.items()}
+        over_time |= level_displays(of_it, RATE, reference, "dB(A)" if calibrated else "dBFS(A)")
         if levels:
             highest = top(list(levels.values()))
             pictures |= {key: picture(one, highest) for key, one in levels.items()}
+            orders |= {
+                key: orders_display(found, highest)
+                for key in levels
+                if (found := entries[key].orders) is not None
+            }
             words = f"{highest - RANGE:.0f} to {highest:.0f} {unit}"
             scale_words.append(words.replace("-", "\N{MINUS SIGN}"))
     displays = {
-        key: entry_display(key, entry, clips.get(key), pictures.get(key, b""))
+        key: replace(
+            entry_display(key, entry, clips.get(key), pictures.get(key, b"")),
+            level=over_time.get(key),
+            orders=orders.get(key),
+        )
         for key, entry in entries.items()
     }
     return displays, scale_words

@@ -27,13 +27,16 @@ if TYPE_CHECKING:
     from noise.pages.engine.entry import Entry
     from noise.pages.engine.entry_display import EntryDisplay
 
-__all__ = ["CARD_BYTES", "MAP_SIZE", "PAGE_BYTES", "as_base64", "page_html", "write_page"]
+__all__ = [
+    "CARD_BYTES", "MAP_SIZE", "ORDERS_BYTES", "PAGE_BYTES", "as_base64", "page_html", "write_page",
+]  # fmt: skip
 
 MAP_SIZE = (500.0, 300.0)
 """Width and height of the drawing of a condition map [px]."""
 
-PAGE_BYTES, CARD_BYTES = 75_000.0, 42_000.0
-"""What a page takes up, and at most each of its sounds beside the sound itself [byte]."""
+PAGE_BYTES, CARD_BYTES, ORDERS_BYTES = 75_000.0, 45_000.0, 10_000.0
+"""What a page takes up, and at most each of its sounds beside the sound itself and an order map
+[byte]."""
 
 
 def page_html(

@@ -19,7 +19,7 @@ from noise.base.progress import counted
 from noise.pages.engine.clips import common_gain, make_clips
 from noise.pages.engine.entry import label_counts, labels_sentence
 from noise.pages.engine.maps import recorded_maps
-from noise.pages.engine.page import CARD_BYTES, PAGE_BYTES, page_html, write_page
+from noise.pages.engine.page import CARD_BYTES, ORDERS_BYTES, PAGE_BYTES, page_html, write_page
 from noise.pages.review.diagnoses import read_diagnosis
 from noise.pages.review.inputs import Refusal, sort_inputs
 from noise.pages.review.recorded import recorded_entries
@@ -158,6 +158,7 @@ def review(
     gain = common_gain(entries.values(), pascal_per_full_scale)
     n_maps = 0 if compared is None else compared.n_maps
     drawn = 0.0 if compared is None else compared.weight
+    drawn += ORDERS_BYTES * sum(entry.orders is not None for entry in entries.values())
     beside = PAGE_BYTES + CARD_BYTES * len(entries) + drawn
     clips, shortened = make_clips(
         entries, gain, budget=budget, beside=beside, dither=np.random.default_rng(seed)

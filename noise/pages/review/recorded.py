@@ -18,6 +18,7 @@ from noise.labels.segments import label_recording
 from noise.pages.engine.clips import BYTES_A_SECOND, SHORTEST
 from noise.pages.engine.entry import RATE, Entry, stretch_start
 from noise.pages.review.inputs import Refusal
+from noise.pictures.recorded import recorded_orders
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.folders import is_file
@@ -28,11 +29,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from features.kernels.orders import OrderMap
     from noise.classifier import Classifier
+    from noise.pages.engine.entry import Row
     from noise.pages.review.inputs import Inputs, LabelTable
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["recorded_entries"]
+
+_RUN_UP = 60.0
+"""Longest stretch of a recording whose orders are told [s]."""
 
 _GENEROUS = 4.0
 """Quiet sounds take a quarter of the space of loud noise."""
@@ -172,14 +178,24 @@ def _read_entry(
             duration = blocks.n_samples / blocks.rate
             offset = stretch_start(rows, duration, longest)
             sound, why = _sound(blocks, offset, longest)
+            orders = _orders(blocks, rows, duration)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
     except OSError as error:  # it was there when the folder was searched
         return Refusal.of(path, f"cannot be read ({error.strerror or error})")
     return Entry(
         name, tuple(rows), blocks.condition, duration, sound, offset,
-        blocks.calibrated, "; ".join(filter(None, (note, why))),
+        blocks.calibrated, "; ".join(filter(None, (note, why))), orders,
     )  # fmt: skip
+
+
+def _orders(blocks: RecordingBlocks, rows: Sequence[Row], duration: float) -> OrderMap | None:
+    if blocks.first("pressure") is None or blocks.first("speed") is blocks.first("angle") is None:
+        return None
+    first = round(stretch_start(rows, duration, _RUN_UP) * blocks.rate)
+    return recorded_orders(
+        blocks.cut(first, min(blocks.n_samples, first + round(_RUN_UP * blocks.rate)))
+    )
 
 
 def _sound(

@@ -1,0 +1,77 @@
+"""What a turning shaft sets off stays at its order, and what resonates at its frequency."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from features.kernels.orders import order_map, speed_of_angle
+from models.errors import ParameterError
+
+RATE = 24_000.0
+
+
+def strongest(found):
+    orders = np.sqrt(found.order_edges[:-1] * found.order_edges[1:])
+    return orders[np.nanargmax(found.level, axis=0)]
+
+
+def middles(found):
+    return 0.5 * (found.speed_edges[:-1] + found.speed_edges[1:])
+
+
+@given(first=st.floats(300.0, 900.0), slowest=st.floats(0.5, 5.0), ratio=st.floats(1.5, 5.0))
+@settings(max_examples=15, deadline=None)
+def test_an_order_stays_while_the_speed_changes(first, slowest, ratio):
+    order = 2.0 * np.pi * first / slowest  # at the frequency `first` where it begins
+    speed = np.linspace(slowest, ratio * slowest, round(3.0 * RATE))
+    found = order_map(np.sin(order * np.cumsum(speed) / RATE), RATE, speed)
+    assert found.level.shape[1] > 10
+    assert strongest(found) == pytest.approx(np.full(found.level.shape[1], order), rel=0.12)
+
+
+def test_a_resonance_crosses_the_orders():
+    speed = np.linspace(2.0, 10.0, round(4.0 * RATE))
+    tone = np.sin(2.0 * np.pi * 1000.0 * np.arange(speed.size) / RATE)
+    found = order_map(tone, RATE, speed)
+    expected = 2.0 * np.pi * 1000.0 / middles(found)
+    assert strongest(found) == pytest.approx(expected, rel=0.12)
+
+
+def test_a_tone_has_its_level_at_every_speed():
+    speed = np.linspace(2.0, 8.0, round(3.0 * RATE))
+    tone = np.sqrt(2.0) * np.sin(2.0 * np.pi * 1000.0 * np.arange(speed.size) / RATE)
+    level = np.nanmax(order_map(tone, RATE, speed, reference=1.0).level, axis=0)
+    assert level == pytest.approx(np.zeros_like(level), abs=1.5)
+
+
+def test_where_a_fast_swing_turns_no_order_is_told():
+    time = np.arange(round(4.0 * RATE)) / RATE
+    speed = 3.0 * np.cos(2.0 * np.pi * 2.0 * time)
+    found = order_map(np.sin(2000.0 * np.cumsum(speed) / RATE), RATE, speed)
+    assert found.speed_edges[0] > 2.5
+
+
+def test_of_speeds_in_steps_no_column_is_empty():
+    speed = np.repeat([2.0, 5.0, 8.0], round(RATE))
+    found = order_map(np.random.default_rng(0).standard_normal(speed.size), RATE, speed)
+    measured = np.isfinite(found.level).any(axis=0)
+    assert measured.mean() > 0.9
+    assert found.level.shape[1] > 1
+
+
+@pytest.mark.parametrize(
+    ("signal", "speed", "said"),
+    [
+        (np.zeros(100), np.ones(100), "0.085 s"),
+        (np.zeros(24_000), np.ones(23_000), "a speed for each sample"),
+        (np.ones(24_000), np.zeros(24_000), "stands"),
+    ],
+)
+def test_what_has_no_orders_is_refused(signal, speed, said):
+    with pytest.raises(ParameterError, match=said):
+        order_map(signal, RATE, speed)
+
+
+def test_the_speed_of_an_angle_is_its_slope():
+    turned = 5.0 * np.arange(10_000) / RATE
+    assert speed_of_angle(turned, RATE) == pytest.approx(np.full(10_000, 5.0))
