@@ -221,7 +221,7 @@ def _without_offset(
     Of a tone the mean under the window is nothing, which the plain mean is not.
     """
     offset = frames @ window / window.sum()
-    return (frames - offset[..., None]) * window
+    return np.asarray((frames - offset[..., None]) * window)
 
 
 def _part(
