@@ -1,9 +1,9 @@
-"""A rig that turns on while it is changed: the sound of one run, block by block as it is asked for.
+"""A rig that turns on while it is changed: the sound of one run, block by block as it is asked.
 
-What does not change is the run that `sim.long_run.simulate_blocks` gives, sample by sample. A change
-takes effect at the edge of a block and over its length: speeds go from one to the other, what moves
-goes on from where it is in the rig as it was and as it is now, and the torques cross over; so do the
-impulse responses from torque to sound. Nothing jumps, so nothing clicks.
+What does not change is the run that `sim.long_run.simulate_blocks` gives, sample by sample. A
+change takes effect over one block: speeds go from one to the other, what moves goes on from where
+it is in the rig as it was and as it is now, and the torques cross over; so do the impulse responses
+from torque to sound. Nothing jumps, so nothing clicks.
 
 The sound lags behind the motion by `LOOKAHEAD`, in which a slip shows how far the torque falls: an
 effect that makes a force of the motion sees so much of what is to come, where a whole run shows it
@@ -12,12 +12,13 @@ all. Effects that need a run as a whole are left out, those of drive and sensors
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.radiation.rig_response import impulse_responses
+from models.radiation.rig_response import first_mode_damping, impulse_responses
 from sim.acquisition import Acquisition, digitise
 from sim.chain import changed_chain
 from sim.live_filter import LiveConvolution, crossing
@@ -27,6 +28,7 @@ from sim.motion_limits import blaming_the_unusual
 from sim.pipeline import pulse_force
 from sim.run import plan_run
 from sim.streams import AnalogueFilter, Decimation
+from sim.temperature import at_temperature
 from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
@@ -42,7 +44,7 @@ if TYPE_CHECKING:
 
     PathsOf = Callable[["Setting"], ImpulseResponses | None]
 
-__all__ = ["LOOKAHEAD", "LiveBlock", "LiveRun", "Setting", "paths_of"]
+__all__ = ["LOOKAHEAD", "LiveBlock", "LiveRun", "Setting", "paths_key", "paths_of"]
 
 LOOKAHEAD = 0.01
 """By which the sound lags behind the motion [s]."""
@@ -121,6 +123,34 @@ def paths_of(
     plan = _plan(setting, rate, library, n=2)
     paths = impulse_responses(plan.rig, plan.interference, plan.support_stiffness, plan.rate)
     return changed_chain(paths, plan.effects, _streams(seed)[1].spawn(1)[0])
+
+
+def paths_key(setting: Setting) -> tuple[object, ...]:
+    """All that the impulse responses depend on: two settings of one key share them.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.shaft import ConstantSpeed
+    >>> one = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
+    >>> looser = replace(one, rig=one.rig.changed(kinetic_torque="x0.5"), shaft=ConstantSpeed(1.0))
+    >>> damped = replace(one, rig=one.rig.changed(damping="x2"))
+    >>> paths_key(one) == paths_key(looser), paths_key(one) == paths_key(damped)
+    (True, False)
+    """
+    rig = at_temperature(setting.rig, setting.temperature)
+    support = setting.support_stiffness
+    fixed = math.isinf(support)
+    return (
+        rig.beams,
+        rig.plate,
+        rig.microphone,
+        rig.clamp_inertia,
+        rig.measured,
+        support,
+        0.0 if fixed else first_mode_damping(rig, setting.interference, support),
+        rig.effects,
+    )
 
 
 class LiveRun:
@@ -293,13 +323,16 @@ class _KnownPaths:
 
     def __init__(self, rate: float, library: Mapping[str, Effect] | None, seed: int) -> None:
         self._rate, self._library, self._seed = rate, library, seed
-        self._last: tuple[Setting, ImpulseResponses] | None = None
+        self._asked: Setting | None = None
+        self._key: tuple[object, ...] = ()
+        self._found: ImpulseResponses | None = None
 
     def __call__(self, setting: Setting) -> ImpulseResponses:
-        if self._last is None or self._last[0] is not setting:
-            found = paths_of(setting, self._rate, library=self._library, seed=self._seed)
-            self._last = setting, found
-        return self._last[1]
+        key = self._key if setting is self._asked else paths_key(setting)
+        if self._found is None or key != self._key:
+            self._found = paths_of(setting, self._rate, library=self._library, seed=self._seed)
+        self._asked, self._key = setting, key
+        return self._found
 
 
 def _plan(setting: Setting, rate: float, library: Mapping[str, Effect] | None, n: int) -> Plan:
@@ -338,7 +371,7 @@ def _crossed(old: Motion, new: Motion) -> Motion:
 
 
 def _ended(held: Motion) -> Motion:
-    """Return a motion whose last fall of the torque is over, for what waits for that to count it."""
+    """Return a motion whose last fall of the torque is over, for what waits to count it."""
     last = held.part(held.torque.size - 1)
     way = -1.0 if last.shaft_speed[0] < 0.0 else 1.0
     risen = last.torque + way * float(np.ptp(held.torque))

@@ -232,7 +232,7 @@ def motion_blocks(
 
 
 def steps_beyond(rate: float) -> int:
-    """Samples at a rate [Hz] by which the solver's steps may reach beyond a block.
+    """Return by how many samples at a rate [Hz] the solver's steps may reach beyond a block.
 
     Examples
     --------
