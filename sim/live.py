@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LOOKAHEAD", "LiveBlock", "LiveRun", "Setting", "paths_key", "paths_of"]
 
-LOOKAHEAD = 0.01
+LOOKAHEAD = 0.005
 """By which the sound lags behind the motion [s]."""
 
 _SEEN = 0.2
