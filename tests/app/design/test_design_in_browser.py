@@ -187,7 +187,7 @@ def test_it_fits_and_everybody_can_use_it(browser, app, width):
     wide = (
         "document.documentElement.scrollWidth, document.querySelector('#view-design').scrollWidth"
     )
-    assert max(opened.page.evaluate(f"[{wide}]")) <= width
+    assert max(opened.page.evaluate(f"[document.documentElement.scrollWidth, {panel}]")) <= width
     columns = opened.page.evaluate(
         "getComputedStyle(document.querySelector('.design-view')).gridTemplateColumns.split(' ')"
     )
