@@ -184,9 +184,7 @@ def test_it_fits_and_everybody_can_use_it(browser, app, width):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
     opened = DesignPage(browser, app, width)
     opened.play()
-    wide = (
-        "document.documentElement.scrollWidth, document.querySelector('#view-design').scrollWidth"
-    )
+    panel = "document.querySelector('#view-design').scrollWidth"
     assert max(opened.page.evaluate(f"[document.documentElement.scrollWidth, {panel}]")) <= width
     columns = opened.page.evaluate(
         "getComputedStyle(document.querySelector('.design-view')).gridTemplateColumns.split(' ')"
