@@ -84,7 +84,8 @@ class Segment:
         for, where not calibrated, and of less than half a second or more than ten minutes.
     snr : float or None
         The A-weighted level over that of the background [dB(A)], which is L_A90 of the recording
-        outside of creaks, squawks and squeals; ``None`` where there is no such part.
+        outside of creaks, squawks and squeals and of digital silence; ``None`` where there is no
+        such part.
 
     Examples
     --------
