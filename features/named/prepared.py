@@ -57,9 +57,6 @@ TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
 _LEAST_IN_BAND = 1e-5
 """Power of the band described, relative to the whole, below which it holds leakage only."""
 
-_LEVEL_RESOLUTION = 25.0
-"""Spacing of the bins from which the weighted level is summed [Hz]."""
-
 
 class TopBand(NamedTuple):
     """A band above the common limit; NaN where the rate does not reach it.
@@ -217,11 +214,6 @@ class Prepared:
     def slips(self) -> TorqueSlips:
         """Slips of a torque, in its own unit."""
         return torque_slips(self.samples, self.rate)
-
-    @cached_property
-    def level_spectrum(self) -> Spectrum:
-        """Of the samples as they are, over all that the rate holds."""
-        return welch(self.samples, self.rate, _LEVEL_RESOLUTION)
 
     @cached_property
     def fine_spectrum(self) -> Spectrum:
