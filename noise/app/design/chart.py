@@ -107,7 +107,7 @@ def chart_of(asked: ChartAsked) -> dict[str, object]:
     >>> from models.rig_files.rig_file import load_material_rig
     >>> found = chart_of(ChartAsked(load_material_rig("PDMS"), 2214.0, 23.0))
     >>> found["interference_mm"][0], found["speed_rad_s"][-1], found["labels"][0][0]
-    (0.254, 13.0, 'none')
+    (0.254, 17.0, 'none')
     """
     rig = asked.rig
     low, high = rig.interference_range
