@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from features.kernels.short_time import ShortTime
     from features.kernels.slip_pulses import Pulses
 
-__all__ = ["ACOUSTIC_KINDS", "TOP_BANDS", "Prepared", "prepare"]
+__all__ = ["ACOUSTIC_KINDS", "LEVEL_RESOLUTION", "TOP_BANDS", "Prepared", "prepare"]
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")
 """Kinds of channel that are described as noise."""
@@ -57,7 +57,7 @@ TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
 _LEAST_IN_BAND = 1e-5
 """Power of the band described, relative to the whole, below which it holds leakage only."""
 
-_LEVEL_RESOLUTION = 25.0
+LEVEL_RESOLUTION = 25.0
 """Spacing of the bins from which the weighted level is summed [Hz]."""
 
 
@@ -144,6 +144,12 @@ class Prepared:
         return float(np.mean(self.in_band[0] ** 2))
 
     @cached_property
+    def kurtosis(self) -> float:
+        """Kurtosis of that part [-]."""
+        x, _ = self.in_band
+        return float(np.mean(np.square(np.square(x / x.std()))))
+
+    @cached_property
     def in_band_share(self) -> float:
         """Share of the power below the limit that lies within the band that is described."""
         whole = float(np.mean(self.below[0] ** 2))
@@ -221,7 +227,7 @@ class Prepared:
     @cached_property
     def level_spectrum(self) -> Spectrum:
         """Of the samples as they are, over all that the rate holds."""
-        return welch(self.samples, self.rate, _LEVEL_RESOLUTION)
+        return welch(self.samples, self.rate, LEVEL_RESOLUTION)
 
     @cached_property
     def fine_spectrum(self) -> Spectrum:
