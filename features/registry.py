@@ -10,9 +10,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from features.long.parts import LONG, n_samples_of, pieces_of
+from features.long.parts import LONG, n_samples_of, reader_of
 from features.named.band_features import BAND_FEATURES
 from features.named.prepared import ACOUSTIC_KINDS, prepare
 from features.named.spectral_features import SPECTRAL_FEATURES
@@ -225,11 +223,10 @@ def recording_features(
 
 
 def _prepared(recording: Recording | Parts, row: int, kind: str, stick_rate: float) -> Prepared:
-    pieces, n = pieces_of(recording, row), n_samples_of(recording)
+    read, n = reader_of(recording, row), n_samples_of(recording)
     rate, calibrated = recording.rate, recording.calibrated
     if n < LONG:
-        x = np.concatenate(list(pieces()))
-        return prepare(x, rate, kind, calibrated=calibrated, stick_rate=stick_rate)
+        return prepare(read(0, n), rate, kind, calibrated=calibrated, stick_rate=stick_rate)
     from features.long.prepared import prepare_long
 
-    return prepare_long(pieces, n, rate, kind, calibrated=calibrated, stick_rate=stick_rate)
+    return prepare_long(read, n, rate, kind, calibrated=calibrated, stick_rate=stick_rate)

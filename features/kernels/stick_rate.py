@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.long.parts import n_samples_of, pieces_of
+from features.long.parts import in_pieces, n_samples_of, reader_of
 from models.errors import ParameterError
 from models.rig import effective_stiffness
 from models.rig_files.rig_file import load_material_rig
@@ -84,17 +84,19 @@ def _speed(recording: Recording | Parts) -> float | None:
     n = n_samples_of(recording)
     if recording.calibrated and speed is not None:
         every = 1 + n // _MOST
-        run = [np.abs(piece[::every]) for piece in pieces_of(recording, speed, every * _AT_ONCE)()]
+        pieces = in_pieces(reader_of(recording, speed), n, every * _AT_ONCE)
+        run = [np.abs(piece[::every]) for piece in pieces()]
         return float(np.median(np.concatenate(run)))
     block = max(1, round(_BLOCK * recording.rate))
     if recording.calibrated and angle is not None:
         n_blocks = n // block
         if n_blocks >= _LEAST_BLOCKS:
             # Means of blocks first: the difference of single samples would be that of their noise.
+            read = reader_of(recording, angle)
             means = np.concatenate(
                 [
                     piece[: piece.size // block * block].reshape(-1, block).mean(axis=1)
-                    for piece in pieces_of(recording, angle, max(1, _AT_ONCE // block) * block)()
+                    for piece in in_pieces(read, n, max(1, _AT_ONCE // block) * block)()
                 ]
             )
             return float(np.median(np.abs(np.diff(means)))) * recording.rate / block

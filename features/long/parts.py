@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Protocol
 
 from models.recording import Recording
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     import numpy as np
     from numpy.typing import NDArray
 
     from models.condition import Condition
     from models.recording import Channel
 
-__all__ = ["LONG", "Parts", "n_samples_of", "pieces_of"]
+Read = Callable[[int, int], "NDArray[np.float64]"]
+Pieces = Callable[[], "Iterator[NDArray[np.float64]]"]
+
+__all__ = ["LONG", "Parts", "Pieces", "Read", "in_pieces", "n_samples_of", "reader_of"]
 
 LONG = 1 << 21
 """Samples of a channel from which on it is described piece by piece: 44 s at 48 kHz."""
@@ -74,15 +76,41 @@ def n_samples_of(recording: Recording | Parts) -> int:
     return recording.n_samples
 
 
-def pieces_of(
-    recording: Recording | Parts, row: int, length: int = _PIECE
-) -> Callable[[], Iterator[NDArray[np.float64]]]:
-    """Return what gives a channel piece by piece, anew at each call.
+def reader_of(recording: Recording | Parts, row: int) -> Read:
+    """Return what gives a part of a channel, from first and last sample.
 
     Parameters
     ----------
     recording : Recording or Parts
     row : int
+        Of the channel.
+
+    Returns
+    -------
+    callable
+        Gives arrays of shape (last - first,) [unit of the channel].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from models.recording import Channel
+    >>> run = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
+    >>> reader_of(run, 0)(10, 30).size
+    20
+    """
+    if isinstance(recording, Recording):
+        return lambda first, last: recording.samples[row, first:last]
+    return lambda first, last: recording.read(first, last)[row]
+
+
+def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Pieces:
+    """Return what gives a channel piece by piece, anew at each call.
+
+    Parameters
+    ----------
+    read : callable
+        Of `reader_of`.
+    n_samples : int
         Of the channel.
     length : int
         Samples of a piece; the last may be shorter.
@@ -95,19 +123,10 @@ def pieces_of(
     Examples
     --------
     >>> import numpy as np
-    >>> from models.recording import Channel
-    >>> run = Recording(np.zeros((1, 480)), 48e3, (Channel("pressure"),))
-    >>> [piece.size for piece in pieces_of(run, 0, 200)()]
+    >>> ones = np.ones(480)
+    >>> [piece.size for piece in in_pieces(lambda first, last: ones[first:last], 480, 200)()]
     [200, 200, 80]
     """
-    n = n_samples_of(recording)
-
-    def pieces() -> Iterator[NDArray[np.float64]]:
-        for first in range(0, n, length):
-            last = min(first + length, n)
-            if isinstance(recording, Recording):
-                yield recording.samples[row, first:last]
-            else:
-                yield recording.read(first, last)[row]
-
-    return pieces
+    return lambda: (
+        read(first, min(first + length, n_samples)) for first in range(0, n_samples, length)
+    )

@@ -17,6 +17,7 @@ import numpy as np
 
 from features.kernels.bands import (
     LEAST_SHARE_DB,
+    REFERENCES,
     THIRD_OCTAVE_RESOLUTION,
     relative_db,
     resolved_third_octaves,
@@ -29,6 +30,7 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of_period
+from features.kernels.levels import weighted_levels
 from features.kernels.lines import line_resolution
 from features.kernels.modulation import MODULATION_BAND, Modulation, described_modulation
 from features.kernels.short_time import (
@@ -40,14 +42,15 @@ from features.kernels.short_time import (
 from features.kernels.slip_pulses import pulse_band_from, squared
 from features.kernels.spectra import Spectrum
 from features.long.overlapped import Overlapped, block_sizes
+from features.long.parts import in_pieces
 from features.long.pulses import LongPulses, envelope_kurtosis
 from features.long.slips import long_torque_slips
 from features.long.sums import Correlation, Moments, SegmentPowers, WelchSum
-from features.named.prepared import ACOUSTIC_KINDS, LEVEL_RESOLUTION, TOP_BANDS, Prepared, TopBand
+from features.named.prepared import ACOUSTIC_KINDS, TOP_BANDS, Prepared, TopBand
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
@@ -56,8 +59,7 @@ if TYPE_CHECKING:
     from features.kernels.short_time import ShortTime
     from features.kernels.slip_drops import TorqueSlips
     from features.kernels.slip_pulses import Pulses
-
-    Pieces = Callable[[], Iterator[NDArray[np.float64]]]
+    from features.long.parts import Pieces, Read
 
 __all__ = ["LongPrepared", "prepare_long"]
 
@@ -95,18 +97,22 @@ class LongPrepared(Prepared):
         None are held [unit of the channel].
     rate, kind, calibrated, mean, rms, stick_rate
         As in `features.named.prepared.Prepared`.
-    pieces : callable
-        Gives the samples piece by piece, anew at each call.
+    read : callable
+        From first and last sample to the samples between them, shape (n,).
     n_samples : int
-        Of all pieces together.
-    levels, fine : Spectrum
-        Of the samples as they are, for the weighted level and for one-third octaves.
+        Of the channel.
+    fine : Spectrum
+        Of the samples as they are, in bins for one-third octaves.
     """
 
-    pieces: Pieces = field(kw_only=True)
+    read: Read = field(kw_only=True)
     n_samples: int = field(kw_only=True)
-    levels: Spectrum = field(kw_only=True)
     fine: Spectrum = field(kw_only=True)
+
+    @property
+    def pieces(self) -> Pieces:
+        """What gives the samples piece by piece, anew at each call."""
+        return in_pieces(self.read, self.n_samples)
 
     @cached_property
     def in_band_power(self) -> float:
@@ -170,9 +176,10 @@ class LongPrepared(Prepared):
         return long_torque_slips(self.pieces, self.n_samples, self.rate)
 
     @cached_property
-    def level_spectrum(self) -> Spectrum:
+    def level_a(self) -> float:
         """As in `Prepared`."""
-        return self.levels
+        reference = REFERENCES[self.kind]
+        return weighted_levels(self.read, self.n_samples, self.rate, reference=reference).level_a
 
     @cached_property
     def fine_spectrum(self) -> Spectrum:
@@ -333,7 +340,7 @@ class _LongModulation:
 
 
 def prepare_long(
-    pieces: Pieces,
+    read: Read,
     n_samples: int,
     rate: float,
     kind: str,
@@ -345,11 +352,11 @@ def prepare_long(
 
     Parameters
     ----------
-    pieces : callable
-        Gives the samples of one channel piece by piece, anew at each call, each of shape (n,), in
-        its unit or, not calibrated, in fractions of full scale.
+    read : callable
+        From first and last sample to the samples of one channel between them, shape (n,), in its
+        unit or, not calibrated, in fractions of full scale.
     n_samples : int
-        Of all pieces together.
+        Of the channel.
     rate : float
         Sampling rate [Hz].
     kind : str
@@ -371,19 +378,18 @@ def prepare_long(
     Examples
     --------
     >>> ones = np.ones(48_000)
-    >>> prepare_long(lambda: iter([ones, ones]), 96_000, 48e3, "pressure").silent
+    >>> prepare_long(lambda first, last: ones[first:last], 48_000, 48e3, "pressure").silent
     True
     """
     moments = Moments()
-    levels = WelchSum(n_samples, rate, LEVEL_RESOLUTION)
     fine = WelchSum(n_samples, rate, THIRD_OCTAVE_RESOLUTION)
-    for piece in pieces():
+    for piece in in_pieces(read, n_samples)():
         if not np.isfinite(piece).all():
             bad = int(np.flatnonzero(~np.isfinite(piece))[0])
             raise ParameterError(
                 f"signal: sample {moments.n + bad} is {piece[bad]}; all samples must be finite"
             )
-        for total in (moments, levels, fine):
+        for total in (moments, fine):
             total.add(piece)
     largest = max(abs(moments.lowest), abs(moments.highest))
     rms = math.sqrt(moments.variance)
@@ -395,9 +401,8 @@ def prepare_long(
         moments.mean,
         rms if rms > NOTHING * largest else 0.0,
         stick_rate,
-        pieces=pieces,
+        read=read,
         n_samples=n_samples,
-        levels=levels.spectrum(),
         fine=fine.spectrum(),
     )
 

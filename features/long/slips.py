@@ -33,11 +33,11 @@ from features.long.turning_points import Smoother, TurningPoints
 from models.compilation import COMPILED
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    Pieces = Callable[[], Iterator[NDArray[np.float64]]]
+    from features.long.parts import Pieces
 
 __all__ = ["long_torque_slips"]
 

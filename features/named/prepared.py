@@ -17,6 +17,7 @@ import numpy as np
 
 from features.kernels.bands import (
     LEAST_SHARE_DB,
+    REFERENCES,
     THESIS_BANDS,
     band_power,
     fine_third_octaves,
@@ -33,6 +34,7 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.levels import a_weighted_level
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.slip_drops import TorqueSlips, torque_slips
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
@@ -46,7 +48,7 @@ if TYPE_CHECKING:
     from features.kernels.short_time import ShortTime
     from features.kernels.slip_pulses import Pulses
 
-__all__ = ["ACOUSTIC_KINDS", "LEVEL_RESOLUTION", "TOP_BANDS", "Prepared", "prepare"]
+__all__ = ["ACOUSTIC_KINDS", "TOP_BANDS", "Prepared", "prepare"]
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")
 """Kinds of channel that are described as noise."""
@@ -56,9 +58,6 @@ TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
 
 _LEAST_IN_BAND = 1e-5
 """Power of the band described, relative to the whole, below which it holds leakage only."""
-
-LEVEL_RESOLUTION = 25.0
-"""Spacing of the bins from which the weighted level is summed [Hz]."""
 
 
 class TopBand(NamedTuple):
@@ -225,9 +224,9 @@ class Prepared:
         return torque_slips(self.samples, self.rate)
 
     @cached_property
-    def level_spectrum(self) -> Spectrum:
-        """Of the samples as they are, over all that the rate holds."""
-        return welch(self.samples, self.rate, LEVEL_RESOLUTION)
+    def level_a(self) -> float:
+        """A-weighted level [dB re the kind's reference]."""
+        return a_weighted_level(self.samples, self.rate, reference=REFERENCES[self.kind])
 
     @cached_property
     def fine_spectrum(self) -> Spectrum:

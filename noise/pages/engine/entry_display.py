@@ -124,7 +124,9 @@ def draw_entries(
                                         (False, 1.0, "dBFS")):  # fmt: skip
         of_it = {key: clip for key, clip in clips.items() if entries[key].calibrated == calibrated}
         levels = {key: clip_levels(clip.samples, reference) for key, clip in of_it.items()}
-        over_time |= level_displays(of_it, RATE, reference, "dB(A)" if calibrated else "dBFS(A)")
+        unit_a = "dB(A)" if calibrated else "dBFS(A)"
+        measured = {key: known for key in of_it if (known := entries[key].fast_levels) is not None}
+        over_time |= level_displays(of_it, RATE, reference, unit_a, measured)
         if levels:
             highest = top(list(levels.values()))
             pictures |= {key: picture(one, highest) for key, one in levels.items()}
