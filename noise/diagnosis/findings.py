@@ -35,7 +35,7 @@ SHOWN_IN = {
 contact, and an error of a sensor looks like one of the way to it."""
 
 ROLES = ("measured", "before", "after")
-"""What is compared: the recording, the nominal model, and the model with what was found."""
+"""What is compared: the recording, the nominal model, and the fitted one."""
 
 
 @dataclass(frozen=True)
