@@ -17,6 +17,7 @@ import numpy as np
 
 from features.kernels.bands import (
     LEAST_SHARE_DB,
+    REFERENCES,
     THESIS_BANDS,
     band_power,
     fine_third_octaves,
@@ -33,6 +34,7 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.levels import a_weighted_level
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.slip_drops import TorqueSlips, torque_slips
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
@@ -56,9 +58,6 @@ TOP_BANDS = ((7_000.0, 13_000.0), (13_000.0, 19_000.0))
 
 _LEAST_IN_BAND = 1e-5
 """Power of the band described, relative to the whole, below which it holds leakage only."""
-
-_LEVEL_RESOLUTION = 25.0
-"""Spacing of the bins from which the weighted level is summed [Hz]."""
 
 
 class TopBand(NamedTuple):
@@ -144,6 +143,12 @@ class Prepared:
         return float(np.mean(self.in_band[0] ** 2))
 
     @cached_property
+    def kurtosis(self) -> float:
+        """Kurtosis of that part [-]."""
+        x, _ = self.in_band
+        return float(np.mean(np.square(np.square(x / x.std()))))
+
+    @cached_property
     def in_band_share(self) -> float:
         """Share of the power below the limit that lies within the band that is described."""
         whole = float(np.mean(self.below[0] ** 2))
@@ -219,9 +224,9 @@ class Prepared:
         return torque_slips(self.samples, self.rate)
 
     @cached_property
-    def level_spectrum(self) -> Spectrum:
-        """Of the samples as they are, over all that the rate holds."""
-        return welch(self.samples, self.rate, _LEVEL_RESOLUTION)
+    def level_a(self) -> float:
+        """A-weighted level [dB re the kind's reference]."""
+        return a_weighted_level(self.samples, self.rate, reference=REFERENCES[self.kind])
 
     @cached_property
     def fine_spectrum(self) -> Spectrum:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from features.kernels.bands import REFERENCES, overall_level, relative_db
+from features.kernels.bands import REFERENCES, relative_db
 from features.named.feature import PEETERS, PITCH, THESIS_NOISES, THESIS_SPECTRA, THIS, Feature
 from features.named.prepared import ACOUSTIC_KINDS
 
@@ -35,7 +35,7 @@ def _level(p: Prepared) -> float:
 def _level_a(p: Prepared) -> float:
     if p.rms == 0.0:
         return math.nan
-    return overall_level(p.level_spectrum, reference=REFERENCES[p.kind], weighting="A")
+    return p.level_a
 
 
 def _hum(p: Prepared) -> float:

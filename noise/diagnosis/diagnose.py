@@ -27,6 +27,7 @@ from noise.diagnosis.findings import Agreement, EffectFinding, HypothesisFinding
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.gap.signature import KINDS
 from noise.diagnosis.outcome import Diagnosis
+from noise.diagnosis.text.words import joined
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 
@@ -89,6 +90,7 @@ def diagnose_case(
     first = first_answer(case, library, posterior, seed, tell)
     if quick:
         answer = _stated(case, first, first, nulls, library)
+        answer = replace(answer, notes=(*answer.notes, *_unasked(case, library)))
     else:
         from noise.diagnosis.causes.hypotheses import local_answer
         from noise.diagnosis.fit.fits import add_fits  # loads the classifier; no part of a quick
@@ -161,6 +163,18 @@ def _stated(
         ),
         agreement=_agreement(case, first.gap),
         faults=faults,
+    )
+
+
+def _unasked(case: Case, library: Mapping[str, Effect]) -> tuple[str, ...]:
+    """Say which effects of the user's own a quick answer has no probability of."""
+    listed = {spec.name for spec in case.rig.effects}
+    own = [name for name in library if name not in EFFECTS and name not in listed]
+    if not own:
+        return ()
+    return (
+        f"{joined(own)} was not asked for: only fits tell of effects of your own, and a quick "
+        "answer has none",
     )
 
 

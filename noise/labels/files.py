@@ -27,6 +27,7 @@ def label(
     classifier: str | Path | None = None,
     inference: str | Path | None = None,
     full_scale: PascalPerFullScale | None = None,
+    loudness: bool = False,
     out: str | Path | None = None,
     fresh: bool = False,
     workers: int = 1,
@@ -42,6 +43,8 @@ def label(
         Files that ``bushing-noise train`` made; by default those that are shipped.
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    loudness : bool
+        Whether the loudness N5 of segments is told as well, by the extra ``sound-quality``.
     out : path, optional
         File for the table: .csv, .xlsx, .jsonl or .parquet. As with
         ``bushing-noise label --out``, a journal beside it keeps each recording that is done:
@@ -83,7 +86,7 @@ def label(
     check_table_path(out)
     given = [paths] if isinstance(paths, str | Path) else paths
     jobs = find_jobs([Path(path) for path in given])
-    work = Labelling(_absolute(classifier), _absolute(inference), full_scale)
+    work = Labelling(_absolute(classifier), _absolute(inference), full_scale, loudness=loudness)
     work.prepare()
     kept = nullcontext() if out is None else open_journal(Path(out), work, fresh=fresh)
     with kept as journal:

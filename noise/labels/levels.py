@@ -6,6 +6,7 @@ A-weighted ones are those that `features.kernels.levels` measures of the same sa
 
 The background is what is left where no noise is named. Its level is the one exceeded for 90 % of
 that time, L_A90, as the field has it (ISO 1996-1): a door that slams in between does not raise it.
+Digital silence is no background: a gate, a fade or an editor put it there.
 """
 
 from __future__ import annotations
@@ -35,6 +36,10 @@ _EXCEEDED = 90.0
 
 _LEAST_BACKGROUND = 4
 """Eighths of a second without which a background has no level."""
+
+_RANGE = 110.0
+"""What lies farther below the loudest eighth of a second is digital silence [dB]: 16 bits reach 98,
+and what is left beside zeros by the weighting lies at 130."""
 
 CELL_RATE = 100
 """Cells in a second; segments begin and end with one."""
@@ -205,41 +210,49 @@ def with_weighted_levels(blocks: RecordingBlocks, segments: list[Segment]) -> li
         for segment, levels in zip(segments, measured, strict=True)
         if segment.label not in NAMED
     ]
-    background = background_level(np.concatenate(outside)) if outside else None
+    loudest = max(levels.short.max(initial=-math.inf) for levels in measured)
+    silent = loudest - _RANGE if math.isfinite(loudest) else -math.inf
+    background = background_level(np.concatenate(outside), silent) if outside else None
     return [
         replace(
             segment,
             level_a=_finite(levels.level_a) if blocks.calibrated else None,
             level_af_max=_finite(levels.level_af_max) if blocks.calibrated else None,
-            snr=None if background is None else _finite(levels.level_a - background),
+            snr=levels.level_a - background
+            if background is not None and levels.level_a > silent
+            else None,
         )
         for segment, levels in zip(segments, measured, strict=True)
     ]
 
 
-def background_level(levels: NDArray[np.float64]) -> float | None:
+def background_level(levels: NDArray[np.float64], silent: float = -math.inf) -> float | None:
     """Level of a background, L_A90.
 
     Parameters
     ----------
     levels : ndarray, shape (n,)
         Of each eighth of a second of it [dB].
+    silent : float
+        What is not above it is digital silence and does not count [dB].
 
     Returns
     -------
     float or None
-        [dB re what the levels are]; ``None`` where there is too little of it, or where it is
-        digital silence.
+        [dB re what the levels are]; ``None`` where there is too little of it.
 
     Examples
     --------
     >>> background_level(np.array([40.0] * 9 + [70.0])), background_level(np.array([40.0]))
     (40.0, None)
+    >>> background_level(np.array([-np.inf] * 9 + [40.0] * 9))
+    40.0
     """
+    levels = levels[levels > silent]
     if levels.size < _LEAST_BACKGROUND:
         return None
     ordered = np.sort(levels)
-    return _finite(float(ordered[int((1.0 - 0.01 * _EXCEEDED) * levels.size)]))
+    return float(ordered[int((1.0 - 0.01 * _EXCEEDED) * levels.size)])
 
 
 def _finite(level: float) -> float | None:

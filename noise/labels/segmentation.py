@@ -30,6 +30,9 @@ __all__ = [
 NOISES = 3
 """The first labels are the noises."""
 
+_QUIET = NOISES
+"""The label after them is ``none``."""
+
 _CLEAREST = 0.25
 """Share of a stretch's windows that its name is heard from [-]."""
 
@@ -52,8 +55,9 @@ _BAND_RANGE = 50.0
 _CONTEXT = 0.75
 """How far to either side the frames are compared [s]."""
 
-_REACH = 0.3
-"""How far from the middle between two windows the change may lie [s]."""
+_REACH = 0.4
+"""How far from the middle between two windows the change may lie [s]: a noise is heard in a window
+that holds little of it."""
 
 _LEAD = 0.5 * FRAME / RATE - 0.5 / FRAME_RATE
 """From a frame's place in the row to the moment halfway between its middle and the one before."""
@@ -125,13 +129,23 @@ def labelled_stretches(
     [3, 4]
     """
     n = len(probabilities)
-    changes = np.flatnonzero(np.diff(viterbi_path(probabilities))) + 1
+    path = viterbi_path(probabilities)
+    changes = np.flatnonzero(np.diff(path)) + 1
     edges = np.concatenate([[0], changes, [n]])
     group = np.repeat(np.arange(edges.size - 1), np.diff(edges))
     p = clearest(probabilities, group)
-    names = p.argmax(axis=1) if thresholds is None else named(p, thresholds)
+    names = (p.argmax(axis=1) if thresholds is None else named(p, thresholds))[group]
+    # A noise too short to leave the path of `none` is no longer than it is heard.
+    noise = probabilities[np.arange(n), names]
+    outside = (path == _QUIET) & (names < NOISES) & (noise < probabilities[:, _QUIET])
+    for stretch in np.unique(group[outside]).tolist():
+        own = group == stretch
+        heard = np.flatnonzero(own & ~outside)
+        if heard.size:
+            own[heard[0] : heard[-1] + 1] = False
+            names[own] = _QUIET
     first = np.concatenate([[True], names[1:] != names[:-1]])
-    return np.concatenate([edges[:-1][first], [n]]), names[first]
+    return np.concatenate([np.flatnonzero(first), [n]]), names[first]
 
 
 def named(p: NDArray[np.float64], thresholds: Sequence[float]) -> NDArray[np.intp]:
@@ -219,8 +233,8 @@ def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDA
     >>> change_points(frames, np.array([2])).round(2).tolist()
     [0.91]
     """
-    # From the middle of one window to that of the next.
-    middles = (changes + 1.5) * HOP + 0.5 * HOP
+    # Halfway from the middle of one window to that of the next.
+    middles = (changes + 1.5) * HOP
     times = []
     for i, middle in enumerate(middles.tolist()):
         low = 0.5 * (middles[i - 1] + middle) if i else 0.0
@@ -253,4 +267,7 @@ def _comparable(frames: NDArray[np.float32]) -> NDArray[np.float64]:
     bands = np.maximum(bands, bands.max(initial=-300.0) - _BAND_RANGE) / _BAND_SPREAD
     columns = [FRAME_COLUMNS.index(name) for name in _SPREADS]
     others = frames[:, columns] / np.array(list(_SPREADS.values()))
+    energy = frames[:, FRAME_COLUMNS.index("energy")]
+    # In digital silence they tell of nothing but what the resampling left there.
+    others[energy < energy.max(initial=-300.0) - _BAND_RANGE] = 0.0
     return np.concatenate([bands / np.sqrt(bands.shape[1] / 4.0), others], axis=1)

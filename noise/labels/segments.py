@@ -11,6 +11,7 @@ import numpy as np
 
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
+from models.short_repr import short_repr
 from noise.base.label_names import LABELS
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, clearest, labelled_stretches
@@ -50,6 +51,7 @@ _MOST_SHOWN = 4
 """Segments that are named one by one where they are printed."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Segment:
     """A stretch of a recording with one label.
@@ -82,7 +84,8 @@ class Segment:
         for, where not calibrated, and of less than half a second or more than ten minutes.
     snr : float or None
         The A-weighted level over that of the background [dB(A)], which is L_A90 of the recording
-        outside of creaks, squawks and squeals; ``None`` where there is no such part.
+        outside of creaks, squawks and squeals and of digital silence; ``None`` where there is no
+        such part.
 
     Examples
     --------

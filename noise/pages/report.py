@@ -24,6 +24,7 @@ from noise.pages.engine.clips import Clip, full_scale_words
 from noise.pages.engine.entry import RATE, Entry, labels_sentence
 from noise.pages.engine.figures import entry_figures
 from noise.pages.engine.page import page_html, write_page
+from noise.pictures.recorded import recorded_levels, recorded_orders
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
     from noise.labels.segments import Segment
 
 __all__ = ["ReportEntry", "write_report"]
+
+_SAME_LENGTH = 0.02
+"""By how much a sound and the recording that it was made of differ in length at most [s]."""
 
 _LAST_BIT = 2.0**-15  # of 16; a sound that exceeds full scale by no more is not clipped audibly
 
@@ -183,13 +187,18 @@ def _entry(entry: ReportEntry, clip: Clip | None) -> Entry:
             "speed_rad_s_low": float(speed.min()),
             "speed_rad_s_high": float(speed.max()),
         }
+    calibrated = entry.full_scale is not None
+    whole = clip is not None and abs(clip.end - recording.duration) < _SAME_LENGTH
+    in_pascal = calibrated and recording.calibrated and recording.first("pressure") is not None
     return Entry(
         entry.title,
         (row,),
         recording.condition,
-        duration=recording.samples.shape[1] / recording.rate if clip is None else clip.end,
-        calibrated=entry.full_scale is not None,
+        duration=recording.duration if clip is None else clip.end,
+        calibrated=calibrated,
         note=entry.note,
+        orders=recorded_orders(recording) if in_pascal else None,
+        fast_levels=recorded_levels(recording) if whole and in_pascal else None,
     )
 
 

@@ -17,7 +17,7 @@ from features.kernels.orders import order_map, speed_of_angle
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.sound import resampled
+from noise.audio.sound import pressure_channel, resampled
 from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure
 from noise.pictures.clip_levels import HIGHEST, LOWEST, RATE, clip_levels
@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from features.kernels.orders import OrderMap
     from models.recording import Recording
 
-__all__ = ["level_over_time", "plot_recording", "recorded_orders", "recorded_speed"]
+__all__ = [
+    "level_over_time", "plot_recording", "recorded_levels", "recorded_orders", "recorded_speed",
+]  # fmt: skip
 
 _RANGE = 70.0
 """Of colours, from the highest down [dB]."""
@@ -144,6 +146,21 @@ def level_over_time(
     return thinned(time[heard], level[heard], columns=columns)
 
 
+def recorded_levels(recording: Recording) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Level over time of a recording's first pressure channel, as `level_over_time` returns it.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> tone = np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)
+    >>> time, level = recorded_levels(Recording(tone[np.newaxis], 48e3, (Channel("pressure"),)))
+    >>> round(float(level.max()), 1)
+    91.0
+    """
+    samples = recording[pressure_channel(recording).name]
+    return level_over_time(samples, recording.rate, _reference(recording))
+
+
 def recorded_speed(recording: Recording) -> NDArray[np.float64] | None:
     """Speed of the shaft over time, as it was recorded.
 
@@ -249,8 +266,7 @@ def _shown(level: NDArray[np.float64], highest: float) -> NDArray[np.float64]:
 
 
 def _level(axes: Axes, recording: Recording) -> None:
-    sound = recording.first("pressure")
-    time, level = level_over_time(recording.samples[sound], recording.rate, _reference(recording))
+    time, level = recorded_levels(recording)
     axes.plot(time, level, color=BLUE, linewidth=1.2)
     if level.size:
         # Where a meter at rest begins is nothing that was heard.

@@ -7,7 +7,9 @@ shaped through its Fourier transform (Timmer & Koenig 1995, Astron. Astrophys. 3
 such that the *expected* rms from 20 Hz to 20 kHz is the level given: levels hold for any sampling
 rate, and a recording at 30 kHz shows 1.4 dB less of the white one. A loudness of the room comes in
 dB re 20 uPa, as a sound level meter shows it unweighted; the others as rms in the channel's unit.
-The defaults are an ordinary workshop and plain amplifiers; assumed. Amount zero is no noise.
+The defaults are an ordinary workshop and plain amplifiers; assumed. Amount zero is no noise. The
+angle's is that of a potentiometer as the thesis's, 10 rad to the volt (Appendix B), behind an
+amplifier of 0.1 mV; an encoder counts lines and has none, which ``angle=0`` says.
 
 >>> quiet = {"pressure": np.zeros(90_000)}
 >>> values = {"amount": 1.0, "pressure_level": 50.0, "acceleration": 0.2, "torque": 0.05,

@@ -265,9 +265,11 @@ def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path,
     recordings = _recordings(("rectifier", {"share": 0.8}), library=effect_library(mine))
     data, rig = write_case(tmp_path, recordings, listed)
     told = _told(capsys, data, "--rig", rig, "--effects", mine, "--quick")
-    for effects in (mine, [str(mine), other]):
-        found = as_json(diagnose(data, rig, effects=effects, quick=True))
-        assert {**found, "seconds": 0.0} == {**told, "seconds": 0.0}
+    found = as_json(diagnose(data, rig, effects=mine, quick=True))
+    assert {**found, "seconds": 0.0} == {**told, "seconds": 0.0}
+    more = as_json(diagnose(data, rig, effects=[str(mine), other], quick=True))
+    assert more["notes"][-1].startswith("folded was not asked for")
+    assert {**more, "seconds": 0.0, "notes": told["notes"]} == {**told, "seconds": 0.0}
     (tmp_path / "mine.py").write_text(RECTIFIER)
     with pytest.raises(ParameterError, match=r"mine.py: effect 'rectifier' is defined in another"):
         diagnose(data, rig, effects=[mine, tmp_path / "mine.py"], quick=True)
@@ -287,6 +289,23 @@ def test_an_effect_of_the_users_own_that_is_not_the_cause_is_listed_behind(
     told = _told(capsys, data, "--rig", rig, "--effects", mine)
     assert "rectifier" not in told["verdict"]
     assert "rectifier" in [effect["name"] for effect in told["effects"]]
+
+
+def test_where_nothing_is_to_explain_chances_are_of_the_users_own_effects_and_say_so(
+    plain, tmp_path, capsys
+):
+    mine = tmp_path / "rectifier.py"
+    mine.write_text(RECTIFIER)
+    data, rig = write_case(tmp_path, plain)
+    told = _told(capsys, data, "--rig", rig, "--effects", mine)
+    assert told["verdict"] == []
+    chances = {name: p for name, p in told["probabilities"].items() if p}
+    assert set(chances) == {"none", "rectifier"}
+    assert sum(chances.values()) == pytest.approx(1.0, abs=1e-3)
+    sets = {tuple(one["causes"]): one["probability"] for one in told["hypotheses"]}
+    assert sets == {(): chances["none"], ("rectifier",): chances["rectifier"]}
+    assert told["effects"][0]["probability"] == chances["rectifier"]
+    assert any("the probabilities are of rectifier and of no gap" in n for n in told["notes"])
 
 
 def test_an_own_effect_that_the_rig_file_lists_is_no_finding(tmp_path, capsys):

@@ -150,6 +150,21 @@ def test_an_effect_of_the_users_own_gets_a_probability_like_the_others(posterior
     assert marginals(other)["rectifier"] < 0.5 * chances["rectifier"]
 
 
+@pytest.mark.parametrize("sure", [0.0, 2.0])
+def test_effects_of_the_users_own_leave_the_others_as_probable_beside_each_other(
+    posterior, monkeypatch, sure
+):
+    monkeypatch.setattr("noise.diagnosis.causes.hypotheses.SHORTLIST", 2)
+    monkeypatch.setattr("noise.diagnosis.causes.hypotheses.SURE", sure)
+    case = _case(HUM)
+    _, without, _ = _answers(case, posterior)
+    _, beside, _ = _answers(case, posterior, {**EFFECTS, "rectifier": RECTIFIER})
+    assert sum(beside.values()) == pytest.approx(1.0)
+    left = 1.0 - marginals(beside)["rectifier"]
+    others = {h: p / left for h, p in beside.items() if "rectifier" not in h}
+    assert others == pytest.approx(without)
+
+
 @pytest.fixture
 def doubtful(monkeypatch):
     """The first answer is never sure enough, and two effects are in question."""

@@ -114,6 +114,20 @@ def test_where_there_is_no_background_nothing_is_over_it(sound, parts):
     assert found[-1].level_a is not None
 
 
+@pytest.mark.parametrize("calibrated", [True, False])
+@pytest.mark.parametrize(
+    "silence", [np.zeros(4 * RATE), 1e-12 * noise(4.0, 1.0)], ids=["zeros", "what a fade left"]
+)
+def test_digital_silence_is_no_background(squeal, silence, calibrated):
+    hiss = noise(3.0, 0.001)
+    amid = rows_of(recorded(np.concatenate([hiss, squeal]), calibrated=calibrated))
+    gated = rows_of(recorded(np.concatenate([silence, hiss, squeal]), calibrated=calibrated))
+    assert gated[-1]["label"] == "squeal"
+    assert gated[-1]["snr_dba"] == pytest.approx(amid[-1]["snr_dba"], abs=0.2)
+    alone = rows_of(recorded(np.concatenate([silence, squeal]), calibrated=calibrated))
+    assert all(row["snr_dba"] is None for row in alone)
+
+
 def test_the_background_is_exceeded_nine_tenths_of_the_time():
     levels = np.random.default_rng(1).permutation(np.arange(1000.0))
     assert np.mean(levels > background_level(levels)) == pytest.approx(0.9, abs=0.002)

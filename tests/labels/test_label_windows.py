@@ -11,7 +11,7 @@ from features.windows.declared import (
 from features.windows.table import WINDOW_NAMES, window_count
 from models.recording import Channel, Recording
 from noise.labels.levels import CellLevels
-from noise.labels.segmentation import change_points, viterbi_path
+from noise.labels.segmentation import change_points, labelled_stretches, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, describe
 from noise.recordings import blocks as blocks_module
 from noise.recordings.blocks import RecordingBlocks, open_blocks
@@ -165,6 +165,12 @@ def test_a_short_doubt_is_no_segment_but_a_long_one_is():
     assert not viterbi_path(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
     course = viterbi_path(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
     assert course.tolist() == [0] * 4 + [1] * 4 + [0] * 4
+
+
+def test_a_noise_amid_silence_is_no_longer_than_it_is_heard():
+    none, squawk = [0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.6, 0.0, 0.15, 0.25]
+    edges, names = labelled_stretches(np.array([none] * 6 + [squawk] * 6 + [none] * 8), [0.5] * 3)
+    assert (edges.tolist(), names.tolist()) == ([0, 6, 12, 20], [3, 1, 3])
 
 
 def test_levels_of_what_has_no_square_are_levels_all_the_same():

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from features.kernels.levels import a_weighted_level
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig_files.rig_file import load_material_rig
@@ -43,8 +44,34 @@ def test_a_squeal_between_silences_is_found_where_it_is(squeal):
     quiet = np.zeros(45_000)
     found = file_label(label_recording(sound(quiet, squeal, quiet), CLASSIFIER))
     assert found.label == "squeal"
-    assert found.start == pytest.approx(1.5, abs=0.3)
-    assert found.end == pytest.approx(3.5, abs=0.3)
+    assert found.start == pytest.approx(1.5, abs=0.05)
+    assert found.end == pytest.approx(3.5, abs=0.05)
+
+
+@pytest.mark.parametrize("over", [None, 20.0], ids=["in silence", "in hiss"])
+@pytest.mark.parametrize(
+    ("noise", "interference", "stiffness", "speed"),
+    [("creak", 0.381e-3, 3745.0, 5.0), ("squawk", 0.279e-3, 2214.0, 5.0)],
+)
+def test_noises_begin_and_end_where_they_were_put_to_50_ms(
+    noise, interference, stiffness, speed, over
+):
+    rig = load_material_rig("fluorocarbon")
+    whole = simulate(
+        rig, speed, interference=interference, support_stiffness=stiffness, seconds=3.0
+    ).recording["pressure"]
+    rng = np.random.default_rng(0)
+    for _ in range(6):
+        begin, length = rng.uniform(1.0, 2.0), rng.uniform(1.2, 3.0)
+        first, n = round(begin * 30_000), round(length * 30_000)
+        heard = rng.normal(size=180_000)
+        level = -np.inf if over is None else a_weighted_level(whole[:n], 30e3) - over
+        heard *= 10 ** (0.05 * (level - a_weighted_level(heard, 30e3)))
+        heard[first : first + n] += whole[:n]
+        found = file_label(label_recording(sound(heard), CLASSIFIER))
+        assert found.label == noise
+        assert found.start == pytest.approx(begin, abs=0.05)
+        assert found.end == pytest.approx(begin + length, abs=0.05)
 
 
 @pytest.mark.parametrize("calibrated", [True, False])

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from noise.diagnosis.case import Case
+    from noise.diagnosis.causes.local_cases import LocalCase
     from noise.diagnosis.causes.posterior import Posterior
     from noise.diagnosis.evidence.summary import CaseTable
     from sim.effects.effect import Effect
@@ -71,7 +72,8 @@ def local_answer(
     first : mapping of frozenset of str to float
         As `joint_probabilities` gives it [-].
     library : mapping of str to Effect
-        Effects that may be missing; those of the user's own are always in question.
+        Effects that may be missing; those of the user's own are always in question, and take their
+        probability from all others alike.
     workers : int
         Processes.
     seed : int
@@ -86,36 +88,53 @@ def local_answer(
         Why these are the first answer's, or what else is to be known of them; empty if nothing is.
     """
     single = marginals(first)
-    effects = sorted((c for c in single if c in EFFECTS), key=lambda c: -single[c])
+    effects = sorted((c for c in single if c in EFFECTS), key=lambda c: -single[c])[:SHORTLIST]
     listed = {spec.name for spec in case.rig.effects}
     own = [name for name in library if name not in EFFECTS and name not in listed]
-    if not own and max(first.values()) >= SURE:
+    sure = max(first.values()) >= SURE
+    if sure and not own:
         return dict(first), ""
-    chosen = [*effects[:SHORTLIST], *own]
-    hypotheses = _hypotheses(chosen)
+    known = _hypotheses(effects)
+    of_own = [h for h in _hypotheses([*effects, *own]) if h & set(own)]
     bench = bench_of(case, table, library=library, seed=seed)
-    wanted = _wanted(hypotheses, chosen[:LEADERS])
+    wanted = [job for h in (known, of_own) for job in _wanted(h, effects[:LEADERS])]
     cases = local_cases(bench, posterior, wanted, library=library, workers=workers, seed=seed)
     if len(cases) < _ENOUGH * len(wanted):  # those that can be simulated are no fair choice
         return dict(first), (
             f"{len(wanted) - len(cases)} of {len(wanted)} cases of this rig with a likely cause "
             "cannot be simulated: the causes are as probable as on other rigs"
         )
-    model = fit_local_model(
-        np.array([one.odds for one in cases]), [one.hypothesis for one in cases], hypotheses
-    )
-    scores = model.log_likelihoods(posterior.log_odds(bench.table))
-    weights = np.exp(scores - scores.max()) * _prior(hypotheses, len(chosen))
-    covered = sum(first.get(hypothesis, 0.0) for hypothesis in hypotheses)
-    weights *= covered / weights.sum()
-    if not own:  # a few dozen cases are as unsure as the library is: the two count alike
-        weights = np.sqrt(weights * [first.get(hypothesis, 0.0) for hypothesis in hypotheses])
-        weights *= covered / weights.sum()
-    rest = {hypothesis: p for hypothesis, p in first.items() if hypothesis not in hypotheses}
-    answer = normalised({**dict(zip(hypotheses, weights.tolist(), strict=True)), **rest})
+    odds = posterior.log_odds(bench.table)
+    covered = sum(first.get(hypothesis, 0.0) for hypothesis in known)
+    answer = dict(first)
+    if not sure:  # a few dozen cases are as unsure as the library is: the two count alike
+        told = _told_by(cases, known, odds, len(effects))
+        both = normalised({h: math.sqrt(p * first.get(h, 0.0)) for h, p in told.items()})
+        answer |= {h: covered * p for h, p in both.items()}
+    if own:  # the others stay as probable beside each other as they are without these
+        told = _told_by(cases, [*known, *of_own], odds, len(effects) + len(own))
+        of_these = {h: covered * told[h] for h in of_own}
+        left = 1.0 - sum(of_these.values())
+        answer = {h: left * p for h, p in answer.items()} | of_these
     n, whole = len(bench.runs), len(case.recordings)
     part = f"{n} of {whole} recordings" if n < whole else ""
-    return answer, f"causes were simulated on this rig for {part} only" if part else ""
+    return normalised(answer), f"causes were simulated on this rig for {part} only" if part else ""
+
+
+def _told_by(
+    cases: Sequence[LocalCase],
+    hypotheses: Sequence[Hypothesis],
+    odds: NDArray[np.float64],
+    n_effects: int,
+) -> dict[Hypothesis, float]:
+    """Probability of each hypothesis by local cases of them alone, were there no other [-]."""
+    among = [one for one in cases if one.hypothesis in set(hypotheses)]
+    model = fit_local_model(
+        np.array([one.odds for one in among]), [one.hypothesis for one in among], tuple(hypotheses)
+    )
+    scores = model.log_likelihoods(odds)
+    weights = np.exp(scores - scores.max()) * _prior(hypotheses, n_effects)
+    return normalised(dict(zip(hypotheses, weights.tolist(), strict=True)))
 
 
 def _hypotheses(effects: Sequence[str]) -> tuple[Hypothesis, ...]:

@@ -11,6 +11,7 @@ from noise.diagnosis.first_answer import known_effects
 from noise.diagnosis.fit.case_comparison import Model
 from noise.diagnosis.fit.fit_parameters import fit_parameters, split
 from noise.diagnosis.fit.hypothesis_fits import CaseFits, fit_hypotheses, settled, updated
+from noise.diagnosis.text.words import joined
 from sim.constant_version import irregular_effects
 from sim.effects import EFFECTS
 
@@ -44,8 +45,10 @@ class Judged:
     hypotheses : mapping of frozenset of str to float
         Their probabilities, the likeliest first [-].
     probabilities : mapping of str to float
-        Of the causes [-].
+        Of the causes, as the hypotheses have them [-].
     verdict : tuple of str
+    among : tuple of str
+        Effects that alone were weighed against nothing being the matter; empty where all were.
     """
 
     comparison: CaseComparison
@@ -54,6 +57,7 @@ class Judged:
     hypotheses: Mapping[Hypothesis, float]
     probabilities: Mapping[str, float]
     verdict: tuple[str, ...]
+    among: tuple[str, ...] = ()
 
 
 def judge(
@@ -67,7 +71,7 @@ def judge(
     """Fit the likeliest hypotheses of a case, and say which is the likeliest then.
 
     Where the first answer finds nothing to explain, the user's own effects alone are fitted, of
-    which it knows nothing.
+    which it knows nothing; all probabilities are then of these and of nothing being the matter.
 
     Parameters
     ----------
@@ -96,12 +100,12 @@ def judge(
     fits = CaseFits(comparison, fitted_to, held, alone, before, recalibrated, {})
     fits = fit_hypotheses(fits, asked, always, stages, seed, tell)
     hypotheses = settled(updated(asked, fits, stages), fits)
-    verdict = likeliest(hypotheses, fits.of)
-    probabilities = first.probabilities
-    if first.verdict or verdict:
-        single = marginals(hypotheses)
-        probabilities = {n: single.get(n, 0.0) for n in {**first.probabilities, **single}}
-    return Judged(comparison, held, fits, hypotheses, probabilities, verdict)
+    if not first.verdict:  # what closes nothing then speaks for nothing being the matter
+        hypotheses = normalised({h: p for h, p in hypotheses.items() if h in asked})
+    verdict, single = likeliest(hypotheses, fits.of), marginals(hypotheses)
+    probabilities = {n: single.get(n, 0.0) for n in {**first.probabilities, **single}}
+    among = () if first.verdict else tuple(always)
+    return Judged(comparison, held, fits, hypotheses, probabilities, verdict, among)
 
 
 def _with_unseen(
@@ -115,7 +119,7 @@ def _with_unseen(
 
 
 def untold(judged: Judged) -> list[str]:
-    """Say of what is named without its fit telling anything.
+    """Say what probabilities are given, and of what is named without its fit telling anything.
 
     Parameters
     ----------
@@ -124,12 +128,18 @@ def untold(judged: Judged) -> list[str]:
     Returns
     -------
     list of str
-        One line, or none.
+        One line each.
     """
     fits, named = judged.fits, frozenset(judged.verdict)
-    if fits is None or named not in fits.of or not fits.is_mute(named):
-        return []
-    return [
-        f"the model of the rig file has no way for {' and '.join(judged.verdict)} to be heard: it "
-        "is named by the signs of it alone, and no fit has confirmed it"
-    ]
+    found = []
+    if judged.among:
+        found.append(
+            "among the causes that the program brings there is nothing to explain: the "
+            f"probabilities are of {joined(judged.among)} and of no gap, as if there were no other"
+        )
+    if fits is not None and named in fits.of and fits.is_mute(named):
+        found.append(
+            f"the model of the rig file has no way for {' and '.join(judged.verdict)} to be heard: "
+            "it is named by the signs of it alone, and no fit has confirmed it"
+        )
+    return found

@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import io
 import math
+from dataclasses import replace
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ from noise.diagnosis.findings import ROLES
 from noise.diagnosis.text.words import number
 from noise.pages.diagnosis.figures import CURVES
 from noise.pages.engine.entry import RATE, Entry
+from noise.pictures.recorded import recorded_levels, recorded_orders
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -71,7 +73,11 @@ def illustration_entries(
         recording = getattr(illustration, role)
         if recording is not None and recording.first("pressure") is not None:
             sound = audible(recording, RATE)[: round(LONGEST * RATE)].astype(np.float32)
-            entries[role] = _entry(illustration.name, role, sound, heard)
+            entries[role] = replace(
+                _entry(illustration.name, role, sound, heard),
+                orders=recorded_orders(recording),
+                fast_levels=recorded_levels(recording),
+            )
     return entries
 
 

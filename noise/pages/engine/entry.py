@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from features.kernels.orders import OrderMap
 
     Row = Mapping[str, object]
+    FastLevels = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 __all__ = [
     "RATE", "Entry", "Part", "label_counts", "labels_sentence",
@@ -63,6 +64,9 @@ class Entry:
     calibrated : bool
     orders : OrderMap, optional
         Of a sound whose shaft's speed was recorded and changes.
+    fast_levels : tuple of 2 ndarrays, optional
+        Time [s] and A-weighted level, Fast [dB], where they were measured before the sound was
+        faded and resampled, as by `noise.pictures.recorded.recorded_levels`.
     note : str
         Where the labels come from, or why there is no sound.
     data : mapping of str to str
@@ -78,6 +82,7 @@ class Entry:
     calibrated: bool = True
     note: str = ""
     orders: OrderMap | None = None
+    fast_levels: FastLevels | None = None
     data: Mapping[str, str] = field(default_factory=dict)
 
     @property

@@ -124,7 +124,9 @@ def draw_entries(
                                         (False, 1.0, "dBFS")):  # fmt: skip
         of_it = {key: clip for key, clip in clips.items() if entries[key].calibrated == calibrated}
         levels = {key: clip_levels(clip.samples, reference) for key, clip in of_it.items()}
-        over_time |= level_displays(of_it, RATE, reference, "dB(A)" if calibrated else "dBFS(A)")
+        unit_a = "dB(A)" if calibrated else "dBFS(A)"
+        measured = {key: known for key in of_it if (known := entries[key].fast_levels) is not None}
+        over_time |= level_displays(of_it, RATE, reference, unit_a, measured)
         if levels:
             highest = top(list(levels.values()))
             pictures |= {key: picture(one, highest) for key, one in levels.items()}
@@ -244,6 +246,8 @@ def _number(value: object, form: str, unit: str) -> Fact | None:
 
 def _plain(value: float, form: str) -> str:
     words = "fixed" if math.isinf(value) else f"{value:{form}}"
+    if "e+" in words:  # 3400 rather than 3.4e+03
+        words = f"{float(words):.0f}"
     return words.replace("-", "\N{MINUS SIGN}")
 
 

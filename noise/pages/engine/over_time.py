@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from models.drawing import thinned
 from noise.pages.engine.spectrogram import picture
 from noise.pages.engine.ticks import round_ticks
 from noise.pictures.recorded import level_over_time
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from features.kernels.orders import OrderMap
     from noise.pages.engine.clips import Clip
+    from noise.pages.engine.entry import FastLevels
 
     Ticks = tuple[tuple[float, str], ...]
 
@@ -70,7 +72,11 @@ class OrdersDisplay:
 
 
 def level_displays(
-    clips: Mapping[str, Clip], rate: float, reference: float, unit: str
+    clips: Mapping[str, Clip],
+    rate: float,
+    reference: float,
+    unit: str,
+    measured: Mapping[str, FastLevels] | None = None,
 ) -> dict[str, LevelDisplay]:
     """Draw the levels of sounds that share an axis.
 
@@ -84,6 +90,8 @@ def level_displays(
         Of the levels, in the unit of the samples, such as [Pa].
     unit : str
         Of the levels.
+    measured : mapping of str to FastLevels, optional
+        Of the recordings that clips were cut from; without it a clip's own are drawn.
 
     Returns
     -------
@@ -97,7 +105,12 @@ def level_displays(
     """
     curves = {}
     for key, clip in clips.items():
-        time, level = level_over_time(clip.samples, rate, reference, columns=_COLUMNS)
+        if measured is not None and key in measured:
+            time, level = measured[key]
+            inside = (time >= clip.start) & (time <= clip.end)
+            time, level = thinned(time[inside] - clip.start, level[inside], columns=_COLUMNS)
+        else:
+            time, level = level_over_time(clip.samples, rate, reference, columns=_COLUMNS)
         if level.size:
             curves[key] = time * rate / clip.samples.size, level
     highest = max((float(level.max()) for _, level in curves.values()), default=0.0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import BushingNoiseError, RecordingError
+from models.errors import BushingNoiseError
 from noise.audio.sound import LOWEST_HEARD, audible
 from noise.base.progress import track
 from noise.classifier import load_classifier
@@ -18,7 +18,7 @@ from noise.labels.segments import label_recording
 from noise.pages.engine.clips import BYTES_A_SECOND, SHORTEST
 from noise.pages.engine.entry import RATE, Entry, stretch_start
 from noise.pages.review.inputs import Refusal
-from noise.pictures.recorded import recorded_orders
+from noise.pictures.recorded import recorded_levels, recorded_orders
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.folders import is_file
@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from features.kernels.orders import OrderMap
+    from models.recording import Recording
     from noise.classifier import Classifier
-    from noise.pages.engine.entry import Row
+    from noise.pages.engine.entry import FastLevels, Row
     from noise.pages.review.inputs import Inputs, LabelTable
     from noise.recordings.meaning import PascalPerFullScale
 
@@ -177,7 +178,8 @@ def _read_entry(
                 rows = tuple(label_rows(name, blocks, label_recording(blocks, classifier)))
             duration = blocks.n_samples / blocks.rate
             offset = stretch_start(rows, duration, longest)
-            sound, why = _sound(blocks, offset, longest)
+            heard, why = _heard(blocks, offset, longest)
+            sound, levels = (None, None) if heard is None else _sound(heard)
             orders = _orders(blocks, rows, duration)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
@@ -186,6 +188,7 @@ def _read_entry(
     return Entry(
         name, tuple(rows), blocks.condition, duration, sound, offset,
         blocks.calibrated, "; ".join(filter(None, (note, why))), orders,
+        None if levels is None else (offset + levels[0], levels[1]),
     )  # fmt: skip
 
 
@@ -198,18 +201,18 @@ def _orders(blocks: RecordingBlocks, rows: Sequence[Row], duration: float) -> Or
     )
 
 
-def _sound(
-    blocks: RecordingBlocks, offset: float, longest: float
-) -> tuple[NDArray[np.float32] | None, str]:
-    row = blocks.first("pressure")
-    if row is None:
+def _heard(blocks: RecordingBlocks, offset: float, longest: float) -> tuple[Recording | None, str]:
+    """Cut out what is heard; None, and why, where nothing is."""
+    if blocks.first("pressure") is None:
         return None, "no sound pressure to be heard"
     if blocks.rate < LOWEST_HEARD:
         return None, f"sampled at {blocks.rate:g} Hz, so nothing can be heard"
     first = round(offset * blocks.rate)
     last = min(blocks.n_samples, first + round(longest * blocks.rate))
-    sound = audible(blocks.cut(first, last), RATE)
-    if not np.isfinite(sound).all():
-        raise RecordingError(f"{blocks.name}: holds sound pressures beyond any number")
     others = sum(channel.kind == "pressure" for channel in blocks.channels) - 1
-    return sound.astype(np.float32), f"1 of {others + 1} channels is heard" if others else ""
+    return blocks.cut(first, last), f"1 of {others + 1} channels is heard" if others else ""
+
+
+def _sound(heard: Recording) -> tuple[NDArray[np.float32], FastLevels]:
+    """Return the sound at the page's rate, and its level over time as the recording has it."""
+    return audible(heard, RATE).astype(np.float32), recorded_levels(heard)

@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from joblib import Parallel, delayed
 
-from features.kernels.levels import sound_levels
+from features.kernels.levels import a_weighted_level
 from models.errors import BushingNoiseError
 from noise.audio.sound import audible
 from noise.base.label_names import LABELS
 from noise.base.progress import track
 from noise.batch.work import one_thread
 from noise.pages.engine.entry import RATE, Entry
+from noise.pictures.recorded import recorded_levels
 from noise.screening.map.point import shaft_motion
 from sim.acquisition import Acquisition
 from sim.run import simulate
@@ -225,7 +226,7 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
         temperature=_TEMPERATURE if screened.temperature is None else screened.temperature,
     )
     sound = audible(run.recording, RATE).astype(np.float32)
-    note = f"simulated, {sound_levels(sound, RATE).level_a:.0f} dB(A)"
+    note = f"simulated, {a_weighted_level(run.recording['pressure'], RATE):.0f} dB(A)"
     if point.how == INTERPOLATED:
         level = "" if point.level is None else f", {point.level:.0f} dB(A)"
         note += f"; the screen interpolates {point.label}{level}"
@@ -237,4 +238,5 @@ def simulated_entry(screened: ScreenMap, rig: Rig, point: ScreenPoint, *, seed: 
         duration=SECONDS,
         sound=sound,
         note=note,
+        fast_levels=recorded_levels(run.recording),
     )

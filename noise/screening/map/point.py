@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.levels import a_weighted, fast_levels, weighted_levels
+from features.kernels.levels import weighted_levels
 from models.radiation.rig_response import impulse_responses
 from models.rig import damping_at
 from noise.noise_definition import NoiseCriteria, noise_criteria
@@ -99,14 +99,11 @@ class Sound:
     motion : Motion
     pressure, pulse_pressure : ndarray, shape (n,)
         At the motion's rate [Pa].
-    before : ndarray, shape (m,)
-        Pressure from the start to the part that is judged, which a meter has heard as well [Pa].
     """
 
     motion: Motion
     pressure: NDArray[np.float64]
     pulse_pressure: NDArray[np.float64]
-    before: NDArray[np.float64]
 
 
 def shaft_motion(speed: float, frequency: float | None) -> float | Oscillation:
@@ -270,18 +267,14 @@ def _sound(plan: Plan, motion: Motion, paths: ImpulseResponses) -> Sound:
         motion.since(start),
         sound.pressure[start:],
         sound.pulse_pressure[start:],
-        sound.pressure[:start],
     )
 
 
 def _levels(sound: Sound) -> tuple[float, float]:
-    """L_Aeq and L_AFmax [dB re 20 uPa]."""
-    rate, start = sound.motion.rate, sound.before.size
+    """L_Aeq and L_AFmax [dB re 20 uPa], as of a recording that holds what is judged."""
     heard = sound.pressure
-    level = weighted_levels(lambda first, last: heard[first:last], heard.size, rate).level_a
-    # The meter has been running, for the noise has lasted.
-    weighted = a_weighted(np.concatenate([sound.before, heard]), rate)
-    return level, float(fast_levels(weighted, rate)[start:].max())
+    found = weighted_levels(lambda first, last: heard[first:last], heard.size, sound.motion.rate)
+    return found.level_a, found.level_af_max
 
 
 def _paths(

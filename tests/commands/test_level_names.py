@@ -1,0 +1,163 @@
+"""A level of one name is the same number wherever the program tells it of the same samples."""
+
+import csv
+import html
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+
+from features.registry import recording_features
+from models.recording import Channel, Recording
+from models.rig_files.rig_file import load_material_rig
+from noise.app.opened import open_paths
+from noise.app.sounds.heard import bands, level_course
+from noise.app.sounds.kept import KeptSounds
+from noise.cli import main
+from noise.diagnosis.fit.labels_and_levels import labels_and_levels
+from noise.labels.files import label
+from noise.recordings import read_recording, write_recording
+from noise.screening.map import point
+
+LEVELS = ("level_db", "level_dba", "l_afmax_dba")
+MOST_ON_A_PAGE = re.compile(r"</sub> at most ([^<]*) dB\(A\)<")
+
+
+def written(folder, name, pressure, rate=48_000):
+    samples = np.asarray(pressure, dtype=np.float64)[np.newaxis]
+    return write_recording(folder / name, Recording(samples, rate, (Channel("pressure"),)))
+
+
+def hiss(seconds, rms=0.05, rate=48_000):
+    return rms * np.random.default_rng(2).standard_normal(round(seconds * rate))
+
+
+SOUNDS = {
+    "a tone": lambda: 0.2 * np.sin(2.0 * np.pi * 997.0 * np.arange(2 * 48_000) / 48_000),
+    "hiss that ends loud": lambda: hiss(2.0) * np.linspace(0.1, 1.0, 2 * 48_000),
+    "hum below the noise": lambda: (
+        hiss(2.0, 0.01) + 0.5 * np.sin(2.0 * np.pi * 50.0 * np.arange(2 * 48_000) / 48_000)
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def squeal(tmp_path_factory):
+    """A simulated squeal, whole, as `simulate` writes it."""
+    folder = tmp_path_factory.mktemp("levels")
+    call = ["simulate", "--speed", "10", "--support-stiffness", "3745", "--out"]
+    assert main([*call, str(folder / "run")]) == 0
+    return folder / "run.wav"
+
+
+@pytest.fixture(scope="module", params=["squeal", *SOUNDS])
+def recorded(request, tmp_path_factory):
+    if request.param == "squeal":
+        return request.getfixturevalue("squeal")
+    return written(tmp_path_factory.mktemp("levels"), "run.wav", SOUNDS[request.param]())
+
+
+@pytest.fixture
+def labelled(recorded):
+    """The row of the label table; these recordings have one label throughout."""
+    (row,) = label(recorded)
+    return row
+
+
+def test_render_tells_the_levels_of_the_label_table(recorded, labelled, tmp_path):
+    assert main(["render", str(recorded), "--out", str(tmp_path / "heard.wav")]) == 0
+    (part,) = json.loads((tmp_path / "heard.json").read_text())["parts"]
+    assert {name: part[name] for name in LEVELS} == {name: labelled[name] for name in LEVELS}
+    assert main(["render", str(recorded), str(recorded), "--out", str(tmp_path / "set")]) == 0
+    with (tmp_path / "set" / "levels.csv").open(newline="") as file:
+        for row in csv.DictReader(file):
+            assert [float(row[name]) for name in LEVELS] == [labelled[name] for name in LEVELS]
+
+
+def test_features_tell_the_levels_of_the_label_table(recorded, labelled):
+    found = recording_features(read_recording(recorded))
+    assert round(found["pressure_level"], 2) == labelled["level_db"]
+    assert round(found["pressure_level_a"], 2) == labelled["level_dba"]
+
+
+def test_a_review_tells_the_levels_of_the_label_table(recorded, labelled, tmp_path):
+    page = tmp_path / "review.html"
+    assert main(["review", str(recorded), "--out", str(page)]) == 0
+    text = html.unescape(page.read_text(encoding="utf-8"))
+    assert f"<span>{labelled['level_db']:.1f} dB</span>" in text
+    assert MOST_ON_A_PAGE.findall(text) == [f"{labelled['l_afmax_dba']:.1f}"]
+
+
+def test_the_app_tells_the_levels_of_the_label_table(recorded, labelled):
+    track = KeptSounds(open_paths([recorded])).track(0)
+    found = bands(track, {})
+    assert [found[name] for name in ("level", "level_a", "level_af_max")] == [
+        labelled[name] for name in LEVELS
+    ]
+    course = level_course(track)
+    assert course["unit"] == "dB(A) re 20 µPa"
+    assert max(course["levels"]) == pytest.approx(labelled["l_afmax_dba"], abs=0.011)
+
+
+def test_a_diagnosis_tells_the_levels_of_the_label_table(recorded, labelled):
+    recording = read_recording(recorded)
+    found = labels_and_levels("run", recording, recording, None)
+    assert round(found.level_measured, 2) == labelled["level_dba"]
+
+
+def test_the_demo_page_tells_the_levels_of_its_table(tmp_path):
+    assert main(["demo", "--out", str(tmp_path)]) == 0
+    with (tmp_path / "labels.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    text = html.unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert MOST_ON_A_PAGE.findall(text) == [f"{float(row['l_afmax_dba']):.1f}" for row in rows]
+    for row in rows:
+        assert f"{float(row['level_db']):.1f} dB" in text
+
+
+@pytest.mark.parametrize("shaft", [10.0, point.shaft_motion(10.0, 2.0)], ids=["steady", "swinging"])
+def test_a_screen_tells_the_levels_of_the_label_table(shaft, tmp_path, monkeypatch):
+    heard = []
+    measure = point._levels
+    monkeypatch.setattr(point, "_levels", lambda sound: heard.append(sound) or measure(sound))
+    found = point.evaluate_point(
+        load_material_rig("fluorocarbon"), shaft, interference=0.279e-3, support_stiffness=3745.0
+    )
+    (sound,) = heard
+    path = written(tmp_path, "point.wav", sound.pressure, sound.motion.rate)
+    rows = label(path)
+    whole = rows[0] if len(rows) == 1 else _of_the_whole(path, tmp_path)
+    # What is written has 24 bits of every sample.
+    assert found.level == pytest.approx(whole["level_dba"], abs=0.006)
+    assert found.level_max == pytest.approx(whole["l_afmax_dba"], abs=0.006)
+
+
+def _of_the_whole(path, folder):
+    assert main(["render", str(path), "--out", str(folder / "whole.wav")]) == 0
+    (part,) = json.loads((folder / "whole.json").read_text())["parts"]
+    return part
+
+
+def test_segments_have_the_levels_of_what_they_hold(tmp_path):
+    loud = 0.3 * np.sin(2.0 * np.pi * 2310.0 * np.arange(2 * 48_000) / 48_000)
+    path = written(tmp_path, "run.wav", np.concatenate([hiss(3.0, 1e-3), loud, hiss(3.0, 1e-3)]))
+    rows = label(path)
+    assert len(rows) >= 3
+    track = KeptSounds(open_paths([path])).track(0)
+    for row in rows:
+        found = bands(track, {"start": str(row["start_s"]), "end": str(row["end_s"])})
+        assert [found[name] for name in ("level", "level_a", "level_af_max")] == [
+            row[name] for name in LEVELS
+        ]
+
+
+def test_loudness_has_one_number_in_tables_of_labels_and_of_sounds(squeal, tmp_path):
+    pytest.importorskip("mosqito")
+    (row,) = label(squeal, loudness=True)
+    heard = ["render", str(squeal), "--sound-quality", "--out", str(tmp_path / "heard.wav")]
+    assert main(heard) == 0
+    (part,) = json.loads((tmp_path / "heard.json").read_text())["parts"]
+    assert math.isfinite(part["loudness_n5_sone"])
+    assert part["loudness_n5_sone"] == row["loudness_n5_sone"]
