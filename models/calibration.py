@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +27,7 @@ _MARGIN = 0.05
 """Of a table's span, by which readings may lie outside of it."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Calibration:
     """A curve from readings to values.

@@ -31,6 +31,7 @@ CHANNEL_UNITS = {
 """The kinds of channel and the SI unit that each is kept in."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Channel:
     """What one channel of a recording measures.

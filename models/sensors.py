@@ -11,6 +11,8 @@ import math
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING
 
+from models.short_repr import short_repr
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Sensor", "Sensors"]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Sensor:
     """The sensor of one kind of channel, with its amplifier, filter and converter.
@@ -61,6 +64,7 @@ class Sensor:
         return replace(other, **{name: x for name, x in said.items() if x is not None})
 
 
+@short_repr
 @dataclass(frozen=True)
 class Sensors:
     """The sensors of a rig.

@@ -62,13 +62,13 @@ def short_words(value: object) -> str:
     >>> short_words(np.zeros(3)), short_words([1.0] * 9), short_words({"a": 1})
     ('<3 float64>', '<9 float>', "{'a': 1}")
     """
+    if dataclasses.is_dataclass(value):
+        return f"<{type(value).__name__}>"  # before anything is asked of it, which may take long
     if _is_array(value):
         shape = " x ".join(map(str, value.shape))
         return f"<{shape} {value.dtype}>" if shape else repr(value.item())
     if isinstance(value, str):
         return repr(value if len(value) <= _LONGEST_TEXT else f"{value[:_LONGEST_TEXT]} ...")
-    if dataclasses.is_dataclass(value):
-        return f"<{type(value).__name__}>"
     if isinstance(value, Mapping):
         if len(value) > _MOST_SHOWN:
             return f"<{len(value)} entries>"

@@ -27,6 +27,7 @@ from scipy.signal import butter, firwin, sosfilt, sosfilt_zi
 
 from models.compilation import COMPILED
 from models.sensors import Sensor, Sensors
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -67,6 +68,7 @@ _AT_ONCE = 512
 """Values that are filtered together: what they are made of stays in the processor's cache."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Acquisition:
     """How signals become samples.

@@ -149,6 +149,13 @@ class LoggedSpeed:
         if falls.size:
             raise ParameterError(f"logged speed: time does not rise at row {falls[0] + 2}")
 
+    def __repr__(self) -> str:
+        speed, time = self._speed, self._time
+        return (
+            f"LoggedSpeed({time.size} samples, {time[0]:g} to {time[-1]:g} s, "
+            f"{speed.min():g} to {speed.max():g} rad/s)"
+        )
+
     def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Angular speed [rad/s] at `time` [s], both of one shape."""
         return np.asarray(np.interp(time, self._time, self._speed))

@@ -22,6 +22,7 @@ from features.kernels.bands import a_weighting, band_levels, fine_third_octaves
 from features.kernels.conditioning import checked_signal
 from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -54,6 +55,7 @@ _SEGMENTS_AT_ONCE = 4
 """Transformed side by side in the time of one."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class SoundLevels:
     """Levels of one sound, all re the same value.

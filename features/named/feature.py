@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from features.named.prepared import ACOUSTIC_KINDS
+from models.short_repr import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,6 +24,7 @@ PITCH = "McLeod & Wyvill 2005"
 THIS = "bushing-noise"
 
 
+@short_repr
 @dataclass(frozen=True)
 class Feature:
     """One number that describes a signal.

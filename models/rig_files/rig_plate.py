@@ -170,6 +170,7 @@ class Floor:
             raise ParameterError(f"floor: position = {self.position:g} must be a finite number")
 
 
+@short_repr
 @dataclass(frozen=True)
 class Microphone:
     """Where the sound is heard.

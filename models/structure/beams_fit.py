@@ -18,6 +18,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 from models.structure.beams_exact import natural_frequencies
 from models.structure.beams_waves import ClampOnBeams, RootMotion
 
@@ -44,6 +45,7 @@ _BOUNDS = {
 _START = {"clamp_inertia": 5e-4, "anchor_rotation": 60.0, "anchor_translation": 5e6}
 
 
+@short_repr
 @dataclass(frozen=True)
 class AnchorFit:
     """Clamp and anchors as fitted, and how well they meet each measured mode.

@@ -16,6 +16,7 @@ from models.short_repr import short_repr
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+    from pandas import DataFrame
 
 __all__ = ["TransferFunction"]
 
@@ -129,6 +130,38 @@ class TransferFunction:
         from models.transfer_functions.transfer_function_display import draw_transfer_function
 
         return draw_transfer_function(self, ax)
+
+    def to_pandas(self) -> DataFrame:
+        """Return one row a line as a data frame of pandas, in the columns of its CSV file.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``frequency_hz``, ``real``, ``imag``, and ``coherence`` where it is known.
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+
+        Examples
+        --------
+        >>> from importlib.util import find_spec
+        >>> f = np.array([1.0, 2.0])
+        >>> if find_spec("pandas"):
+        ...     assert TransferFunction(f, 1j * f).to_pandas()["imag"].tolist() == [1.0, 2.0]
+        """
+        from models.data_frame import data_frame
+
+        columns = {
+            "frequency_hz": self.frequencies,
+            "real": self.response.real,
+            "imag": self.response.imag,
+        }
+        if self.coherence is not None:
+            columns["coherence"] = self.coherence
+        lines = zip(*(values.tolist() for values in columns.values()), strict=True)
+        return data_frame([*columns], [dict(zip(columns, line, strict=True)) for line in lines])
 
     def _repr_html_(self) -> str:
         from models.transfer_functions.transfer_function_display import transfer_function_html

@@ -142,11 +142,13 @@ def add_excel(parser: ArgumentParser) -> None:
         "--excel",
         type=str.lower,
         choices=EXCEL_LANGUAGES,
+        nargs="?",
+        const="system",
         metavar="LANGUAGE",
         help="write .csv as Excel in a language opens it at a double click, with a byte-order "
         "mark: de has a semicolon between cells and a decimal comma, en comma and point, de-ch "
-        "semicolon and point, system what this computer is set to (default: plain CSV; .xlsx "
-        "needs none of this)",
+        "semicolon and point; without a LANGUAGE, or with system, what this computer is set to "
+        "(default: plain CSV; .xlsx needs none of this)",
     )
 
 

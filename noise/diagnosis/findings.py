@@ -35,7 +35,7 @@ SHOWN_IN = {
 contact, and an error of a sensor looks like one of the way to it."""
 
 ROLES = ("measured", "before", "after")
-"""What is compared: the recording, the nominal model, and the model with what was found."""
+"""What is compared: the recording, the nominal model, and the fitted one."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,7 @@ class StageFinding:
     p_value: float
 
 
+@short_repr
 @dataclass(frozen=True)
 class Location:
     """Where the simulation goes wrong first.
@@ -83,6 +84,7 @@ class Location:
     p_value: float
 
 
+@short_repr
 @dataclass(frozen=True)
 class EffectFinding:
     """A candidate cause.
@@ -120,6 +122,7 @@ class EffectFinding:
     fitted_with: tuple[str, ...] = ()
 
 
+@short_repr
 @dataclass(frozen=True)
 class HypothesisFinding:
     """Causes that may be at work together, and no others.
@@ -140,6 +143,7 @@ class HypothesisFinding:
     gap: float | None = None
 
 
+@short_repr
 @dataclass(frozen=True)
 class Agreement:
     """How far a recording lies from the rig as its file describes it.
@@ -162,6 +166,7 @@ class Agreement:
     channels: Mapping[str, float]
 
 
+@short_repr
 @dataclass(frozen=True)
 class Remainder:
     """What is still to be explained once the verdict's model is fitted.

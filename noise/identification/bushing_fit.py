@@ -98,6 +98,7 @@ class Phases:
     sliding: NDArray[np.bool_]
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class BushingFit:
     """What one recording says of the bushing.

@@ -60,6 +60,7 @@ class Number:
     support_stiffness: float | None = None
 
 
+@short_repr
 @dataclass(frozen=True)
 class LawScore:
     """A law of friction that was tried.

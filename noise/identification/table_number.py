@@ -11,6 +11,7 @@ import numpy as np
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.foreign_file import refusing
+from models.short_repr import short_repr
 from noise.base.tables import read_table
 from noise.identification.quantities import QUANTITIES
 
@@ -34,6 +35,7 @@ _N_SPEEDS = 16
 """Speeds tried about a critical one, over it."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class TableNumber:
     """A measured number.

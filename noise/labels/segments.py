@@ -11,6 +11,7 @@ import numpy as np
 
 from features.windows.table import HOP, LENGTH
 from models.recording import REFERENCE_PRESSURE
+from models.short_repr import short_repr
 from noise.base.label_names import LABELS
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, labelled_stretches
@@ -50,6 +51,7 @@ _MOST_SHOWN = 4
 """Segments that are named one by one where they are printed."""
 
 
+@short_repr
 @dataclass(frozen=True)
 class Segment:
     """A stretch of a recording with one label.

@@ -6,6 +6,7 @@ them needs.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -129,7 +130,7 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
         -------
         pandas.DataFrame
             ``material``, ``speed_rad_s`` (or how the shaft turned, in words), ``interference_mm``,
-            ``support_stiffness_Nm_rad`` (``inf`` for the bolted clamp), and the features by name.
+            ``support_stiffness_Nm_rad`` (``fixed`` for the bolted clamp), and the features by name.
 
         Raises
         ------
@@ -152,7 +153,9 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
                 "material": run["rig"].material,
                 "speed_rad_s": run["speed"] if isinstance(run["speed"], float) else _words(run)[-1],
                 "interference_mm": round(1e3 * run["interference"], 6),
-                "support_stiffness_Nm_rad": run["support_stiffness"],
+                "support_stiffness_Nm_rad": (
+                    support if math.isfinite(support := run["support_stiffness"]) else "fixed"
+                ),
                 **{name: float(self[name].ravel()[index]) for name in self},
             }
             for index, run in enumerate(_runs(self.conditions))

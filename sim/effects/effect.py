@@ -14,6 +14,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 from sim.parameters import resolve
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class Stage(StrEnum):
     MEASUREMENT = "measurement"
 
 
+@short_repr
 @dataclass(frozen=True)
 class Effect:
     """An effect: what it is called, where it acts, what can be set, and how it acts.

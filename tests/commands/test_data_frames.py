@@ -1,5 +1,6 @@
 """Every table object gives a data frame of pandas, in the columns of the file it is written to."""
 
+import io
 import sys
 
 import numpy as np
@@ -8,6 +9,8 @@ import pytest
 import noise
 from features.modal.modes import Modes
 from models.errors import ParameterError
+from models.transfer_functions.files import write_transfer_function_csv
+from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.findings import EffectFinding
 from noise.diagnosis.outcome import Diagnosis
 from noise.identification.outcome import Identification, Number
@@ -30,6 +33,7 @@ TABLES = {
     "modes": (MODES, 2),
     "identification": (Identification("", (NUMBER,), (), "constant", ()), 1),
     "diagnosis": (DIAGNOSIS, 1),
+    "response": (TransferFunction(np.arange(1.0, 6.0), np.ones(5) + 2j, np.ones(5)), 5),
 }
 
 
@@ -56,6 +60,19 @@ def test_a_sweep_has_a_row_a_run_with_its_condition():
     assert frame["speed_rad_s"].tolist() == [1.0, 5.0, 1.0, 5.0]
     assert frame["interference_mm"].tolist() == [0.2, 0.2, 0.3, 0.3]
     assert frame["torque_mean"].to_numpy() == pytest.approx(sweep.features()["torque_mean"].ravel())
+
+
+def test_a_bolted_clamp_is_fixed_and_no_number_is_infinite():
+    rig = noise.load_material_rig("PDMS")
+    frame = noise.Sweep(rig, [5.0], support_stiffness=[2214.0, noise.FIXED], seconds=0.01)
+    assert frame.features().to_pandas()["support_stiffness_Nm_rad"].tolist() == [2214.0, "fixed"]
+
+
+def test_a_response_has_the_columns_of_its_file():
+    response, _ = TABLES["response"]
+    file = io.StringIO()
+    write_transfer_function_csv(file, response)
+    assert file.getvalue().splitlines()[0].split(",") == [*response.to_pandas().columns]
 
 
 def test_a_screening_gives_each_of_its_tables():

@@ -14,7 +14,7 @@ from noise.diagnosis.causes.stage_nulls import (
     load_stage_nulls,
     stage_of,
 )
-from noise.diagnosis.evidence.channel_summary import BAND_EDGES
+from noise.diagnosis.evidence.bands import BAND_EDGES
 from noise.diagnosis.findings import SURE
 from sim.effects import EFFECTS
 from tests.helpers.made_posteriors import MOVES, NAMES, made_nulls, made_table

@@ -17,6 +17,8 @@ from noise.audio.gain import loudness
 from noise.base.label_looks import LABEL_LOOKS
 from noise.cli import main
 from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.engine.entry import Entry
+from noise.pages.engine.entry_display import facts_of
 from noise.pages.engine.equal_loudness import equal_factors
 from noise.pages.review import recorded
 from noise.pages.review.build import review
@@ -324,3 +326,13 @@ def test_a_notebook_shows_the_page(campaign):
     shown = noise.review(campaign, campaign / "review.html")._repr_html_()
     assert shown.startswith("<iframe srcdoc=")
     assert '"' not in shown.split('srcdoc="')[1].split('" style=')[0]
+
+
+def test_inferred_bounds_stand_in_plain_digits_and_say_what_is_assumed():
+    told = row("run.wav", "squeal", speed_rad_s=None, material=None, material_source="missing") | {
+        "support_stiffness_Nm_rad": 4763.6, "support_stiffness_Nm_rad_low": 2703.6,
+        "support_stiffness_Nm_rad_high": 12345.6, "support_stiffness_Nm_rad_source": "inferred",
+    }  # fmt: skip
+    facts = facts_of(Entry("run.wav", (told,)))
+    assert facts["stiffness"].words == "2700 to 12000 Nm/rad (inferred)"
+    assert facts["material"].words == "assuming a fluorocarbon bushing like the shipped one"

@@ -15,7 +15,7 @@ import numpy as np
 
 from features.kernels.segments import segment_spectra
 from models.condition import known_condition
-from noise.diagnosis.evidence.channel_summary import USABLE
+from noise.diagnosis.evidence.bands import USABLE
 from noise.diagnosis.simulated.transfer_functions import predict
 
 if TYPE_CHECKING:

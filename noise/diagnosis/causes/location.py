@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.diagnosis.causes.stage_nulls import STAGES, largest_of, stage_of
-from noise.diagnosis.evidence.channel_summary import BAND_EDGES
+from noise.diagnosis.evidence.bands import BAND_EDGES
 from noise.diagnosis.evidence.evidence import deviations
 from noise.diagnosis.findings import LARGEST_GAP, SURE, Location, StageFinding
 

@@ -13,8 +13,8 @@ import math
 from typing import TYPE_CHECKING
 
 from models.recording import CHANNEL_UNITS
+from noise.diagnosis.evidence.bands import USABLE
 from noise.diagnosis.evidence.bench_context import lacking_coherence
-from noise.diagnosis.evidence.channel_summary import USABLE
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import numpy as np
 
 from models.short_repr import short_repr
 from noise.base.interval import SURE_90
-from noise.diagnosis.evidence.channel_summary import shaft_speed
+from noise.diagnosis.evidence.angle_summary import shaft_speed
 from noise.diagnosis.evidence.contact_summary import slip_starts
 from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.simulated.repeats import Scatter

@@ -15,14 +15,9 @@ import numpy as np
 from scipy.fft import irfft, rfft
 
 from features.kernels.segments import segment_spectra
+from noise.diagnosis.evidence.bands import USABLE, band_bins, bins_between, segment_frequency
 from noise.diagnosis.evidence.channel_kernel import band_power_sums
-from noise.diagnosis.evidence.channel_summary import (
-    USABLE,
-    band_bins,
-    bins_between,
-    quantile,
-    segment_frequency,
-)
+from noise.diagnosis.evidence.channel_summary import quantile
 from noise.diagnosis.evidence.path_kernel import cross_powers, quarter_moments
 
 if TYPE_CHECKING:

@@ -16,14 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
+from noise.diagnosis.evidence.angle_summary import angle_summary, shaft_speed
+from noise.diagnosis.evidence.bands import band_levels
 from noise.diagnosis.evidence.bench_context import bench_context
-from noise.diagnosis.evidence.channel_summary import (
-    angle_summary,
-    band_levels,
-    channel_summary,
-    hum_summary,
-    shaft_speed,
-)
+from noise.diagnosis.evidence.channel_summary import channel_summary, hum_summary
 from noise.diagnosis.evidence.contact_summary import contact_summary, slip_starts
 from noise.diagnosis.evidence.path_summary import common_residual, path_summary
 from noise.diagnosis.evidence.reconstruction import closed_spectrum, reconstruct

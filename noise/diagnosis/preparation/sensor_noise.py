@@ -19,7 +19,7 @@ import numpy as np
 from scipy.stats import gamma
 
 from features.kernels.segments import segment_spectra
-from noise.diagnosis.evidence.channel_summary import USABLE
+from noise.diagnosis.evidence.bands import USABLE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
-from noise.diagnosis.evidence.channel_summary import segment_frequency
+from noise.diagnosis.evidence.bands import segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.preparation.start import start_of
 

@@ -246,6 +246,8 @@ def _number(value: object, form: str, unit: str) -> Fact | None:
 
 def _plain(value: float, form: str) -> str:
     words = "fixed" if math.isinf(value) else f"{value:{form}}"
+    if "e+" in words:  # 3400 rather than 3.4e+03
+        words = f"{float(words):.0f}"
     return words.replace("-", "\N{MINUS SIGN}")
 
 

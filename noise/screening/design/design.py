@@ -58,6 +58,7 @@ _USE_KEYS = {
 }
 
 
+@short_repr
 @dataclass(frozen=True)
 class Swinging:
     """A bar on the road, swinging to and fro.
@@ -84,6 +85,7 @@ class Swinging:
         return tuple(2.0 * math.pi * f * self.amplitude for f in self.frequency)
 
 
+@short_repr
 @dataclass(frozen=True)
 class Use:
     """What a design meets in use; empty where it is not said.

@@ -19,6 +19,7 @@ import numpy as np
 from scipy.stats import beta, chi2
 
 from models.errors import ParameterError
+from models.short_repr import short_repr
 from noise.screening.parts.estimate import Estimate
 from noise.screening.parts.sampling import parts, sobol_points
 
@@ -43,6 +44,7 @@ _BOUND = 0.1
 _LEAST_EFFECT = 0.1
 
 
+@short_repr
 @dataclass(frozen=True, eq=False)
 class Probabilities:
     """How probable each label is, each with its own interval.

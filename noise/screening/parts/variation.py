@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig import damping_at
+from models.short_repr import short_repr
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.design.tolerances import ABSOLUTE_ZERO, PARAMETERS
 from noise.screening.map.grid import grid_of
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["UsePoint", "nominal_values", "use_point", "varied"]
 
 
+@short_repr
 @dataclass(frozen=True)
 class UsePoint:
     """One condition of a design's use.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import known_condition
-from noise.diagnosis.evidence.channel_summary import shaft_speed
+from noise.diagnosis.evidence.angle_summary import shaft_speed
 from noise.diagnosis.simulated.transfer_functions import predict
 
 if TYPE_CHECKING:

@@ -1,0 +1,72 @@
+"""Tables that a spreadsheet opens: every command that writes one, and nothing infinite in any."""
+
+import csv
+import re
+
+import pytest
+
+from noise.cli import main
+
+CONDITIONS = ["--speed", "1..12/3", "--support-stiffness", "2214,fixed", "--interference", "0.279"]
+COMMANDS = {
+    "label": (["label", "run.wav", "fixed.wav", "--out", "t.csv"], "t.csv"),
+    "features": (["features", "run.wav", "--out", "t.csv"], "t.csv"),
+    "render": (["render", "run.wav", "fixed.wav", "--out", "set"], "set/levels.csv"),
+    "simulate": (["simulate", "--speed", "5", "--sound-power", "t.csv"], "t.csv"),
+    "map": (["label", "run.wav", "fixed.wav", "--out", "l.csv", "--map", "m.png"], "m.csv"),
+    "screen": (["screen", "PDMS", *CONDITIONS, "--sounds", "0", "--out", "s"], "s/map.csv"),
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("excel")
+    simulate = ["simulate", "--speed", "5", "--seconds", "0.6", "--out"]
+    assert main([*simulate, str(folder / "run")]) == 0
+    assert main([*simulate, str(folder / "fixed"), "--support-stiffness", "fixed"]) == 0
+    return folder
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_table_opens_in_a_german_excel(command, folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    call, table = COMMANDS[command]
+    assert main([*call, "--excel", "de"]) == 0
+    content = (folder / table).read_bytes()
+    assert content.startswith(b"\xef\xbb\xbf")
+    header, *rows = csv.reader(content.decode("utf-8-sig").splitlines(), delimiter=";")
+    assert rows
+    assert {len(row) for row in rows} == {len(header)}
+    cells = [cell for row in rows for cell in row]
+    assert any(re.fullmatch(r"-?\d+,\d+", cell) for cell in cells)
+    assert not any(re.fullmatch(r"-?\d+\.\d+", cell) for cell in cells)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_number_of_a_table_is_infinite(command, folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    call, table = COMMANDS[command]
+    assert main(call) == 0
+    for path in {folder / table, *(folder / table).parent.glob("*.csv")}:
+        cells = re.split(r"[,;\n]", path.read_text(encoding="utf-8-sig"))
+        assert not [cell for cell in cells if re.fullmatch(r"[+-]?(inf|nan)\w*", cell, re.I)]
+
+
+def test_excel_without_a_language_takes_that_of_the_computer(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    assert main(["features", "run.wav", "--out", "own.csv", "--excel"]) == 0
+    assert (folder / "own.csv").read_bytes().startswith(b"\xef\xbb\xbffile")
+
+
+def test_a_workbook_holds_numbers_and_logged_speeds_as_they_were_logged(folder, monkeypatch):
+    openpyxl = pytest.importorskip("openpyxl")
+    monkeypatch.chdir(folder)
+    assert main(["label", "run.wav", "fixed.wav", "--out", "t.xlsx"]) == 0
+    header, *rows = openpyxl.load_workbook(folder / "t.xlsx").active.iter_rows(values_only=True)
+    first, second = (dict(zip(header, row, strict=True)) for row in rows)
+    assert first["speed_rad_s"] == second["speed_rad_s"] == 5
+    assert isinstance(first["level_dba"], float)
+    assert {first["support_stiffness_Nm_rad"], second["support_stiffness_Nm_rad"]} == {
+        "fixed",
+        2214,
+    }
