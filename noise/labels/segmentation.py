@@ -164,12 +164,13 @@ def _speaking(
     """Whether each window has a say in what its stretch is called."""
     # At the border of `none` half a window is of what lies beside it.
     other = np.concatenate([[False], np.diff(path) != 0, [False]])
-    speaking = (path != _NONE) | ~(other[:-1] | other[1:])
+    speaking: NDArray[np.bool_] = (path != _NONE) | ~(other[:-1] | other[1:])
     if level is None:
         return speaking
     loudest = np.full(group[-1] + 1, -np.inf)
     np.maximum.at(loudest, group, np.where(speaking, level, -np.inf))
-    return speaking & (level >= loudest[group] - QUIET)
+    speaking &= level >= loudest[group] - QUIET
+    return speaking
 
 
 def _heard(
