@@ -1,7 +1,7 @@
 // The scale as a picture: a point for each sound, on its 95 % interval.
 
 const NS = "http://www.w3.org/2000/svg";
-const ROW = 26, TOP = 8, AXIS = 34, LETTER = 6.6, GAP = 10; // px
+const ROW = 26, TOP = 8, AXIS = 34, LETTER = 7.2, GAP = 10; // px
 const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 
 function drawn(tag, attributes, text) {

@@ -47,6 +47,11 @@ export class Result {
     this.title.focus();
   }
 
+  clear() {
+    this.found = null;
+    for (const part of [this.svg, this.rows, this.remarks]) part.replaceChildren();
+  }
+
   #draw() {
     this.width = this.figure.clientWidth;
     drawScale(this.svg, this.found);

@@ -40,7 +40,7 @@ export class Setup {
       made("h2", { textContent: "New jury" }),
       made("p", { className: "soft", textContent: "You hear two sounds at a time, without names and in random order, and choose one. The votes give each sound a place on a scale." }),
       made("div", { className: "fields" }, field("Question", this.question), field("Listener", this.listener), field("Played", this.played),
-        field("Each is compared with at most", this.each), field("Pairs that come again, sides changed [%]", this.repeats)),
+        field("Others that each is compared with, at most", this.each), field("Pairs that come twice [%]", this.repeats)),
       made("fieldset", {}, made("legend", { textContent: "Sounds" }),
         made("div", { className: "line" }, field("With", this.kind), field("Find", this.find), all, none, this.count),
         this.sounds),
@@ -60,6 +60,11 @@ export class Setup {
     this.goingOn.hidden = !juries.length;
     this.going.replaceChildren(...juries.map((jury) => this.#jury(jury)).reverse());
     await this.#list();
+  }
+
+  // While somebody votes no name is in the page.
+  clear() {
+    this.sounds.replaceChildren();
   }
 
   #jury(jury) {

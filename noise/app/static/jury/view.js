@@ -11,7 +11,7 @@ export function mount(panel) {
   const show = (shown) => { for (const part of parts) part.hidden = part !== shown; panel.scrollTop = 0; };
   const goes = {
     async setup() { show(parts[0]); await setup.open(); },
-    async voting(jury) { show(parts[1]); await voting.open(jury); },
+    async voting(jury) { setup.clear(); result.clear(); show(parts[1]); await voting.open(jury); },
     async result(jury) { show(parts[2]); await result.open(jury); },
   };
   const setup = new Setup(parts[0], goes);

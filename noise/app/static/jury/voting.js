@@ -14,7 +14,9 @@ export class Voting {
     this.goes = goes;
     this.player = new Player(told, ({ samples }) => Promise.resolve(samples));
     this.kept = new Map(); // sounds of this comparison and the next
+    this.ready = false;
     this.#build(element);
+    this.#playing();
     this.player.addEventListener("change", () => this.#playing());
     listen(element, {
       a: () => this.hear("a"), b: () => this.hear("b"), x: () => this.hear(this.player.active === "a" ? "b" : "a"),
@@ -52,7 +54,10 @@ export class Voting {
 
   async open(number) {
     this.number = number;
+    this.ready = false;
+    this.#playing();
     this.kept.clear();
+    this.player.kept.clear();
     this.saved.textContent = "";
     const state = await api(`juries/${number}`);
     this.gain.textContent = `Played at ${state.gain}.`;
@@ -154,15 +159,16 @@ export class Voting {
 
   async #write(ask, word) {
     this.busy = true;
+    let state = null;
     try {
-      const state = await ask();
+      state = await ask();
       this.saved.textContent = `${word} ${new Date().toTimeString().slice(0, 8)}`;
-      await this.#show(state);
     } catch (error) {
       this.saved.textContent = `not saved: ${error.message}`;
     } finally {
       this.busy = false;
     }
+    if (state) await this.#show(state);
   }
 
   leave(where) {
