@@ -17,8 +17,9 @@ from sim.friction import friction_law
 from sim.motion_limits import blaming_the_unusual, refuse_fast, refuse_overflow
 from sim.parameters import resolve
 from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
-from sim.solvers.contact_state import MOST_HOOKS
+from sim.solvers.contact_state import MOST_HOOKS, N_MOTION
 from sim.solvers.stick_slip import advance_stick_slip, rest_state
+from sim.solvers.stick_slip_kernel import DIRECTION
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -29,7 +30,10 @@ if TYPE_CHECKING:
     from sim.effects.effect import ActiveEffect
     from sim.shaft import ShaftMotion
 
-__all__ = ["STICK_SPEED_SHARE", "Motion", "contact_hooks", "motion_blocks", "simulate_motion"]
+__all__ = [
+    "STICK_SPEED_SHARE", "Motion", "MotionSolver", "contact_hooks", "motion_blocks",
+    "simulate_motion", "steps_beyond",
+]  # fmt: skip
 
 STICK_SPEED_SHARE = 0.05
 """The contact counts as stuck while it slides slower than this share of the shaft's speed."""
@@ -161,7 +165,7 @@ def simulate_motion(
         if active.effect.drive is not None:
             drive = active.effect.drive(drive, rate, active.form, active.values, rng)
     with blaming_the_unusual(rig):
-        solver = _Solver(
+        solver = MotionSolver(
             rig, interference, support_stiffness, rate, effects, rng,
             start_speed=float(drive[0]), top_speed=float(np.abs(drive).max()), tolerance=tolerance,
         )  # fmt: skip
@@ -215,11 +219,11 @@ def motion_blocks(
     starts = range(0, n_samples, block)
     tops = (float(np.abs(_drive(shaft, start, block + 1, rate)).max()) for start in starts)
     with blaming_the_unusual(rig):
-        solver = _Solver(
+        solver = MotionSolver(
             rig, interference, support_stiffness, rate, effects, rng or np.random.default_rng(0),
             start_speed=float(shaft.speed(np.zeros(1))[0]), top_speed=max(tops), tolerance=None,
         )  # fmt: skip
-    beyond = math.ceil(LONGEST_STEP / (1.0 / rate)) + 1  # steps reach beyond the block
+    beyond = steps_beyond(rate)
     for start in starts:
         n = min(block, n_samples - start)
         with blaming_the_unusual(rig):
@@ -227,7 +231,18 @@ def motion_blocks(
         yield motion
 
 
-class _Solver:
+def steps_beyond(rate: float) -> int:
+    """Return by how many samples at a rate [Hz] the solver's steps may reach beyond a block.
+
+    Examples
+    --------
+    >>> steps_beyond(30e3)
+    4
+    """
+    return math.ceil(LONGEST_STEP / (1.0 / rate)) + 1
+
+
+class MotionSolver:
     """The rig from rest, solved as many samples at a time as is asked for.
 
     Parameters
@@ -270,6 +285,32 @@ class _Solver:
                 coefficients=coefficients, law_state=law.state(), hooks=hooks,
                 name=_friction(law.name, effects), tolerance=tolerance or law.tolerance,
             )  # fmt: skip
+
+    def go_on_from(self, before: MotionSolver, shaft_speed: float) -> None:
+        """Start where another rig has come to, at a speed of the shaft [rad/s].
+
+        Its motion goes on, and so do the inner states that both have; the forces may jump, as
+        those of a rig do that is changed while it turns.
+        """
+        self._angle = before._angle
+        if self._contact is None:
+            if before._contact is None:
+                self._state[:] = before._state
+                return
+            motion, direction = before._contact.motion(shaft_speed)
+            self._state[:] = rest_state(shaft_speed)
+            self._state[: motion.size], self._state[DIRECTION] = motion, direction
+        elif before._contact is None:
+            motion = before._state[:N_MOTION].copy()
+            self._contact.start_from(motion, before._state[DIRECTION], before._angle)
+        else:
+            self._contact.go_on_from(before._contact, shaft_speed)
+        if self._system.clamp_is_fixed:
+            self._hold_clamp()
+
+    def _hold_clamp(self) -> None:
+        held = self._state if self._contact is None else self._contact.end_state
+        held[3] = 0.0
 
     def advance(self, drive: NDArray[np.float64], n: int) -> Motion:
         """Solve the next `n` samples; `drive` goes on beyond them unless the run ends there."""

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from models.structure.plate import PlateModes
 
-__all__ = ["anchor_drives", "first_mode_damping", "impulse_responses"]
+__all__ = ["anchor_arm", "anchor_drives", "first_mode_damping", "impulse_responses"]
 
 HIGHEST_BEAM_FREQUENCY = 40e3
 """Beam modes are kept up to it, for what lies below 20 kHz to be complete [Hz]."""
@@ -171,6 +171,32 @@ def anchor_drives(modes: PlateModes, arm: float) -> NDArray[np.float64]:
     )
 
 
+def anchor_arm(beams: Beams, plate: Plate, support_stiffness: float) -> float:
+    """Distance of the anchors from the shaft's axis [m].
+
+    Parameters
+    ----------
+    beams : Beams
+    plate : Plate
+    support_stiffness : float
+        k_B [Nm/rad], finite.
+
+    Raises
+    ------
+    ParameterError
+        If that is off the plate.
+    """
+    arm = beams.lever + beam_length(beams, support_stiffness)
+    left, right = plate.clamp_position[0] - arm, plate.clamp_position[0] + arm
+    if max(-left, right) >= plate.length / 2:
+        raise ParameterError(
+            f"support stiffness {support_stiffness:g} Nm/rad puts the beams' anchors at x = "
+            f"{left:.3g} and {right:.3g} m, off the plate of {plate.length:g} m; "
+            f"use a larger stiffness"
+        )
+    return arm
+
+
 @lru_cache(maxsize=16)
 def _beam_response(
     beams: Beams,
@@ -182,14 +208,7 @@ def _beam_response(
     rate: float,
     n_samples: int,
 ) -> ImpulseResponses:
-    arm = beams.lever + beam_length(beams, support_stiffness)
-    left, right = plate.clamp_position[0] - arm, plate.clamp_position[0] + arm
-    if max(-left, right) >= plate.length / 2:
-        raise ParameterError(
-            f"support stiffness {support_stiffness:g} Nm/rad puts the beams' anchors at x = "
-            f"{left:.3g} and {right:.3g} m, off the plate of {plate.length:g} m; "
-            f"use a larger stiffness"
-        )
+    arm = anchor_arm(beams, plate, support_stiffness)
     highest = min(HIGHEST_BEAM_FREQUENCY, BAND * rate)
     model = beam_structure(beams, support_stiffness, clamp_inertia, damping_ratio, highest)
     structure = model.impulse_response(rate, n_samples)

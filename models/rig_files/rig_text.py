@@ -81,6 +81,7 @@ def changed_rig_text(
     tolerances: Mapping[str, float],
     notes: Sequence[str] = (),
     responses: Sequence[Mapping[str, str | float]] = (),
+    friction: LawSpec | None = None,
 ) -> str:
     """Write a rig file of what differs from another rig.
 
@@ -98,6 +99,8 @@ def changed_rig_text(
         Lines of comment at the top.
     responses : sequence of mapping
         Keys of each ``[[measured_response]]``.
+    friction : LawSpec, optional
+        The law where it is another than that of the base.
 
     Returns
     -------
@@ -118,7 +121,8 @@ def changed_rig_text(
     """
     lines = [f"# {note}".rstrip() for note in notes]
     lines += [f"base = {_quoted(base)}", f"effects = {_quoted([str(spec) for spec in effects])}"]
-    for name, table in (("change", changes), ("tolerances", tolerances)):
+    law = {} if friction is None else {"law": friction.name, **friction.parameters}
+    for name, table in (("friction", law), ("change", changes), ("tolerances", tolerances)):
         if table:
             lines += ["", f"[{name}]", *(f"{_key(k)} = {_value(v)}" for k, v in table.items())]
     for response in responses:

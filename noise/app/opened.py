@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.foreign_file import check_plain_file
 from noise.base.atomic import check_target
 from noise.base.tables import TABLE_ENDINGS, check_table_path
 from noise.batch import find_jobs
@@ -87,7 +88,8 @@ def open_paths(
     Raises
     ------
     ParameterError
-        A path does not exist, several label tables are named, or no table can be written there.
+        A path does not exist, or is a pipe or a device; several label tables are named, or no table
+        can be written there.
 
     Examples
     --------
@@ -97,6 +99,8 @@ def open_paths(
     for path in paths:
         if not path.exists():
             raise ParameterError(f"{path} does not exist")
+        if not path.is_dir():
+            check_plain_file(path)
     rigs = [path for path in paths if path.suffix.lower() == ".toml"]
     tables = [p for p in paths if p.is_file() and p.suffix.lower() in TABLE_ENDINGS]
     sounds = [path for path in paths if path not in rigs and path not in tables]

@@ -66,7 +66,7 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         opt.check_folder(options.out, file="report.html")
     with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as tell:
-        case, diagnosis = _diagnosed(options, tell)
+        case, diagnosis, told = _diagnosed(options, tell)
         if options.out is not None:
             tell("writing the report")
             written = _write(options, diagnosis)
@@ -79,11 +79,12 @@ def run(options: Namespace) -> int:
     else:
         for path in written:
             print(path)
-    _tell(options, diagnosis)
+    _tell(options, diagnosis, told)
     return 1 if case.refused else 0
 
 
-def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis]:
+def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis, set[str]]:
+    """Diagnose; return what was told of it beforehand, too."""
     tell("preparing")
     from models.rig_files.rig_file import load_rig
     from noise.base.user_effects import effect_library
@@ -98,16 +99,18 @@ def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis]:
     case = read_case(options.data, rig)
     for name, reason in case.refused:
         say(f"{name}: {reason}")
-    for text in case_remarks(case, library):
+    remarks = case_remarks(case, library)
+    for text in remarks:
         note(text)
     diagnosis = diagnose_case(
         case, quick=options.quick, library=library, seed=options.seed or 0, progress=tell
     )
-    return case, diagnosis
+    left_out = {f"{name} was left out: {reason}" for name, reason in case.refused}
+    return case, diagnosis, {*remarks, *left_out}
 
 
-def _tell(options: Namespace, diagnosis: Diagnosis) -> None:
-    """Say the answer in sentences."""
+def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
+    """Say the answer in sentences, and what of its notes was not told before."""
     from noise.diagnosis.text.found import finding_of
     from noise.diagnosis.text.sentences import answer, closed_sentence
 
@@ -116,10 +119,17 @@ def _tell(options: Namespace, diagnosis: Diagnosis) -> None:
     finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
     if finding is not None and finding.closed is not None:
         say(closed_sentence(finding))
+    told |= {*diagnosis.bench, *diagnosis.faults}
+    for text in diagnosis.notes:
+        if text not in told:
+            note(text)
     if options.out is not None and diagnosis.improvement is not None:
         from noise.diagnosis.text.improved_sentences import improved_sentence
 
-        say(improved_sentence(diagnosis.improvement))
+        say(
+            "improved.toml was fitted once more, in forms that a rig file can state and in floors "
+            f"of its own. {improved_sentence(diagnosis.improvement)}"
+        )
         for call in _next(options, diagnosis.improvement):
             say(f"next: {call}")
 

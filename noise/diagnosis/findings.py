@@ -19,7 +19,8 @@ __all__ = [
 ]  # fmt: skip
 
 LARGEST_GAP = 100.0
-"""Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter."""
+"""Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter;
+assumed."""
 
 SURE = 0.05
 """p-value up to which a stage or a place is said to differ [-]; the customary level, assumed."""
@@ -35,7 +36,7 @@ SHOWN_IN = {
 contact, and an error of a sensor looks like one of the way to it."""
 
 ROLES = ("measured", "before", "after")
-"""What is compared: the recording, the nominal model, and the model with what was found."""
+"""What is compared: the recording, the nominal model, and the fitted one."""
 
 
 @dataclass(frozen=True)

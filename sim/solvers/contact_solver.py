@@ -21,6 +21,8 @@ from sim.contact import N_CONTACT, N_CONTEXT
 from sim.solvers.contact_state import (
     ANGLE,
     DONE,
+    ERROR,
+    FAR,
     FRESH,
     MODE,
     MOST_HOOKS,
@@ -29,8 +31,11 @@ from sim.solvers.contact_state import (
     N_MOTION,
     NEXT_MODE,
     SHORTEST_STEP,
+    SLIDE,
+    STEP_END,
     STEP_OF_SLIP,
     STEP_OF_STICK,
+    STEP_START,
     Bushing,
     Drive,
     Hooks,
@@ -149,6 +154,7 @@ class ContactRun:
         # The error of a step goes with the fifth power of its length.
         self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
         self._step, self._name = step, name
+        self._parts = _parts(law, law_state.size, hooks)
         self._carried = np.zeros(N_CARRIED)
         self._carried[[STEP_OF_STICK, STEP_OF_SLIP]] = _FIRST_STEP
         self._carried[FRESH] = 1.0
@@ -159,6 +165,55 @@ class ContactRun:
         elif law is None:
             self._rows.end[1] = start_speed
         self._rows.end[N_MOTION : N_MOTION + law_state.size] = law_state
+
+    @property
+    def end_state(self) -> NDArray[np.float64]:
+        """All variables at the end of the last step, motion first, shape (n,) [SI]."""
+        return self._rows.end
+
+    def motion(self, shaft_speed: float) -> tuple[NDArray[np.float64], float]:
+        """Where it has come to with the shaft at a speed [rad/s].
+
+        Returns
+        -------
+        motion : ndarray, shape (4,)
+            theta1 [rad], theta1' [rad/s], theta2, theta2'.
+        direction : float
+            Of the sliding, by its sign: +1 or -1, 0 in stick.
+        """
+        motion = self._rows.end[:N_MOTION].copy()
+        if not self._constants[0].has_law:
+            return motion, float(self._carried[NEXT_MODE])
+        return motion, math.copysign(1.0, shaft_speed - motion[1])
+
+    def start_from(self, motion: NDArray[np.float64], direction: float, angle: float) -> None:
+        """Start from a motion, as of `motion`, with the shaft at an angle [rad]."""
+        self._rows.end[:N_MOTION] = motion
+        self._carried[ANGLE] = angle
+        if not self._constants[0].has_law:
+            self._carried[[MODE, NEXT_MODE]] = direction
+
+    def go_on_from(self, before: ContactRun, shaft_speed: float) -> None:
+        """Start where another run has come to: its motion, and the inner states that both have.
+
+        What the other one lacks starts as after a long rest.
+        """
+        self._constants[0].context[:] = before._constants[0].context
+        kept = self._carried.copy()
+        self._carried[:] = before._carried
+        self._carried[FRESH] = 1.0  # the forces are others
+        if self._parts == before._parts:
+            for name in ("start", "end", "stages"):
+                getattr(self._rows, name)[...] = getattr(before._rows, name)
+            return
+        for key, part in self._parts.items():
+            if key in before._parts:
+                self._rows.end[part] = before._rows.end[before._parts[key]]
+        motion, direction = before.motion(shaft_speed)
+        restarted = [STEP_START, STEP_END, STEP_OF_STICK, STEP_OF_SLIP, ERROR, FAR, SLIDE]
+        self._carried[restarted] = kept[restarted]
+        self._carried[[MODE, NEXT_MODE]] = 0.0
+        self.start_from(motion, direction, float(before._carried[ANGLE]))
 
     def advance(
         self, shaft_speed: NDArray[np.float64], n: int
@@ -205,6 +260,16 @@ class ContactRun:
         angle[1:known] = 0.5 * self._step * (speed[:-1] + speed[1:])
         np.cumsum(angle[:known], out=angle[:known])
         return Drive(self._step, np.ascontiguousarray(speed), slope, angle)
+
+
+def _parts(law: Any, n_law: int, hooks: tuple[Hook, ...]) -> dict[Any, slice]:
+    """Which variables are whose: of law and effects by their functions, of the lag by a name."""
+    lengths = [(law, n_law), *((hook.function, hook.n_states) for hook in hooks)]
+    lengths += [("lag", N_LAG)] if hooks else []
+    parts, first = {}, N_MOTION
+    for key, length in lengths:
+        parts[key], first = slice(first, first + length), first + length
+    return parts
 
 
 def n_variables(law_state: NDArray[np.float64], hooks: tuple[Hook, ...]) -> int:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from noise.diagnosis.findings import Agreement, Location, Remainder
+from noise.diagnosis.findings import Agreement, Location, Remainder, StageFinding
 from noise.diagnosis.text.agreement_sentences import AGREES, agreement_sentence
 from noise.diagnosis.text.sentences import (
     answer,
@@ -136,7 +136,7 @@ def test_what_the_table_of_stages_contradicts_is_no_headline():
 def test_a_place_where_repeats_differ_as_much_is_no_beginning():
     slight = replace(one_effect(), location=replace(one_effect().location, p_value=0.6))
     assert location_sentence(slight).startswith("It shows most in the friction")
-    assert location_sentence(slight).endswith("; though repeats differ as much (p = 0.60).")
+    assert "; though repeats differ as much (p = 0.60)." in location_sentence(slight)
 
 
 def test_a_gap_does_not_begin_where_the_named_effect_does_not_act():
@@ -156,9 +156,19 @@ def test_a_surer_stage_than_that_of_the_named_effect_is_said():
     assert "What differs surely" not in location_sentence(one_effect())
 
 
+def test_a_surer_stage_in_which_nothing_acts_that_is_named_is_said():
+    place = Location("structure", ("acceleration",), (4e3, 1e4), "all", "all", 0.09)
+    stages = dict.fromkeys(one_effect().stages, SLIGHT) | {"radiation": StageFinding(9, 0.8, 0.03)}
+    blow = replace(one_effect(), verdict=("slip_pulse",), location=place, stages=stages, effects=())
+    said = "What differs surely is the radiation (p = 0.030), in which nothing acts that is named"
+    assert said in location_sentence(blow)
+
+
 def test_without_a_gap_an_alternative_that_is_likelier_is_said():
     torn = replace(none(), probabilities={"none": 0.2, "clipping": 0.6})
-    assert verdict_sentence(torn).endswith(" If anything, it is clipping (60 %).")
+    assert verdict_sentence(torn).endswith(
+        " That is 20 % likely only; if anything, it is clipping (60 %)."
+    )
 
 
 def test_a_quick_answer_says_that_nothing_was_fitted():
@@ -197,10 +207,20 @@ def test_it_is_said_where_the_rig_file_does_not_describe_the_rig(found, words):
 @given(st.lists(st.floats(0.3, 300.0), min_size=1, max_size=6))
 def test_a_rig_file_describes_the_rig_only_where_every_recording_is_near(gaps):
     found = tuple(far(f"run{i}", 1.0 + i, gap) for i, gap in enumerate(gaps))
-    sentence = agreement_sentence(replace(none(), agreement=found))
-    assert sentence.startswith("The rig file describes the rig:") == (max(gaps) <= AGREES)
+    sentence = agreement_sentence(replace(one_effect(), agreement=found))
+    near = sentence.startswith("The rig file describes the rig but for a difference that shows")
+    assert near == (max(gaps) <= AGREES)
     assert ("does not describe" in sentence) == (min(gaps) > AGREES)
     assert "nan" not in sentence
+
+
+@given(st.lists(st.floats(0.3, 4.0), min_size=1, max_size=6))
+def test_where_nothing_is_to_explain_the_rig_file_describes_the_rig(gaps):
+    found = tuple(far(f"run{i}", 1.0 + i, gap) for i, gap in enumerate(gaps))
+    sentence = agreement_sentence(replace(none(), agreement=found))
+    assert sentence.startswith("The rig file describes the rig")
+    assert "not describe" not in sentence
+    assert ("the farthest" in sentence) == (max(gaps) > AGREES)
 
 
 def test_a_gap_that_is_capped_is_said_to_be_more():
@@ -233,6 +253,26 @@ def test_a_stage_that_does_not_surely_differ_is_in_no_headline():
 
 def test_what_was_not_fitted_closes_nothing_in_words():
     assert closed_sentence(pressure_alone().effects[0]) == ""
+
+
+@pytest.mark.parametrize(
+    ("figures", "words"),
+    [
+        ({"closed": -0.4}, "The fit closes nothing of the closable gap: held-out"),
+        ({"closed": None}, "How much the fit closes cannot be told: held-out"),
+        ({"closed": 0.6, "closed_by_effect": -0.1, "closed_low": 0.2, "closed_high": 1.4},
+         "(90 % interval 20 % to 100 %), and nothing of what refitted parameters leave."),
+    ],
+)  # fmt: skip
+def test_a_fit_that_closes_nothing_is_said_to(figures, words):
+    found = replace(one_effect().effects[0], gap_before=3.0, gap_after=3.4, **figures)
+    assert words in closed_sentence(found)
+
+
+def test_where_nothing_was_fitted_an_unknown_cause_is_like_none_that_is_known():
+    assert "none of the known effects looks like it" in verdict_sentence(
+        replace(unknown(), effects=())
+    )
 
 
 def test_effects_that_cannot_be_told_apart_are_declared():

@@ -71,7 +71,7 @@ def test_what_is_learned_is_read_as_it_is_shipped(tmp_path, monkeypatch):
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """Folder of two cases, of which the second raises no alarm; and the fits that were made."""
-    made = []
+    made: list[str] = []
 
     def judged(case, *_rest):
         made.append(case)
@@ -82,9 +82,12 @@ def folder(tmp_path, monkeypatch):
         "load_rig": lambda _path: None,
         "bench_findings": lambda *_: (),
         "first_answer": lambda case, *_: SimpleNamespace(
-            verdict=("partial_slip",) if case == "a" else (), table=None, hypotheses=FIRST
+            verdict=("partial_slip",) if case == "a" else (),
+            table=None,
+            hypotheses=FIRST,
+            flat=("torque",),
         ),
-        "stage_findings": lambda *_: STAGES,
+        "stage_findings": lambda *given: STAGES if ("torque",) in given else {},
         "judge": judged,
     }.items():
         monkeypatch.setattr(closing, name, found)
@@ -100,6 +103,7 @@ def test_what_was_fitted_is_not_fitted_again(folder):
     (second,) = fitted_cases([path], path / "store")
     assert made == ["a"]
     assert second.truth == {"clipping"}
+    assert first.stages == STAGES  # as a user's are, by the channels whose peaks are flat
     assert second.fits.held_out(second.fits.before).tolist() == [36.0, 36.0]
     assert second.fits.of[SLIP].squared.tolist() == first.fits.of[SLIP].squared.tolist()
 

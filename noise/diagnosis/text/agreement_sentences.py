@@ -49,9 +49,9 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
     >>> fast = Agreement("run02.wav", 4.0, 2.79e-4, 6.1, {"torque": 8.0, "pressure": 1.2})
     >>> agreement_sentence(replace(nothing, agreement=(slow,)))
     'The rig file describes the rig: the recording is 1.1 times as far off as repeats are.'
-    >>> agreement_sentence(replace(nothing, agreement=(slow, fast)))
+    >>> agreement_sentence(replace(nothing, verdict=("unknown",), agreement=(slow, fast)))
     'The rig file describes the rig at 1 of 2 recordings, not above 1 rad/s: there it is up to 6.1
-      times as far off as repeats are, in the torque.'
+      times as far off as repeats are, in the torque (together 0.9 floors, p = 0.60).'
     """
     found = diagnosis.agreement
     if not found:
@@ -65,6 +65,14 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
             start += " but for a difference that shows only on a closer look"
         return f"{start}: {which} {reach} times as far off as repeats are{_whole(diagnosis)}."
     channels = f", in the {joined(_channels(far))}" if _channels(far) else ""
+    if not diagnosis.verdict:  # what one recording does may be chance, and together it is
+        roughly = " only roughly" if len(far) == n else ""
+        farthest = max(far, key=lambda one: one.gap).recording
+        return (
+            f"The rig file describes the rig{roughly}: {which} {reach} times as far off as repeats "
+            f"are, {farthest} the farthest{channels}; another recording of its condition tells "
+            "whether that is chance."
+        )
     if len(far) == n:
         return (
             f"The rig file does not describe the rig: {which} {reach} times as far off as repeats "

@@ -21,6 +21,7 @@ from noise.diagnosis.text.words import (
     NOT_DETERMINED,
     cause_of,
     evidence,
+    floors,
     frequency,
     joined,
     p_number,
@@ -45,6 +46,10 @@ _COLUMNS = {
     "support_stiffness_Nm_rad": ("support stiffness", "Nm/rad"),
     "temperature_C": ("temperature", "degree C"),
 }
+
+
+_NOTHING = 0.005
+"""Share up to which a fit closes nothing [-]: it would be rounded to 0 %."""
 
 
 def answer(diagnosis: Diagnosis) -> list[str]:
@@ -111,22 +116,25 @@ def _surer(diagnosis: Diagnosis) -> str:
         return ""
     others = {
         stage: found.p_value
-        for stage in SHOWN_IN.get(place.stage, ())
-        if stage != place.stage
-        and (found := diagnosis.stages.get(stage)) is not None
-        and found.p_value <= SURE
+        for stage, found in diagnosis.stages.items()
+        if stage != place.stage and found.p_value <= SURE
     }
     if not others:
         return ""
-    surest = min(others, key=lambda stage: others[stage])
-    return (
-        f"What differs surely is the {surest} ({p_number(others[surest])}), as it can where "
-        f"something acts in the {place.stage}."
-    )
+    shown = SHOWN_IN.get(place.stage, ())
+    surest = min(others, key=lambda stage: (stage not in shown, others[stage]))
+    said = f"What differs surely is the {surest} ({p_number(others[surest])})"
+    if surest in shown:
+        return f"{said}, as it can where something acts in the {place.stage}."
+    if surest in acting:
+        return f"{said}."
+    return f"{said}, in which nothing acts that is named: something else may be missing there."
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
     """Return how much of the gap a fit with an effect closes, with the 90 % interval.
+
+    An interval ends at all of it: what is beyond says only that the floor is unsure as well.
 
     Parameters
     ----------
@@ -143,10 +151,13 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
     """
     if finding is None or finding.closed is None:
         return NOT_DETERMINED
+    if finding.closed <= _NOTHING:
+        return f"nothing{of}"
     words = f"{percent(finding.closed)}{of}"
     if finding.closed_low is None or finding.closed_high is None:
         return words
-    return f"{words} ({interval}{percent(finding.closed_low)} to {percent(finding.closed_high)})"
+    low, high = (percent(min(end, 1.0)) for end in (finding.closed_low, finding.closed_high))
+    return f"{words} ({interval}{low} to {high})" if low != high else words
 
 
 def closed_sentence(finding: EffectFinding) -> str:
@@ -158,12 +169,27 @@ def closed_sentence(finding: EffectFinding) -> str:
     >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, closed=0.96, closed_low=0.91,
     ...                               closed_high=0.99))
     'The fit closes 96 % of the closable gap (90 % interval 91 % to 99 %).'
+    >>> closed_sentence(EffectFinding("mains_hum", "measurement", 0.9, gap_before=1.9,
+    ...                               gap_after=2.3, closed=-0.4))
+    'The fit closes nothing of the closable gap: held-out recordings are 1.9 floors off without it,
+      2.3 with it.'
     """
+    before, after = floors(finding.gap_before), floors(finding.gap_after)
     if finding.closed is None:
-        return ""
+        if finding.gap_before is None or finding.gap_after is None:
+            return ""
+        return (
+            "How much the fit closes cannot be told: held-out recordings are hardly off without it "
+            f"({before} floors; {after} with it)."
+        )
     words = closed_words(finding, " of the closable gap", "90 % interval ")
-    if finding.closed_by_effect is not None:
-        words += f", and {percent(finding.closed_by_effect)} of what refitted parameters leave"
+    if finding.closed <= _NOTHING:
+        if finding.gap_before is not None and finding.gap_after is not None:
+            words += f": held-out recordings are {before} floors off without it, {after} with it"
+    elif finding.closed_by_effect is not None:
+        share = finding.closed_by_effect
+        left = percent(share) if share > _NOTHING else "nothing"
+        words += f", and {left} of what refitted parameters leave"
     return f"The fit closes {words}."
 
 

@@ -141,7 +141,10 @@ def _no_gap(diagnosis: Diagnosis) -> str:
     chances = diagnosis.probabilities
     if chances.get("none", 1.0) < _LIKELY:
         first = max((n for n in chances if n != "none"), key=lambda name: chances[name])
-        said += f" If anything, it is {cause_of(first).name} ({percent(chances[first])})."
+        said += (
+            f" That is {percent(chances['none'])} likely only; if anything, it is "
+            f"{cause_of(first).name} ({percent(chances[first])})."
+        )
     return said
 
 
@@ -182,7 +185,7 @@ def _unknown(diagnosis: Diagnosis) -> str:
             start += f" {PHASES[place.phase]}"
     closed = max((one.closed_by_effect or 0.0 for one in diagnosis.effects), default=0.0)
     none = "none of the known effects looks like it"
-    if diagnosis.held_out and closed < _MOSTLY:
+    if any(one.gap_after is not None for one in diagnosis.effects) and closed < _MOSTLY:
         none = "none of the known effects closes it"
     return f"{start}; {none}: the cause is unknown{_bracketed(diagnosis, 'unknown')}."
 

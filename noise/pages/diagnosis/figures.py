@@ -43,7 +43,7 @@ class Curve:
 CURVES = {
     "measured": Curve("measured", "#222222", 2.8, dashed=False),
     "before": Curve("nominal model", VERMILION, 1.5, dashed=True),
-    "after": Curve("with what was found", BLUE, 1.5, dashed=False),
+    "after": Curve("fitted model", BLUE, 1.5, dashed=False),
 }
 """Near-black, vermilion and blue (Okabe and Ito, Color universal design, 2008), and dashes."""
 
@@ -194,7 +194,10 @@ def _cycles(runs: dict[str, Recording]) -> Panel:
     alt = f"Torque over {1e3 * length:.0f} ms around a slip, {low:.3g} to {high:.3g} Nm."
     if unaligned:
         text = f"no slip: {', '.join(unaligned)}"
-        axes.set_title(text, loc="right", fontsize=9.5, color="#555555")
+        axes.set_xlabel(f"Time from the slip [ms]; {text}")
+        if len(unaligned) == len(signals):
+            axes.set_title("Torque, in which nothing slips", loc="left", fontweight="bold")
+            axes.set_xlabel("Time [ms]")
         alt = f"{alt} There is {text}."
     return Panel(as_svg(figure), alt)
 

@@ -20,7 +20,7 @@ from noise.diagnosis.text.agreement_sentences import agreement_sentence
 from noise.diagnosis.text.improved_sentences import improved_sentence
 from noise.diagnosis.text.sentences import answer
 from noise.diagnosis.text.verdict_sentences import headline
-from noise.diagnosis.text.words import NOT_DETERMINED, number, p_number
+from noise.diagnosis.text.words import NOT_DETERMINED, cause_of, joined, number, p_number
 from noise.pages.diagnosis.answer_display import (
     agreement_rows,
     cause_rows,
@@ -137,8 +137,21 @@ def _html(diagnosis: Diagnosis, commands: Sequence[str]) -> str:
         not_determined=NOT_DETERMINED,
         judged=bool(diagnosis.verdict),
         bench=diagnosis.bench,
+        fitted_words=_fitted_words(diagnosis),
         **contents,
     )
+
+
+def _fitted_words(diagnosis: Diagnosis) -> str:
+    """Say what the fitted model that is shown has; empty where none is."""
+    if all(one.after is None for one in diagnosis.illustrations):
+        return ""
+    if diagnosis.improvement is not None:
+        return "The fitted model is the improved rig."
+    if diagnosis.verdict in {("parameters",), ("unknown",)}:
+        return "The fitted model has refitted parameters and no effect."
+    named = joined([cause_of(name).name for name in diagnosis.verdict])
+    return f"The fitted model has {named} and refitted parameters."
 
 
 def _heard_row(heard: LabelsAndLevels) -> list[str]:

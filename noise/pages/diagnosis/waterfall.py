@@ -133,7 +133,8 @@ def _fitted(diagnosis: Diagnosis) -> EffectFinding | None:
 
 def _effect_label(diagnosis: Diagnosis, fitted: EffectFinding) -> str:
     if diagnosis.verdict == ("unknown",):
-        return f"best tried: {cause_of(fitted.name).name}"
+        tried = [cause_of(name).name for name in (fitted.name, *fitted.fitted_with)]
+        return f"best tried: {joined(tried)}"
     together = [
         name
         for name in diagnosis.verdict

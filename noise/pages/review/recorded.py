@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import BushingNoiseError, RecordingError
+from models.errors import BushingNoiseError
 from noise.audio.sound import LOWEST_HEARD, audible
 from noise.base.progress import track
 from noise.classifier import load_classifier
@@ -179,7 +179,7 @@ def _read_entry(
             duration = blocks.n_samples / blocks.rate
             offset = stretch_start(rows, duration, longest)
             heard, why = _heard(blocks, offset, longest)
-            sound, levels = (None, None) if heard is None else _sound(heard, blocks.name)
+            sound, levels = (None, None) if heard is None else _sound(heard)
             orders = _orders(blocks, rows, duration)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
@@ -213,9 +213,6 @@ def _heard(blocks: RecordingBlocks, offset: float, longest: float) -> tuple[Reco
     return blocks.cut(first, last), f"1 of {others + 1} channels is heard" if others else ""
 
 
-def _sound(heard: Recording, name: str) -> tuple[NDArray[np.float32], FastLevels]:
+def _sound(heard: Recording) -> tuple[NDArray[np.float32], FastLevels]:
     """Return the sound at the page's rate, and its level over time as the recording has it."""
-    sound = audible(heard, RATE)
-    if not np.isfinite(sound).all():
-        raise RecordingError(f"{name}: holds sound pressures beyond any number")
-    return sound.astype(np.float32), recorded_levels(heard)
+    return audible(heard, RATE).astype(np.float32), recorded_levels(heard)

@@ -110,7 +110,7 @@ def fitted_cases(folders: Sequence[Path], store: Path) -> Iterator[FittedCase]:
             first = first_answer(case, EFFECTS, posterior)
             if not first.verdict:
                 continue
-            stages = stage_findings(first.table, nulls)
+            stages = stage_findings(first.table, nulls, first.flat)
             if not kept.exists():
                 fits = judge(case, first, stages, EFFECTS, 0, lambda _text: None).fits
                 assert fits is not None  # there is something to explain

@@ -1,1 +1,128 @@
-export function mount(panel) { panel.textContent = ""; }
+// A design that is heard while it is changed.
+import { api, told } from "../api.js";
+import { made } from "../labels/list.js";
+import { Controls } from "./controls.js";
+import { Drawings } from "./drawings.js";
+import { Saving } from "./saving.js";
+import { Sound } from "./sound.js";
+
+const LEVELS_EVERY = 500, FACTS_AFTER = 200; // ms
+
+export async function mount(panel) {
+  document.head.append(made("link", { rel: "stylesheet", href: new URL("./design.css", import.meta.url).href }));
+  const about = await api("design");
+  const view = made("div", { className: "design-view" });
+  const left = made("div", { className: "left" }), right = made("div", { className: "right" });
+  const base = made("select", { id: "design-base" });
+  base.append(...about.bases.map(({ id, name }) => made("option", { value: id, textContent: name })));
+  const play = made("button", { type: "button", className: "play", textContent: "Play" });
+  const slots = ["A", "B"].map((name) => made("button", { type: "button", className: "slot", textContent: name, ariaPressed: String(name === "A") }));
+  const copy = made("button", { type: "button", textContent: "Copy to the other", title: "Let the other design be as this one is" });
+  const reset = made("button", { type: "button", textContent: "As the base" });
+  const tools = made("div", { className: "tools", role: "group", ariaLabel: "Design" });
+  tools.append(play, made("span", { className: "group" }, ...slots), copy, reset);
+  const start = made("div", { className: "row choice" }, made("label", { htmlFor: "design-base", textContent: "Base" }), base);
+  const rows = made("div", { className: "controls" });
+  const level = made("p", { className: "level" }), gain = made("p", { className: "gain" });
+  const fit = made("button", { type: "button", textContent: "Fit the gain anew" });
+  const torque = made("canvas", { className: "torque", role: "img", ariaLabel: "Torque of the last fifth of a second" });
+  const spectrum = made("canvas", { className: "spectrum", role: "img", ariaLabel: "Spectrum of the sound pressure" });
+  const remarks = made("ul", { className: "remarks", ariaLabel: "To be known" });
+  left.append(tools, start, rows);
+  right.append(
+    made("section", { className: "heard" }, made("h2", { textContent: "What is heard" }), level, made("div", { className: "tools" }, gain, fit), remarks),
+    made("section", {}, made("h2", { textContent: "Torque" }), torque),
+    made("section", {}, made("h2", { textContent: "Spectrum" }), spectrum),
+  );
+  view.append(left, right);
+  panel.replaceChildren(view);
+
+  const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, torque, spectrum);
+  const design = { sound, controls, drawings, about };
+  panel.design = design;
+  const states = {}; // by slot: { base, values }
+  let slot = "A", asked = 0;
+
+  design.stated = () => ({ base: base.value, values: controls.changed });
+  new Saving(right, design);
+
+  async function take(base_) {
+    base.value = base_;
+    const found = await api(`design/controls?base=${encodeURIComponent(base_)}`);
+    controls.show(found.controls);
+  }
+
+  function changed() {
+    states[slot] = design.stated();
+    sound.change(states[slot]);
+    facts();
+  }
+
+  function facts() {
+    clearTimeout(asked);
+    asked = setTimeout(async () => {
+      const found = await api("design/facts", states[slot]).catch(() => null);
+      if (!found) return;
+      controls.told(found.facts);
+      design.options = found.options;
+      remarks.replaceChildren(...found.remarks.map((textContent) => made("li", { textContent })));
+      view.dispatchEvent(new CustomEvent("design-facts", { detail: found }));
+    }, FACTS_AFTER);
+  }
+
+  async function choose(name) {
+    if (name === slot) return;
+    states[slot] = design.stated();
+    slot = name;
+    for (const one of slots) one.setAttribute("aria-pressed", one.textContent === slot);
+    await put(states[slot] ?? states[slot === "A" ? "B" : "A"]);
+  }
+
+  async function put(state) {
+    if (state.base !== base.value) await take(state.base);
+    controls.put(state.values);
+    changed();
+  }
+  design.put = put;
+  design.choose = choose;
+
+  controls.addEventListener("change", changed);
+  base.addEventListener("change", async () => { await take(base.value); changed(); });
+  for (const one of slots) one.addEventListener("click", () => choose(one.textContent));
+  copy.addEventListener("click", () => {
+    states[slot === "A" ? "B" : "A"] = design.stated();
+    told(`${slot === "A" ? "B" : "A"} is as ${slot} is.`);
+  });
+  reset.addEventListener("click", () => { controls.put({}); changed(); });
+  fit.addEventListener("click", () => sound.fit());
+  play.addEventListener("click", () => (sound.playing ? sound.stop() : sound.start()));
+  sound.addEventListener("change", () => {
+    play.textContent = sound.playing ? "Stop sound" : "Play";
+    gain.textContent = `Full scale = ${sound.fullScale} Pa (${(20 * Math.log10(sound.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`;
+  });
+  sound.addEventListener("refused", ({ detail }) => told(detail));
+  sound.addEventListener("heard", () => told(""));
+  sound.addEventListener("block", ({ detail }) => { drawings.take(detail); design.speed = detail.speed; });
+  sound.dispatchEvent(new Event("change"));
+
+  setInterval(async () => {
+    if (!sound.playing || panel.hidden) return;
+    const found = await api(`design/levels?run=${sound.run}`).catch(() => null);
+    if (found) level.textContent = words(found, sound.fullScale);
+  }, LEVELS_EVERY);
+  document.addEventListener("view-shown", ({ detail }) => { if (detail !== "design") sound.stop(); });
+
+  await take(about.bases[0].id);
+  level.textContent = "Not playing.";
+  changed();
+  design.ready = true;
+  return design;
+}
+
+// Level in the air, and whether it is heard at the gain it is played at.
+function words({ level_dba: level, l_afmax_dba: most }, fullScale) {
+  if (level === null) return "Level: of the first second, soon.";
+  const played = most - 20 * Math.log10(fullScale / 2e-5), quiet = played < -48;
+  const inaudible = level < 0 ? "; below 0 dB(A), which nobody hears" : quiet ? "; nearly inaudible at this gain" : "";
+  return `${level.toFixed(1)} dB(A), L_AFmax ${most.toFixed(1)} dB(A) re 20 µPa in the last second${inaudible}`;
+}

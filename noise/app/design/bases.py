@@ -1,0 +1,72 @@
+"""What a design can start from: the shipped materials, and the rig files that were opened."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_files.rig_text import base_name
+from models.rig_files.shipped import material_names
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from models.rig import Rig
+    from noise.app.opened import Opened
+
+__all__ = ["Base", "base_of", "bases_of"]
+
+
+@dataclass(frozen=True)
+class Base:
+    """A rig that designs are changes of.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in the browser.
+    file : Path or None
+        None for a material.
+    """
+
+    name: str
+    file: Path | None = None
+
+    @cached_property
+    def rig(self) -> Rig:
+        """As it was when it was first asked for."""
+        return load_material_rig(self.name) if self.file is None else load_rig(self.file)
+
+    def named_in(self, folder: Path) -> str:
+        """Name it as ``base`` in a rig file of a folder."""
+        return self.name if self.file is None else base_name(self.file, folder)
+
+
+def bases_of(opened: Opened) -> dict[str, Base]:
+    """Return all bases by what requests call them: rig files by number first, then materials.
+
+    Examples
+    --------
+    >>> from noise.app.opened import open_paths
+    >>> next(iter(bases_of(open_paths([]))))
+    'fluorocarbon'
+    """
+    found = {f"rig {i}": Base(path.name, path) for i, path in enumerate(opened.rigs)}
+    names = sorted(material_names(), key=lambda name: (name != "fluorocarbon", name.lower()))
+    return found | {name: Base(name) for name in names}
+
+
+def base_of(said: object, bases: dict[str, Base]) -> Base:
+    """Return the base that a request names.
+
+    Raises
+    ------
+    ParameterError
+        There is none.
+    """
+    if not isinstance(said, str) or said not in bases:
+        raise ParameterError(f"design: base {str(said)[:40]!r} is none of {', '.join(bases)}")
+    return bases[said]

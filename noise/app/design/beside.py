@@ -1,0 +1,115 @@
+"""Work beside the sound, in a process of its own, so that it never keeps the sound waiting.
+
+Only the newest question counts: one that comes while another is answered takes the place of those
+that wait. The process ends with the server, however that ends.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from contextlib import suppress
+from multiprocessing import get_context
+from threading import Condition, Thread
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from models.errors import BushingNoiseError
+from noise.batch.work import one_thread
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from multiprocessing.connection import Connection
+
+__all__ = ["Beside"]
+
+_Question = TypeVar("_Question")
+_Answer = TypeVar("_Answer")
+
+
+class Beside(Generic[_Question, _Answer]):
+    """A process that answers the newest question.
+
+    Parameters
+    ----------
+    answer : callable
+        From question to answer; found by its name in its module.
+    nice : int
+        By how much everything else goes first, as of the command ``nice``.
+    """
+
+    def __init__(self, answer: Callable[[_Question], _Answer], nice: int = 0) -> None:
+        self._answer, self._nice = answer, nice
+        self._changed = Condition()
+        self._wanted: tuple[_Question] | None = None
+        self._newest: tuple[_Question, _Answer | None, str] | None = None
+        self._busy = self._stopped = False
+        self._thread: Thread | None = None
+
+    def ask(self, question: _Question) -> None:
+        """Ask, and forget those questions that have not been begun."""
+        with self._changed:
+            self._wanted = (question,)
+            if self._thread is None:
+                self._thread = Thread(target=self._work, daemon=True)
+                self._thread.start()
+            self._changed.notify()
+
+    @property
+    def newest(self) -> tuple[_Question, _Answer | None, str] | None:
+        """The question that was answered last, its answer, and what went wrong if it has none."""
+        with self._changed:
+            return self._newest
+
+    @property
+    def busy(self) -> bool:
+        """Whether something that was asked is not answered yet."""
+        with self._changed:
+            return self._busy or self._wanted is not None
+
+    def stop(self) -> None:
+        """End the process."""
+        with self._changed:
+            self._stopped = True
+            self._changed.notify()
+
+    def _work(self) -> None:
+        context = get_context("spawn")  # a copy of this process would lack its threads
+        process = link = None
+        while True:
+            with self._changed:
+                self._busy = False
+                self._changed.wait_for(lambda: self._wanted is not None or self._stopped)
+                if self._stopped or self._wanted is None:
+                    break
+                [question], self._wanted, self._busy = self._wanted, None, True
+            if process is None or link is None or not process.is_alive():
+                link, theirs = context.Pipe()
+                arguments = (theirs, self._answer, self._nice)
+                process = context.Process(target=_serve, args=arguments, daemon=True)
+                process.start()
+                theirs.close()
+            try:
+                link.send(question)
+                while not link.poll(0.2) and not self._stopped:
+                    pass
+                answer, error = (None, "") if self._stopped else link.recv()
+            except (OSError, EOFError):
+                answer, error = None, "the process beside the sound died"
+            with self._changed:
+                self._newest = question, answer, error
+        if process is not None:
+            process.kill()
+
+
+def _serve(link: Connection, answer: Callable[[_Question], _Answer], nice: int) -> None:
+    with suppress(ValueError):  # a key in the terminal is for the server
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(AttributeError, OSError):
+        os.nice(nice)
+    with one_thread(), suppress(EOFError, OSError):
+        while True:
+            question = link.recv()
+            try:
+                link.send((answer(question), ""))
+            except BushingNoiseError as error:
+                link.send((None, str(error)))

@@ -1,0 +1,274 @@
+"""What can be changed about a design, with plausible bounds: one list that page and server share.
+
+Laws and effects come from their registries with the parameters that they declare, so that a new one
+appears by itself. Effects that act on a run as a whole cannot be heard while it goes on.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from models.plausible import BOUNDS
+from sim.effects import EFFECTS
+from sim.friction import LAWS, friction_law
+from sim.parameters import resolve
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from models.rig import Rig
+    from sim.effects.effect import Effect
+    from sim.parameters import Parameter
+
+__all__ = ["MOTIONS", "Control", "controls_of", "live_effects", "read_values"]
+
+MOTIONS = {"constant": "constant speed", "run_up": "run-up", "swing": "swing"}
+"""How the shaft turns."""
+
+_FACTORS = {
+    "critical_torque": ("Critical torque", "at which the contact breaks"),
+    "kinetic_torque": ("Kinetic torque", "while it slides"),
+    "elastomer_stiffness": ("Stiffness", "torsional, of the elastomer"),
+    "damping": ("Damping", "of bushing and beams together"),
+    "elastomer_inertia": ("Inertia of the elastomer", ""),
+    "clamp_inertia": ("Inertia of the clamp", ""),
+}
+_SLEEVE = {
+    "wall": ("Wall of the rubber", "torques, stiffness and inertia follow"),
+    "length": ("Length of the rubber", "torques, stiffness and inertia follow"),
+    "youngs_modulus": ("Young's modulus of the rubber", "torques and stiffness follow"),
+}
+_REACH = 20.0
+"""A slider of a parameter reaches from so many times below its value to so many times above."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """One thing that can be changed.
+
+    Parameters
+    ----------
+    key : str
+        Of its value in a state.
+    kind : str
+        ``number``, ``switch`` or ``choice``.
+    group, label, meaning : str
+        What it is called, and where it stands.
+    value : float, bool or str
+        That of the base.
+    unit : str
+    low, high : float
+        Ends of the slider, within which a value is plausible [`unit`].
+    least, most : float
+        Between which it is taken [`unit`].
+    log : bool
+        Whether equal ways of the slider are equal ratios.
+    choices : dict of str to str
+        What can be chosen, and how it is called.
+    only : tuple of (str, str) or None
+        Key and value of another control with which this one counts.
+    """
+
+    key: str
+    kind: str
+    group: str
+    label: str
+    value: float | bool | str
+    meaning: str = ""
+    unit: str = ""
+    low: float = 0.0
+    high: float = 1.0
+    least: float = 0.0
+    most: float = 1.0
+    log: bool = False
+    choices: Mapping[str, str] | None = None
+    only: tuple[str, str | bool] | None = None
+
+    def as_json(self) -> dict[str, object]:
+        """Return it as the page reads it."""
+        return asdict(self)
+
+    def read(self, said: object) -> float | bool | str:
+        """Return a value that a request says.
+
+        Raises
+        ------
+        ParameterError
+            It is none that this control takes.
+        """
+        if self.kind == "switch":
+            if isinstance(said, bool):
+                return said
+            raise ParameterError(f"{self.label}: must be on or off")
+        if self.kind == "choice":
+            if isinstance(said, str) and said in (self.choices or {}):
+                return said
+            raise ParameterError(f"{self.label}: must be one of {', '.join(self.choices or {})}")
+        number = isinstance(said, int | float) and not isinstance(said, bool)
+        if not number or not self.least <= float(said) <= self.most:  # type: ignore[arg-type]
+            raise ParameterError(
+                f"{self.label} {str(said)[:40]}: must be a number from {self.least:g} to "
+                f"{self.most:g} {self.unit}".rstrip()
+            )
+        return float(f"{said:.6g}")  # as a rig file writes it
+
+
+def controls_of(rig: Rig) -> list[Control]:
+    """List what can be changed about a rig.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> keys = [control.key for control in controls_of(load_material_rig("PDMS"))]
+    >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
+    (['motion', 'speed', 'run_up.start'], True, True)
+    """
+    return [*_motion(rig), *_condition(rig), *_bushing(rig), *_law(rig), *_effects(rig)]
+
+
+def live_effects() -> dict[str, Effect]:
+    """Return the effects that can be heard while a run goes on, by name."""
+    return {
+        name: effect
+        for name, effect in EFFECTS.items()
+        if effect.drive is None and effect.sensors is None
+    }
+
+
+def read_values(controls: list[Control], said: object) -> dict[str, float | bool | str]:
+    """Return the values of all controls: those that a request says, else those of the base.
+
+    Raises
+    ------
+    ParameterError
+        A key is unknown, or a value cannot be taken.
+    """
+    if not isinstance(said, dict):
+        raise ParameterError("design: the state must be an object of values by control")
+    by_key = {control.key: control for control in controls}
+    for key in said:
+        if key not in by_key:
+            raise ParameterError(f"design: there is nothing called {str(key)[:60]!r} to change")
+    return {
+        key: control.read(said[key]) if key in said else control.value
+        for key, control in by_key.items()
+    }
+
+
+def _number(
+    key: str, group: str, label: str, value: float, unit: str, slider: tuple[float, float],
+    admitted: tuple[float, float], meaning: str = "", *, log: bool = False,
+    only: tuple[str, str | bool] | None = None,
+) -> Control:  # fmt: skip
+    return Control(
+        key, "number", group, label, float(f"{value:.6g}"), meaning, unit, *slider, *admitted,
+        log=log, only=only,
+    )  # fmt: skip
+
+
+def _motion(rig: Rig) -> Iterator[Control]:
+    fastest = BOUNDS["speed_rad_s"].usual[1]
+    usual = min(fastest, 5.0)
+    group, speeds, most = "Motion of the shaft", (0.0, fastest), (-200.0, 200.0)
+    yield Control("motion", "choice", group, "Motion", "constant", choices=MOTIONS)
+    yield _number(
+        "speed", group, "Speed", usual, "rad/s", speeds, most, only=("motion", "constant")
+    )
+    top = min(fastest, 12.0 if math.isinf(rig.fastest_fitted) else rig.fastest_fitted)
+    run_up, swing = ("motion", "run_up"), ("motion", "swing")
+    yield _number("run_up.start", group, "From", 0.0, "rad/s", speeds, most, only=run_up)
+    yield _number("run_up.end", group, "To", top, "rad/s", speeds, most, only=run_up)
+    yield _number(
+        "run_up.seconds", group, "Within", 6.0, "s", (1.0, 30.0), (0.1, 600.0),
+        "and down again in as long", only=run_up,
+    )  # fmt: skip
+    yield _number(
+        "swing.degrees", group, "Amplitude", 15.0, "degrees", (0.5, 60.0), (0.01, 360.0), only=swing
+    )
+    yield _number(
+        "swing.hz", group, "Frequency", 2.0, "Hz", (0.1, 10.0), (0.01, 50.0), log=True, only=swing
+    )
+
+
+def _condition(rig: Rig) -> Iterator[Control]:
+    group = "Condition"
+    low, high = (1e3 * fit for fit in rig.interference_range)
+    default = min(max(0.279, low), high)
+    yield _number(
+        "interference", group, "Interference", default, "mm",
+        (round(0.7 * low, 3), round(1.3 * high, 3)), BOUNDS["interference_mm"].possible,
+    )  # fmt: skip
+    yield Control("fixed", "switch", group, "Clamp bolted to the baseplate", False)
+    bounds = BOUNDS["support_stiffness_Nm_rad"]
+    yield _number(
+        "support", group, "Support stiffness", 2214.0, "Nm/rad", (1.2e3, 2e4), bounds.possible,
+        log=True, only=("fixed", False),
+    )  # fmt: skip
+    yield _number(
+        "temperature", group, "Temperature", 23.0, "degree Celsius",
+        BOUNDS["temperature_C"].usual, BOUNDS["temperature_C"].possible,
+    )  # fmt: skip
+
+
+def _bushing(rig: Rig) -> Iterator[Control]:
+    named = _FACTORS | (_SLEEVE if rig.sleeve is not None else {})
+    for name, (label, meaning) in named.items():
+        yield _number(
+            f"change.{name}", "Bushing, as a factor of the base", label, 1.0, "x", (0.2, 5.0),
+            (0.01, 100.0), meaning, log=True,
+        )  # fmt: skip
+
+
+def _law(rig: Rig) -> Iterator[Control]:
+    group, own = "Friction law", rig.friction
+    choices = {name: name.replace("_", " ") for name in LAWS}
+    yield Control("law", "choice", group, "Law", own.name, choices=choices)
+    for name in LAWS:
+        law = friction_law(name)
+        stated = own.parameters if name == own.name else {}
+        values = resolve(f"friction law {name!r}", law.parameters, stated)
+        for key, parameter in law.parameters.items():
+            yield _parameter(f"law.{name}.{key}", group, parameter, values[key], ("law", name))
+
+
+def _effects(rig: Rig) -> Iterator[Control]:
+    group, own = "Effects", {spec.name: spec for spec in rig.effects}
+    for name, effect in live_effects().items():
+        on = name in own
+        active = effect.active(own[name].parameters if on else {})
+        yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on)
+        only = (f"effect.{name}", True)
+        if len(effect.forms) > 1:
+            forms = {form: form.replace("_", " ") for form in effect.forms}
+            yield Control(
+                f"effect.{name}.form", "choice", group, f"{name.replace('_', ' ')}: form",
+                active.form, choices=forms, only=only,
+            )  # fmt: skip
+        for key, parameter in effect.parameters.items():
+            yield _parameter(
+                f"effect.{name}.{key}", group, parameter, active.values[key], only,
+                f"{name.replace('_', ' ')}: ",
+            )  # fmt: skip
+
+
+def _parameter(
+    key: str, group: str, parameter: Parameter, value: float, only: tuple[str, str | bool],
+    of: str = "",
+) -> Control:  # fmt: skip
+    """Return the control of a declared parameter; its slider reaches about its value."""
+    centre = value or parameter.default
+    low, high, log = parameter.low, parameter.high, False
+    if centre > 0.0:
+        high = min(high, centre * _REACH)
+        if parameter.low > 0.0 or value > 0.0:
+            low, log = max(low, centre / _REACH), True
+        else:
+            low = max(low, 0.0)
+    label = f"{of}{key.rpartition('.')[2].replace('_', ' ')}"
+    return _number(
+        key, group, label, value, parameter.unit, (low, high), (parameter.low, parameter.high),
+        parameter.meaning, log=log, only=only,
+    )  # fmt: skip

@@ -1,0 +1,202 @@
+"""A design: a base and what is changed about it, as a rig, a setting of a run, and a rig file."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.errors import ParameterError
+from models.radiation.rig_response import anchor_arm
+from models.rig import LawSpec, damping_at
+from models.rig_files.change import changed_rig
+from models.rig_files.rig_parts import parse_spec
+from models.rig_files.rig_text import changed_rig_text
+from noise.app.design.bases import Base, base_of
+from noise.app.design.controls import Control, controls_of, live_effects, read_values
+from noise.app.design.motions import motion_of, motion_options
+from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
+from noise.screening.map.provenance import fits_remark
+from sim.effects import EFFECTS
+from sim.live import Setting
+from sim.temperature import at_temperature
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from models.rig import Rig
+
+    Values = Mapping[str, float | bool | str]
+
+__all__ = ["Design", "base_controls", "design_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """What the controls say.
+
+    Parameters
+    ----------
+    base : Base
+    values : mapping of str to float, bool or str
+        Of all controls.
+    setting : Setting
+        Of the run that is heard.
+    changes : dict of str to str or float
+        As ``[change]`` has them.
+    friction : LawSpec or None
+        The law where it is another than the base's.
+    """
+
+    base: Base
+    values: Values
+    setting: Setting
+    changes: Mapping[str, str | float]
+    friction: LawSpec | None
+
+    @property
+    def rig(self) -> Rig:
+        """The rig with all its changes."""
+        return self.setting.rig
+
+    @property
+    def options(self) -> str:
+        """The condition as options of a command."""
+        support = "fixed" if self.values["fixed"] else f"{self.values['support']:g}"
+        words = [
+            motion_options(self.values), f"--interference {self.values['interference']:g}",
+            f"--support-stiffness {support}",
+        ]  # fmt: skip
+        if self.values["temperature"] != 23.0:
+            words.append(f"--temperature {self.values['temperature']:g}")
+        return " ".join(words)
+
+    def text(self, folder: Path, name: str) -> str:
+        """Return the rig file called `name` that a folder is to hold."""
+        notes = [f"bushing-noise simulate --rig {name} {self.options}"]
+        return changed_rig_text(
+            self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
+            friction=self.friction,
+        )  # fmt: skip
+
+    def facts(self) -> dict[str, str]:
+        """Return what the bushing's quantities have become, with their units, by short name."""
+        setting = self.setting
+        fit = at_temperature(setting.rig, setting.temperature).fit(setting.interference)
+        found = {
+            "critical_torque": (fit.critical_torque, "Nm"),
+            "kinetic_torque": (fit.kinetic_torque, "Nm"),
+            "elastomer_stiffness": (fit.elastomer_stiffness, "Nm/rad"),
+            "damping": (damping_at(fit, setting.support_stiffness), "Nm s/rad"),
+            "elastomer_inertia": (setting.rig.elastomer_inertia, "kg m2"),
+            "clamp_inertia": (setting.rig.clamp_inertia, "kg m2"),
+        }
+        if (sleeve := setting.rig.sleeve) is not None:
+            found["wall"] = (1e3 * sleeve.wall, "mm")
+            found["length"] = (1e3 * sleeve.length, "mm")
+            found["youngs_modulus"] = (1e-6 * sleeve.youngs_modulus, "MPa")
+        return {name: f"{value:.4g} {unit}" for name, (value, unit) in found.items()}
+
+    def remarks(self) -> list[str]:
+        """Say what the listener should know: what lies outside the usual or was not measured."""
+        setting = self.setting
+        times = np.linspace(0.0, 60.0, 4001)
+        found = use_remarks(
+            setting.rig,
+            speed=[float(np.abs(setting.shaft.speed(times)).max())],
+            interference=[setting.interference],
+            support_stiffness=[setting.support_stiffness],
+            temperature=[setting.temperature],
+        )
+        found.append(fits_remark(setting.rig, [setting.interference]))
+        found.append(temperature_remark(setting.rig, setting.temperature))
+        found += effect_remarks(setting.rig, EFFECTS)
+        left_out = [e.name for e in setting.rig.effects if e.name not in live_effects()]
+        if left_out:
+            found.append(
+                f"effect {', '.join(left_out)}: acts on a run as a whole, so it is not heard "
+                "here, but in what is saved"
+            )
+        return [text for text in found if text]
+
+
+@lru_cache(maxsize=16)
+def base_controls(base: Base) -> list[Control]:
+    """Return what can be changed about a base."""
+    return controls_of(base.rig)
+
+
+def design_of(said: object, bases: dict[str, Base]) -> Design:
+    """Read a design that a request states: ``{"base": ..., "values": {...}}``.
+
+    Raises
+    ------
+    ParameterError
+        It states something that cannot be.
+    """
+    if not isinstance(said, dict):
+        raise ParameterError("design: must be an object with base and values")
+    base = base_of(said.get("base"), bases)
+    controls = base_controls(base)
+    values = read_values(controls, said.get("values", {}))
+    own = {control.key: control.value for control in controls}
+    friction, changes = _friction(values, own)
+    changes |= {
+        key.removeprefix("change."): f"x{value:g}"
+        for key, value in values.items()
+        if key.startswith("change.") and value != own[key]
+    }
+    rig = replace(base.rig, effects=_effects(base.rig, values, own))
+    if friction is not None:
+        rig = replace(rig, friction=friction)
+    rig = changed_rig(rig, changes, "design")
+    if not values["fixed"]:
+        anchor_arm(rig.beams, rig.plate, float(values["support"]))  # refuses what is off the plate
+    setting = Setting(
+        rig,
+        motion_of(values),
+        1e-3 * float(values["interference"]),
+        math.inf if values["fixed"] else float(values["support"]),
+        float(values["temperature"]),
+    )
+    return Design(base, values, setting, changes, friction)
+
+
+def _friction(values: Values, own: Values) -> tuple[LawSpec | None, dict[str, str | float]]:
+    """Return the law where it is another one, and else what is changed about its parameters."""
+    law = str(values["law"])
+    stated = {
+        key.removeprefix(f"law.{law}."): float(value)
+        for key, value in values.items()
+        if key.startswith(f"law.{law}.") and (law != own["law"] or value != own[key])
+    }
+    if law != own["law"]:
+        return LawSpec(law, stated), {}
+    return None, {f"friction.{name}": value for name, value in stated.items()}
+
+
+def _effects(rig: Rig, values: Values, own: Values) -> tuple[LawSpec, ...]:
+    """Return those of the base as they have become, then those that are new."""
+    known = live_effects()
+    stated = {spec.name: spec for spec in rig.effects}
+    names = list(dict.fromkeys([*stated, *known]))
+    found = []
+    for name in names:
+        if name not in known:
+            found.append(stated[name])
+            continue
+        if not values[f"effect.{name}"]:
+            continue
+        start = f"effect.{name}."
+        keys = [key for key in values if key.startswith(start)]
+        if name in stated and all(values[key] == own[key] for key in keys):
+            found.append(stated[name])
+            continue
+        changed = {key.removeprefix(start): values[key] for key in keys}
+        # Through its text, since that is what a rig file holds.
+        found.append(parse_spec(str(LawSpec(name, changed)), "design, effect"))
+    return tuple(found)

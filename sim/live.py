@@ -1,0 +1,378 @@
+"""A rig that turns on while it is changed: the sound of one run, block by block as it is asked.
+
+What does not change is the run that `sim.long_run.simulate_blocks` gives, sample by sample. A
+change takes effect over one block: speeds go from one to the other, what moves goes on from where
+it is in the rig as it was and as it is now, and the torques cross over; so do the impulse responses
+from torque to sound. Nothing jumps, so nothing clicks.
+
+The sound lags behind the motion by `LOOKAHEAD`, in which a slip shows how far the torque falls: an
+effect that makes a force of the motion sees so much of what is to come, where a whole run shows it
+all. Effects that need a run as a whole are left out, those of drive and sensors.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from models.radiation.rig_response import first_mode_damping, impulse_responses
+from sim.acquisition import Acquisition, digitise
+from sim.chain import changed_chain
+from sim.live_filter import LiveConvolution, crossing
+from sim.long_run import whole_run_effects
+from sim.motion import Motion, MotionSolver, steps_beyond
+from sim.motion_limits import blaming_the_unusual
+from sim.pipeline import pulse_force
+from sim.run import plan_run
+from sim.streams import AnalogueFilter, Decimation
+from sim.temperature import at_temperature
+from sim.timing import SIMULATION
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    from models.radiation.impulse_responses import ImpulseResponses
+    from models.rig import Rig
+    from sim.effects.effect import Effect
+    from sim.pipeline import Plan
+    from sim.shaft import ShaftMotion
+
+    PathsOf = Callable[["Setting"], ImpulseResponses | None]
+
+__all__ = ["LOOKAHEAD", "LiveBlock", "LiveRun", "Setting", "paths_key", "paths_of"]
+
+LOOKAHEAD = 0.005
+"""By which the sound lags behind the motion [s]."""
+
+_SEEN = 0.2
+"""Of the motion before a block, that effects which make a force see [s]."""
+
+_LONGEST_RESPONSE = 3.0
+"""From torque to sound [s]."""
+
+_HORIZON = 60.0
+"""Within which the fastest speed of a motion is looked for [s]."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What can be changed while it runs.
+
+    Parameters
+    ----------
+    rig : Rig
+    shaft : ShaftMotion
+        Of a kind that can be compared. Its clock goes on where only its numbers change, and starts
+        anew where it is of another kind.
+    interference : float
+        [m]
+    support_stiffness : float
+        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
+    temperature : float
+        [degree Celsius]
+    """
+
+    rig: Rig
+    shaft: ShaftMotion
+    interference: float
+    support_stiffness: float
+    temperature: float = 23.0
+
+    def moves_as(self, other: Setting) -> bool:
+        """Whether nothing but the motion of the shaft differs."""
+        return replace(self, shaft=other.shaft) == other
+
+
+@dataclass(frozen=True, eq=False)
+class LiveBlock:
+    """What came next.
+
+    Parameters
+    ----------
+    pressure : ndarray, shape (n,)
+        As recorded [Pa].
+    torque : ndarray, shape (n,)
+        Of the bushing on the clamp [Nm].
+    speed : float
+        Of the shaft at the end [rad/s].
+    """
+
+    pressure: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    speed: float
+
+
+def paths_of(
+    setting: Setting, rate: float, *, library: Mapping[str, Effect] | None = None, seed: int = 0
+) -> ImpulseResponses:
+    """Impulse responses at a rate [Hz], as the effects of the rig change them.
+
+    Parameters
+    ----------
+    setting : Setting
+    rate : float
+        Of the computation [Hz].
+    library, seed
+        As of `LiveRun`.
+    """
+    plan = _plan(setting, rate, library, n=2)
+    paths = impulse_responses(plan.rig, plan.interference, plan.support_stiffness, plan.rate)
+    return changed_chain(paths, plan.effects, _streams(seed)[1].spawn(1)[0])
+
+
+def paths_key(setting: Setting) -> tuple[object, ...]:
+    """All that the impulse responses depend on: two settings of one key share them.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.shaft import ConstantSpeed
+    >>> one = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
+    >>> looser = replace(one, rig=one.rig.changed(kinetic_torque="x0.5"), shaft=ConstantSpeed(1.0))
+    >>> damped = replace(one, rig=one.rig.changed(damping="x2"))
+    >>> paths_key(one) == paths_key(looser), paths_key(one) == paths_key(damped)
+    (True, False)
+    """
+    rig = at_temperature(setting.rig, setting.temperature)
+    support = setting.support_stiffness
+    fixed = math.isinf(support)
+    return (
+        rig.beams,
+        rig.plate,
+        rig.microphone,
+        rig.clamp_inertia,
+        rig.measured,
+        support,
+        0.0 if fixed else first_mode_damping(rig, setting.interference, support),
+        rig.effects,
+    )
+
+
+class LiveRun:
+    """One run of the rig that goes on while it is changed.
+
+    Parameters
+    ----------
+    setting : Setting
+        That it starts with; a shaft of constant speed has turned for a while, as in a recording.
+    rate : float
+        Of the sound [Hz].
+    n : int
+        Samples of a block.
+    library : mapping of str to Effect, optional
+        As for `sim.run.simulate`.
+    seed : int
+        Of the sensors' noise and of effects that scatter.
+    paths : callable, optional
+        From setting to impulse responses, at the rate of the computation, or to None while they are
+        not known, for which those before stay; by default they are computed at once.
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from sim.shaft import ConstantSpeed
+    >>> setting = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
+    >>> run = LiveRun(setting)
+    >>> run.block().pressure.shape
+    (960,)
+    >>> faster = replace(setting, shaft=ConstantSpeed(6.0))
+    >>> round(run.block(faster).speed, 1), round(run.block().speed, 1)
+    (6.0, 6.0)
+    """
+
+    def __init__(
+        self,
+        setting: Setting,
+        *,
+        rate: float = 48e3,
+        n: int = 960,
+        library: Mapping[str, Effect] | None = None,
+        seed: int = 0,
+        paths: PathsOf | None = None,
+    ) -> None:
+        factor = SIMULATION.decimation(rate)
+        self._rate, self._n, self._block = factor * rate, n, factor * n
+        self._output_rate, self._library, self._seed = rate, library, seed
+        self._paths = paths or _KnownPaths(rate, library, seed)
+        self._setting = setting
+        self._plan = _plan(setting, rate, library, n)
+        self._solver = self._solver_of(self._plan, float(setting.shaft.speed(np.zeros(1))[0]))
+        self._time = 0  # of the shaft's clock, in samples of the computation
+        self._lookahead = round(LOOKAHEAD * self._rate)
+        self._seen = round(_SEEN * self._rate)
+        self._held = self._advance(self._lookahead)
+        self._emitted = 0  # samples of `held` that have gone out
+        self._first_torque = float(self._held.torque[0])
+        found = self._paths(setting) or paths_of(setting, rate, library=library, seed=seed)
+        self._found = found
+        self._convolution = LiveConvolution(
+            _to_pressure(found), self._block, round(_LONGEST_RESPONSE * self._rate)
+        )
+        acquisition = Acquisition(rate=rate).over(setting.rig.sensors)
+        corner = acquisition.sensors.of("pressure").antialias
+        n_settling = self._plan.n_settling
+        self._filter = AnalogueFilter(corner, self._rate, n_settling)
+        self._decimations = [Decimation(factor, n_settling) for _ in range(2)]
+        self._acquisition = acquisition
+        self._noise = _streams(seed)[0].spawn(4)[2]  # torque, acceleration, pressure, angle
+        self._ready = np.zeros((2, 0))
+
+    @property
+    def setting(self) -> Setting:
+        """As it is now."""
+        return self._setting
+
+    def block(self, setting: Setting | None = None) -> LiveBlock:
+        """Return the next samples, in which another setting takes over if one is given.
+
+        Raises
+        ------
+        ParameterError
+            If the setting cannot be used, or the friction not be followed; the run can go on as it
+            was.
+        """
+        change = setting is not None and setting != self._setting
+        while self._ready.shape[1] < self._n:
+            motion = self._changed(setting) if change and setting else self._advance(self._block)
+            change = False
+            self._emit(motion)
+        found, self._ready = self._ready[:, : self._n], self._ready[:, self._n :]
+        pressure = digitise(found[0], "pressure", self._acquisition, self._noise)
+        return LiveBlock(pressure, found[1], float(self._held.shaft_speed[-1]))
+
+    def _emit(self, motion: Motion) -> None:
+        """Send the next block of motion, and what it shows of the one before, to the microphone."""
+        drop = max(0, self._emitted - self._seen)
+        self._held = self._held.since(drop).followed_by(motion)
+        start = self._emitted - drop
+        stop = start + self._block
+        force = self._force(start, stop)
+        found = self._paths(self._setting)
+        if found is not None and found is not self._found:
+            self._found = found
+            self._convolution.exchange(_to_pressure(found))
+        torque = self._held.torque[start:stop]
+        pressure = self._convolution([torque - self._first_torque, force])
+        self._emitted = stop
+        rows = [
+            decimate(signal)
+            for decimate, signal in zip(
+                self._decimations, (self._filter(pressure), torque), strict=True
+            )
+        ]
+        self._ready = np.hstack([self._ready, np.stack(rows)])
+
+    def _force(self, start: int, stop: int) -> NDArray[np.float64]:
+        """Force of the effects over samples of what is held [N]."""
+        if all(active.effect.force is None for active in self._plan.effects):
+            return np.zeros(stop - start)
+        return pulse_force(_ended(self._held), self._plan.effects)[start:stop]
+
+    def _advance(self, n: int) -> Motion:
+        drive = self._drive(self._setting.shaft, n + steps_beyond(self._rate))
+        with blaming_the_unusual(self._plan.rig):
+            motion = self._solver.advance(drive, n)
+        self._time += n
+        return motion
+
+    def _changed(self, setting: Setting) -> Motion:
+        """Motion of a block in which a setting takes over."""
+        before, n, beyond = self._setting, self._block, steps_beyond(self._rate)
+        restarted = type(setting.shaft) is not type(before.shaft)
+        plan = _plan(setting, self._output_rate, self._library, self._n)
+        coming = np.concatenate([crossing(n), np.ones(beyond)])
+        old = self._drive(before.shaft, n + beyond)
+        new = self._drive(setting.shaft, n + beyond, 0 if restarted else self._time)
+        drive = old + coming * (new - old)
+        solver = self._solver_of(plan, float(drive[0]))
+        solver.go_on_from(self._solver, float(drive[0]))
+        with blaming_the_unusual(plan.rig):
+            motion = solver.advance(drive, n)
+        if not setting.moves_as(before):
+            motion = _crossed(self._solver.advance(drive, n), motion)
+        self._setting, self._plan, self._solver = setting, plan, solver
+        self._time = n if restarted else self._time + n
+        return motion
+
+    def _drive(self, shaft: ShaftMotion, n: int, first: int | None = None) -> NDArray[np.float64]:
+        first = self._time if first is None else first
+        return shaft.speed(np.arange(first, first + n, dtype=np.float64) * (1.0 / self._rate))
+
+    def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
+        speeds = plan.shaft.speed(np.linspace(0.0, _HORIZON, 4001))
+        with blaming_the_unusual(plan.rig):
+            return MotionSolver(
+                plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
+                _streams(self._seed)[1], start_speed=start_speed,
+                top_speed=float(np.abs(speeds).max()), tolerance=None,
+            )  # fmt: skip
+
+
+class _KnownPaths:
+    """Impulse responses of the last setting that was asked for, computed at once."""
+
+    def __init__(self, rate: float, library: Mapping[str, Effect] | None, seed: int) -> None:
+        self._rate, self._library, self._seed = rate, library, seed
+        self._asked: Setting | None = None
+        self._key: tuple[object, ...] = ()
+        self._found: ImpulseResponses | None = None
+
+    def __call__(self, setting: Setting) -> ImpulseResponses:
+        key = self._key if setting is self._asked else paths_key(setting)
+        if self._found is None or key != self._key:
+            self._found = paths_of(setting, self._rate, library=self._library, seed=self._seed)
+        self._asked, self._key = setting, key
+        return self._found
+
+
+def _plan(setting: Setting, rate: float, library: Mapping[str, Effect] | None, n: int) -> Plan:
+    plan = plan_run(
+        setting.rig,
+        setting.shaft,
+        interference=setting.interference,
+        support_stiffness=setting.support_stiffness,
+        temperature=setting.temperature,
+        seconds=max(n, 2) / rate,
+        rate=rate,
+        settling=None,
+        library=library,
+    )
+    left_out = whole_run_effects(plan.effects)
+    return replace(plan, effects=[e for e in plan.effects if e.effect.name not in left_out])
+
+
+def _streams(seed: int) -> list[np.random.Generator]:
+    """Streams of the sensors' noise and of effects that scatter, as `sim.run.simulate` has them."""
+    return np.random.default_rng(seed).spawn(2)
+
+
+def _to_pressure(paths: ImpulseResponses) -> list[NDArray[np.float64]]:
+    return [paths.torque_to_pressure, paths.pulse_to_pressure]
+
+
+def _crossed(old: Motion, new: Motion) -> Motion:
+    coming = crossing(new.torque.size)
+    names = [field.name for field in fields(Motion) if field.name != "rate"]
+    crossed = {}
+    for name in names:
+        before = getattr(old, name)
+        crossed[name] = before + coming * (getattr(new, name) - before)
+    return Motion(new.rate, **crossed)
+
+
+def _ended(held: Motion) -> Motion:
+    """Return a motion whose last fall of the torque is over, for what waits to count it."""
+    last = held.part(held.torque.size - 1)
+    way = -1.0 if last.shaft_speed[0] < 0.0 else 1.0
+    risen = last.torque + way * float(np.ptp(held.torque))
+    return held.followed_by(replace(last, torque=risen))

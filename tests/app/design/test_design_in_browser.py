@@ -1,0 +1,195 @@
+"""The design view in a browser: what is heard of a slider, what is kept, how it looks."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from models.rig_files.rig_file import load_rig
+from noise.app.design.sound import RATE
+from sim.acquisition import Acquisition
+from sim.long_run import simulate_blocks
+from tests.helpers.browser import TAP, chromium
+from tests.helpers.opened_app import PATIENCE, opened_app
+
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+DESIGN = "document.querySelector('#view-design').design"
+SLACK = 200
+"""Samples that are compared later than they begin: a gain takes so long to be another."""
+
+
+class DesignPage:
+    """The view, shown."""
+
+    def __init__(self, browser, app, width=1280):
+        self.complaints = []
+        self.page = browser.new_page(viewport={"width": width, "height": 900})
+        self.page.on("console", self._told)
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.add_init_script(TAP)
+        self.page.goto(f"{app.address}#design")
+        self.until(f"Boolean({DESIGN}?.ready)")
+
+    def _told(self, message):
+        if "ScriptProcessorNode" not in message.text:  # which is the tap, not the app
+            self.complaints.append(message.text)
+
+    def until(self, said):
+        """Wait for something to be true; the page's policy lets nothing be evaluated within it."""
+        end = time.monotonic() + PATIENCE
+        while not self.page.evaluate(said):
+            assert time.monotonic() < end, said
+            time.sleep(0.05)
+
+    def sound(self, what):
+        return self.page.evaluate(f"{DESIGN}.sound.{what}")
+
+    def blocks(self, n):
+        """Wait until so many more blocks have come."""
+        self.until(f"{DESIGN}.sound.costs.length >= {self.sound('costs.length') + n}")
+
+    def slide(self, key, value):
+        self.page.evaluate(
+            "([id, value]) => { const one = document.getElementById(id); one.value = value;"
+            " one.dispatchEvent(new Event('input', { bubbles: true })); }",
+            [f"design-{key}-slider", value],
+        )
+
+    def type(self, key, value):
+        field = self.page.locator(f"#design-{key}")
+        field.fill(str(value))
+        field.press("Tab")
+
+    def play(self):
+        self.page.locator("#view-design .play").click()
+        self.until(f"{DESIGN}.sound.costs.length > 10")
+
+    def heard(self):
+        return np.array(self.page.evaluate("window.heard"))
+
+    def close(self):
+        assert self.complaints == []
+        self.page.close()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as started:
+        yield started
+
+
+@pytest.fixture
+def app(tmp_path):
+    rig = tmp_path / "mine.toml"
+    rig.write_text('base = "fluorocarbon"\n[change]\ndamping = "x1.1"\n', encoding="utf-8")
+    with opened_app(rig) as running:
+        yield running
+
+
+def place(part, whole):
+    """Where a piece of sound occurs in another, and by what it is louder there."""
+    n = part.size
+    size = 1 << (whole.size + n).bit_length()
+    product = np.fft.irfft(np.fft.rfft(whole, size) * np.conj(np.fft.rfft(part, size)), size)
+    energy = np.concatenate([[0.0], np.cumsum(whole**2)])
+    count = whole.size - n + 1
+    match = product[:count] / np.sqrt(np.maximum(energy[n:] - energy[:-n], 1e-20))
+    at = int(np.argmax(np.abs(match)))
+    return at, product[at] / (energy[at + n] - energy[at])
+
+
+def test_what_the_loudspeaker_gets_is_what_simulate_gives(browser, app, tmp_path):
+    opened = DesignPage(browser, app)
+    opened.play()
+    opened.blocks(60)
+    missing, full_scale = opened.sound("missing"), opened.sound("fullScale")
+    heard = opened.heard()
+    begin = int(np.flatnonzero(heard)[0]) + SLACK
+    piece = heard[begin : begin + 4096]
+    run = simulate_blocks(
+        load_rig(tmp_path / "mine.toml"), 5.0, seconds=1.0, acquisition=Acquisition(rate=RATE)
+    )
+    expected = np.hstack(list(run.blocks))[2]
+    at, gain = place(piece, expected)
+    played = expected[at : at + piece.size] / full_scale
+    if missing == 0:  # a machine that is busy has gaps, and counts them
+        assert gain == pytest.approx(1.0 / full_scale, rel=1e-3)
+        np.testing.assert_allclose(piece, played, atol=1e-3 * np.abs(played).max())
+    assert opened.sound("doubled") == 0
+    opened.close()
+
+
+def test_a_slider_is_heard_and_how_late_is_told(browser, app):
+    opened = DesignPage(browser, app)
+    opened.play()
+    for value in range(300, 900, 60):
+        opened.slide("speed", value)
+        opened.blocks(2)
+    opened.until(f"{DESIGN}.sound.waiting.length === 0")
+    latencies = opened.sound("latencies")
+    assert len(latencies) == 10
+    assert min(latencies) > 0.0
+    assert opened.page.evaluate(f"{DESIGN}.speed") == pytest.approx(21.0, abs=0.1)
+    assert opened.page.locator("#design-speed").input_value() == "21"
+    opened.page.get_by_text("beyond 13").wait_for()
+    opened.page.locator("#view-design .level").get_by_text("dB(A)").wait_for()
+    opened.close()
+
+
+def test_a_design_that_cannot_be_is_told_and_the_sound_goes_on(browser, app):
+    opened = DesignPage(browser, app)
+    opened.play()
+    opened.type("support", 20)
+    opened.page.locator("#status").get_by_text("off the plate").wait_for()
+    opened.blocks(20)
+    assert opened.sound("playing")
+    opened.type("support", 3745)
+    opened.until(f"{DESIGN}.sound.waiting.length === 0")
+    opened.complaints = [one for one in opened.complaints if "400" not in one]
+    opened.close()
+
+
+def test_a_and_b_are_switched_while_it_goes_on(browser, app):
+    opened = DesignPage(browser, app)
+    opened.play()
+    opened.page.get_by_role("button", name="B", exact=True).click()
+    opened.type("speed", 9)
+    opened.page.get_by_role("button", name="A", exact=True).click()
+    assert opened.page.locator("#design-speed").input_value() == "5"
+    opened.page.get_by_role("button", name="B", exact=True).click()
+    assert opened.page.locator("#design-speed").input_value() == "9"
+    opened.until(f"{DESIGN}.sound.waiting.length === 0")
+    opened.blocks(5)
+    assert opened.page.evaluate(f"{DESIGN}.speed") == 9.0
+    assert opened.sound("playing")
+    opened.close()
+
+
+def test_a_rig_file_is_saved_by_keys(browser, app, tmp_path):
+    opened = DesignPage(browser, app)
+    opened.type("change-damping", 1.5)
+    opened.page.locator("#design-name").fill("softer")
+    opened.page.keyboard.press("Tab")
+    opened.page.keyboard.press("Enter")
+    opened.page.locator(".saved").get_by_text("softer.toml").first.wait_for()
+    softer = load_rig(tmp_path / "softer.toml")
+    assert softer == load_rig(tmp_path / "mine.toml").changed(damping="x1.5")
+    opened.close()
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_it_fits_and_everybody_can_use_it(browser, app, width):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright")
+    opened = DesignPage(browser, app, width)
+    opened.play()
+    panel = "document.querySelector('#view-design').scrollWidth"
+    assert max(opened.page.evaluate(f"[document.documentElement.scrollWidth, {panel}]")) <= width
+    columns = opened.page.evaluate(
+        "getComputedStyle(document.querySelector('.design-view')).gridTemplateColumns.split(' ')"
+    )
+    assert len(columns) == (2 if width == 1280 else 1)
+    found = axe.Axe().run(opened.page, options={"runOnly": RULES})
+    assert found.violations_count == 0, found.generate_report()
+    opened.close()

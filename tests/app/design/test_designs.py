@@ -1,0 +1,134 @@
+"""What the controls of the design view say, as rigs and rig files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from models.errors import ParameterError
+from models.rig_files.rig_file import load_rig
+from noise.app.design.bases import bases_of
+from noise.app.design.controls import controls_of, live_effects
+from noise.app.design.design import design_of
+from noise.app.design.saving import save_rig
+from noise.app.opened import open_paths
+from noise.commands.condition_options import add_condition
+from sim.friction import LAWS
+from sim.live import LiveRun
+
+MATERIALS = bases_of(open_paths([]))
+
+CHANGED = [
+    {},
+    {"change.damping": 1.7, "law.contact_with_memory.ageing_time": 3e-4, "change.length": 0.9},
+    {"law": "lugre", "law.lugre.stribeck_speed": 2.5, "effect.critical_torque_scatter": False},
+    {"effect.slip_pulse.amplitude": 40.0, "effect.room_reflections": True, "change.wall": 1.2},
+    {"law": "coulomb", "effect.velocity_weakening": True, "fixed": True, "interference": 0.381},
+]  # fmt: skip
+
+
+def design(values, base="fluorocarbon", bases=MATERIALS):
+    return design_of({"base": base, "values": values}, bases)
+
+
+@pytest.mark.parametrize("values", CHANGED)
+def test_the_file_that_is_saved_is_the_rig_that_is_heard(values, tmp_path):
+    said = {"base": "fluorocarbon", "values": values, "name": "mine"}
+    saved = save_rig(said, MATERIALS, tmp_path)
+    assert Path(saved["file"]) == tmp_path / "mine.toml"
+    text = (tmp_path / "mine.toml").read_text(encoding="utf-8")
+    assert 'base = "fluorocarbon"' in text
+    assert load_rig(tmp_path / "mine.toml") == design(values).rig
+
+
+def test_a_file_of_the_users_is_a_base_and_is_never_written_over(tmp_path):
+    mine = tmp_path / "mine.toml"
+    mine.write_text('base = "PDMS"\n[change]\ndamping = "x2"\n', encoding="utf-8")
+    bases = bases_of(open_paths([mine]))
+    assert next(iter(bases)) == "rig 0"
+    said = {"base": "rig 0", "values": {"change.damping": 1.5}, "name": "other"}
+    save_rig(said, bases, tmp_path)
+    other = load_rig(tmp_path / "other.toml")
+    assert other == load_rig(mine).changed(damping="x1.5")
+    before = mine.read_text(encoding="utf-8")
+    with pytest.raises(ParameterError, match="is open"):
+        save_rig({**said, "name": "mine", "replace": True}, bases, tmp_path)
+    assert mine.read_text(encoding="utf-8") == before
+
+
+def test_nothing_is_written_over_unless_it_is_said_twice(tmp_path):
+    said = {"base": "PDMS", "values": {}, "name": "one"}
+    save_rig(said, MATERIALS, tmp_path)
+    with pytest.raises(ParameterError, match="is there already"):
+        save_rig(said, MATERIALS, tmp_path)
+    save_rig({**said, "replace": True}, MATERIALS, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["../out", "", "a/b", ".hidden", "x" * 90, None, "a\nb", "c\\d"])
+def test_names_that_lead_elsewhere_are_refused(name, tmp_path):
+    with pytest.raises(ParameterError, match="name: must begin"):
+        save_rig({"base": "PDMS", "values": {}, "name": name}, MATERIALS, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_laws_and_effects_of_the_registries_can_all_be_changed():
+    controls = {control.key: control for control in controls_of(MATERIALS["fluorocarbon"].rig)}
+    assert set(controls["law"].choices) == set(LAWS)
+    for name, law in LAWS.items():
+        assert all(f"law.{name}.{key}" in controls for key in law.parameters)
+    for name, effect in live_effects().items():
+        assert all(f"effect.{name}.{key}" in controls for key in effect.parameters)
+
+
+@pytest.mark.parametrize("base", MATERIALS)
+def test_sliders_reach_what_is_plausible_and_fields_what_is_possible(base):
+    for one in controls_of(MATERIALS[base].rig):
+        if one.kind == "number":
+            assert one.least <= one.low < one.high <= one.most, one.key
+            assert one.low > 0.0 or not one.log, one.key
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"speed": "fast"}, "Speed fast: must be a number"),
+        ({"speed": float("nan")}, "must be a number"),
+        ({"interference": 99}, "Interference 99: must be a number from"),
+        ({"fixed": 1}, "on or off"),
+        ({"law": "magic"}, "must be one of"),
+        ({"support": 20.0}, "off the plate"),
+        ({"nothing": 1}, "nothing called 'nothing'"),
+        ({"change.critical_torque": 0.3}, "kinetic_torque"),
+    ],
+)
+def test_what_cannot_be_is_told_in_one_line(said, told):
+    with pytest.raises(ParameterError, match=told) as caught:
+        design(said)
+    assert "\n" not in str(caught.value)
+
+
+def test_conditions_outside_what_was_measured_are_said_to_be():
+    remarks = design({"speed": 20.0, "interference": 0.45, "support": 3000.0}).remarks()
+    said = " | ".join(remarks)
+    assert "beyond 13" in said
+    assert "for 0.45 mm the nearest is held" in said
+    assert "damping is given for supports of" in said
+    assert design({}).remarks() == []
+
+
+def test_the_condition_is_told_as_options_that_the_command_reads():
+    from argparse import ArgumentParser
+
+    parser = ArgumentParser()
+    add_condition(parser)
+    for motion in ("constant", "run_up", "swing"):
+        of = design({"motion": motion, "fixed": motion == "swing", "temperature": 40.0})
+        options = parser.parse_args(of.options.split())
+        assert options.interference == 0.279
+        assert (options.speed is None) == (motion == "swing")
+
+
+def test_every_base_is_heard():
+    for base in MATERIALS:
+        assert LiveRun(design({}, base).setting).block().pressure.shape == (960,)
