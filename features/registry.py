@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from features.long.parts import LONG, n_samples_of, reader_of
 from features.named.band_features import BAND_FEATURES
 from features.named.prepared import ACOUSTIC_KINDS, prepare
 from features.named.spectral_features import SPECTRAL_FEATURES
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from features.long.parts import Parts
     from features.named.feature import Feature
+    from features.named.prepared import Prepared
     from models.recording import Recording
     from models.rig import Rig
 
@@ -160,13 +163,16 @@ def recording_feature_names() -> tuple[str, ...]:
 
 
 def recording_features(
-    recording: Recording, *, rig: Rig | None = None, names: Collection[str] | None = None
+    recording: Recording | Parts, *, rig: Rig | None = None, names: Collection[str] | None = None
 ) -> dict[str, float]:
     """Features of the first channel of each kind in a recording.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recording or Parts
+        In memory, or one of which parts can be had, such as `noise.recordings.blocks` opens. From
+        2 million samples on it is described piece by piece, which gives the same numbers, much
+        closer than those of different sampling rates agree.
     rig : Rig, optional
         What the stiffness of the bushing is taken from; without it, the shipped rig with the
         material that the recording names.
@@ -205,13 +211,8 @@ def recording_features(
             found |= dict.fromkeys(wanted, math.nan)
             continue
         try:
-            signal = prepare(
-                recording.samples[row],
-                recording.rate,
-                kind,
-                calibrated=recording.calibrated,
-                stick_rate=stick_rate_of(recording, rig) if kind == "torque" else math.nan,
-            )
+            stick_rate = stick_rate_of(recording, rig) if kind == "torque" else math.nan
+            signal = _prepared(recording, row, kind, stick_rate)
             found |= {name: feature(signal) for name, feature in wanted.items()}
         except ParameterError as error:
             channel = recording.channels[row].name
@@ -219,3 +220,13 @@ def recording_features(
                 f"recording {recording.name!r}, channel {channel!r}: {error}"
             ) from error
     return found
+
+
+def _prepared(recording: Recording | Parts, row: int, kind: str, stick_rate: float) -> Prepared:
+    read, n = reader_of(recording, row), n_samples_of(recording)
+    rate, calibrated = recording.rate, recording.calibrated
+    if n < LONG:
+        return prepare(read(0, n), rate, kind, calibrated=calibrated, stick_rate=stick_rate)
+    from features.long.prepared import prepare_long
+
+    return prepare_long(read, n, rate, kind, calibrated=calibrated, stick_rate=stick_rate)

@@ -27,11 +27,13 @@ __all__ = [
     "NOMINAL_THIRD_OCTAVES",
     "REFERENCES",
     "THESIS_BANDS",
+    "THIRD_OCTAVE_RESOLUTION",
     "a_weighting",
     "band_levels",
     "band_power",
     "overall_level",
     "relative_db",
+    "resolved_third_octaves",
     "third_octave_edges",
     "third_octave_levels",
 ]
@@ -58,7 +60,7 @@ _ANTI_ALIAS = 0.9
 _LEAST_BINS = 4
 """Bins that a band must hold for its level to be its own."""
 
-_RESOLUTION = 1.4
+THIRD_OCTAVE_RESOLUTION = 1.4
 """Spacing of the bins [Hz] for one-third octaves: the band at 25 Hz is 5.8 Hz wide."""
 
 _A_POLES = (20.598997, 107.65265, 737.86223, 12194.217)
@@ -209,7 +211,29 @@ def fine_third_octaves(
     >>> round(levels["50"], 1), levels["25"]
     (-3.0, nan)
     """
-    spectrum = welch(x, rate, _RESOLUTION)
+    return resolved_third_octaves(welch(x, rate, THIRD_OCTAVE_RESOLUTION), reference=reference)
+
+
+def resolved_third_octaves(spectrum: Spectrum, *, reference: float) -> dict[str, float]:
+    """`third_octave_levels` of a spectrum, of the bands that hold four of its bins.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+    reference : float
+        [unit]
+
+    Returns
+    -------
+    dict of str to float
+        [dB] by nominal mid-band frequency; NaN for the others.
+
+    Examples
+    --------
+    >>> hum = np.sin(2 * np.pi * 50 * np.arange(24000) / 48e3)
+    >>> resolved_third_octaves(welch(hum, 48e3, 8.0), reference=1.0)["50"]
+    nan
+    """
     levels = third_octave_levels(spectrum, reference=reference)
     low, _, high = third_octave_edges()
     fine = high - low >= _LEAST_BINS * spectrum.spacing

@@ -36,6 +36,7 @@ __all__ = [
     "band_analytic",
     "band_signal",
     "checked_signal",
+    "edge_fade",
     "forward",
     "usable_limit",
 ]
@@ -177,14 +178,38 @@ def forward(signal: NDArray[np.float64], rate: float) -> Transform:
     3840
     """
     n = signal.size
-    lead = min(int(_FADE_SHARE * n), round(_FADE * rate))
-    fade = np.sin(0.5 * np.pi * (np.arange(lead) + 0.5) / lead) ** 2
+    fade = edge_fade(n, rate)
+    lead = fade.size
     length = int(fft.next_fast_len(n, real=True))
     x = np.zeros(length)
     x[:n] = signal
     x[:lead] *= fade
     x[n - lead : n] *= fade[::-1]
     return Transform(fft.rfft(x), length, lead, n - 2 * lead, rate)
+
+
+def edge_fade(n_samples: int, rate: float) -> NDArray[np.float64]:
+    """Gain that a signal is faded in with; out by the same, backwards.
+
+    Parameters
+    ----------
+    n_samples : int
+        Of the signal.
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> edge_fade(4800, 48e3).size, edge_fade(48000, 48e3).size
+    (480, 960)
+    """
+    lead = min(int(_FADE_SHARE * n_samples), round(_FADE * rate))
+    return np.asarray(np.sin(0.5 * np.pi * (np.arange(lead) + 0.5) / lead) ** 2)
 
 
 def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[np.float64], float]:
@@ -224,7 +249,7 @@ def band_signal(transform: Transform, low: float, high: float) -> tuple[NDArray[
 
 
 def band_analytic(
-    transform: Transform, low: float, high: float
+    transform: Transform, low: float, high: float, *, rate: float | None = None
 ) -> tuple[NDArray[np.complex128], float]:
     """Analytic signal of a band, shifted to zero frequency: its magnitude is the band's envelope.
 
@@ -233,24 +258,29 @@ def band_analytic(
     transform : Transform
     low, high : float
         Limits of the band [Hz], flanks as in `band_signal`.
+    rate : float, optional
+        Of the result [Hz], at least the band's width with its flanks.
 
     Returns
     -------
     analytic : ndarray of complex, shape (n,)
         In the signal's unit; the magnitude of a sinusoid in the band is its amplitude.
     rate : float
-        [Hz], about 1.25 times the band's width with its flanks.
+        [Hz]; by default about 1.25 times the band's width with its flanks.
 
     Examples
     --------
     >>> import numpy as np
     >>> t = np.arange(4800) / 48e3
-    >>> tone, rate = band_analytic(forward(3 * np.sin(2 * np.pi * 4000 * t), 48e3), 2e3, 7e3)
+    >>> tone, _ = band_analytic(forward(3 * np.sin(2 * np.pi * 4000 * t), 48e3), 2e3, 7e3)
     >>> round(float(np.median(abs(tone))), 2)
     3.0
     """
     first, mask = _mask(transform, low, high, transform.bins.size)
-    length = int(fft.next_fast_len(round(1.25 * mask.size) + 8))
+    if rate is None:
+        length = int(fft.next_fast_len(round(1.25 * mask.size) + 8))
+    else:
+        length = round(transform.length * rate / transform.rate)
     bins = np.zeros(length, dtype=np.complex128)
     bins[: mask.size] = transform.bins[first : first + mask.size] * mask
     ratio = length / transform.length

@@ -39,6 +39,8 @@ from models.errors import ParameterError
 from models.short_repr import short_repr
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
     from features.kernels.spectra import Spectrum
@@ -204,11 +206,53 @@ def harmonics_of(
     """
     rate = spectrum.rate
     period = strongest_period(x, rate, lowest=lowest, highest=highest)
+
+    def finer(resolution: float) -> Spectrum:
+        return welch(x, rate, resolution)
+
+    return harmonics_of_period(
+        period, spectrum, floor, lines, duration=x.size / rate, lowest=lowest, finer=finer
+    )
+
+
+def harmonics_of_period(
+    period: Period,
+    spectrum: Spectrum,
+    floor: NDArray[np.float64],
+    lines: Lines,
+    *,
+    duration: float,
+    lowest: float,
+    finer: Callable[[float], Spectrum],
+) -> Harmonics:
+    """`analyse_harmonics` of a signal whose period, spectrum and lines are at hand.
+
+    Parameters
+    ----------
+    period : Period
+    spectrum : Spectrum
+        Of the signal.
+    floor : ndarray, shape (n_bins,)
+        `noise_floor` of it.
+    lines : Lines
+        Of it; the band they were sought in is what shares refer to.
+    duration : float
+        Of the signal [s].
+    lowest : float
+        Lower limit of the fundamental [Hz].
+    finer : callable
+        From a spacing of bins [Hz] to a spectrum of the signal that has it.
+
+    Returns
+    -------
+    Harmonics
+    """
+    rate = spectrum.rate
     if lines.total <= 0.0 or period.strength < WEAKEST_PERIOD:
         return Harmonics(math.nan, period.strength, np.empty(0), 0.0, 0, lines, math.nan)
     wanted = period.frequency / _BINS_A_HARMONIC
-    if spectrum.spacing > 1.01 * wanted and x.size / rate > 1.01 / spectrum.spacing:
-        spectrum = welch(x, rate, wanted)
+    if spectrum.spacing > 1.01 * wanted and duration > 1.01 / spectrum.spacing:
+        spectrum = finer(wanted)
         floor = noise_floor(spectrum)
         refined = find_lines(spectrum, low=lowest, high=usable_limit(rate), floor=floor)
     else:

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from features.kernels.conditioning import band_signal, forward
-from features.kernels.periodicity import strongest_period
+from features.kernels.periodicity import Period, strongest_period
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
-__all__ = ["MODULATION_BAND", "Modulation", "modulation"]
+__all__ = ["MODULATION_BAND", "Modulation", "described_modulation", "modulation"]
 
 MODULATION_BAND = (2.0, 400.0)
 """Rates of modulation that are looked at [Hz]."""
@@ -77,8 +79,38 @@ def modulation(envelope: NDArray[np.float64], rate: float) -> Modulation:
     low, high = MODULATION_BAND
     transform = forward(envelope - mean, rate)
     beats, beat_rate = band_signal(transform, low, min(high, 0.4 * rate))
-    depth = float(np.std(beats)) / mean
+    return described_modulation(
+        mean,
+        float(np.std(beats)),
+        lambda: strongest_period(beats, beat_rate, lowest=low, highest=high, whiten=False),
+    )
+
+
+def described_modulation(mean: float, deviation: float, period: Callable[[], Period]) -> Modulation:
+    """Describe the modulation of an envelope of which the numbers are at hand.
+
+    Parameters
+    ----------
+    mean : float
+        Of the envelope, in any [unit].
+    deviation : float
+        Standard deviation of its part within `MODULATION_BAND` [unit].
+    period : callable
+        Gives the period of that part.
+
+    Returns
+    -------
+    Modulation
+
+    Examples
+    --------
+    >>> described_modulation(2.0, 0.0, lambda: Period(80.0, 1.0)).depth
+    0.0
+    """
+    if not mean > 0.0:
+        return Modulation(math.nan, 0.0, 0.0)
+    depth = deviation / mean
     if depth < _LEAST_DEPTH:
         return Modulation(math.nan, 0.0, depth)
-    rate, strength = strongest_period(beats, beat_rate, lowest=low, highest=high, whiten=False)
+    rate, strength = period()
     return Modulation(rate if strength >= _LEAST_STRENGTH else math.nan, strength, depth)

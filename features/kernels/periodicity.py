@@ -24,7 +24,15 @@ from features.kernels.lines import interpolated
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Period", "strongest_period", "track_periods"]
+__all__ = [
+    "OVERSAMPLING",
+    "Period",
+    "lags_of",
+    "period_of",
+    "strongest_period",
+    "track_periods",
+    "whitening_gain",
+]
 
 _NEARLY = 0.9
 """A maximum this high relative to the highest is the period if its lag is shorter."""
@@ -40,7 +48,9 @@ _SIXTH_OCTAVE = 2.0 ** (1.0 / 6.0) - 1.0
 _LEAST_REACH = 20.0
 """Half the width over which whitening averages where one-third octaves are narrower [Hz]."""
 
-_OVERSAMPLING = 2
+OVERSAMPLING = 2
+"""Values of an autocorrelation a lag."""
+
 _TRACK_OVERSAMPLING = 4
 
 
@@ -98,27 +108,81 @@ def strongest_period(
     200
     """
     n = x.size
-    n_lags = min(int(n / _PERIODS), math.ceil(rate / lowest) + 1)
+    n_lags = lags_of(n, rate, lowest)
     length = int(fft.next_fast_len(n + n_lags, real=True))
     bins = fft.rfft(x, length)
     if whiten:
-        bins *= _whitening_gain(bins, rate / length)
+        bins *= whitening_gain(bins.real**2 + bins.imag**2, rate / length)
         x = fft.irfft(bins, length)[:n]
     power = bins.real**2 + bins.imag**2
-    correlation = fft.irfft(power, _OVERSAMPLING * length)[: _OVERSAMPLING * n_lags]
-    if not correlation[0] > 0.0:
-        return _NONE
+    correlation = fft.irfft(power, OVERSAMPLING * length)[: OVERSAMPLING * n_lags]
     energy = np.append(0.0, np.cumsum(x**2))
     if not energy[-1] > 0.0:
         return _NONE
     shared = 0.5 * (energy[n - n_lags :][::-1] + energy[-1] - energy[: n_lags + 1]) / energy[-1]
-    lags = np.arange(correlation.size) / _OVERSAMPLING
+    return period_of(correlation, shared, rate, highest=highest)
+
+
+def lags_of(n_samples: int, rate: float, lowest: float) -> int:
+    """Lags at which a period is sought.
+
+    Parameters
+    ----------
+    n_samples : int
+        Of the signal, which must hold two periods.
+    rate : float
+        Sampling rate [Hz].
+    lowest : float
+        Lower limit of the search [Hz].
+
+    Returns
+    -------
+    int
+
+    Examples
+    --------
+    >>> lags_of(16_000, 16e3, 5.0), lags_of(1_000, 16e3, 5.0)
+    (3201, 500)
+    """
+    return min(int(n_samples / _PERIODS), math.ceil(rate / lowest) + 1)
+
+
+def period_of(
+    correlation: NDArray[np.float64], shared: NDArray[np.float64], rate: float, *, highest: float
+) -> Period:
+    """Period of a signal whose autocorrelation is at hand.
+
+    Parameters
+    ----------
+    correlation : ndarray, shape (2 n_lags,)
+        At every half lag from 0 on [unit^2].
+    shared : ndarray, shape (n_lags + 1,)
+        Share of the signal's energy that each is taken over [-].
+    rate : float
+        Sampling rate [Hz].
+    highest : float
+        Upper limit of the search [Hz].
+
+    Returns
+    -------
+    Period
+
+    Examples
+    --------
+    >>> lags = np.arange(400) / 2
+    >>> round(period_of(np.cos(2 * np.pi * lags / 40), np.ones(201), 16e3, highest=7e3).frequency)
+    400
+    """
+    if not correlation[0] > 0.0:
+        return _NONE
+    n_lags = shared.size - 1
+    lags = np.arange(correlation.size) / OVERSAMPLING
     overlap = np.interp(lags, np.arange(n_lags + 1), shared)
     normalised = correlation / (correlation[0] * np.maximum(overlap, 1e-3))
     crossing = np.flatnonzero(normalised < 0.0)
     if crossing.size == 0:
         return _NONE
-    first = max(int(crossing[0]), math.floor(_OVERSAMPLING * rate / highest))
+    first = max(int(crossing[0]), math.floor(OVERSAMPLING * rate / highest))
     peaks = _maxima(normalised, first)
     if peaks.size == 0:
         return _NONE
@@ -127,7 +191,7 @@ def strongest_period(
     if not highest_peak > 0.0:
         return _NONE
     best = int(np.argmax(heights >= _NEARLY * highest_peak))
-    lag = float(interpolated(normalised, peaks[best : best + 1])[0]) / _OVERSAMPLING
+    lag = float(interpolated(normalised, peaks[best : best + 1])[0]) / OVERSAMPLING
     return Period(rate / lag, min(1.0, float(heights[best])))
 
 
@@ -189,9 +253,26 @@ def track_periods(
     return frequency, np.where(found, np.minimum(centre, 1.0), 0.0)
 
 
-def _whitening_gain(bins: NDArray[np.complex128], spacing: float) -> NDArray[np.float64]:
-    """Gain that brings neighbouring one-third octaves nearer to each other; 0 Hz is removed."""
-    power = bins.real**2 + bins.imag**2
+def whitening_gain(power: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """Gain that brings neighbouring one-third octaves nearer to each other; 0 Hz is removed.
+
+    Parameters
+    ----------
+    power : ndarray, shape (n_bins,)
+        Of a signal by frequency, from 0 Hz [unit^2].
+    spacing : float
+        Distance between the bins [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n_bins,)
+        [-]
+
+    Examples
+    --------
+    >>> whitening_gain(np.full(4, 16.0), 4.0).round(3).tolist()
+    [0.0, 0.5, 0.5, 0.5]
+    """
     below = np.append(0.0, np.cumsum(power))
     index = np.arange(power.size)
     reach = np.maximum(index * _SIXTH_OCTAVE, _LEAST_REACH / spacing)

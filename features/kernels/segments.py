@@ -21,7 +21,7 @@ from models.compilation import COMPILED
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["segment_powers", "segment_spectra"]
+__all__ = ["hann", "segment_count", "segment_powers", "segment_spectra", "windowed_transforms"]
 
 _OVERLAP_SLACK = 0.02
 """Segments that a signal may lack for an overlap of half: no further one for a few samples."""
@@ -54,14 +54,36 @@ def segment_powers(
     >>> power.shape
     (7, 129)
     """
-    n_segments = 1 + math.ceil((x.size - length) / (length / 2) - _OVERLAP_SLACK)
+    n_segments = segment_count(x.size, length)
     starts = np.rint(np.linspace(0, x.size - length, n_segments)).astype(np.intp)
     segments = np.lib.stride_tricks.sliding_window_view(x, length)[starts]
-    window = _hann(length)
-    bins = _windowed_transforms(segments, window, transform_length or length)
+    window = hann(length)
+    bins = windowed_transforms(segments, window, transform_length or length)
     power = bins.real**2
     power += bins.imag**2
     return power, window
+
+
+def segment_count(n_samples: int, length: int) -> int:
+    """Segments that are spread over a signal, overlapping by half or slightly more.
+
+    Parameters
+    ----------
+    n_samples : int
+        Of the signal.
+    length : int
+        Samples of a segment.
+
+    Returns
+    -------
+    int
+
+    Examples
+    --------
+    >>> segment_count(1000, 256)
+    7
+    """
+    return 1 + math.ceil((n_samples - length) / (length / 2) - _OVERLAP_SLACK)
 
 
 def segment_spectra(x: NDArray[np.float64], length: int) -> NDArray[np.complex128]:
@@ -108,10 +130,25 @@ def _cut(x, step, window, segments) -> None:
             segments[i, k] = (x[first + k] - mean) * window[k]
 
 
-def _windowed_transforms(
+def windowed_transforms(
     segments: NDArray[np.float64], window: NDArray[np.float64], length: int
 ) -> NDArray[np.complex128]:
-    """Transform the rows, each about its mean, windowed and filled up to `length`."""
+    """Transform the rows, each about its mean, windowed and filled up to `length`.
+
+    Parameters
+    ----------
+    segments : ndarray, shape (n_segments, n)
+        In any [unit].
+    window : ndarray, shape (n,)
+        [-]
+    length : int
+        Samples transformed.
+
+    Returns
+    -------
+    ndarray of complex, shape (n_segments, length // 2 + 1)
+        [unit]
+    """
     windowed = segments - segments.mean(axis=1, keepdims=True)
     windowed *= window
     return np.asarray(fft.rfft(windowed, length, axis=1))
@@ -127,8 +164,23 @@ def _unit_hann(length: int) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=16)
-def _hann(length: int) -> NDArray[np.float64]:
-    """Hann window; the same few lengths come again and again."""
+def hann(length: int) -> NDArray[np.float64]:
+    """Hann window; the same few lengths come again and again.
+
+    Parameters
+    ----------
+    length : int
+
+    Returns
+    -------
+    ndarray, shape (length,)
+        [-]
+
+    Examples
+    --------
+    >>> hann(4).round(2).tolist()
+    [0.0, 0.5, 1.0, 0.5]
+    """
     window = np.sin(np.pi * np.arange(length) / length) ** 2
     window.setflags(write=False)
     return window

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy import ndimage
@@ -21,7 +21,14 @@ from features.kernels.segments import segment_powers
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["ShortTime", "short_time"]
+__all__ = [
+    "DescribedSegments",
+    "ShortTime",
+    "describe_segments",
+    "segment_lengths",
+    "short_time",
+    "short_time_of",
+]
 
 _SEGMENT = 0.064
 """Length of a segment [s]."""
@@ -117,30 +124,138 @@ def short_time(x: NDArray[np.float64], rate: float, *, low: float, high: float) 
     >>> round(glide.tone_share, 2), round(glide.continuity, 2), round(glide.tone_count, 2)
     (1.0, 1.0, 1.0)
     """
-    length = max(16, 2 * round(0.5 * _SEGMENT * rate))
-    segment = min(length, x.size)
-    lobe = math.ceil(_LOBE * length / segment)
+    segment, length, lobe = segment_lengths(x.size, rate)
     power, _ = segment_powers(x, segment, transform_length=length)
-    spacing = rate / length
+    described, _ = describe_segments(power, rate / length, lobe, low=low, high=high)
+    return short_time_of(described)
+
+
+class DescribedSegments(NamedTuple):
+    """What is known of each short segment of a signal.
+
+    Parameters
+    ----------
+    energy : ndarray, shape (n_segments,)
+        [unit^2]
+    tone : ndarray, shape (n_segments,)
+        Position of its strongest line [bin].
+    share : ndarray, shape (n_segments,)
+        Share of the power in that line [-].
+    counted : ndarray, shape (n_segments,)
+        Number of lines [-].
+    second : ndarray, shape (n_segments,)
+        Level of the second line re the strongest [dB].
+    frequency : ndarray, shape (n_segments,)
+        Fundamental [Hz].
+    strength : ndarray, shape (n_segments,)
+        Autocorrelation at its period [-].
+    moved : ndarray, shape (n_segments,)
+        Share of the power in other one-third octaves than in the segment before [-]; of the first,
+        0.
+    """
+
+    energy: NDArray[np.float64]
+    tone: NDArray[np.float64]
+    share: NDArray[np.float64]
+    counted: NDArray[np.float64]
+    second: NDArray[np.float64]
+    frequency: NDArray[np.float64]
+    strength: NDArray[np.float64]
+    moved: NDArray[np.float64]
+
+
+def segment_lengths(n_samples: int, rate: float) -> tuple[int, int, int]:
+    """Return samples of a segment and of its transform, and bins beside a maximum that are its own.
+
+    Parameters
+    ----------
+    n_samples : int
+        Of the signal.
+    rate : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    segment, length, lobe : int
+
+    Examples
+    --------
+    >>> segment_lengths(16_000, 16e3), segment_lengths(512, 16e3)
+    ((1024, 1024, 2), (512, 1024, 4))
+    """
+    length = max(16, 2 * round(0.5 * _SEGMENT * rate))
+    segment = min(length, n_samples)
+    return segment, length, math.ceil(_LOBE * length / segment)
+
+
+def describe_segments(
+    power: NDArray[np.float64],
+    spacing: float,
+    lobe: int,
+    *,
+    low: float,
+    high: float,
+    before: NDArray[np.float64] | None = None,
+) -> tuple[DescribedSegments, NDArray[np.float64]]:
+    """Describe neighbouring segments.
+
+    Parameters
+    ----------
+    power : ndarray, shape (n_segments, n_bins)
+        Of each [unit^2]; what lies outside the band is set to 0.
+    spacing : float
+        Distance between the bins [Hz].
+    lobe : int
+        Bins to either side of a maximum that belong to it.
+    low, high : float
+        Limits of the band [Hz].
+    before : ndarray, shape (n_bands,), optional
+        Share of the power in each one-third octave in the segment before.
+
+    Returns
+    -------
+    described : DescribedSegments
+    bands : ndarray, shape (n_bands,)
+        `before` of the segments that follow [-].
+    """
     first, last = math.ceil(low / spacing), min(math.floor(high / spacing), power.shape[1] - 1)
     power[:, :first] = 0.0
     power[:, last + 1 :] = 0.0
     energy = power.sum(axis=1)
-    weight = energy / max(float(energy.sum()), _TINY)
     tone, share = _strongest_tones(power, energy, lobe)
     count, second = _other_tones(power[:, first : last + 1], lobe)
     frequency, strength = track_periods(
         power, spacing, lowest=max(_LOWEST_FUNDAMENTAL, 3.0 * spacing)
     )
+    bands = np.add.reduceat(power[:, : last + 1], _band_edges(first, last), axis=1)
+    bands = bands / np.maximum(energy, _TINY)[:, np.newaxis]
+    start = bands[:1] if before is None else before[np.newaxis]
+    moved = 0.5 * np.abs(np.diff(bands, axis=0, prepend=start)).sum(axis=1)
+    described = DescribedSegments(energy, tone, share, count, second, frequency, strength, moved)
+    return described, bands[-1]
+
+
+def short_time_of(segments: DescribedSegments) -> ShortTime:
+    """`short_time` of a signal whose segments have been described.
+
+    Parameters
+    ----------
+    segments : DescribedSegments
+        All of them.
+
+    Returns
+    -------
+    ShortTime
+    """
+    energy, tone, share, count, second, frequency, strength, moved = segments
+    weight = energy / max(float(energy.sum()), _TINY)
     continuity = flux = level_variation = math.nan
     if energy.size > 1:
         pairs = np.sqrt(weight[1:] * weight[:-1])
         pairs = pairs / max(float(pairs.sum()), _TINY)
         stays = np.abs(np.diff(np.log2(tone))) < _SAME_TONE
         continuity = float(pairs @ (np.sqrt(share[1:] * share[:-1]) * stays))
-        bands = np.add.reduceat(power[:, : last + 1], _band_edges(first, last), axis=1)
-        bands = bands / np.maximum(energy, _TINY)[:, np.newaxis]
-        flux = float(pairs @ (0.5 * np.abs(np.diff(bands, axis=0)).sum(axis=1)))
+        flux = float(pairs @ moved[1:])
         quietest = max(float(energy.max()) * 10.0 ** (0.1 * _QUIETEST_DB), _TINY)
         level_variation = float(np.std(10.0 * np.log10(np.maximum(energy, quietest))))
     return ShortTime(

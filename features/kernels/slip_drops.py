@@ -21,29 +21,40 @@ from features.kernels.lines import interpolated
 from models.short_repr import short_repr
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["TorqueSlips", "torque_slips"]
+__all__ = [
+    "TorqueSlips",
+    "alternates",
+    "described_slips",
+    "no_slips",
+    "slope_ends",
+    "sudden_falls",
+    "torque_slips",
+    "upright_sign",
+]
 
-_SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
+SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0
 """Standard deviation of a Gaussian that halves 2 kHz [s]: the torque has little above (5.2.3)."""
 
-_DROP_SHARE = 0.3
+DROP_SHARE = 0.3
 """A drop is at least this share of the torque's range from its 5th to its 95th percentile."""
 
-_FALLEN = 0.9
+FALLEN = 0.9
 """A fall has ended when this share of the drop is done; what rings on is not part of it."""
 
-_SUDDEN = 0.5
+SUDDEN = 0.5
 """Longest fall in a slip, as a share of the rise."""
 
-_SLOW = 0.1
+SLOW = 0.1
 """Length of the running mean that shows which way the shaft turns [s]."""
 
 _MIDDLE = (0.2, 0.8)
 """Part of a rise over which its slope is taken."""
 
-_LEAST_SLIPS = 2
+LEAST_SLIPS = 2
 
 _LEAST_FOR_GLIDE = 5
 
@@ -127,40 +138,104 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
 
     x = checked_signal(torque, rate)
     if float(np.ptp(x)) <= NOTHING * float(np.abs(x).max()):
-        return _no_slips(math.nan)
-    smooth = gaussian_filter1d(x, _SMOOTHING * rate, mode="nearest", truncate=4.0)
+        return no_slips(math.nan)
+    smooth = gaussian_filter1d(x, SMOOTHING * rate, mode="nearest", truncate=4.0)
     smooth = _upright(smooth, rate)
     asymmetry = _skewness(np.diff(smooth))
     low, high = np.percentile(smooth, [5.0, 95.0])
-    peaks, _ = find_peaks(smooth, prominence=max(_DROP_SHARE * float(high - low), 1e-300))
-    if peaks.size < _LEAST_SLIPS:
-        return _no_slips(asymmetry)
+    peaks, _ = find_peaks(smooth, prominence=max(DROP_SHARE * float(high - low), 1e-300))
+    if peaks.size < LEAST_SLIPS:
+        return no_slips(asymmetry)
     sudden = _is_sudden(smooth, peaks, _troughs(smooth, peaks))
-    if np.count_nonzero(sudden) < max(_LEAST_SLIPS, 0.5 * sudden.size):
-        return _no_slips(asymmetry)
+    if np.count_nonzero(sudden) < max(LEAST_SLIPS, 0.5 * sudden.size):
+        return no_slips(asymmetry)
     peaks = peaks[sudden]
     troughs = _troughs(smooth, peaks)
     drops = smooth[peaks] - smooth[troughs]
     # A fall that the end of the signal cuts off is an event, but its size is not known.
     drops = drops[:-1] if troughs[-1] == x.size - 1 else drops
-    intervals = np.diff(peaks) / rate
+    start, middle, late = slope_ends(peaks, troughs)
+    return described_slips(
+        peaks,
+        interpolated(smooth, peaks),
+        troughs,
+        drops,
+        [_slopes(smooth, *ends) for ends in ((start, middle), (middle, late), (start, late))],
+        n_samples=x.size,
+        rate=rate,
+        asymmetry=asymmetry,
+    )
+
+
+def slope_ends(
+    peaks: NDArray[np.intp], troughs: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """Begin, middle and end of the part of each rise over which slopes are taken.
+
+    Parameters
+    ----------
+    peaks, troughs : ndarray of int, shape (n,)
+        Where each slip begins and ends [sample].
+
+    Returns
+    -------
+    start, middle, late : ndarray of int, shape (n - 1,)
+        [sample]
+    """
     rises = peaks[1:] - troughs[:-1]
     start, middle, late = (
         troughs[:-1] + np.rint(share * rises).astype(np.intp)
         for share in (_MIDDLE[0], 0.5, _MIDDLE[1])
     )
-    first_half = _slopes(smooth, start, middle) * rate
-    second_half = _slopes(smooth, middle, late) * rate
-    whole = _slopes(smooth, start, late) * rate
+    return start, middle, late
+
+
+def described_slips(
+    peaks: NDArray[np.intp],
+    exact: NDArray[np.float64],
+    troughs: NDArray[np.intp],
+    drops: NDArray[np.float64],
+    slopes: Sequence[NDArray[np.float64]],
+    *,
+    n_samples: int,
+    rate: float,
+    asymmetry: float,
+) -> TorqueSlips:
+    """`torque_slips` of a torque whose slips are known one by one.
+
+    Parameters
+    ----------
+    peaks, troughs : ndarray of int, shape (n,)
+        Where each slip begins and ends [sample].
+    exact : ndarray, shape (n,)
+        Where it begins, between samples [sample].
+    drops : ndarray, shape (n,)
+        How far the torque falls [N m]; of the last, where that is known.
+    slopes : sequence of ndarray, shape (n - 1,)
+        In the earlier half of each rise, in the later, and in both [N m/sample].
+    n_samples : int
+        Of the torque.
+    rate : float
+        Sampling rate [Hz].
+    asymmetry : float
+        As in `TorqueSlips`.
+
+    Returns
+    -------
+    TorqueSlips
+    """
+    first_half, second_half, whole = (slope * rate for slope in slopes)
+    intervals = np.diff(peaks) / rate
+    rises = peaks[1:] - troughs[:-1]
     rising = first_half > 0.0
     return TorqueSlips(
         times=peaks / rate,
-        rate=peaks.size / (x.size / rate),
+        rate=peaks.size / (n_samples / rate),
         mean_drop=float(drops.mean()),
         drop_variation=float(drops.std() / drops.mean()),
         mean_interval=float(intervals.mean()),
         interval_variation=float(intervals.std() / intervals.mean()),
-        glide=_glide(interpolated(smooth, peaks) / rate),
+        glide=_glide(exact / rate),
         stick_slope=_median(whole),
         stick_curvature=_median(second_half[rising] / first_half[rising]),
         stick_fraction=float(rises.sum() / rate / intervals.sum()),
@@ -168,20 +243,66 @@ def torque_slips(torque: ArrayLike, rate: float) -> TorqueSlips:
     )
 
 
-def _no_slips(asymmetry: float) -> TorqueSlips:
+def no_slips(asymmetry: float) -> TorqueSlips:
+    """Return what is known of a torque without slips; `asymmetry` as in `TorqueSlips`."""
     nan = math.nan
     return TorqueSlips(np.empty(0), 0.0, nan, nan, nan, nan, nan, nan, nan, nan, asymmetry)
 
 
 def _upright(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     """Turn a torque so that friction is positive and a slip is a fall."""
-    slow = uniform_filter1d(torque, min(round(_SLOW * rate), torque.size), mode="nearest")
-    mean, fast = float(torque.mean()), float((torque - slow).std())
-    if min(float(slow.max()), -float(slow.min())) > 2.0 * fast:
+    slow = uniform_filter1d(torque, min(round(SLOW * rate), torque.size), mode="nearest")
+    if alternates(float(slow.min()), float(slow.max()), float((torque - slow).std())):
         return np.asarray(torque * np.sign(slow))
-    if abs(mean) > float(torque.std()):
-        return torque * math.copysign(1.0, mean)
-    return torque if _skewness(np.diff(torque)) < 0.0 else -torque
+    mean, deviation = float(torque.mean()), float(torque.std())
+    return torque * upright_sign(mean, deviation, _skewness(np.diff(torque)))
+
+
+def alternates(lowest: float, highest: float, fast: float) -> bool:
+    """Whether a torque goes to and fro, as a shaft that oscillates makes it.
+
+    Parameters
+    ----------
+    lowest, highest : float
+        Of the torque's running mean [N m].
+    fast : float
+        Standard deviation about that [N m].
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> alternates(-8.0, 8.0, 1.0), alternates(7.0, 8.0, 1.0)
+    (True, False)
+    """
+    return min(highest, -lowest) > 2.0 * fast
+
+
+def upright_sign(mean: float, deviation: float, skewness: float) -> float:
+    """Return the sign that makes friction positive and a slip a fall, of a torque that stays.
+
+    Parameters
+    ----------
+    mean, deviation : float
+        Of the torque [N m].
+    skewness : float
+        Of its steps [-].
+
+    Returns
+    -------
+    float
+        1 or -1 [-].
+
+    Examples
+    --------
+    >>> upright_sign(-8.0, 1.0, -0.5), upright_sign(0.0, 1.0, -0.5)
+    (-1.0, 1.0)
+    """
+    if abs(mean) > deviation:
+        return math.copysign(1.0, mean)
+    return 1.0 if skewness < 0.0 else -1.0
 
 
 def _troughs(torque: NDArray[np.float64], peaks: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -196,10 +317,34 @@ def _is_sudden(
     """Whether the fall after each peak is short beside the rise that follows it."""
     falls = np.empty(peaks.size)
     for i, (peak, trough) in enumerate(zip(peaks, troughs, strict=True)):
-        level = torque[peak] - _FALLEN * (torque[peak] - torque[trough])
+        level = torque[peak] - FALLEN * (torque[peak] - torque[trough])
         falls[i] = int((torque[peak : trough + 1] <= level).argmax())
+    return sudden_falls(falls, peaks, troughs)
+
+
+def sudden_falls(
+    falls: NDArray[np.float64], peaks: NDArray[np.intp], troughs: NDArray[np.intp]
+) -> NDArray[np.bool_]:
+    """Whether falls are short beside the rises that follow them.
+
+    Parameters
+    ----------
+    falls : ndarray, shape (n,)
+        How long each takes [sample].
+    peaks, troughs : ndarray of int, shape (n,)
+        Where each begins and ends [sample]; two at least.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+
+    Examples
+    --------
+    >>> sudden_falls(np.array([2.0, 2.0]), np.array([10, 20]), np.array([13, 23])).tolist()
+    [True, True]
+    """
     rises = np.append(peaks[1:] - troughs[:-1], peaks[-1] - troughs[-2])
-    return falls < _SUDDEN * rises
+    return np.asarray(falls < SUDDEN * rises)
 
 
 def _glide(times: NDArray[np.float64]) -> float:

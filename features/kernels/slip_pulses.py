@@ -30,18 +30,18 @@ __all__ = ["Pulses"]
 PULSE_BAND_FROM = 2_000.0
 """Lower limit of the band in which pulses are sought [Hz]; lower for a rate below 16 kHz."""
 
-_SMOOTHING = 0.0005
+SMOOTHING = 0.0005
 """Standard deviation of the Gaussian that smooths the squared envelope [s]."""
 
-_PULSE_PROMINENCE_DB = 6.0
+PULSE_PROMINENCE_DB = 6.0
 """A pulse rises and falls by at least this much [dB]."""
 
 _LEAST_PULSES = 4
 
-_LEAST_HIGH_SHARE = 1e-6
+LEAST_HIGH_SHARE = 1e-6
 """Power of the high band, relative to the whole, below which it holds leakage only."""
 
-_PULSE_RANGE_DB = 25.0
+PULSE_RANGE_DB = 25.0
 """Pulses weaker than the strongest by more than this are not counted [dB]."""
 
 
@@ -83,7 +83,8 @@ class Pulses:
     concentration: float
 
 
-_NO_PULSES = Pulses(np.empty(0), 0.0, *[math.nan] * 6)
+NO_PULSES = Pulses(np.empty(0), 0.0, *[math.nan] * 6)
+"""Of a signal without content."""
 
 
 def pulse_band_from(limit: float) -> float:
@@ -139,13 +140,13 @@ def pulses_of(
     high_power = squared(high)
     mean = float(power.mean())
     if not mean > 0.0:
-        return _NO_PULSES
+        return NO_PULSES
     crest_factor = math.sqrt(2.0 * float(power.max()) / mean)
-    if float(high_power.mean()) < _LEAST_HIGH_SHARE * mean:
-        return replace(_NO_PULSES, crest_factor=crest_factor, kurtosis=envelope_kurtosis(power))
-    smooth = gaussian_filter1d(high_power, _SMOOTHING * high_rate, mode="nearest", truncate=3.0)
+    if float(high_power.mean()) < LEAST_HIGH_SHARE * mean:
+        return replace(NO_PULSES, crest_factor=crest_factor, kurtosis=envelope_kurtosis(power))
+    smooth = gaussian_filter1d(high_power, SMOOTHING * high_rate, mode="nearest", truncate=3.0)
     times = _pulse_times(smooth, high_rate)
-    irregularity, glide = _rhythm(times)
+    irregularity, glide = rhythm(times)
     tenth = max(1, smooth.size // 10)
     loudest = np.partition(smooth, -tenth)[-tenth:]
     return Pulses(
@@ -217,12 +218,23 @@ def _pulse_times(smooth: NDArray[np.float64], rate: float) -> NDArray[np.float64
     if not top > 0.0:
         return np.empty(0)
     level = 10.0 * np.log10(np.maximum(smooth / top, 1e-12))
-    peaks, _ = find_peaks(level, height=-_PULSE_RANGE_DB, prominence=_PULSE_PROMINENCE_DB)
+    peaks, _ = find_peaks(level, height=-PULSE_RANGE_DB, prominence=PULSE_PROMINENCE_DB)
     return np.asarray(peaks / rate)
 
 
-def _rhythm(times: NDArray[np.float64]) -> tuple[float, float]:
-    """Irregularity and glide [1/s] of pulses, from the logarithms of their intervals."""
+def rhythm(times: NDArray[np.float64]) -> tuple[float, float]:
+    """Irregularity and glide of pulses, from the logarithms of their intervals.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        [s]
+
+    Returns
+    -------
+    irregularity, glide : float
+        As in `Pulses`: [-] and [1/s].
+    """
     if times.size < _LEAST_PULSES:
         return math.nan, math.nan
     interval = np.log(np.diff(times))

@@ -184,9 +184,39 @@ def welch(x: NDArray[np.float64], rate: float, resolution: float) -> Spectrum:
     """
     length = min(x.size, max(16, round(rate / resolution)))
     power, window = segment_powers(x, length)
-    density = power.mean(axis=0) / (rate * float(np.sum(window**2)))
+    return density_of(np.asarray(power.mean(axis=0)), window, rate, power.shape[0])
+
+
+def density_of(
+    power: NDArray[np.float64], window: NDArray[np.float64], rate: float, n_segments: int
+) -> Spectrum:
+    """Spectrum of a signal of whose segments the mean power is at hand.
+
+    Parameters
+    ----------
+    power : ndarray, shape (n_bins,)
+        Mean of `features.kernels.segments.segment_powers` [unit^2].
+    window : ndarray, shape (length,)
+        Of the segments [-].
+    rate : float
+        Sampling rate [Hz].
+    n_segments : int
+
+    Returns
+    -------
+    Spectrum
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> density_of(np.ones(9), np.ones(16), 16.0, 1).density.round(4).tolist()[:2]
+    [0.0039, 0.0078]
+    """
+    length = window.size
+    density = power / (rate * float(np.sum(window**2)))
     density[1 : -1 if length % 2 == 0 else None] *= 2.0
-    return Spectrum(np.arange(density.size) * (rate / length), density, rate, power.shape[0])
+    frequency = np.arange(density.size, dtype=np.float64) * (rate / length)
+    return Spectrum(frequency, density, rate, n_segments)
 
 
 def whole_spectrum(transform: Transform) -> Spectrum:

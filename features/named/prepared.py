@@ -17,6 +17,7 @@ import numpy as np
 
 from features.kernels.bands import (
     LEAST_SHARE_DB,
+    REFERENCES,
     THESIS_BANDS,
     band_power,
     fine_third_octaves,
@@ -33,6 +34,7 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.levels import a_weighted_level
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.slip_drops import TorqueSlips, torque_slips
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
@@ -141,6 +143,12 @@ class Prepared:
         return float(np.mean(self.in_band[0] ** 2))
 
     @cached_property
+    def kurtosis(self) -> float:
+        """Kurtosis of that part [-]."""
+        x, _ = self.in_band
+        return float(np.mean(np.square(np.square(x / x.std()))))
+
+    @cached_property
     def in_band_share(self) -> float:
         """Share of the power below the limit that lies within the band that is described."""
         whole = float(np.mean(self.below[0] ** 2))
@@ -214,6 +222,11 @@ class Prepared:
     def slips(self) -> TorqueSlips:
         """Slips of a torque, in its own unit."""
         return torque_slips(self.samples, self.rate)
+
+    @cached_property
+    def level_a(self) -> float:
+        """A-weighted level [dB re the kind's reference]."""
+        return a_weighted_level(self.samples, self.rate, reference=REFERENCES[self.kind])
 
     @cached_property
     def fine_spectrum(self) -> Spectrum:

@@ -13,7 +13,6 @@ import math
 from typing import TYPE_CHECKING
 
 from features.kernels.bands import REFERENCES, relative_db
-from features.kernels.levels import a_weighted_level
 from features.named.feature import PEETERS, PITCH, THESIS_NOISES, THESIS_SPECTRA, THIS, Feature
 from features.named.prepared import ACOUSTIC_KINDS
 
@@ -36,7 +35,7 @@ def _level(p: Prepared) -> float:
 def _level_a(p: Prepared) -> float:
     if p.rms == 0.0:
         return math.nan
-    return a_weighted_level(p.samples, p.rate, reference=REFERENCES[p.kind])
+    return p.level_a
 
 
 def _hum(p: Prepared) -> float:

@@ -10,8 +10,6 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from features.kernels.bands import band_power, relative_db
 from features.kernels.conditioning import usable_limit
 from features.named.feature import THESIS_STICK_SLIP, THIS, Feature
@@ -35,11 +33,6 @@ def _high_band(p: Prepared) -> float:
     return relative_db(float(part), float(whole))
 
 
-def _kurtosis(p: Prepared) -> float:
-    x, _ = p.in_band
-    return float(np.mean(np.square(np.square(x / x.std()))))
-
-
 TORQUE_FEATURES = (
     _torque("mean", "N m", "Mean torque, signed.",
             "thesis, Fig. 5.3", lambda p: p.mean, silent=None, calibrated=True),
@@ -54,7 +47,7 @@ TORQUE_FEATURES = (
             "thesis, 5.2.3", _high_band, tolerance=(0.0, 0.1)),
     _torque("kurtosis", "1",
             "Fourth moment of the oscillation over the squared second; 1.5 for a sine.",
-            THIS, _kurtosis, tolerance=(0.05, 0.0)),
+            THIS, lambda p: p.kurtosis, tolerance=(0.05, 0.0)),
     _torque("asymmetry", "1",
             "Skewness of the slope away from zero torque; negative where slow rises end in drops.",
             THESIS_STICK_SLIP, lambda p: p.slips.asymmetry, tolerance=(0.05, 0.01)),

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from models.foreign_file import check_plain_file
 from noise.base.atomic import check_target
 from noise.base.tables import TABLE_ENDINGS, check_table_path
 from noise.batch import find_jobs
@@ -43,6 +44,8 @@ class Opened:
         Recordings and folders that the recordings were found in.
     samples : int, optional
         Simulated samples to learn from beside corrections [-]; by default as many as `train` takes.
+    seed : int
+        Of random orders.
     leaving : ExitStack
         What is to be ended when the app ends.
     """
@@ -53,6 +56,7 @@ class Opened:
     folder: Path
     sources: tuple[Path, ...] = ()
     samples: int | None = None
+    seed: int = 0
     leaving: ExitStack = field(default_factory=ExitStack)
 
     def job(self, index: int) -> Job:
@@ -69,7 +73,7 @@ class Opened:
 
 
 def open_paths(
-    paths: Sequence[Path], table: Path | None = None, samples: int | None = None
+    paths: Sequence[Path], table: Path | None = None, samples: int | None = None, seed: int = 0
 ) -> Opened:
     """Find recordings, label table and rig files.
 
@@ -83,11 +87,14 @@ def open_paths(
 
     samples : int, optional
         Simulated samples to learn from beside corrections [-].
+    seed : int
+        Of random orders.
 
     Raises
     ------
     ParameterError
-        A path does not exist, several label tables are named, or no table can be written there.
+        A path does not exist, or is a pipe or a device; several label tables are named, or no table
+        can be written there.
 
     Examples
     --------
@@ -97,6 +104,8 @@ def open_paths(
     for path in paths:
         if not path.exists():
             raise ParameterError(f"{path} does not exist")
+        if not path.is_dir():
+            check_plain_file(path)
     rigs = [path for path in paths if path.suffix.lower() == ".toml"]
     tables = [p for p in paths if p.is_file() and p.suffix.lower() in TABLE_ENDINGS]
     sounds = [path for path in paths if path not in rigs and path not in tables]
@@ -116,4 +125,4 @@ def open_paths(
     folder = first if first.is_dir() else first.parent
     if table is None and jobs:
         table = tables[0] if tables else folder / _TABLE
-    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples)
+    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples, seed)

@@ -10,7 +10,7 @@ that ending. A target that cannot be written is refused before the work whose re
 from __future__ import annotations
 
 import uuid
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,8 +57,7 @@ def atomic(target: str | Path) -> Iterator[Path]:
     try:
         if place.is_dir():
             raise ParameterError(f"{target}: is a folder; name a file to write")
-        if place.exists() and not place.is_file():
-            raise ParameterError(f"{target}: is a pipe or a device; name a file to write")
+        _refuse_device(place, target)
         place.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
         temporary.replace(place)
@@ -81,12 +80,14 @@ def check_target(path: Path, option: str = "--out") -> None:
     Raises
     ------
     ParameterError
-        The nearest folder above `path` that exists is none, or may not be written to.
+        The nearest folder above `path` that exists is none, or may not be written to; or `path` is
+        a pipe or a device.
 
     Examples
     --------
     >>> check_target(Path("new") / "folder" / "table.csv")
     """
+    _refuse_device(path, f"{option} {path}")
     try:
         above = next(parent for parent in path.absolute().parents if parent.exists())
     except OSError as error:
@@ -100,6 +101,12 @@ def check_target(path: Path, option: str = "--out") -> None:
             pass
     except OSError:
         raise ParameterError(f"{option} {path}: the folder {above} may not be written to") from None
+
+
+def _refuse_device(place: Path, said: object) -> None:
+    with suppress(OSError):  # what cannot be looked at is refused by who writes it
+        if place.exists() and not (place.is_file() or place.is_dir()):
+            raise ParameterError(f"{said}: is a pipe or a device; name a file to write")
 
 
 def _behind_links(target: Path) -> Path:

@@ -1,12 +1,12 @@
 """Tables as files: CSV, Excel, JSON Lines or Parquet by the ending; CSV on standard output.
 
 One value is written alike in all formats: nothing where there is none (an undefined number is
-none, too, and an infinite one), ``true`` and ``false``, and numbers with as many digits as give the
-same number back. In CSV and in a workbook the infinite stiffness of a bolted clamp is the word
-``fixed``; in CSV a text that a spreadsheet would take for a formula (it begins with ``=``, ``+``,
-``-``, ``@``, a tab or a carriage return) has an apostrophe before it, which reading takes away.
-A table appears whole or not at all, and a target that cannot be written is refused before the work
-whose result it is to hold.
+none, too, and an infinite one), texts as `noise.base.readable` shows them, ``true`` and ``false``,
+and numbers with as many digits as give the same number back. In CSV and in a workbook the infinite
+stiffness of a bolted clamp is the word ``fixed``; in CSV a text that a spreadsheet would take for a
+formula (it begins with ``=``, ``+``, ``-``, ``@``, a tab or a carriage return) has an apostrophe
+before it, which reading takes away. A table appears whole or not at all, and a target that cannot
+be written is refused before the work whose result it is to hold.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
 from noise.base.atomic import atomic
 from noise.base.csv_text import finite_or_fixed, read_csv, write_csv
 from noise.base.excel_csv import excel_signs, separator_of
+from noise.base.readable import readable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -141,6 +142,7 @@ def write_table(
     bad.wav,
     """
     cells = [[_cell(row.get(column)) for column in columns] for row in rows]
+    columns = [readable(column) for column in columns]
     signs = None if excel is None else excel_signs(excel)
     if path is None:
         if sys.stdout is None:
@@ -160,10 +162,7 @@ def write_table(
             finite = [list(map(finite_or_fixed, columns, row)) for row in cells]
             write_workbook(temporary, columns, finite, path.stem)
         else:
-            # Names of files may hold what no UTF-8 can: it is a backslash and its code.
-            with temporary.open(
-                "w", encoding="utf-8", errors="backslashreplace", newline=""
-            ) as file:
+            with temporary.open("w", encoding="utf-8", newline="") as file:
                 if ending == ".csv":
                     write_csv(file, columns, cells, signs)
                 else:
@@ -280,6 +279,8 @@ def plain_cell(value: object) -> Cell:
 
 def _cell(value: object) -> Cell:
     plain = plain_cell(value)
+    if isinstance(plain, str):  # such as a name, which may hold what no UTF-8 can
+        return readable(plain)
     return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
@@ -294,7 +295,7 @@ def _write_parquet(path: Path, columns: Sequence[str], rows: Sequence[Sequence[C
     from pyarrow import parquet
 
     arrays = {
-        column: pa.array([_utf8(_finite(row[index])) for row in rows])
+        column: pa.array([_finite(row[index]) for row in rows])
         for index, column in enumerate(columns)
     }
     parquet.write_table(pa.table(arrays), path)
@@ -302,9 +303,3 @@ def _write_parquet(path: Path, columns: Sequence[str], rows: Sequence[Sequence[C
 
 def _finite(value: Cell) -> Cell:
     return None if isinstance(value, float) and math.isinf(value) else value
-
-
-def _utf8(value: Cell) -> Cell:
-    if isinstance(value, str):
-        return value.encode("utf-8", "backslashreplace").decode()
-    return value

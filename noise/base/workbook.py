@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError, not_installed
 from models.foreign_file import ExcessError, check_inflation
+from noise.base.readable import readable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,7 +69,7 @@ def write_workbook(
     path : Path
     columns : sequence of str
     rows : sequence of sequence
-        Numbers are finite.
+        Numbers are finite, texts as `noise.base.readable` shows them.
     sheet : str
         What its sheet is called.
 
@@ -100,7 +101,7 @@ def write_workbook(
         if not isinstance(value, str):
             return value
         of_text = WriteOnlyCell(page)
-        of_text.value = _writable(value)
+        of_text.value = value[:_LONGEST]
         of_text.data_type = "s"  # what begins like a formula is none
         return of_text
 
@@ -154,12 +155,7 @@ def _lines(sheet: Any, size: int) -> list[tuple[object, ...]]:
 
 def _sheet_name(name: str) -> str:
     """Return a name that a sheet may have."""
-    return "".join("_" if letter in r"[]:*?/\'" else letter for letter in name)[:31] or "table"
-
-
-def _writable(text: str) -> str:
-    """Return a text without what no cell can hold."""
-    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
-
-    plain = text.encode("utf-8", "backslashreplace").decode()
-    return str(ILLEGAL_CHARACTERS_RE.sub(lambda found: repr(found.group())[1:-1], plain)[:_LONGEST])
+    return (
+        "".join("_" if letter in r"[]:*?/\'" else letter for letter in readable(name))[:31]
+        or "table"
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from noise.commands import options as opt
@@ -14,11 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from models.recording import Recording
     from noise.recordings.blocks import RecordingBlocks
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["Featuring", "configure", "run"]
+
+_PITCH_PIECE = 1 << 19
+"""About how many samples of a sound are followed at once: 11 s at 48 kHz."""
 
 _PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_share")
 
@@ -110,23 +113,22 @@ class Featuring:
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""
         from noise.recordings import read_recording
+        from noise.recordings.blocks import RecordingBlocks, open_blocks
 
-        if self.windows:
-            from noise.labels.labelling import names_no_channels
-            from noise.labels.windows import tracks
-            from noise.recordings.blocks import RecordingBlocks, open_blocks
+        with open_blocks(path, full_scale=self.full_scale) as opened:
+            read = opened or read_recording(path, full_scale=self.full_scale)
+            if self.windows:
+                from noise.labels.labelling import names_no_channels
+                from noise.labels.windows import tracks
 
-            with open_blocks(path, full_scale=self.full_scale) as opened:
-                read = opened or read_recording(path, full_scale=self.full_scale)
                 blocks = RecordingBlocks.of(read)
                 found = tracks(blocks, per_track=names_no_channels(path))
                 rows = [row for channel, track in found for row in _windows(path, channel, track)]
                 return [{"file": name, **row} for row in rows], blocks.calibrated
-        from features import recording_features
+            from features import recording_features
 
-        recording = read_recording(path, full_scale=self.full_scale)
-        pitch = _pitch(recording) if self.pitch else {}
-        return [{"file": name, **recording_features(recording), **pitch}], recording.calibrated
+            pitch = _pitch(RecordingBlocks.of(read)) if self.pitch else {}
+            return [{"file": name, **recording_features(read), **pitch}], read.calibrated
 
 
 def _windows(path: Path, channel: str, blocks: RecordingBlocks) -> Iterator[dict[str, object]]:
@@ -146,15 +148,22 @@ def _windows(path: Path, channel: str, blocks: RecordingBlocks) -> Iterator[dict
         yield {"channel": channel, "start_s": i * HOP, "end_s": round(end, 6), **named}
 
 
-def _pitch(recording: Recording) -> dict[str, float]:
-    """Pitch of the first pressure channel."""
-    from features.kernels.pitch import pitch_track
-    from noise.recordings.blocks import RecordingBlocks
+def _pitch(blocks: RecordingBlocks) -> dict[str, float]:
+    """Pitch of the first pressure channel, of a long one piece by piece."""
+    import numpy as np
 
-    row = recording.first("pressure")
+    from features.kernels.pitch import PitchTrack, pitch_track
+
+    row = blocks.first("pressure")
     if row is None:
         return {}
-    blocks = RecordingBlocks.of(recording)
-    track = pitch_track(blocks.read(0, blocks.n_samples)[row], blocks.rate)
+    pieces = max(1, round(blocks.n_samples / _PITCH_PIECE))
+    ends = np.linspace(0, blocks.n_samples, pieces + 1).round().astype(int).tolist()
+    times, pitches = [], []
+    for first, last in pairwise(ends):
+        piece = pitch_track(blocks.read(first, last)[row], blocks.rate)
+        times.append(first / blocks.rate + piece.time)
+        pitches.append(piece.frequency)
+    track = PitchTrack(np.concatenate(times), np.concatenate(pitches))
     values = (track.median, track.range, track.voiced_share)
     return dict(zip(_PITCH_COLUMNS, values, strict=True))

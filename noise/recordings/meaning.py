@@ -55,6 +55,10 @@ __all__ = [
 PascalPerFullScale = float | tuple[float, ...]
 """Pressure of a full-scale sample [Pa], of all tracks or of each."""
 
+_LARGEST = 1e15
+"""Of a sample in any unit: nothing on a rig is as large, and the squares of what is larger, of
+which levels and spectra are made, lie beyond the numbers of single precision."""
+
 _NUMBER = r"(-?\d{1,3}(?:[.,]\d{1,6})?)"
 _IN_NAME = re.compile(rf"(?<![a-z0-9])FS\s*{_NUMBER}\s*dB[\s_(-]*PK(?![a-z0-9])", re.I | re.A)
 _PRESSURE = re.compile(rf"0\s*dB\s*FS\s*=\s*{_NUMBER}\s*dB\s*SPL(?![a-z0-9])", re.I | re.A)
@@ -180,7 +184,7 @@ def check_finite(
     channels: tuple[Channel, ...],
     start: int = 0,
 ) -> None:
-    """Refuse samples that are no numbers.
+    """Refuse samples that are no numbers, or too large to be squared in single precision.
 
     Parameters
     ----------
@@ -199,12 +203,12 @@ def check_finite(
         Says which sample of which channel is none.
     """
     for channel, row in zip(channels, samples, strict=True):
-        finite = np.isfinite(row)
-        if not finite.all():
-            first = int(np.argmin(finite))
+        possible = (row >= -_LARGEST) & (row <= _LARGEST)
+        if not possible.all():
+            first = int(np.argmin(possible))
             raise RecordingError(
                 f"{path}: channel {channel.name!r} is {row[first]} at sample {start + first} "
-                f"({(start + first) / rate:.6g} s), expected finite numbers"
+                f"({(start + first) / rate:.6g} s), expected finite numbers up to {_LARGEST:g}"
             )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from models.errors import ParameterError
-from noise.base.atomic import atomic
+from noise.base.atomic import atomic, check_target
 from noise.recordings import find_recordings
 
 if TYPE_CHECKING:
@@ -109,3 +109,5 @@ def test_a_link_in_a_circle_and_a_pipe_are_no_files_to_write(tmp_path):
     for name, reason in (("a.csv", "leads nowhere"), ("b.csv", "is a pipe or a device")):
         with pytest.raises(ParameterError, match=reason), atomic(tmp_path / name) as path:
             path.write_text("new")
+    with pytest.raises(ParameterError, match=r"^--out .*b.csv: is a pipe or a device"):
+        check_target(tmp_path / "b.csv")

@@ -44,7 +44,7 @@ def test_messages_bring_no_control_characters_to_the_terminal(capsys):
 
 @pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
 def test_names_that_a_spreadsheet_takes_for_formulas_come_back_as_they_were(tmp_path, ending):
-    names = [*FORMULAS, "run.wav", "\tx"]
+    names = [*FORMULAS, "run.wav"]
     path = tmp_path / f"t{ending}"
     write_table(path, ["file", "level"], [{"file": name, "level": -1.5} for name in names])
     assert [row["file"] for row in read_table(path)[1]] == names
@@ -91,3 +91,9 @@ def test_recordings_of_odd_names_are_labelled_once_and_corrections_stay_theirs(
     capsys.readouterr()
     assert main(["label", str(odd), "--out", str(table)]) == 0
     assert "3 of 3 recordings are done already" in capsys.readouterr().err
+
+
+def test_the_levels_of_a_set_name_its_parts_as_its_files(odd, tmp_path):
+    assert main(["render", str(odd), "--out", str(tmp_path / "set")]) == 0
+    _, rows = read_table(tmp_path / "set" / "levels.csv")
+    assert [row["part"] for row in rows] == [r"\x1b[2J.wav", "=1+1.wav", r"caf\xe9.wav"]

@@ -76,7 +76,8 @@ def test_a_screen_refuses_bad_conditions_before_it_loads_the_simulator(options):
      ["screen", "{pipe}.toml"],
      ["frf", "{pipe}.npy"], ["review", "{pipe}.csv", "--out", "a"],
      ["review", "{pipe}.json", "--out", "a"], ["label", "{pipe}.csv", "--audacity", "a"],
-     ["diagnose", "{run}.wav", "--rig", "{pipe}.toml"]],
+     ["diagnose", "{run}.wav", "--rig", "{pipe}.toml"],
+     ["open", "{pipe}.wav", "--no-browser"], ["open", "{pipe}.csv", "--no-browser"]],
 )  # fmt: skip
 def test_a_pipe_is_refused_by_every_command_and_not_waited_for(tmp_path, monkeypatch, capsys, call):
     import numpy as np

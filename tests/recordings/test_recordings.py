@@ -198,6 +198,12 @@ def test_file_and_sidecar_must_not_contradict_each_other(tmp_path):
     assert "run.json: is no JSON" in refusal(path)
 
 
+def test_what_no_sensor_measures_is_refused(tmp_path):
+    path = sound(tmp_path / "run.wav", 4e37 * HALF, "FLOAT")
+    assert "at sample 0 (0 s), expected finite numbers up to 1e+15" in refusal(path)
+    assert read_recording(sound(tmp_path / "run.wav", 1e15 * HALF, "DOUBLE")).samples.max() == 5e14
+
+
 def test_a_scale_beyond_all_numbers_is_refused(tmp_path):
     path = sound(tmp_path / "run.wav", 1e300 * HALF, "DOUBLE")
     with pytest.raises(RecordingError, match="is inf at sample 0"):

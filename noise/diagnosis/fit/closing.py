@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["CLOSABLE", "Scores", "closed_interval", "closed_share", "rms"]
 
 CLOSABLE = 0.5
-"""A gap is worth closing from so many floors above the floor."""
+"""A gap is worth closing from so many floors above the floor; assumed."""
 
 _FLOOR_SPREAD = 0.35
 """Standard deviation of one recording's distance where nothing is left to explain."""

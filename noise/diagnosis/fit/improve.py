@@ -41,13 +41,13 @@ CLOSED = 1.75
 more one time in fifty."""
 
 _SIMPLER = 0.95
-"""What is less simple must leave at most this share of what the simpler leaves."""
+"""What is less simple must leave at most this share of what the simpler leaves; assumed."""
 
 _AGAIN = 2
 """Candidates that are fitted again in floors of their own."""
 
 _UNDETERMINED = 1.4
-"""Standard deviation of a logarithm from which on a number is not determined."""
+"""Standard deviation of a logarithm from which on a number is not determined; assumed."""
 
 
 def improved_rig(

@@ -36,10 +36,12 @@ RINGING = 0.06
 thesis's, 2 J_C / c."""
 
 _LENGTHS = 0.05
-"""Parts have lengths in such steps [s]: what is simulated for one then serves for others."""
+"""Parts have lengths in such steps [s]: what is simulated for one then serves for others;
+assumed."""
 
 _SHORTENED = 0.5
-"""Share that a recording keeps at least where it is shortened to the length of its repeat."""
+"""Share that a recording keeps at least where it is shortened to the length of its repeat;
+assumed."""
 
 
 def shortest(rate: float) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import BushingNoiseError, RecordingError
+from models.errors import BushingNoiseError
 from noise.audio.sound import LOWEST_HEARD, audible
 from noise.base.progress import track
 from noise.classifier import load_classifier
@@ -179,7 +179,7 @@ def _read_entry(
             duration = blocks.n_samples / blocks.rate
             offset = stretch_start(rows, duration, longest)
             heard, why = _heard(blocks, offset, longest)
-            sound, levels = (None, None) if heard is None else _sound(heard, blocks.name)
+            sound, levels = (None, None) if heard is None else _sound(heard)
             orders = _orders(blocks, rows, duration)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
@@ -196,26 +196,23 @@ def _orders(blocks: RecordingBlocks, rows: Sequence[Row], duration: float) -> Or
     if blocks.first("pressure") is None or blocks.first("speed") is blocks.first("angle") is None:
         return None
     first = round(stretch_start(rows, duration, _RUN_UP) * blocks.rate)
-    return recorded_orders(
-        blocks.cut(first, min(blocks.n_samples, first + round(_RUN_UP * blocks.rate)))
-    )
+    return recorded_orders(blocks.part(first, first + round(_RUN_UP * blocks.rate)))
 
 
 def _heard(blocks: RecordingBlocks, offset: float, longest: float) -> tuple[Recording | None, str]:
     """Cut out what is heard; None, and why, where nothing is."""
-    if blocks.first("pressure") is None:
+    row = blocks.first("pressure")
+    if row is None:
         return None, "no sound pressure to be heard"
     if blocks.rate < LOWEST_HEARD:
         return None, f"sampled at {blocks.rate:g} Hz, so nothing can be heard"
     first = round(offset * blocks.rate)
     last = min(blocks.n_samples, first + round(longest * blocks.rate))
     others = sum(channel.kind == "pressure" for channel in blocks.channels) - 1
-    return blocks.cut(first, last), f"1 of {others + 1} channels is heard" if others else ""
+    heard = blocks.track(row).cut(first, last)
+    return heard, f"1 of {others + 1} channels is heard" if others else ""
 
 
-def _sound(heard: Recording, name: str) -> tuple[NDArray[np.float32], FastLevels]:
+def _sound(heard: Recording) -> tuple[NDArray[np.float32], FastLevels]:
     """Return the sound at the page's rate, and its level over time as the recording has it."""
-    sound = audible(heard, RATE)
-    if not np.isfinite(sound).all():
-        raise RecordingError(f"{name}: holds sound pressures beyond any number")
-    return sound.astype(np.float32), recorded_levels(heard)
+    return audible(heard, RATE).astype(np.float32), recorded_levels(heard)

@@ -43,6 +43,8 @@ DENSEST = 8192
 _DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
 _LENGTH_UNKNOWN = 0xFFFFFFFF  # left by programs that could not go back and fill it in
 _SAMPLE_CHUNKS = (b"data", b"SSND")  # RIFF, AIFF
+_OTHERS = (b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b"OggS")
+"""How files begin that are no MP3, whatever they are called."""
 
 
 def read_sound_file(path: Path) -> RawSamples:
@@ -100,7 +102,9 @@ def open_sound(path: Path) -> Any:
     soundfile.LibsndfileError
         It is none.
     """
-    kind = _Quiet if path.suffix.lower() == ".mp3" else soundfile.SoundFile
+    with path.open("rb") as file:
+        known = file.read(4) in _OTHERS
+    kind = soundfile.SoundFile if known else _Quiet
     return kind(path if os.name == "nt" else os.fsencode(path))
 
 

@@ -1,0 +1,1 @@
+"""Features of signals too long to be held in memory, summed up while they are read."""
