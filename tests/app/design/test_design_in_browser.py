@@ -36,9 +36,9 @@ class DesignPage:
         if "ScriptProcessorNode" not in message.text:  # which is the tap, not the app
             self.complaints.append(message.text)
 
-    def until(self, said):
+    def until(self, said, patience=PATIENCE):
         """Wait for something to be true; the page's policy lets nothing be evaluated within it."""
-        end = time.monotonic() + PATIENCE
+        end = time.monotonic() + patience
         while not self.page.evaluate(said):
             assert time.monotonic() < end, said
             time.sleep(0.05)
@@ -64,7 +64,7 @@ class DesignPage:
 
     def play(self):
         self.page.locator("#view-design .play").click()
-        self.until(f"{DESIGN}.sound.costs.length > 10")
+        self.until(f"{DESIGN}.sound.costs.length > 10", 6 * PATIENCE)  # it may be compiled first
 
     def heard(self, n):
         """Samples that the loudspeaker got, from shortly after the first that is not 0."""
