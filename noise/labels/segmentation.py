@@ -24,17 +24,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "NOISES", "change_points", "clearest", "labelled_stretches", "named", "viterbi_path"
+    "NOISES", "QUIET", "change_points", "clearest", "labelled_stretches", "named", "viterbi_path"
 ]  # fmt: skip
 
 NOISES = 3
 """The first labels are the noises."""
 
-_QUIET = NOISES
+_NONE = NOISES
 """The label after them is ``none``."""
 
 _CLEAREST = 0.25
 """Share of a stretch's windows that its name is heard from [-]."""
+
+QUIET = 30.0
+"""A window that lies farther below the loudest of its stretch does not name it [dB]: what is heard
+in it is echo, the end of a fade or a codec's rest, which a trim or another format changes."""
 
 _OWN_SHARE = 0.5
 """Of a window in what it holds [-]."""
@@ -100,8 +104,10 @@ def viterbi_path(probabilities: NDArray[np.float64]) -> NDArray[np.intp]:
 
 
 def labelled_stretches(
-    probabilities: NDArray[np.float64], thresholds: Sequence[float] | None = None
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    probabilities: NDArray[np.float64],
+    thresholds: Sequence[float] | None = None,
+    level: NDArray[np.floating] | None = None,
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
     """Return the stretches of the Viterbi path, each called what is heard where it is clearest.
 
     Parameters
@@ -111,6 +117,8 @@ def labelled_stretches(
     thresholds : sequence of 3 floats, optional
         Probability [-] from which each noise is named, as of `named`. By default the likeliest
         label is said.
+    level : ndarray, shape (n_windows,), optional
+        Of each window [dB]; without it none is taken for `QUIET`.
 
     Returns
     -------
@@ -118,11 +126,13 @@ def labelled_stretches(
         First window of each stretch, and the number of windows.
     names : ndarray of int, shape (n_stretches,)
         Columns of their labels, of which neighbours differ.
+    heard : ndarray, shape (n_stretches, n_labels)
+        Probabilities [-] where each is clearest.
 
     Examples
     --------
     >>> creak, none = [0.8, 0.0, 0.0, 0.2, 0.0], [0.1, 0.0, 0.0, 0.9, 0.0]
-    >>> edges, names = labelled_stretches(np.array([none] * 4 + [creak] * 6))
+    >>> edges, names, _ = labelled_stretches(np.array([none] * 4 + [creak] * 6))
     >>> edges.tolist(), names.tolist()
     ([0, 4, 10], [3, 0])
     >>> labelled_stretches(np.array([none] * 4 + [creak] * 6), [0.85, 0.5, 0.5])[1].tolist()
@@ -130,22 +140,45 @@ def labelled_stretches(
     """
     n = len(probabilities)
     path = viterbi_path(probabilities)
-    changes = np.flatnonzero(np.diff(path)) + 1
-    edges = np.concatenate([[0], changes, [n]])
-    group = np.repeat(np.arange(edges.size - 1), np.diff(edges))
-    p = clearest(probabilities, group)
+    group = np.concatenate([[0], np.cumsum(np.diff(path) != 0)])
+    speaking = _speaking(path, group, level)
+    p = _heard(probabilities, group, speaking)
     names = (p.argmax(axis=1) if thresholds is None else named(p, thresholds))[group]
     # A noise too short to leave the path of `none` is no longer than it is heard.
     noise = probabilities[np.arange(n), names]
-    outside = (path == _QUIET) & (names < NOISES) & (noise < probabilities[:, _QUIET])
+    outside = (path == _NONE) & (names < NOISES) & (noise < probabilities[:, _NONE])
     for stretch in np.unique(group[outside]).tolist():
         own = group == stretch
         heard = np.flatnonzero(own & ~outside)
         if heard.size:
             own[heard[0] : heard[-1] + 1] = False
-            names[own] = _QUIET
+            names[own] = _NONE
     first = np.concatenate([[True], names[1:] != names[:-1]])
-    return np.concatenate([np.flatnonzero(first), [n]]), names[first]
+    edges = np.concatenate([np.flatnonzero(first), [n]])
+    return edges, names[first], _heard(probabilities, np.cumsum(first) - 1, speaking)
+
+
+def _speaking(
+    path: NDArray[np.intp], group: NDArray[np.intp], level: NDArray[np.floating] | None
+) -> NDArray[np.bool_]:
+    """Whether each window has a say in what its stretch is called."""
+    # At the border of `none` half a window is of what lies beside it.
+    other = np.concatenate([[False], np.diff(path) != 0, [False]])
+    speaking: NDArray[np.bool_] = (path != _NONE) | ~(other[:-1] | other[1:])
+    if level is None:
+        return speaking
+    loudest = np.full(group[-1] + 1, -np.inf)
+    np.maximum.at(loudest, group, np.where(speaking, level, -np.inf))
+    speaking &= level >= loudest[group] - QUIET
+    return speaking
+
+
+def _heard(
+    probabilities: NDArray[np.float64], group: NDArray[np.intp], speaking: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Return probabilities where each group is clearest: of all of it where no window speaks."""
+    speaking = speaking | ~np.isin(group, group[speaking])
+    return clearest(probabilities[speaking], group[speaking])
 
 
 def named(p: NDArray[np.float64], thresholds: Sequence[float]) -> NDArray[np.intp]:

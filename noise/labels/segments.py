@@ -14,7 +14,7 @@ from models.recording import REFERENCE_PRESSURE
 from models.short_repr import short_repr
 from noise.base.label_names import LABELS
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
-from noise.labels.segmentation import change_points, clearest, labelled_stretches
+from noise.labels.segmentation import change_points, labelled_stretches
 from noise.labels.windows import (
     FEATURE_NAMES,
     can_be_described,
@@ -257,9 +257,8 @@ def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> lis
         probabilities /= probabilities.sum(axis=1, keepdims=True)
     silent = _silent_windows(blocks, found)
     probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    edges, names = labelled_stretches(probabilities, None if known else classifier.thresholds)
-    group = np.repeat(np.arange(names.size), np.diff(edges))
-    heard = clearest(probabilities, group)
+    thresholds = None if known else classifier.thresholds
+    edges, names, heard = labelled_stretches(probabilities, thresholds, found.level)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     last_cell = found.cells.count
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]

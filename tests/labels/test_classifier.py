@@ -7,7 +7,7 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 from models.errors import ParameterError
 from noise.classifier import LABELS, load_classifier
 from noise.classifier.model import Calibration, at_sensitivity
-from noise.labels.segmentation import clearest, labelled_stretches
+from noise.labels.segmentation import QUIET, clearest, labelled_stretches
 from noise.training.classifier.operating_point import (
     FALSE_NAMES_AN_HOUR,
     false_names,
@@ -96,6 +96,25 @@ def test_more_sensitive_is_named_sooner(threshold):
     assert at_sensitivity((threshold,) * 3, 0.25)[0] > threshold
 
 
+def test_what_a_sound_fades_into_does_not_name_it():
+    rooster, echo = [0.1, 0.0, 0.2, 0.0, 0.7], [0.0, 0.0, 0.9, 0.0, 0.1]
+    p = np.array([rooster] * 7 + [echo])
+    level = np.array([-20.0] * 7 + [-20.0 - QUIET])
+    for below, name, p_squeal in ((0.0, "squeal", 0.55), (1.0, "unknown", 0.2)):
+        level[-1] -= below
+        _, names, heard = labelled_stretches(p, [0.5] * 3, level)
+        assert [LABELS[name] for name in names] == [name]
+        assert heard[0, 2] == pytest.approx(p_squeal)
+
+
+def test_a_window_half_in_a_noise_does_not_name_the_silence_beside_it():
+    none, half, creak = (np.eye(5)[[3]], [[0.0, 0.0, 0.0, 0.3, 0.7]], np.eye(5)[[0]])
+    p = np.concatenate([none, none, none, half, creak, creak, creak, creak])
+    _, names, heard = labelled_stretches(p, [0.5] * 3)
+    assert [LABELS[name] for name in names] == ["none", "creak"]
+    assert heard[0, 3] == 1.0
+
+
 def test_a_short_creak_counts_where_it_is_clearest():
     creak, other = [0.9, 0.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 0.0, 1.0]
     p = np.array([other, creak, creak, other, other, other, other, other])
@@ -104,7 +123,7 @@ def test_a_short_creak_counts_where_it_is_clearest():
 
 def test_what_may_be_creak_or_squeal_is_unknown():
     either = np.tile([0.45, 0.0, 0.45, 0.0, 0.1], (6, 1))
-    _, names = labelled_stretches(either, [0.6, 0.6, 0.6])
+    _, names, _ = labelled_stretches(either, [0.6, 0.6, 0.6])
     assert [LABELS[name] for name in names] == ["unknown"]
 
 

@@ -169,7 +169,8 @@ def test_a_short_doubt_is_no_segment_but_a_long_one_is():
 
 def test_a_noise_amid_silence_is_no_longer_than_it_is_heard():
     none, squawk = [0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.6, 0.0, 0.15, 0.25]
-    edges, names = labelled_stretches(np.array([none] * 6 + [squawk] * 6 + [none] * 8), [0.5] * 3)
+    p = np.array([none] * 6 + [squawk] * 6 + [none] * 8)
+    edges, names, _ = labelled_stretches(p, [0.5] * 3)
     assert (edges.tolist(), names.tolist()) == ([0, 6, 12, 20], [3, 1, 3])
 
 
