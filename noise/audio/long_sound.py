@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from features.long.parts import Read
-    from noise.recordings.blocks import RecordingBlocks
+    from features.long.parts import Parts, Read
 
 __all__ = ["CHUNK", "Heard", "LongSound", "in_chunks"]
 
@@ -56,8 +55,20 @@ class LongSound:
     read: Read
 
     @classmethod
-    def of(cls, samples: NDArray[np.float64] | LongSound, rate: float) -> LongSound:
-        """Return sound in memory, sampled at `rate` [Hz], as sound of which parts can be had."""
+    def of(cls, samples: NDArray[Any] | LongSound, rate: float) -> LongSound:
+        """Return sound in memory as sound of which parts can be had.
+
+        Parameters
+        ----------
+        samples : ndarray, shape (n_samples,), or LongSound
+            In any [unit].
+        rate : float
+            Sampling rate [Hz].
+
+        Returns
+        -------
+        LongSound
+        """
         if isinstance(samples, LongSound):
             return samples
         return cls(rate, samples.size, lambda first, last: samples[first:last])
@@ -188,7 +199,7 @@ class Heard:
     about: Recording
 
     @classmethod
-    def of(cls, recording: Recording | RecordingBlocks | Heard) -> Heard:
+    def of(cls, recording: Recording | Parts | Heard) -> Heard:
         """Return what is heard of a recording.
 
         Raises

@@ -27,6 +27,7 @@ def hiss(n, seed=1):
     return np.random.default_rng(seed).normal(size=n)
 
 
+@settings(deadline=None)
 @given(st.integers(1, 400), st.data())
 def test_chunks_give_any_part(n, data):
     whole = np.arange(float(n))
@@ -56,7 +57,7 @@ def test_sound_resampled_in_chunks_is_that_of_the_whole(rate, new_rate, monkeypa
     )
 
 
-@settings(max_examples=20)
+@settings(max_examples=20, deadline=None)
 @given(st.floats(100.0, 1000.0), st.integers(2000, 9000))
 def test_a_filter_in_chunks_is_that_of_the_whole(frequency, length):
     through, x = SoundFilter((frequency, 3000.0), (2.0 * frequency,)), hiss(60_000)
