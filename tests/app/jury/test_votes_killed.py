@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from http.client import HTTPException
 from threading import Thread
@@ -11,9 +10,8 @@ import numpy as np
 import pytest
 
 from noise.app.jury.store import Votes
-from noise.app.opened import open_paths
 from tests.helpers.jury_sounds import write_tones
-from tests.helpers.opened_app import OpenedApp
+from tests.helpers.opened_app import quick_processes, started_app
 
 MOST = 4
 """So many votes are never answered before the kill comes."""
@@ -22,27 +20,14 @@ LATER = 0.05
 """After the last that is waited for, within what one takes [s]."""
 
 
-def served(folder, told):
-    """Serve in a process of its own."""
-    from noise.app.server import serve
-
-    serve(open_paths([folder]), 0, told.send)
-
-
 @pytest.fixture(scope="module")
 def processes():
-    """Processes that need no time to start, as they have read the program."""
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["noise.app.server", "noise.app.jury.routes", "uvicorn"])
-    return context
+    return quick_processes()
 
 
 def kill_while_voting(processes, folder, rng):
     """Vote until the kill; return what was answered, and what was under way."""
-    hears, told = processes.Pipe(duplex=False)
-    process = processes.Process(target=served, args=(folder, told))
-    process.start()
-    app = OpenedApp(process, hears.recv())
+    app = started_app(processes, folder)
     answered, under_way = [], []
 
     def vote():
@@ -63,8 +48,8 @@ def kill_while_voting(processes, folder, rng):
     while len(answered) < n_answers:
         time.sleep(1e-3)
     time.sleep(later)
-    process.kill()
-    process.join()
+    app.process.kill()
+    app.process.join()
     voting.join()
     return answered, under_way
 
