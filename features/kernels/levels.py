@@ -35,6 +35,7 @@ __all__ = [
     "WeightedLevels",
     "a_weighted",
     "a_weighted_level",
+    "fast_level_pieces",
     "fast_levels",
     "sound_levels",
     "weighted_levels",
@@ -360,6 +361,40 @@ def _continued(
         x = np.concatenate([x, 2.0 * x[-1] - x[-2 : -2 - turned : -1]])
         x = np.concatenate([x, np.full(after - turned, x[-1])])
     return x
+
+
+def fast_level_pieces(
+    read: Callable[[int, int], NDArray[np.float64]],
+    n: int,
+    rate: float,
+    *,
+    reference: float = REFERENCE_PRESSURE,
+) -> Iterator[NDArray[np.float64]]:
+    """A-weighted `fast_levels` of a sound that need not be in memory as a whole.
+
+    Parameters
+    ----------
+    read, n, rate, reference
+        As in `weighted_levels`.
+
+    Yields
+    ------
+    ndarray, shape (m,)
+        The next levels [dB].
+
+    Examples
+    --------
+    >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(96000) / 48e3)
+    >>> pieces = fast_level_pieces(lambda first, last: tone[first:last], 96000, 48e3)
+    >>> round(float(max(piece.max() for piece in pieces)))
+    94
+    """
+    from scipy.signal import lfilter
+
+    kept, state = _kept(rate), np.zeros(1)
+    for piece, scale in _weighted_pieces(read, n, rate):
+        smoothed, state = lfilter([1.0 - kept], [1.0, -kept], (piece * scale) ** 2, zi=state)
+        yield band_levels(smoothed, reference)
 
 
 def fast_levels(

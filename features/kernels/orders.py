@@ -18,9 +18,11 @@ from models.recording import REFERENCE_PRESSURE
 from models.short_repr import short_repr
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["OrderMap", "order_map", "speed_of_angle"]
+__all__ = ["OrderMap", "order_map", "order_map_of", "speed_of_angle"]
 
 _FRAME, _HOP = 0.085, 0.02
 """[s]"""
@@ -104,15 +106,57 @@ def order_map(
     >>> bool(np.all(np.abs(strongest / 2000 - 1) < 0.1))
     True
     """
-    x = checked_signal(signal, rate)
-    magnitude = np.abs(np.asarray(speed, dtype=np.float64))
+    x, shaft = checked_signal(signal, rate), np.asarray(speed, dtype=np.float64)
+    if shaft.size != x.size:
+        raise ParameterError("an order map needs a speed for each sample")
+    return order_map_of(
+        lambda first, last: x[first:last], x.size, rate, shaft, rate, reference=reference
+    )
+
+
+def order_map_of(
+    read: Callable[[int, int], NDArray[np.float64]],
+    n_samples: int,
+    rate: float,
+    speed: NDArray[np.float64],
+    speed_rate: float,
+    *,
+    reference: float = REFERENCE_PRESSURE,
+) -> OrderMap:
+    """`order_map` of a signal that need not be in memory as a whole.
+
+    Parameters
+    ----------
+    read : callable
+        From first and last sample to the samples between them, shape (n,), finite.
+    n_samples : int
+        Of the signal.
+    rate : float
+        Sampling rate [Hz].
+    speed : ndarray, shape (n_speeds,)
+        Of the shaft [rad/s].
+    speed_rate : float
+        Sampling rate of the speed [Hz].
+    reference : float
+        Of the levels, in the [unit] of the signal.
+
+    Returns
+    -------
+    OrderMap
+
+    Raises
+    ------
+    ParameterError
+        As `order_map`.
+    """
+    magnitude = np.abs(speed)
     length, hop = round(_FRAME * rate), max(1, round(_HOP * rate))
-    if x.size < length or magnitude.size != x.size:
-        raise ParameterError(
-            f"an order map needs a speed for each sample, and {_FRAME:g} s or more of them"
-        )
-    starts = np.arange(0, x.size - length + 1, hop)
-    frames = magnitude[starts[:, np.newaxis] + np.arange(0, length, max(1, length // _LOOKS))]
+    if n_samples < length:
+        raise ParameterError(f"an order map needs {_FRAME:g} s or more")
+    starts = np.arange(0, n_samples - length + 1, hop)
+    looks = starts[:, np.newaxis] + np.arange(0, length, max(1, length // _LOOKS))
+    at = np.minimum((looks * (speed_rate / rate)).astype(np.intp), magnitude.size - 1)
+    frames = magnitude[at]
     mean = frames.mean(axis=1)
     fastest = float(mean.max())
     if not fastest > 0.0:
@@ -128,7 +172,7 @@ def order_map(
     power, count = np.zeros((_ORDERS, n_speeds)), np.zeros((_ORDERS, n_speeds))
     column_of = np.clip(np.searchsorted(speeds, mean, "right") - 1, 0, n_speeds - 1)
     for number in used:
-        part = x[starts[number] : starts[number] + length]
+        part = read(int(starts[number]), int(starts[number]) + length)
         lines = 2.0 * np.abs(np.fft.rfft((part - part.mean()) * window) / window.sum()) ** 2
         edges = orders * mean[number] / (2.0 * np.pi)
         inside = (edges[:-1] >= _LOWEST) & (edges[1:] <= highest)

@@ -44,6 +44,8 @@ class Opened:
         Recordings and folders that the recordings were found in.
     samples : int, optional
         Simulated samples to learn from beside corrections [-]; by default as many as `train` takes.
+    seed : int
+        Of random orders.
     leaving : ExitStack
         What is to be ended when the app ends.
     """
@@ -54,6 +56,7 @@ class Opened:
     folder: Path
     sources: tuple[Path, ...] = ()
     samples: int | None = None
+    seed: int = 0
     leaving: ExitStack = field(default_factory=ExitStack)
 
     def job(self, index: int) -> Job:
@@ -70,7 +73,7 @@ class Opened:
 
 
 def open_paths(
-    paths: Sequence[Path], table: Path | None = None, samples: int | None = None
+    paths: Sequence[Path], table: Path | None = None, samples: int | None = None, seed: int = 0
 ) -> Opened:
     """Find recordings, label table and rig files.
 
@@ -84,6 +87,8 @@ def open_paths(
 
     samples : int, optional
         Simulated samples to learn from beside corrections [-].
+    seed : int
+        Of random orders.
 
     Raises
     ------
@@ -120,4 +125,4 @@ def open_paths(
     folder = first if first.is_dir() else first.parent
     if table is None and jobs:
         table = tables[0] if tables else folder / _TABLE
-    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples)
+    return Opened(tuple(jobs), table, tuple(rigs), folder, tuple(sounds), samples, seed)

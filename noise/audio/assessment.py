@@ -12,16 +12,20 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 from features.kernels.bands import NOMINAL_THIRD_OCTAVES
-from features.kernels.levels import SoundLevels, sound_levels
+from features.long.levels import long_sound_levels
 from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.sound import pressure_channel, resampled
+from noise.audio.long_sound import Heard
 
 if TYPE_CHECKING:
+    from features.kernels.levels import SoundLevels
     from models.recording import Recording
 
 __all__ = ["COLUMNS", "Assessment", "assess"]
+
+_LONGEST = 600.0
+"""Longest sound of which the quality is told [s]: a second takes seconds."""
 
 _QUALITY_COLUMNS = {
     "loudness": "loudness_sone",
@@ -120,12 +124,12 @@ class Assessment:
         return lines
 
 
-def assess(recording: Recording, *, quality: bool = False) -> Assessment:
+def assess(recording: Recording | Heard, *, quality: bool = False) -> Assessment:
     """Measure the sound of a recording's first pressure channel.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recording or Heard
     quality : bool
         Whether loudness, sharpness, roughness and tonality are told as well.
 
@@ -137,7 +141,8 @@ def assess(recording: Recording, *, quality: bool = False) -> Assessment:
     ------
     ParameterError
         There is no pressure channel, or it can't be analysed; with `quality` also where it is
-        not calibrated, or `features.sound_quality.sound_quality_of` refuses it.
+        not calibrated, is longer than 10 minutes, or
+        `features.sound_quality.sound_quality_of` refuses it.
 
     Examples
     --------
@@ -148,16 +153,27 @@ def assess(recording: Recording, *, quality: bool = False) -> Assessment:
     >>> of.row(full_scale=2.0)["level_db"], of.row(full_scale=2.0)["level_dbfs"]
     (93.98, -6.02)
     """
-    signal = recording[pressure_channel(recording).name]
-    reference = REFERENCE_PRESSURE if recording.calibrated else 1.0
-    levels = sound_levels(signal, recording.rate, reference=reference)
+    take = Heard.of(recording)
+    sound, calibrated = take.sound, take.about.calibrated
+    levels = long_sound_levels(
+        sound.read,
+        sound.n_samples,
+        sound.rate,
+        sound.moments,
+        reference=REFERENCE_PRESSURE if calibrated else 1.0,
+    )
     measured = None
     if quality:
-        if not recording.calibrated:
+        if not calibrated:
             raise ParameterError("sound quality needs a calibrated recording")
-        at_rate = resampled(signal - signal.mean(), recording.rate, SOUND_QUALITY_RATE)
-        measured = sound_quality_of(at_rate, SOUND_QUALITY_RATE)
-    return Assessment(levels, recording.calibrated, measured)
+        if sound.n_samples > _LONGEST * sound.rate:
+            raise ParameterError(
+                f"sound quality is told of {_LONGEST / 60.0:g} minutes at most, and this lasts "
+                f"{sound.n_samples / sound.rate / 60.0:.1f}"
+            )
+        at_rate = sound.without_mean().resampled(SOUND_QUALITY_RATE)
+        measured = sound_quality_of(at_rate.whole(), SOUND_QUALITY_RATE)
+    return Assessment(levels, calibrated, measured)
 
 
 def _rounded(value: float, digits: int = 2) -> float | None:

@@ -17,8 +17,16 @@ import numpy as np
 
 from models.errors import ParameterError
 from noise.audio.gain import least_full_scale
+from noise.audio.long_sound import LongSound
 from noise.audio.sound import pressure_channel
-from noise.audio.wav import BITS, largest_sample, wav_bytes, with_full_scale
+from noise.audio.wav import (
+    BITS,
+    largest_sample,
+    wav_end,
+    wav_header,
+    wav_samples,
+    with_full_scale,
+)
 from noise.base.atomic import atomic
 from noise.recordings.sidecar import sidecar_text
 
@@ -31,10 +39,12 @@ if TYPE_CHECKING:
 
 __all__ = ["audio_path", "write_audio"]
 
+_NO_SAMPLES = np.empty((1, 0))
+
 
 def write_audio(
     path: str | Path,
-    samples: NDArray[np.float64],
+    samples: NDArray[np.float64] | LongSound,
     rate: int,
     *,
     full_scale: float,
@@ -49,7 +59,7 @@ def write_audio(
     ----------
     path : path-like
         ``squeal`` and ``squeal.wav`` are the same; parent folders are made.
-    samples : ndarray, shape (n_samples,)
+    samples : ndarray, shape (n_samples,), or LongSound
         As `noise.audio.sound.audible` gives them.
     rate : int
         Sampling rate [Hz].
@@ -92,17 +102,20 @@ def write_audio(
         raise ParameterError(f"{target}: samples of {bits} bit; there are 16, 24 and 32 (float)")
     if not 0.0 < full_scale < math.inf:
         raise ParameterError(f"{target}: full scale is {full_scale!r}, expected a positive number")
-    least = least_full_scale(samples, bits)
-    if not float(np.abs(samples).max(initial=0.0)) <= full_scale * largest_sample(bits):
+    sound = LongSound.of(samples, rate)
+    if not sound.peak <= full_scale * largest_sample(bits):
         raise ParameterError(
             f"{target}: full scale {full_scale:g} would clip; the smallest that does not is "
-            f"{least:g}"
+            f"{least_full_scale(sound, bits):g}"
         )
-    text = _sidecar(recording, samples, rate, full_scale, bits, about or {})
+    text = _sidecar(recording, rate, full_scale, bits, about or {})
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
         description = with_full_scale(full_scale) if recording.calibrated else ""
-        fractions = samples / full_scale
-        wav.write_bytes(wav_bytes(fractions, rate, bits, description=description, dither=dither))
+        with wav.open("wb") as file:
+            file.write(wav_header(sound.n_samples, rate, bits, description=description))
+            for piece in sound.pieces():
+                file.write(wav_samples(piece / full_scale, bits, dither))
+            file.write(wav_end(sound.n_samples, bits))
         sidecar.write_text(text, encoding="utf-8")
     return target
 
@@ -120,14 +133,13 @@ def audio_path(path: Path) -> Path:
 
 def _sidecar(
     recording: Recording,
-    samples: NDArray[np.float64],
     rate: int,
     full_scale: float,
     bits: int,
     about: Mapping[str, object],
 ) -> str:
     channel = replace(pressure_channel(recording), name="pressure")
-    sound = replace(recording, samples=samples[np.newaxis], rate=float(rate), channels=(channel,))
+    sound = replace(recording, samples=_NO_SAMPLES, rate=float(rate), channels=(channel,))
     content = json.loads(sidecar_text(sound))
     if recording.calibrated and bits < 32:
         content["channels"][0]["scale"] = full_scale

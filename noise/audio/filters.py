@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from noise.audio.sound import pressure_channel
+from noise.audio.long_sound import CHUNK, Heard, LongSound, in_chunks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,6 +26,9 @@ __all__ = ["SoundFilter", "filtered"]
 
 _ORDER = 4
 """Of a band's ends, once."""
+
+_MARGIN = 3
+"""What a chunk is filtered with on either side, over the time in which a filter dies out [-]."""
 
 _NOTCH_ORDER = 3
 _NOTCH_WIDTH = 0.03
@@ -82,8 +85,28 @@ class SoundFilter:
         ParameterError
             A frequency is not below half the sampling rate.
         """
+        return self.through(LongSound.of(signal, rate)).whole()
+
+    def through(self, sound: LongSound) -> LongSound:
+        """Return a sound through the filter.
+
+        Parameters
+        ----------
+        sound : LongSound
+
+        Returns
+        -------
+        LongSound
+            Without its mean.
+
+        Raises
+        ------
+        ParameterError
+            A frequency is not below half the sampling rate.
+        """
         from scipy.signal import butter, sosfiltfilt
 
+        rate = sound.rate
         highest = max((*(self.band or ()), *((1.0 + _NOTCH_WIDTH) * f for f in self.notches)))
         if highest >= 0.5 * rate:
             raise ParameterError(
@@ -96,29 +119,37 @@ class SoundFilter:
         for frequency in self.notches:
             ends = (frequency * (1.0 - _NOTCH_WIDTH), frequency * (1.0 + _NOTCH_WIDTH))
             sections.append(butter(_NOTCH_ORDER, ends, "bandstop", fs=rate, output="sos"))
-        x = signal - signal.mean()
         # Long enough for the narrowest to die out in; at its ends a sound is turned about them.
         widest = min(
             [2.0 * _NOTCH_WIDTH * f for f in self.notches]
             + ([self.band[0]] if self.band is not None else [])
         )
-        padding = min(x.size - 1, round(4.0 * rate / widest))
-        return np.asarray(sosfiltfilt(np.concatenate(sections), x, padlen=padding))
+        padding = round(4.0 * rate / widest)
+        margin = _MARGIN * padding
+        every, x, n = np.concatenate(sections), sound.without_mean(), sound.n_samples
+
+        def make(first: int, last: int) -> NDArray[np.float64]:
+            start, end = max(0, first - margin), min(n, last + margin)
+            part = x.read(start, end)
+            kept = sosfiltfilt(every, part, padlen=min(part.size - 1, padding))
+            return np.asarray(kept[first - start : last - start])
+
+        return LongSound(rate, n, in_chunks(make, n, max(CHUNK, 2 * margin)))
 
 
-def filtered(recording: Recording, through: SoundFilter) -> Recording:
+def filtered(recording: Recording | Heard, through: SoundFilter) -> Heard:
     """Return a recording whose sound goes through a filter, with a note that says so.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recording or Heard
         Its first pressure channel is what is heard.
     through : SoundFilter
 
     Returns
     -------
-    Recording
-        With that channel alone; the note has the level that the filter leaves over that of the
+    Heard
+        The note has the level that the filter leaves over that of the
         whole sound [dB].
 
     Raises
@@ -131,22 +162,17 @@ def filtered(recording: Recording, through: SoundFilter) -> Recording:
     >>> from models.recording import Channel, Recording
     >>> tones = np.sin(2 * np.pi * np.array([[100.0], [1000.0]]) * np.arange(48000) / 48e3).sum(0)
     >>> both = Recording(tones[None], 48e3, (Channel("pressure"),))
-    >>> filtered(both, SoundFilter((500.0, 2000.0))).notes
+    >>> filtered(both, SoundFilter((500.0, 2000.0))).about.notes
     ('filtered: 500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound',)
     """
-    channel = pressure_channel(recording)
-    sound = recording[channel.name]
+    take = Heard.of(recording)
     try:
-        kept = through.of(sound, recording.rate)
+        kept = through.through(take.sound)
     except ParameterError as error:
-        raise ParameterError(f"{recording.name}: {error}") from None
-    before, after = float(sound.std()), float(kept.std())
+        raise ParameterError(f"{take.about.name}: {error}") from None
+    before, after = (math.sqrt(sound.moments.variance) for sound in (take.sound, kept))
     change = "silent"
     if before > 0.0 and after > 0.0:
         change = f"{20.0 * math.log10(before / after):.1f} dB below the whole sound"
-    return replace(
-        recording,
-        samples=kept[np.newaxis],
-        channels=(channel,),
-        notes=(*recording.notes, f"filtered: {through.words}; {change}"),
-    )
+    notes = (*take.about.notes, f"filtered: {through.words}; {change}")
+    return Heard(kept, replace(take.about, notes=notes))

@@ -14,12 +14,13 @@ the largest sample.
 from __future__ import annotations
 
 import math
-import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
+from noise.audio.long_sound import LongSound
+from noise.audio.loudness import LOUDNESS_BLOCK, LoudnessBlocks
 from noise.audio.sound import resampled
 from noise.audio.wav import largest_sample
 
@@ -55,12 +56,6 @@ TARGET_LOUDNESS = -23.0
 TARGET_TRUE_PEAK = -1.0
 """Largest true peak of matched sounds [dB re full scale] (EBU R 128)."""
 
-LOUDNESS_BLOCK = 0.4
-"""Shortest sound that has a loudness [s] (ITU-R BS.1770)."""
-
-_FILTERS = "DeMan"
-"""The set of filters that is within 0.002 dB of the standard's table; the default is 0.04 off."""
-
 _OVERSAMPLING = 4
 """ITU-R BS.1770, Annex 2, at 44.1 and 48 kHz."""
 
@@ -93,12 +88,12 @@ def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float
     return peak * 10.0 ** (headroom_db / 20.0) or 1.0
 
 
-def least_full_scale(samples: NDArray[np.float64], bits: int) -> float:
+def least_full_scale(samples: NDArray[np.float64] | LongSound, bits: int) -> float:
     """Smallest full scale at which no sample clips, rounded up to four digits.
 
     Parameters
     ----------
-    samples : ndarray, shape (n_samples,)
+    samples : ndarray, shape (n_samples,), or LongSound
         [unit of the sound]
     bits : int
         Of a sample in the file.
@@ -113,7 +108,8 @@ def least_full_scale(samples: NDArray[np.float64], bits: int) -> float:
     >>> least_full_scale(np.array([0.5, -1.23456]), 24)
     1.235
     """
-    return _rounded_up(float(np.abs(samples).max(initial=0.0)) / largest_sample(bits))
+    peak = samples.peak if isinstance(samples, LongSound) else np.abs(samples).max(initial=0.0)
+    return _rounded_up(float(peak) / largest_sample(bits))
 
 
 def full_scale_without_clipping(peak: float) -> float:
@@ -129,12 +125,12 @@ def full_scale_without_clipping(peak: float) -> float:
     return _rounded_up(peak / CEILING)
 
 
-def true_peak(samples: NDArray[np.float64], rate: float) -> float:
+def true_peak(samples: NDArray[np.float64] | LongSound, rate: float) -> float:
     """Peak of the curve through the samples, in their unit.
 
     Parameters
     ----------
-    samples : ndarray, shape (n_samples,)
+    samples : ndarray, shape (n_samples,), or LongSound
         [unit of the sound]
     rate : float
         Sampling rate [Hz].
@@ -149,10 +145,13 @@ def true_peak(samples: NDArray[np.float64], rate: float) -> float:
     >>> round(float(between.max()), 3), round(true_peak(between * np.hanning(480), 48000), 2)
     (0.707, 1.0)
     """
-    peak = float(np.abs(samples).max(initial=0.0))
-    for start in range(0, samples.size, _BLOCK):
+    sound = LongSound.of(samples, rate)
+    peak = 0.0
+    for start in range(0, sound.n_samples, _BLOCK):
         before = min(start, _MARGIN)
-        piece = samples[start - before : start + _BLOCK + _MARGIN]
+        last = min(start + _BLOCK + _MARGIN, sound.n_samples)
+        piece = sound.read(start - before, last)
+        peak = max(peak, float(np.abs(piece).max()))
         finer = resampled(piece, rate, _OVERSAMPLING * rate)[_OVERSAMPLING * before :]
         peak = max(peak, float(np.abs(finer[: _OVERSAMPLING * _BLOCK]).max()))
     return peak
@@ -188,17 +187,7 @@ def loudness(samples: NDArray[np.float64], rate: int) -> float:
     >>> round(loudness(tone, 48000), 1)
     -3.0
     """
-    if samples.size < LOUDNESS_BLOCK * rate:
-        raise ParameterError(
-            f"a sound of {samples.size / rate:.3g} s has no loudness to be matched; "
-            f"ITU-R BS.1770 needs {LOUDNESS_BLOCK:g} s"
-        )
-    import pyloudnorm
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of silence: it is minus infinity
-        meter = pyloudnorm.Meter(rate, filter_class=_FILTERS)
-        return float(meter.integrated_loudness(samples))
+    return LoudnessBlocks.of(LongSound.of(samples, rate)).at(1.0)
 
 
 def matched_loudness(loudest: Sequence[float]) -> float:
@@ -223,13 +212,17 @@ def matched_loudness(loudest: Sequence[float]) -> float:
 
 
 def matched_full_scale(
-    sound: NDArray[np.float64], rate: int, target: float, *, start: float | None = None
+    sound: NDArray[np.float64] | LoudnessBlocks,
+    rate: int,
+    target: float,
+    *,
+    start: float | None = None,
 ) -> float:
     """Return the full scale at which a sound has a loudness [LUFS].
 
     Parameters
     ----------
-    sound : ndarray, shape (n_samples,)
+    sound : ndarray, shape (n_samples,), or LoudnessBlocks
         [unit of the sound]
     rate : int
         Sampling rate [Hz].
@@ -254,11 +247,15 @@ def matched_full_scale(
     >>> round(matched_full_scale(3.0 * tone, 48000, -23.0), 1)
     30.0
     """
-    full_scale = start or float(np.abs(sound).max(initial=0.0))
+    if isinstance(sound, LoudnessBlocks):
+        full_scale, blocks = start or math.sqrt(float(sound.powers.max())), sound
+    else:
+        full_scale = start or float(np.abs(sound).max(initial=0.0))
+        blocks = LoudnessBlocks.of(LongSound.of(sound, rate))
     if full_scale == 0.0:
         raise ParameterError("a silent sound has no loudness to be matched")
     for _ in range(3):  # the absolute gate moves with the gain
-        reached = loudness(sound / full_scale, rate)
+        reached = blocks.at(full_scale)
         if not math.isfinite(reached):
             raise ParameterError("a sound below -70 LUFS has no loudness to be matched")
         full_scale *= 10.0 ** ((reached - target) / 20.0)

@@ -19,11 +19,11 @@ from noise.audio.assessment import COLUMNS as LEVEL_COLUMNS, assess
 from noise.audio.files import write_audio
 from noise.audio.gain import (
     CEILING,
-    LOUDNESS_BLOCK,
-    loudness as loudness_of,
     matched_full_scale,
     true_peak,
 )
+from noise.audio.long_sound import Heard
+from noise.audio.loudness import LOUDNESS_BLOCK, LoudnessBlocks
 from noise.audio.sequence import GAP, Part, back_to_back
 from noise.audio.sound import FADE
 from noise.recordings.sidecar import sidecar_text
@@ -32,10 +32,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from models.recording import Recording
     from noise.audio.assessment import Assessment
+    from noise.audio.long_sound import LongSound
 
 __all__ = ["COLUMNS", "FullScale", "Rendered", "Survey", "render", "survey"]
 
@@ -59,6 +58,8 @@ class Survey:
         [unit of the sound]
     loudness : float or None
         With the true peak at full scale [LUFS]; None where it was not asked for.
+    blocks : LoudnessBlocks or None
+        Of which the loudness at any gain follows; None of a sound too short for it.
     parts : tuple of Part
     assessments : tuple of Assessment
         One a part.
@@ -70,6 +71,7 @@ class Survey:
     calibrated: bool
     true_peak: float
     loudness: float | None
+    blocks: LoudnessBlocks | None
     parts: tuple[Part, ...]
     assessments: tuple[Assessment, ...]
     untold: tuple[str, ...]
@@ -93,7 +95,7 @@ class Rendered:
 
 
 def survey(
-    recordings: Sequence[Recording],
+    recordings: Sequence[Recording | Heard],
     *,
     rate: int = 48000,
     gap: float = GAP,
@@ -105,7 +107,7 @@ def survey(
 
     Parameters
     ----------
-    recordings : sequence of Recording
+    recordings : sequence of Recording or Heard
     rate, gap, fade
         As for `noise.audio.sequence.back_to_back`.
     quality : bool
@@ -126,29 +128,33 @@ def survey(
     >>> of.calibrated, round(of.true_peak, 3)
     (True, 1.0)
     """
-    joined = back_to_back(recordings, rate, gap=gap, fade=fade)
-    peak = true_peak(joined.samples, rate)
+    takes = [Heard.of(recording) for recording in recordings]
+    joined = back_to_back(takes, rate, gap=gap, fade=fade)
+    sound = joined.sound
+    peak = true_peak(sound, rate)
     assessments, untold = [], []
-    for recording in recordings:
+    for take in takes:
         try:
-            assessments.append(assess(recording, quality=quality))
+            assessments.append(assess(take, quality=quality))
         except ParameterError as error:
             if not quality:
                 raise
-            assessments.append(assess(recording))
-            untold.append(f"{recording.name}: {error}")
-    first = recordings[0]
+            assessments.append(assess(take))
+            untold.append(f"{take.about.name}: {error}")
+    first = takes[0].about
+    blocks = LoudnessBlocks.of(sound) if sound.n_samples >= LOUDNESS_BLOCK * rate else None
     reached = None
     if loudness:
-        reached = _loudness_at_full_scale(first.name, joined.samples, rate, peak)
+        reached = _loudness_at_full_scale(first.name, sound, blocks, peak)
     return Survey(
-        first.name, first.calibrated, peak, reached, joined.parts, tuple(assessments), tuple(untold)
-    )
+        first.name, first.calibrated, peak, reached, blocks, joined.parts, tuple(assessments),
+        tuple(untold),
+    )  # fmt: skip
 
 
 def render(
     path: Path,
-    recordings: Sequence[Recording],
+    recordings: Sequence[Recording | Heard],
     of: Survey,
     full_scale: FullScale,
     *,
@@ -164,7 +170,7 @@ def render(
     Parameters
     ----------
     path : Path
-    recordings : sequence of Recording
+    recordings : sequence of Recording or Heard
     of : Survey
         Of these recordings.
     full_scale : FullScale
@@ -195,17 +201,18 @@ def render(
     ...     render(target, runs, of, FullScale(2.0, "calibrated")).summary
     'true peak -6.0 dBTP, loudness -9.0 LUFS'
     """
-    joined = back_to_back(recordings, rate, gap=gap, fade=fade)
+    takes = [Heard.of(recording) for recording in recordings]
+    joined = back_to_back(takes, rate, gap=gap, fade=fade)
     value = full_scale.value
-    if full_scale.target is not None:  # the gate of the loudness has moved with the gain
-        value = matched_full_scale(joined.samples, rate, full_scale.target, start=value)
+    if full_scale.target is not None and of.blocks is not None:
+        # The gate of the loudness has moved with the gain.
+        value = matched_full_scale(of.blocks, rate, full_scale.target, start=value)
         value = max(value, of.true_peak / CEILING)
-    fractions = joined.samples / value
     file: dict[str, object] = {
         "gain": full_scale.gain,
         "full_scale_Pa": value if of.calibrated else None,
         "true_peak_dbtp": _level(of.true_peak / value),
-        "loudness_lufs": _loudness(fractions, rate),
+        "loudness_lufs": _loudness(of.blocks, value),
     }
     dithered = bits == 16
     entries = [
@@ -213,16 +220,16 @@ def render(
             "name": part.name,
             "start_s": part.start,
             "end_s": part.end,
-            "conditions": json.loads(sidecar_text(recording))["conditions"],
-            **({"notes": list(recording.notes)} if recording.notes else {}),
+            "conditions": json.loads(sidecar_text(take.about))["conditions"],
+            **({"notes": list(take.about.notes)} if take.about.notes else {}),
             **assessment.entry(value),
         }
-        for part, recording, assessment in zip(of.parts, recordings, of.assessments, strict=True)
+        for part, take, assessment in zip(of.parts, takes, of.assessments, strict=True)
     ]
     made = {**file, "dither": "triangular" if dithered else None} | ({"note": note} if note else {})
     write_audio(
         path,
-        joined.samples,
+        joined.sound,
         rate,
         full_scale=value,
         bits=bits,
@@ -244,19 +251,21 @@ def render(
     return Rendered(rows, _summary(file))
 
 
-def _loudness_at_full_scale(name: str, sound: NDArray[np.float64], rate: int, peak: float) -> float:
+def _loudness_at_full_scale(
+    name: str, sound: LongSound, blocks: LoudnessBlocks | None, peak: float
+) -> float:
     try:
         if peak == 0.0:
             raise ParameterError("a silent sound has no loudness to be matched")
-        return loudness_of(sound / peak, rate)
+        return (blocks or LoudnessBlocks.of(sound)).at(peak)  # which refuses what is too short
     except ParameterError as error:
         raise ParameterError(f"{name}: {error}") from None
 
 
-def _loudness(fractions: NDArray[np.float64], rate: int) -> float | None:
-    if fractions.size < LOUDNESS_BLOCK * rate:
+def _loudness(blocks: LoudnessBlocks | None, full_scale: float) -> float | None:
+    if blocks is None:
         return None
-    reached = loudness_of(fractions, rate)
+    reached = blocks.at(full_scale)
     return round(reached, 2) if math.isfinite(reached) else None
 
 

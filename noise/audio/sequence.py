@@ -6,20 +6,21 @@ said of the whole is what holds for every part.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.condition import Condition
 from models.errors import ParameterError
-from models.recording import Recording
-from noise.audio.sound import FADE, audible, pressure_channel
+from noise.audio.long_sound import Heard, LongSound
+from noise.audio.sound import FADE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from models.recording import Recording
+
 
 __all__ = ["GAP", "JoinedSound", "Part", "back_to_back"]
 
@@ -42,27 +43,31 @@ class JoinedSound:
 
     Parameters
     ----------
-    samples : ndarray, shape (n_samples,)
-        As `noise.audio.sound.audible` gives them.
+    sound : LongSound
+        As `noise.audio.sound.audible` gives it.
     recording : Recording
-        The same as a recording, with what is known of all parts.
+        What is known of all parts, without samples.
     parts : tuple of Part
         In their order.
     """
 
-    samples: NDArray[np.float64]
+    sound: LongSound
     recording: Recording
     parts: tuple[Part, ...]
 
 
 def back_to_back(
-    recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
+    recordings: Sequence[Recording | Heard],
+    rate: int = 48000,
+    *,
+    gap: float = GAP,
+    fade: float = FADE,
 ) -> JoinedSound:
     """Put the sounds of recordings behind one another, at the same gain.
 
     Parameters
     ----------
-    recordings : sequence of Recording
+    recordings : sequence of Recording or Heard
         One or more; their names become those of the parts.
     rate : int
         Sampling rate of the result [Hz].
@@ -82,36 +87,28 @@ def back_to_back(
 
     Examples
     --------
-    >>> from models.recording import Channel
+    >>> from models.recording import Channel, Recording
     >>> runs = [Recording(np.ones((1, 48)), 48e3, (Channel("pressure"),), name=n) for n in "AB"]
     >>> pair = back_to_back(runs, gap=0.001)
-    >>> pair.samples.size, [(part.name, part.start) for part in pair.parts]
+    >>> pair.sound.n_samples, [(part.name, part.start) for part in pair.parts]
     (144, [('A', 0.0), ('B', 0.002)])
     """
-    check_same_calibration(recordings)
-    silence = np.zeros(round(gap * rate))
-    pieces: list[NDArray[np.float64]] = []
-    parts: list[Part] = []
-    position = 0
-    for recording in recordings:
-        if pieces:
-            pieces.append(silence)
-            position += silence.size
-        sound = audible(recording, rate, fade=fade)
-        pieces.append(sound)
-        end = position + sound.size
-        parts.append(Part(recording.name, position / rate, end / rate))
-        position = end
-    samples = np.concatenate(pieces)
-    whole = Recording(
-        samples[np.newaxis],
-        float(rate),
-        (pressure_channel(recordings[0]),),
-        _common(recordings),
-        recordings[0].calibrated,
-        recordings[0].name,
+    takes = [Heard.of(recording) for recording in recordings]
+    check_same_calibration([take.about for take in takes])
+    sounds = [take.sound.playable(rate, fade=fade) for take in takes]
+    lengths = np.array([sound.n_samples for sound in sounds])
+    starts = (np.cumsum(lengths + round(gap * rate)) - lengths - round(gap * rate)).tolist()
+    parts = tuple(
+        Part(take.about.name, start / rate, (start + sound.n_samples) / rate)
+        for take, sound, start in zip(takes, sounds, starts, strict=True)
     )
-    return JoinedSound(samples, whole, tuple(parts))
+    about = replace(
+        takes[0].about,
+        rate=float(rate),
+        condition=_common([take.about for take in takes]),
+        notes=(),
+    )
+    return JoinedSound(LongSound.joined(sounds, starts), about, parts)
 
 
 def check_same_calibration(recordings: Sequence[Recording]) -> None:

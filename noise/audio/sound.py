@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,16 @@ if TYPE_CHECKING:
 
     from models.recording import Channel, Recording
 
-__all__ = ["FADE", "LOWEST_HEARD", "audible", "playable", "pressure_channel", "resampled"]
+__all__ = [
+    "FADE",
+    "LOWEST_HEARD",
+    "audible",
+    "fade_flank",
+    "playable",
+    "pressure_channel",
+    "resampled",
+    "resampling",
+]
 
 FADE = 0.010
 """Half a Hann window at either end [s]."""
@@ -91,11 +101,36 @@ def playable(
     (4800,)
     """
     sound = resampled(signal - signal.mean(), rate, new_rate)
-    n = min(round(fade * new_rate), sound.size // 2)
-    flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
-    sound[:n] *= flank
-    sound[sound.size - n :] *= flank[::-1]
+    flank = fade_flank(sound.size, new_rate, fade)
+    sound[: flank.size] *= flank
+    sound[sound.size - flank.size :] *= flank[::-1]
     return sound
+
+
+def fade_flank(n_samples: int, rate: float, fade: float) -> NDArray[np.float64]:
+    """Gain that a sound is faded in with; out by the same, backwards.
+
+    Parameters
+    ----------
+    n_samples : int
+        Of the sound, half of which is faded at most.
+    rate : float
+        Sampling rate [Hz].
+    fade : float
+        Length of the fade [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]
+
+    Examples
+    --------
+    >>> fade_flank(10, 100.0, 0.02).round(2).tolist()
+    [0.15, 0.85]
+    """
+    n = min(round(fade * rate), n_samples // 2)
+    return np.asarray(np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2)
 
 
 def pressure_channel(recording: Recording) -> Channel:
@@ -135,16 +170,44 @@ def resampled(signal: NDArray[np.float64], rate: float, new_rate: float) -> NDAr
     >>> resampled(np.zeros(441), 44100.0, 48000.0).shape
     (480,)
     """
-    from scipy.signal import firwin, kaiser_beta, resample_poly
+    from scipy.signal import resample_poly
+
+    up, down, taps = resampling(rate, new_rate)
+    if up == down:
+        return np.array(signal, dtype=float)
+    return np.asarray(resample_poly(signal, up, down, window=taps))
+
+
+@lru_cache(maxsize=4)
+def resampling(rate: float, new_rate: float) -> tuple[int, int, NDArray[np.float64]]:
+    """Ratio of two sampling rates and the filter that goes with it.
+
+    Parameters
+    ----------
+    rate, new_rate : float
+        [Hz]
+
+    Returns
+    -------
+    up, down : int
+        What the one is multiplied and divided by.
+    taps : ndarray, shape (n,)
+        At the multiplied rate [-]; empty where the rates are the same.
+
+    Examples
+    --------
+    >>> resampling(44100.0, 48000.0)[:2], resampling(48000.0, 48000.0)[2].size
+    ((160, 147), 0)
+    """
+    from scipy.signal import firwin, kaiser_beta
 
     terms = max(1, min(_FINEST_RATIO, int(_LARGEST_TERM * rate / new_rate)))
     ratio = Fraction(new_rate / rate).limit_denominator(terms)
     if ratio == 1:
-        return np.array(signal, dtype=float)
+        return 1, 1, np.empty(0)
     up, down = ratio.numerator, ratio.denominator
     # Frequencies relative to the Nyquist frequency of the rate that both are divisors of.
     stop = 1.0 / max(up, down)
     n_taps = math.ceil((_STOP_BAND - 7.95) / (2.285 * math.pi * (1.0 - _PASS_BAND) * stop)) | 1
     window = ("kaiser", kaiser_beta(_STOP_BAND))
-    taps = firwin(n_taps, 0.5 * (1.0 + _PASS_BAND) * stop, window=window)
-    return np.asarray(resample_poly(signal, up, down, window=taps))
+    return up, down, np.asarray(firwin(n_taps, 0.5 * (1.0 + _PASS_BAND) * stop, window=window))

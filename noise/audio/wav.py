@@ -12,19 +12,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["BITS", "integers", "largest_sample", "wav_bytes", "with_full_scale"]
+__all__ = [
+    "BITS",
+    "integers",
+    "largest_sample",
+    "wav_bytes",
+    "wav_end",
+    "wav_header",
+    "wav_samples",
+    "with_full_scale",
+]
 
 BITS = (16, 24, 32)
 """Sizes of a sample: integer, integer, floating point."""
 
 _LARGEST_FILE = 1 << 32  # byte
 _BEFORE_SAMPLES = 1024  # byte, at most
+_IN_DS64 = (1 << 32) - 1  # stands for a size that the chunk ds64 tells
 _DESCRIPTION_CHUNK = 602  # byte (EBU Tech 3285); the first 256 are the description
 
 
@@ -75,14 +84,9 @@ def wav_bytes(
         Where given, integer samples are dithered with a triangular distribution of two steps'
         width before they are rounded, so that what a quiet sound loses is noise and no distortion.
 
-    Raises
-    ------
-    ParameterError
-        The samples do not fit into a WAV file.
-
     Notes
     -----
-    EBU Tech 3285 (Broadcast Wave Format). On the dither: S. P. Lipshitz, R. A. Wannamaker and
+    On the dither: S. P. Lipshitz, R. A. Wannamaker and
     J. Vanderkooy, Quantization and dither: a theoretical survey, J. Audio Eng. Soc. 40 (1992)
     355-375.
 
@@ -91,24 +95,78 @@ def wav_bytes(
     >>> wav_bytes(np.zeros(8), 48000, 16)[:4], len(wav_bytes(np.zeros(8), 48000, 16))
     (b'RIFF', 60)
     """
+    header = wav_header(fractions.size, rate, bits, description=description)
+    return header + wav_samples(fractions, bits, dither) + wav_end(fractions.size, bits)
+
+
+def wav_header(n_samples: int, rate: int, bits: int, *, description: str = "") -> bytes:
+    """Return what stands before the samples of a WAV file, an RF64 file from 4 GiB on.
+
+    Parameters
+    ----------
+    n_samples : int
+    rate : int
+        Sampling rate [Hz].
+    bits, description
+        As in `wav_bytes`.
+
+    Notes
+    -----
+    EBU Tech 3285 (Broadcast Wave Format), EBU Tech 3306 (RF64).
+
+    Examples
+    --------
+    >>> wav_header(8, 48000, 16)[:4], wav_header(1 << 31, 48000, 16)[:4]
+    (b'RIFF', b'RF64')
+    """
     frame = bits // 8
-    if fractions.size * frame >= _LARGEST_FILE - _BEFORE_SAMPLES:
-        raise ParameterError(f"{fractions.size} samples do not fit into a WAV file (4 GiB)")
-    if bits == 32:
-        code, data = 3, fractions.astype("<f4").tobytes()
-    else:
-        code, data = 1, integers(fractions, bits, dither)
+    size, code = n_samples * frame, 3 if bits == 32 else 1
+    large = size >= _LARGEST_FILE - _BEFORE_SAMPLES
     chunks = [(b"fmt ", struct.pack("<HHIIHH", code, 1, rate, rate * frame, frame, bits))]
     if bits == 32:
-        chunks += [(b"fact", struct.pack("<I", fractions.size))]
+        chunks += [(b"fact", struct.pack("<I", min(n_samples, _IN_DS64)))]
     if description:
         chunks += [(b"bext", description.encode("ascii").ljust(_DESCRIPTION_CHUNK, b"\0"))]
-    chunks += [(b"data", data)]
-    body = b"".join(
-        name + struct.pack("<I", len(content)) + content + b"\0" * (len(content) % 2)
-        for name, content in chunks
-    )
-    return b"RIFF" + struct.pack("<I", 4 + len(body)) + b"WAVE" + body
+    head = b"".join(name + struct.pack("<I", len(content)) + content for name, content in chunks)
+    head += b"data" + struct.pack("<I", _IN_DS64 if large else size)
+    riff = 4 + len(head) + size + size % 2
+    if not large:
+        return b"RIFF" + struct.pack("<I", riff) + b"WAVE" + head
+    sizes = struct.pack("<IQQQI", 28, riff + 36, size, n_samples, 0)
+    return b"RF64" + struct.pack("<I", _IN_DS64) + b"WAVEds64" + sizes + head
+
+
+def wav_samples(
+    fractions: NDArray[np.float64], bits: int, dither: np.random.Generator | None = None
+) -> bytes:
+    """Return samples as they stand in the file; arguments as of `wav_bytes`.
+
+    Parameters
+    ----------
+    fractions : ndarray, shape (n,)
+        Over full scale [-].
+    bits, dither
+        As in `wav_bytes`.
+
+    Examples
+    --------
+    >>> len(wav_samples(np.zeros(8), 24))
+    24
+    """
+    if bits == 32:
+        return fractions.astype("<f4").tobytes()
+    return integers(fractions, bits, dither)
+
+
+def wav_end(n_samples: int, bits: int) -> bytes:
+    r"""Return what stands behind the samples: their bytes are an even number.
+
+    Examples
+    --------
+    >>> wav_end(3, 24), wav_end(4, 24)
+    (b'\x00', b'')
+    """
+    return b"\0" * (n_samples * bits // 8 % 2)
 
 
 def integers(

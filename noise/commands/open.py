@@ -72,7 +72,7 @@ def run(options: Namespace) -> int:
         ) from None
     if not 0 <= options.port <= 65535:  # what a port can be
         raise ParameterError(f"--port {options.port}: must be from 0 to 65535")
-    opened = open_paths(options.paths, options.out, options.samples)
+    opened = open_paths(options.paths, options.out, options.samples, options.seed)
 
     def ready(address: str) -> None:
         print(address, flush=True)

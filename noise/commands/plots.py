@@ -94,10 +94,9 @@ def draw_recordings(
                 blocks = opened or RecordingBlocks.of(
                     read_recording(job.path, full_scale=full_scale)
                 )
-                shown = min(blocks.n_samples, round(_LONGEST * blocks.rate))
-                recording = blocks.cut(0, shown)
-            of_it = [row for row in rows if row.get("file") == job.name]
-            write_picture(paths[job.name], plot_recording(recording, of_it))
+                shown = blocks.part(0, round(_LONGEST * blocks.rate))
+                of_it = [row for row in rows if row.get("file") == job.name]
+                write_picture(paths[job.name], plot_recording(shown, of_it))
         except BushingNoiseError as error:
             note(f"{job.name} is not drawn: {error}")
             continue

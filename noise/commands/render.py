@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import ArgumentTypeError
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,9 +15,10 @@ from noise.commands.condition_options import add_condition
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
+    from collections.abc import Iterator
 
-    from models.recording import Recording
     from noise.audio.filters import SoundFilter
+    from noise.audio.long_sound import Heard
     from noise.audio.rendering import Survey
     from noise.commands.render_sources import Source
 
@@ -165,13 +167,16 @@ class _Plan(NamedTuple):
     runs: tuple[tuple[Source, int], ...]
     through: SoundFilter
 
-    def recordings(self) -> list[Recording]:
-        whole = [source.recording(number) for source, number in self.runs]
-        if not self.through:
-            return whole
-        from noise.audio.filters import filtered
+    @contextmanager
+    def takes(self) -> Iterator[list[Heard]]:
+        """Open the recordings; they are read when they are listened to."""
+        with ExitStack() as stack:
+            whole = [source.heard(number, stack) for source, number in self.runs]
+            if self.through:
+                from noise.audio.filters import filtered
 
-        return [filtered(one, self.through) for one in whole]
+                whole = [filtered(one, self.through) for one in whole]
+            yield whole
 
 
 def run(options: Namespace) -> int:
@@ -254,13 +259,14 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
     shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
     for plan in track(plans, "measuring", unit="sound"):
         try:
-            recordings = plan.recordings()
-            surveys[plan.name] = survey(
-                recordings,
-                **shape,
-                quality=options.sound_quality,
-                loudness=options.match_loudness,
-            )
+            with plan.takes() as takes:
+                surveys[plan.name] = survey(
+                    takes,
+                    **shape,
+                    quality=options.sound_quality,
+                    loudness=options.match_loudness,
+                )
+                notes = [take.about.notes for take in takes]
         except BushingNoiseError as error:
             if folder is None and not isinstance(error, RecordingError):
                 raise
@@ -268,7 +274,7 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
             opt.refuse(error, plan.name)
             continue
         if plan.through:
-            filters[plan.name] = [one.notes[-1].removeprefix("filtered: ") for one in recordings]
+            filters[plan.name] = [one[-1].removeprefix("filtered: ") for one in notes]
             for words in dict.fromkeys(filters[plan.name]):
                 say(f"{plan.name}: {words}")
     scales = full_scales(
@@ -284,16 +290,17 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
             rows.append({"file": plan.target.name, "error": refused[plan.name]})
             continue
         survey_of, scale = surveys[plan.name], scales[plan.name]
-        written = render(
-            plan.target,
-            plan.recordings(),
-            survey_of,
-            scale,
-            **shape,
-            bits=options.bits,
-            seed=(options.seed, index),
-            note=faint_of.get(plan.name),
-        )
+        with plan.takes() as takes:
+            written = render(
+                plan.target,
+                takes,
+                survey_of,
+                scale,
+                **shape,
+                bits=options.bits,
+                seed=(options.seed, index),
+                note=faint_of.get(plan.name),
+            )
         name = plan.target.name if folder is None else plan.target.relative_to(folder).as_posix()
         told = filters.get(plan.name, [""] * len(written.rows))
         rows += [

@@ -22,8 +22,10 @@ from noise.commands.options import full_scale_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+    from contextlib import ExitStack
 
     from models.recording import Recording
+    from noise.audio.long_sound import Heard
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["RecordedSource", "SimulatedSource", "Source", "sources_of"]
@@ -40,12 +42,15 @@ class RecordedSource:
     path: Path
     full_scale: PascalPerFullScale | None
 
-    def recording(self, number: int) -> Recording:
-        """Read it; the same whatever `number`."""
+    def heard(self, number: int, stack: ExitStack) -> Heard:
+        """Open it, until `stack` is closed; the same whatever `number`."""
         del number
+        from noise.audio.long_sound import Heard
         from noise.recordings import read_recording
+        from noise.recordings.blocks import open_blocks
 
-        return read_recording(self.path, full_scale=self.full_scale)
+        opened = stack.enter_context(open_blocks(self.path, full_scale=self.full_scale))
+        return Heard.of(opened or read_recording(self.path, full_scale=self.full_scale))
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,13 @@ class SimulatedSource:
     seed: int
     notes: tuple[str, ...] = ()
     done: dict[int, Recording] = field(default_factory=dict)
+
+    def heard(self, number: int, stack: ExitStack) -> Heard:
+        """Return the run of this number; nothing is left for `stack` to close."""
+        del stack
+        from noise.audio.long_sound import Heard
+
+        return Heard.of(self.recording(number))
 
     def recording(self, number: int) -> Recording:
         """Simulate the run of this number, each with random numbers of its own."""

@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["Case", "read_case", "usable"]
 
 LEAST_RATE = 8e3
-"""[Hz]"""
+"""Least sampling rate [Hz]: the cycle's harmonics to 3 kHz are in it; assumed."""
 
 _SAME = 1e-3
-"""Relative difference up to which two fits or supports are the same."""
+"""Relative difference up to which two fits or supports are the same; rounding of what files state;
+assumed."""
 
 KINDS = ("torque", "acceleration", "pressure")
 """Kinds of channel of which a recording must have one."""

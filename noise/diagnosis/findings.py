@@ -19,7 +19,8 @@ __all__ = [
 ]  # fmt: skip
 
 LARGEST_GAP = 100.0
-"""Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter."""
+"""Floors that larger gaps are not told from [-]: they come from numbers that hardly scatter;
+assumed."""
 
 SURE = 0.05
 """p-value up to which a stage or a place is said to differ [-]; the customary level, assumed."""

@@ -34,13 +34,14 @@ __all__ = ["NUMBERS", "BushingFit", "Known", "Phases", "fit_bushing", "phases_of
 NUMBERS = ("elastomer_stiffness", "damping", "elastomer_inertia", "clamp_inertia")
 
 _GUARD = 0.8e-4
-"""Left out on either side of where stick or slip ends [s]: the band limit smears it."""
+"""Left out on either side of where stick or slip ends [s]: the band limit smears it; assumed."""
 
 _STUCK, _SLIDING = 0.25, 1.0
-"""Sliding speeds over the shaft's below which a contact sticks, and above which it slides."""
+"""Sliding speeds over the shaft's below which a contact sticks, and above which it slides;
+assumed."""
 
 _LEAST = 60
-"""Samples of a phase without which it says nothing."""
+"""Samples of a phase without which it says nothing; assumed."""
 
 _THINNED = 6000
 """Samples of a phase that a fit looks at."""
@@ -53,17 +54,17 @@ _DAMPINGS = (0.06, 0.09, 0.14)
 """Tried with each stiffness [Nm s/rad] (Table 5.5 and about it)."""
 
 _RISES = (4e-4, 1e-3, 2e-3, 4e-3, 8e-3)
-"""Over which a rise of the torque is looked for [s]."""
+"""Over which a rise of the torque is looked for [s]; assumed."""
 
 _WELL_KNOWN = 0.1
-"""Relative error of the inertias up to which no others are tried [-]."""
+"""Relative error of the inertias up to which no others are tried [-]; assumed."""
 
 _EXCERPT = 0.3
 """Looked at meanwhile [s]."""
 
 _ROUNDS = 3
 _BEND = 2.5
-"""Residuals beyond so many standard deviations count linearly."""
+"""Residuals beyond so many standard deviations count linearly; assumed."""
 
 
 @dataclass(frozen=True)

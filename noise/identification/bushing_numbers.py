@@ -37,7 +37,8 @@ _OF_THE_LAW = {
 by whether it truly sticks [-]; from 26 development rigs of `tests.blind.identify`, seed 1."""
 
 _TORQUE_SCATTER, _TORQUE_SHARED = 0.018, 0.003
-"""Of a level: from recording to recording at one speed, and by the band limit [-]."""
+"""Of a level: from recording to recording at one speed, and by the band limit [-]; from the same
+26 rigs."""
 
 
 def read_again(seen: Sequence[Seen], fit: LawFit) -> list[Seen]:

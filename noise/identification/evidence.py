@@ -34,10 +34,11 @@ UNITS = {
 """Of the numbers that there may be evidence of."""
 
 _USUAL_SCATTER = 0.02
-"""Relative standard deviation of a bushing's numbers from run to run."""
+"""Relative standard deviation of a bushing's numbers from run to run; assumed, as wherever repeats
+are simulated."""
 
 _DEGREES = 4.0
-"""So many differences the usual scatter counts as."""
+"""So many differences the usual scatter counts as; assumed."""
 
 
 @dataclass(frozen=True)

@@ -25,21 +25,22 @@ if TYPE_CHECKING:
 __all__ = ["Excerpts", "excerpts_of"]
 
 _LOOKED_AT = 0.42
-"""Of a recording; what a transform of it costs [s]."""
+"""Of a recording; what a transform of it costs [s]; assumed."""
 
 _FORETOLD = 0.05
-"""Of a recording, all excerpts together [s]."""
+"""Of a recording, all excerpts together [s]; assumed."""
 
 _CYCLES = 1.5
 _SHORTEST, _LONGEST = 3e-3, 24e-3
-"""An excerpt lasts so many cycles, but no less and no longer [s]."""
+"""An excerpt lasts so many cycles, but no less and no longer [s]; assumed."""
 
 _MOST = 10
 _CLAMP_RINGS = 0.06
-"""What the clamp did before the recording is felt so long beyond what is left out of it [s]."""
+"""What the clamp did before the recording is felt so long beyond what is left out of it [s];
+assumed."""
 
 _RUN_IN = 9e-3
-"""Angle by which a contact has slid before an excerpt, to forget what it was [rad]."""
+"""Angle by which a contact has slid before an excerpt, to forget what it was [rad]; assumed."""
 
 _LONGEST_RUN_IN = 12e-3
 """[s]"""
@@ -86,10 +87,10 @@ class Excerpts:
 
 
 _LEVEL = 2e-3
-"""Share of the mean torque that a model may miss a torque by."""
+"""Share of the mean torque that a model may miss a torque by; assumed."""
 
 _JITTER = 8e-6
-"""And the time by which it may be early or late [s]."""
+"""And the time by which it may be early or late [s]; assumed."""
 
 
 def excerpts_of(measured: Measured, bushing: LumpedBushing) -> Excerpts | None:

@@ -176,13 +176,13 @@ def _notes(choice: Choice) -> tuple[str, ...]:
 
 
 _RIVALS = 1.2
-"""Laws that miss at most so many times what the best one does are named beside it."""
+"""Laws that miss at most so many times what the best one does are named beside it; assumed."""
 
 _MISSED = 0.2
-"""Share of the oscillation from which no law is said to describe the recordings."""
+"""Share of the oscillation from which no law is said to describe the recordings; assumed."""
 
 _FAR = 2.0
-"""Held-out distance from which no law is said to describe the recordings [floors]."""
+"""Held-out distance from which no law is said to describe the recordings [floors]; assumed."""
 
 _HEAD = "Identified from recordings; intervals and what is assumed are in identification.json."
 

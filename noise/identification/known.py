@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["Beforehand", "known_beforehand"]
 
 _STATED_ERROR = 0.02
-"""Relative standard error of what is stated: what bushings scatter by."""
+"""Relative standard error of what is stated: what bushings scatter by; assumed."""
 
 _GUESSED_ERROR = 0.5
-"""And of one that is not."""
+"""And of one that is not; assumed."""
 
 
 @dataclass(frozen=True)

@@ -29,16 +29,17 @@ if TYPE_CHECKING:
 __all__ = ["MARGIN", "Choice", "choose_law", "left_out", "overall"]
 
 MARGIN = 1.09
-"""A simpler law may miss so many times as much for each number that it has less."""
+"""A simpler law may miss so many times as much for each number that it has less; assumed."""
 
 _LEAST = 0.005
-"""Share of the oscillation that any law may miss: what a cell and a start leave."""
+"""Share of the oscillation that any law may miss: what a cell and a start leave; assumed."""
 
 _NEAR, _ENOUGH = 1.3, 1.1
-"""And its distance may be so many times that of the best, or so many floors in any case."""
+"""And its distance may be so many times that of the best, or so many floors in any case;
+assumed."""
 
 _HOPELESS = 3.0
-"""A law that misses so many times as much at first is not searched to the end."""
+"""A law that misses so many times as much at first is not searched to the end; assumed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,15 +29,17 @@ if TYPE_CHECKING:
 __all__ = ["repeats_scale", "squared_distance"]
 
 _SETTLING = 0.1
-"""Simulated before what is looked at [s]."""
+"""Simulated before what is looked at [s]; assumed."""
 
 _SECONDS = 0.6
-"""Looked at, at most [s]."""
+"""Looked at, at most [s]; assumed."""
 
 _TOLERANCE = 1e-6
 """Of the solver: neighbouring motions part, but what they are made of does not."""
 
 _REPEATS = 8
+"""Simulated repeats, as few as tell a floor, and their least scatter, as
+`noise.diagnosis.gap.distance` has it; a law that breaks down is so many floors off. Assumed."""
 _LEAST_SCALE = 0.03
 _HOPELESS = 30.0
 

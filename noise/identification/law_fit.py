@@ -32,21 +32,21 @@ _TRIED, _KEPT = 3, 2
 """Places from which is searched roughly, and then to the end."""
 
 _LOOSE = 4.0
-"""Meanwhile recordings may differ by so many times what they do."""
+"""Meanwhile recordings may differ by so many times what they do; assumed."""
 
 _TIGHTENED = (2.0, 1.0)
-"""And so many times in the end."""
+"""And so many times in the end; assumed."""
 
 _ITERATIONS = {"sketch": 6, "hopeless": 3, "fit": 20}
 
 _ENOUGH = 4e-3
-"""Relative gain of an iteration below which it is the last."""
+"""Relative gain of an iteration below which it is the last; assumed."""
 
 _TURNS = 4
 """Shorter steps tried in an iteration."""
 
 _LONGEST_STEP = 0.5
-"""Of a logarithm in one iteration."""
+"""Of a logarithm in one iteration; assumed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,14 +20,14 @@ _STEP = 3e-4
 """Of the logarithms, for slopes."""
 
 _BEND = 2.5
-"""Deviations beyond so many times their usual size count linearly."""
+"""Deviations beyond so many times their usual size count linearly; assumed."""
 
 _COUNT = 5e-4
-"""Neighbouring samples err alike: so long a time counts as one observation [s]."""
+"""Neighbouring samples err alike: so long a time counts as one observation [s]; assumed."""
 
 _HOPELESS = 300.0
 _FAR = 60.0
-"""Deviations beyond which one is as bad as the other."""
+"""Deviations beyond which one is as bad as the other; assumed."""
 
 
 class Misfit:

@@ -40,7 +40,7 @@ LOCAL = (
 """Numbers that each recording has of its own; the drop is from critical to kinetic torque."""
 
 _LEAST_DROP = 0.004
-"""Over the kinetic torque; equal torques make a weakening contact chatter."""
+"""Over the kinetic torque; equal torques make a weakening contact chatter; assumed."""
 
 _LARGEST_SHARE = 0.97
 

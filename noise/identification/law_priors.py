@@ -18,16 +18,18 @@ if TYPE_CHECKING:
 __all__ = ["SHARE_ASSUMED", "fitted_evidence", "priors", "share_error"]
 
 _SCATTER = np.array([0.025, 0.025, 0.03, 0.03, 0.02, 0.008, 0.01])
-"""By which they scatter about the rig's [-]; a support's counts as its clamp's inertia."""
+"""By which they scatter about the rig's [-]; a support's counts as its clamp's inertia;
+assumed."""
 
 _MEAN_WIDTH = np.array([0.6, 0.3, 1.0, 0.6])
-"""Relative standard deviation of the rig's about what is usual, or where a search begins [-]."""
+"""Relative standard deviation of the rig's about what is usual, or where a search begins [-];
+assumed."""
 
 _USUAL_DAMPING = 0.09
 """[Nm s/rad] (Table 5.5)"""
 
 SHARE_ASSUMED = 0.02
-"""Relative standard error of a share that the recordings cannot tell."""
+"""Relative standard error of a share that the recordings cannot tell; assumed."""
 
 
 def share_error(model: LawModel) -> float:

@@ -21,13 +21,14 @@ if TYPE_CHECKING:
 __all__ = ["starts"]
 
 _STUCK, _ELASTIC = (0.95, 1.0, 1.05), (0.85, 1.1, 1.5)
-"""Factors on stiffness that are tried; an elastic contact hides some of the elastomer's [-]."""
+"""Factors on stiffness that are tried; an elastic contact hides some of the elastomer's [-];
+assumed."""
 
 _DAMPED = (0.55, 1.1)
-"""And on damping [-]."""
+"""And on damping [-]; assumed."""
 
 _SHARED = (1.0, 0.45)
-"""And on the elastomer's share of it, where that is not known [-]."""
+"""And on the elastomer's share of it, where that is not known [-]; assumed."""
 
 
 def starts(model: LawModel) -> Iterator[tuple[NDArray[np.float64], list[NDArray[np.float64]]]]:

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 __all__ = ["Levels", "torque_levels"]
 
 _FAST = 0.6
-"""Share of the fastest sliding from which the contact counts as sliding fast."""
+"""Share of the fastest sliding from which the contact counts as sliding fast; assumed."""
 
 _SLOW = 0.6
-"""Sliding speed over the shaft's below which it has been slow."""
+"""Sliding speed over the shaft's below which it has been slow; assumed."""
 
 _LEAST_SAMPLES = 20
 

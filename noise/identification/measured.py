@@ -29,16 +29,17 @@ if TYPE_CHECKING:
 __all__ = ["Measured", "Measurements", "measured", "read_measurements"]
 
 SHORTEST = LEAD + TAIL + 0.1
-"""Shorter recordings show too few cycles [s]."""
+"""Shorter recordings show too few cycles [s]; assumed."""
 
 LEAST_RATE = 8e3
 """[Hz]"""
 
 LEAST_TURN = 0.02
-"""Angle by which the shaft has to turn [rad]; less is no rotation, or degrees taken for radians."""
+"""Angle by which the shaft has to turn [rad]; less is no rotation, or degrees taken for radians;
+assumed."""
 
 _SPEED_BAND = 25.0
-"""Up to which the shaft's speed is followed [Hz]; an encoder's noise lies above."""
+"""Up to which the shaft's speed is followed [Hz]; an encoder's noise lies above; assumed."""
 
 
 @short_repr

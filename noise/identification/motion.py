@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["LIMIT", "Contact", "TorqueSpectrum", "torque_spectrum"]
 
 LIMIT = 8000.0
-"""Highest frequency kept [Hz], at most 0.3 of the rate; the flank ends a third above."""
+"""Highest frequency kept [Hz], at most 0.3 of the rate; the flank ends a third above; assumed."""
 
 _NOISE_ALONE = 0.85
-"""Share of the highest frequency from which there is nothing but the cell's noise."""
+"""Share of the highest frequency from which there is nothing but the cell's noise; assumed."""
 
 _SMOOTHED = 150.0
-"""Width over which a spectrum is smoothed to be told from noise [Hz]."""
+"""Width over which a spectrum is smoothed to be told from noise [Hz]; assumed."""
 
 
 @short_repr

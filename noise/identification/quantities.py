@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["MOST", "QUANTITIES", "Quantity"]
 
 MOST = 3.0
-"""No misfit of a single run counts more."""
+"""No misfit of a single run counts more; assumed."""
 
 _LINE_SHARE = 10.0 ** (-18.0 / 20.0)
 """Amplitude of a line that counts, over the strongest: `noise.noise_definition`."""

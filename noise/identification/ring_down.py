@@ -25,20 +25,20 @@ if TYPE_CHECKING:
 __all__ = ["RingDown", "find_ring_down", "ring_evidence"]
 
 _BAND = 60.0, 2000.0
-"""In which it is sought [Hz]."""
+"""In which it is sought [Hz]; assumed."""
 
 _STILL = 3e-3
-"""Angle by which a held shaft may move, over the range of the recording [-]."""
+"""Angle by which a held shaft may move, over the range of the recording [-]; assumed."""
 
 _LEAST_RATE = 4e3
 _LEAST, _LOOKED_AT = 0.02, 0.06
-"""Of a held stretch [s]."""
+"""Of a held stretch [s]; assumed."""
 
 _SETTLED = 1e-3
-"""Left out after the shaft stops [s]."""
+"""Left out after the shaft stops [s]; assumed."""
 
 _CLEAR = 0.1
-"""Share of the band's power that a ring-down explains."""
+"""Share of the band's power that a ring-down explains; assumed."""
 
 
 @short_repr
@@ -193,4 +193,4 @@ def ring_evidence(
 
 
 _SUPPORT_ERROR = 0.01
-"""Relative standard error of a support's stiffness as stated [-]."""
+"""Relative standard error of a support's stiffness as stated [-]; assumed."""

@@ -24,7 +24,7 @@ __all__ = ["SettledRun", "settled_run"]
 
 _SECONDS = 0.8
 _HIGHEST_LINE = 2500.0
-"""Up to which the strongest line is sought [Hz]."""
+"""Up to which the strongest line is sought [Hz]; assumed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,26 +39,28 @@ _POINTS = 4000
 """Averages of neighbouring samples that are looked at, at most."""
 
 _SMOOTH = 200
-"""Over so many a record the angle is smoothed to tell which way it goes."""
+"""Over so many a record the angle is smoothed to tell which way it goes; assumed."""
 
 _RESTING = 0.08
 """Of the fastest motion; slower counts as rest, at which nothing is learned."""
 
 _FEWEST = 30
 _EXPLAINED = 0.98
-"""Share of the angle's variance that a static test explains; slips leave more."""
+"""Share of the angle's variance that a static test explains; slips leave more; assumed."""
 
 _STRENGTHS = np.geomspace(1.03, 12.0, 40)
 """Strengths of the contact that are tried, over the highest torque."""
 
 _SURE = 10.0
-"""Fall of the log-likelihood, doubled, from which loading and unloading are said to part."""
+"""Fall of the log-likelihood, doubled, from which loading and unloading are said to part; a
+chi-square of one degree is above it once in 640; assumed."""
 
 _LEAST_PARTING = 0.004
-"""Of the angle's range [-]; less is called elastic whatever the statistics."""
+"""Of the angle's range [-]; less is called elastic whatever the statistics; assumed."""
 
 _LEAST_ERROR = 0.002
-"""Relative standard error that no regression goes below: nobody's encoder is better [-]."""
+"""Relative standard error that no regression goes below: nobody's encoder is better [-];
+assumed."""
 
 
 @short_repr

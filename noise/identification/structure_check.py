@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 __all__ = ["level_offsets", "structure_notes"]
 
 _BAND = 50.0, 10e3
-"""In which levels are compared [Hz]."""
+"""In which levels are compared [Hz]; assumed."""
 
 _SECONDS = 0.4
 _MOST = 4
 """Recordings that are looked at for each channel."""
 
 _CLOSE = 3.0
-"""Offset up to which a structure is said to fit [dB]."""
+"""Offset up to which a structure is said to fit [dB]; assumed."""
 
 _KINDS = {"acceleration": "acceleration", "pressure": "sound"}
 

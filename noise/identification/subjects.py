@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 __all__ = ["Subject", "subjects_of"]
 
 _LEAST_DROP = 0.05
-"""What the critical torque exceeds the kinetic one by where a search begins, at least [-]."""
+"""What the critical torque exceeds the kinetic one by where a search begins, at least [-];
+assumed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,7 @@ COLUMNS = (
 """Of a table; speed only where an item has one, the error if it is known."""
 
 _ERROR = 5.0
-"""Standard error of a number that states none [%]."""
+"""Standard error of a number that states none [%]; assumed."""
 
 _AROUND = (0.4, 1.6)
 _N_SPEEDS = 16

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["identify_from_table"]
 
 _WIDTH = 0.4
-"""Relative standard deviation of what is searched about the known rig [-]."""
+"""Relative standard deviation of what is searched about the known rig [-]; assumed."""
 
 _SLOPE_STEP = 0.05
 """Of the logarithms, for the curvature at the end."""

@@ -48,16 +48,16 @@ MATERIAL = "fluorocarbon"
 """Of all bushings that the intervals hold for."""
 
 SPEED_RANGE = (0.1, 15.0)
-"""[rad/s]"""
+"""Of the shaft, in training and in what is inferred [rad/s]; the thesis's lie within; assumed."""
 
 INTERFERENCE_RANGE = (0.15e-3, 0.42e-3)
-"""[m]"""
+"""About the thesis's fits, 0.178 to 0.381 mm [m]; assumed."""
 
 SUPPORT_RANGE = (1e3, 1e4)
-"""Of the clamp on beams [Nm/rad]."""
+"""Of the clamp on beams [Nm/rad]; about the thesis's 2214 and 3745; assumed."""
 
 SHORTEST, LONGEST = 0.25, 1.0
-"""Lengths of what the features are taken of [s]."""
+"""Lengths of what the features are taken of [s]; assumed."""
 
 RATES = (16_000, 22_050, 30_000, 44_100, 48_000)
 """Sampling rates that recordings come in [Hz]."""
@@ -79,7 +79,7 @@ _SLIPS_A_SECOND = (
 """Features that are numbers of slips in a second [Hz]."""
 
 _FIXED = 10.0
-"""Of the bolted clamp on a scale of logarithms that end at 9.2 [-]."""
+"""Of the bolted clamp on a scale of logarithms that end at 9.2 [-]; assumed."""
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,8 @@ if TYPE_CHECKING:
 __all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference"]
 
 _NARROWER = 0.8
-"""An interval as wide as this share of the one known beforehand, or wider, is none [-]."""
+"""An interval as wide as this share of the one known beforehand, or wider, is none [-];
+assumed."""
 
 _UNITS = {
     "speed": (1.0, "rad/s"), "interference": (1e3, "mm"), "support_stiffness": (1.0, "Nm/rad"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from noise.audio.line_levels import Grid, line_levels
+from noise.audio.long_sound import LongSound
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,13 +26,13 @@ _WIDTH, _HEIGHT = 600, 150
 _LENGTH = 2048
 
 
-def clip_levels(samples: NDArray[np.float32], reference: float) -> NDArray[np.float64]:
+def clip_levels(samples: NDArray[np.float32] | LongSound, reference: float) -> NDArray[np.float64]:
     """Levels of lines over time and logarithmic frequency.
 
     Parameters
     ----------
-    samples : ndarray, shape (n,)
-        In any unit, such as [Pa].
+    samples : ndarray, shape (n,), or LongSound
+        At `RATE`, in any unit, such as [Pa].
     reference : float
         Of the levels, in the unit of the samples, such as [Pa].
 
@@ -49,6 +50,8 @@ def clip_levels(samples: NDArray[np.float32], reference: float) -> NDArray[np.fl
     >>> round(float(levels.max())), levels.shape[0]
     (-3, 150)
     """
-    width = int(min(_WIDTH, max(16, samples.size // 96)))
-    grid = Grid(0, samples.size, width, _HEIGHT, LOWEST, HIGHEST, _LENGTH)
-    return line_levels(lambda first, last: samples[first:last], samples.size, RATE, reference, grid)
+    sound = LongSound.of(samples, RATE)
+    n = sound.n_samples
+    width = int(min(_WIDTH, max(16, n // 96)))
+    grid = Grid(0, n, width, _HEIGHT, LOWEST, HIGHEST, _LENGTH)
+    return line_levels(sound.read, n, RATE, reference, grid)

@@ -12,24 +12,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.kernels.levels import a_weighted, fast_levels
-from features.kernels.orders import order_map, speed_of_angle
+from features.kernels.levels import fast_level_pieces
+from features.kernels.orders import order_map_of, speed_of_angle
+from features.long.parts import in_pieces, n_samples_of, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.sound import pressure_channel, resampled
+from noise.audio.long_sound import Heard, LongSound
 from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure
 from noise.pictures.clip_levels import HIGHEST, LOWEST, RATE, clip_levels
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from features.kernels.orders import OrderMap
+    from features.long.parts import Parts
     from models.recording import Recording
 
 __all__ = [
@@ -45,16 +47,24 @@ _LEAST_LEVELS = 20.0
 _RUN_UP = 1.25
 """Ratio of largest and smallest speed from which on orders are told apart from frequencies [-]."""
 
+_MOST = 1 << 20
+"""Samples of a curve; of more the lowest and the highest of every so many are kept."""
+
+_AT_ONCE = 1 << 16
+
 _NAMED = 0.06
 """A segment as long as this share of the axis has room for its label [-]."""
 
 
-def plot_recording(recording: Recording, rows: Sequence[Mapping[str, object]] = ()) -> Figure:
+def plot_recording(
+    recording: Recording | Parts, rows: Sequence[Mapping[str, object]] = ()
+) -> Figure:
     r"""Draw a recording.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recording or Parts
+        In memory, or one of which parts can be had.
     rows : sequence of mapping
         Of the label table, whose segments are shown below the spectrogram.
 
@@ -78,10 +88,12 @@ def plot_recording(recording: Recording, rows: Sequence[Mapping[str, object]] = 
     ['Time [s]', 'Speed of the shaft, magnitude [rad/s]']
     """
     sound = recording.first("pressure")
-    others = [c.name for c in recording.channels if c.kind in ("torque", "acceleration", "force")]
+    kinds = [channel.kind for channel in recording.channels]
+    others = [row for row, kind in enumerate(kinds) if kind in ("torque", "acceleration", "force")]
     if sound is None and not others:
         raise ParameterError(f"{recording.name}: has no sound, torque or acceleration to be drawn")
     speed, orders = recorded_speed(recording), recorded_orders(recording)
+    duration = n_samples_of(recording) / recording.rate
     heights = [3.0, 1.8] if sound is not None else [2.2]
     heights += [1.7] * (speed is not None)
     n_in_time = len(heights)
@@ -92,19 +104,19 @@ def plot_recording(recording: Recording, rows: Sequence[Mapping[str, object]] = 
         grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
         axes = [figure.add_subplot(grid[0])]
         axes += [figure.add_subplot(grid[n], sharex=axes[0]) for n in range(1, n_in_time)]
-        time = np.arange(recording.samples.shape[1]) / recording.rate
         if sound is None:
-            _trace(axes[0], time, recording[others[0]], others[0].partition("_")[0])
+            _trace(axes[0], _curve(recording, others[0]), kinds[others[0]])
         else:
             _spectrogram(figure, axes[0], recording, sound)
             _level(axes[1], recording)
         if speed is not None:
-            _trace(axes[n_in_time - 1], time, speed, "speed")
+            values, rate = speed
+            _trace(axes[n_in_time - 1], (np.arange(values.size) / rate, values), "speed")
         for one in axes[:-1]:
             one.tick_params(labelbottom=False)
         axes[-1].set_xlabel("Time [s]")
-        axes[0].set_xlim(0.0, recording.duration)
-        _segments(axes[1 if sound is not None else 0], rows, recording.duration)
+        axes[0].set_xlim(0.0, duration)
+        _segments(axes[1 if sound is not None else 0], rows, duration)
         if orders is not None:
             _orders(figure, figure.add_subplot(grid[n_in_time]), orders, _unit(recording))
         figure.align_ylabels()
@@ -138,15 +150,51 @@ def level_over_time(
     >>> round(float(level_over_time(tone, 48e3, 1.0)[1].max()), 1)
     0.0
     """
-    level = fast_levels(a_weighted(sound, rate), rate, reference=reference)
+    return _levels(LongSound.of(sound, rate), reference, columns)
+
+
+def _levels(
+    sound: LongSound, reference: float, columns: int = 1200
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    pieces = fast_level_pieces(sound.read, sound.n_samples, sound.rate, reference=reference)
+    place, level = _extremes(pieces, 1 + sound.n_samples // _MOST)
     heard = np.isfinite(level)
-    time = np.arange(level.size) / rate
     if not heard.any():
-        return time[:0], level[:0]
-    return thinned(time[heard], level[heard], columns=columns)
+        return level[:0], level[:0]
+    return thinned(place[heard] / sound.rate, level[heard], columns=columns)
 
 
-def recorded_levels(recording: Recording) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _extremes(
+    pieces: Iterable[NDArray[np.float64]], every: int
+) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+    """Keep the lowest and the highest of every so many samples; where they are, and they."""
+    places, values, first = [np.empty(0, np.intp)], [np.empty(0)], 0
+    for piece in pieces:
+        if every == 1:
+            kept = np.arange(piece.size)
+        else:
+            starts = np.arange(0, piece.size, every)
+            cells = np.split(piece, starts[1:])
+            ends = [(cell.argmin(), cell.argmax()) for cell in cells]
+            kept = np.sort(starts[:, np.newaxis] + np.array(ends), axis=1).ravel()
+        places.append(first + kept)
+        values.append(piece[kept])
+        first += piece.size
+    return np.concatenate(places), np.concatenate(values)
+
+
+def _curve(
+    recording: Recording | Parts, row: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return what is drawn of a channel over time."""
+    n = n_samples_of(recording)
+    place, values = _extremes(in_pieces(reader_of(recording, row), n)(), 1 + n // _MOST)
+    return place / recording.rate, values
+
+
+def recorded_levels(
+    recording: Recording | Parts,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Level over time of a recording's first pressure channel, as `level_over_time` returns it.
 
     Examples
@@ -157,38 +205,46 @@ def recorded_levels(recording: Recording) -> tuple[NDArray[np.float64], NDArray[
     >>> round(float(level.max()), 1)
     91.0
     """
-    samples = recording[pressure_channel(recording).name]
-    return level_over_time(samples, recording.rate, _reference(recording))
+    return _levels(Heard.of(recording).sound, _reference(recording))
 
 
-def recorded_speed(recording: Recording) -> NDArray[np.float64] | None:
+def recorded_speed(recording: Recording | Parts) -> tuple[NDArray[np.float64], float] | None:
     """Speed of the shaft over time, as it was recorded.
 
     Parameters
     ----------
-    recording : Recording
+    recording : Recording or Parts
 
     Returns
     -------
-    ndarray, shape (n_samples,), or None
-        [rad/s], from a channel of speed, else of angle; None where there is neither.
+    speed : ndarray, shape (n,)
+        [rad/s], from a channel of speed, else of angle.
+    rate : float
+        Its sampling rate [Hz]: less than the recording's where that is long. None instead of both
+        where there is neither channel.
 
     Examples
     --------
     >>> from models.recording import Channel, Recording
     >>> turning = Recording(5.0 * np.arange(1000)[None] / 1e3, 1e3, (Channel("angle"),))
-    >>> float(recorded_speed(turning).round(3).max())
+    >>> float(recorded_speed(turning)[0].round(3).max())
     5.0
     """
     speed, angle = recording.first("speed"), recording.first("angle")
     if not recording.calibrated or (speed is None and angle is None):
         return None
-    if speed is not None:
-        return np.asarray(recording.samples[speed], dtype=np.float64)
-    return speed_of_angle(recording.samples[angle], recording.rate)
+    row = angle if speed is None else speed
+    n = n_samples_of(recording)
+    every = 1 + n // _MOST
+    pieces = in_pieces(reader_of(recording, row or 0), n, every * (1 + _AT_ONCE // every))()
+    means = [
+        piece[: piece.size // every * every].reshape(-1, every).mean(axis=1) for piece in pieces
+    ]
+    values, rate = np.concatenate(means), recording.rate / every
+    return (values if speed is not None else speed_of_angle(values, rate)), rate
 
 
-def recorded_orders(recording: Recording) -> OrderMap | None:
+def recorded_orders(recording: Recording | Parts) -> OrderMap | None:
     """Order map of a recording's sound, else of its torque or acceleration.
 
     Returns
@@ -207,13 +263,15 @@ def recorded_orders(recording: Recording) -> OrderMap | None:
     row = next(filter(lambda r: r is not None, map(recording.first, _WITH_ORDERS)), None)
     if speed is None or row is None:
         return None
-    slowest, fastest = np.quantile(np.abs(speed), (0.05, 0.95))
+    values, rate = speed
+    slowest, fastest = np.quantile(np.abs(values), (0.05, 0.95))
     if fastest <= max(_RUN_UP * slowest, 0.05):
         return None
     try:
-        found = order_map(
-            recording.samples[row], recording.rate, speed, reference=_reference(recording)
-        )
+        found = order_map_of(
+            reader_of(recording, row), n_samples_of(recording), recording.rate, values, rate,
+            reference=_reference(recording),
+        )  # fmt: skip
     except ParameterError:  # too short, or what a sensor gives that fails
         return None
     # A fast swing is steady only where it is fastest.
@@ -223,24 +281,24 @@ def recorded_orders(recording: Recording) -> OrderMap | None:
 _WITH_ORDERS = ("pressure", "torque", "acceleration")
 
 
-def _reference(recording: Recording) -> float:
+def _reference(recording: Recording | Parts) -> float:
     sound = recording.first("pressure") is not None
     return REFERENCE_PRESSURE if recording.calibrated and sound else 1.0
 
 
-def _unit(recording: Recording) -> str:
+def _unit(recording: Recording | Parts) -> str:
     if recording.first("pressure") is None:
         return "dB re 1 unit"
     return "dB re 20 µPa" if recording.calibrated else "dBFS"
 
 
-def _spectrogram(figure: Figure, axes: Axes, recording: Recording, row: int) -> None:
-    sound = recording.samples[row]
-    at_rate = resampled(sound - sound.mean(), recording.rate, RATE).astype(np.float32)
-    level = clip_levels(at_rate, _reference(recording))[::-1]
+def _spectrogram(figure: Figure, axes: Axes, recording: Recording | Parts, row: int) -> None:
+    n = n_samples_of(recording)
+    duration, sound = n / recording.rate, LongSound(recording.rate, n, reader_of(recording, row))
+    level = clip_levels(sound.without_mean().resampled(RATE), _reference(recording))[::-1]
     highest = 5.0 * math.ceil(float(level.max()) / 5.0)
     edges = np.geomspace(LOWEST, HIGHEST, level.shape[0] + 1)
-    time = np.linspace(0.0, recording.duration, level.shape[1] + 1)
+    time = np.linspace(0.0, duration, level.shape[1] + 1)
     drawn = axes.pcolormesh(
         time,
         edges,
@@ -265,20 +323,21 @@ def _shown(level: NDArray[np.float64], highest: float) -> NDArray[np.float64]:
     return np.where(level < highest - _RANGE, np.nan, level)
 
 
-def _level(axes: Axes, recording: Recording) -> None:
+def _level(axes: Axes, recording: Recording | Parts) -> None:
     time, level = recorded_levels(recording)
     axes.plot(time, level, color=BLUE, linewidth=1.2)
     if level.size:
         # Where a meter at rest begins is nothing that was heard.
-        settled = level[time >= min(0.25, 0.5 * recording.duration)]
+        duration = n_samples_of(recording) / recording.rate
+        settled = level[time >= min(0.25, 0.5 * duration)]
         axes.set_ylim(*padded(float(settled.min()), float(level.max()), _LEAST_LEVELS))
         axes.set_title(f"L_AFmax {level.max():.1f} {_unit(recording)}", loc="right")
     axes.set_ylabel(f"L_AF [{_unit(recording)}]")
 
 
-def _trace(axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], kind: str) -> None:
+def _trace(axes: Axes, curve: tuple[NDArray[np.float64], NDArray[np.float64]], kind: str) -> None:
     look = CHANNEL_LOOKS[kind]
-    axes.plot(*thinned(time, values), color=look.colour, linewidth=1.0)
+    axes.plot(*thinned(*curve), color=look.colour, linewidth=1.0)
     axes.set_ylabel(f"{look.name}\n[{look.unit}]")
 
 

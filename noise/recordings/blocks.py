@@ -44,6 +44,9 @@ _LARGE = 64 << 20
 _CHUNK = 8 << 20
 """What is read at once [byte of 64-bit samples]."""
 
+_PIECE = 1 << 17
+"""Samples that are read at once where one channel of several is wanted."""
+
 _EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
 """Formats of the sound library that can be entered at any sample."""
 
@@ -103,6 +106,15 @@ class RecordingBlocks:
             samples, self.rate, self.channels, self.condition, self.calibrated, self.name
         )
 
+    def part(self, first: int, last: int) -> RecordingBlocks:
+        """Return the same part as a recording of its own, which is read when it is looked at."""
+        last = min(last, self.n_samples)
+        return replace(
+            self,
+            n_samples=last - first,
+            read=lambda start, end: self.read(first + start, min(first + end, last)),
+        )
+
     def pieces(self, first: int, last: int, length: int) -> Iterator[Recording]:
         """Go through a part in pieces of `length` samples, the last of which may be shorter."""
         for start in range(first, last, length):
@@ -119,8 +131,19 @@ class RecordingBlocks:
         return replace(
             self,
             channels=(replace(channel, name=channel.kind),),
-            read=lambda first, last: self.read(first, last)[row : row + 1],
+            read=lambda first, last: self._row(row, first, last),
         )
+
+    def _row(self, row: int, first: int, last: int) -> NDArray[np.float64]:
+        """Read one channel, and no more at once of the others than has to be."""
+        last = min(last, self.n_samples)
+        if last - first <= _PIECE:
+            return self.read(first, last)[row : row + 1]
+        kept = np.empty((1, last - first))
+        for start in range(first, last, _PIECE):
+            end = min(start + _PIECE, last)
+            kept[0, start - first : end - first] = self.read(start, end)[row]
+        return kept
 
 
 @contextmanager

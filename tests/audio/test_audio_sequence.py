@@ -24,15 +24,15 @@ def test_parts_keep_their_loudness_and_the_gap_is_silent():
     assert (a.name, b.name) == ("A", "B")
     assert (a.start, a.end) == (0.0, 0.5)
     assert (b.start, b.end) == pytest.approx((0.7, 1.2))
-    heard = [pair.samples[round(p.start * RATE) : round(p.end * RATE)] for p in pair.parts]
+    heard = [pair.sound.whole()[round(p.start * RATE) : round(p.end * RATE)] for p in pair.parts]
     levels = [20 * np.log10(part[2400:-2400].std()) for part in heard]
     assert levels[0] - levels[1] == pytest.approx(20 * np.log10(4), abs=0.01)
-    assert not pair.samples[round(0.5 * RATE) : round(0.7 * RATE)].any()
+    assert not pair.sound.whole()[round(0.5 * RATE) : round(0.7 * RATE)].any()
 
 
 def test_each_part_is_faded_by_itself():
     pair = back_to_back([run("A", 1.0), run("B", 1.0)], RATE, gap=0.0, fade=0.05)
-    seam = pair.samples[RATE // 2 - 480 : RATE // 2 + 480]
+    seam = pair.sound.whole()[RATE // 2 - 480 : RATE // 2 + 480]
     assert np.abs(seam).max() < 0.15
 
 

@@ -32,42 +32,43 @@ _KINDS = ("torque", "acceleration", "pressure", "angle")
 
 _RISE = 0.3
 """From its beginning to its end, over its mean, of what rises all the time [-]: an angle by twice
-as much and more, whatever a torque drifts by."""
+as much and more, whatever a torque drifts by; assumed."""
 
 _OUTPUTS = ("acceleration", "pressure")
 
 _TORQUE = (1.0 / 6.0, 6.0)
-"""Mean torque over the kinetic torque of the fit, whatever is missing [-]."""
+"""Mean torque over the kinetic torque of the fit, whatever is missing [-]; assumed."""
 
 _FAR = ("N mm", "kN m")
 """Units of torque that no rig is taken for, even where only its kind is known."""
 
 _GAIN = (1.0 / 30.0, 30.0)
-"""Gain of a path over the rig's, whatever is missing [-]."""
+"""Gain of a path over the rig's, whatever is missing [-]; assumed."""
 
 SWINGING = 0.02
 """Standard deviation of a torque that slips, over the kinetic torque [-]; below, nothing that a
-path could be told from."""
+path could be told from; assumed."""
 
 _ALIKE = 0.7
-"""Correlation from which a channel follows from the torque [-]."""
+"""Correlation from which a channel follows from the torque [-]; assumed."""
 
 _STEADY = 0.3, 0.7
-"""Difference of logarithms from the middle of the recordings within which a factor that is a unit's
-lies, in what share of them [-]; clipping and impacts change from one condition to the next."""
+"""Difference of logarithms from the middle of the recordings within which a factor that is a
+unit's lies, in what share of them [-]; clipping and impacts change from one condition to the next;
+assumed."""
 
 _STRENGTH = 0.1, 0.15, 0.8
-"""The same of the strength alone, where a channel follows no prediction: difference from the unit's
-factor, from the middle, and share of the recordings [-]."""
+"""The same of the strength alone, where a channel follows no prediction: difference from the
+unit's factor, from the middle, and share of the recordings [-]; assumed."""
 
 _SWINGING_WELL = 0.05
-"""Swing over the kinetic torque from which strength is no noise [-]."""
+"""Swing over the kinetic torque from which strength is no noise [-]; assumed."""
 
 _AGAINST = 0.9
-"""Correlation from which a channel is the torque's with its sign turned [-]."""
+"""Correlation from which a channel is the torque's with its sign turned [-]; assumed."""
 
 _RISING = 0.5
-"""Skewness of the torque's rate from which it rises fast and falls slowly [-]."""
+"""Skewness of the torque's rate from which it rises fast and falls slowly [-]; assumed."""
 
 
 def swapped_channels(recordings: Sequence[Recording], rig: Rig, levels: Sequence[Levels]) -> str:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["bench_findings", "unit_findings"]
 
 _ANY_RIG = 3.0
-"""Times that the torque of a rig may differ from another's of its kind [-]."""
+"""Times that the torque of a rig may differ from another's of its kind [-]; assumed."""
 
 
 def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> tuple[str, ...]:

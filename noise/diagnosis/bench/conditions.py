@@ -20,19 +20,21 @@ __all__ = ["shuffled_conditions", "speed_words", "wrong_speed"]
 
 _SPEED = 0.2
 """Difference of logarithms of the speed that is stated and that of the angle; a speed that is read
-off a dial errs by 3 %, and a fluctuating one evens out [-]."""
+off a dial errs by 3 %, and a fluctuating one evens out [-]; assumed."""
 
 _STILL = 0.05
-"""Share of the stated speed below which an angle does not turn [-]."""
+"""Share of the stated speed below which an angle does not turn [-]; assumed."""
 
 _ERRORS = {"speed": 0.05, "torque": 0.2}
-"""Differences of logarithms between a recording and its condition that count as one [-]."""
+"""Differences of logarithms between a recording and its condition that count as one [-];
+assumed."""
 
 _SHUFFLED = 3.0
-"""Mean of such differences from which conditions do not belong to their recordings [-]."""
+"""Mean of such differences from which conditions do not belong to their recordings [-];
+assumed."""
 
 _SORTED = 1.0
-"""Mean of such differences below which another order fits [-]."""
+"""Mean of such differences below which another order fits [-]; assumed."""
 
 
 def wrong_speed(levels: Sequence[Levels]) -> str:

@@ -27,19 +27,21 @@ _NEEDED = KINDS[:3]
 """Without any of which there is nothing to look at."""
 
 _LIVELY = 0.1
-"""Swing of the torque over its mean [-] below which a coarse converter may rest at one value."""
+"""Swing of the torque over its mean [-] below which a coarse converter may rest at one value;
+assumed."""
 
 _FEWEST = 8
-"""Samples at the very top that are clipped."""
+"""Samples at the very top that are clipped; assumed."""
 
 _FLAT = 3.0
-"""Times as many samples at the top as just below it: what goes over its top passes through both."""
+"""Times as many samples at the top as just below it: what goes over its top passes through both;
+assumed."""
 
 _NEAR = 0.01
-"""Just below: so much of what a channel varies by [-]."""
+"""Just below: so much of what a channel varies by [-]; assumed."""
 
 _SAME = 1e-3
-"""Relative difference of tops that are those of one range [-]."""
+"""Relative difference of tops that are those of one range [-]; assumed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,13 +26,14 @@ _KINDS = ("torque", "acceleration", "pressure")
 
 _WIDTHS = (0.02, 0.05, 0.1, 0.15)
 """Distances from an end, over the span [-]: the lower an amplifier cuts, the wider its filter's
-ringing spreads what it left."""
+ringing spreads what it left; assumed."""
 
 _ENDS = (0.001, 0.999)
-"""Quantiles that a signal's ends are [-]; single impacts lie beyond."""
+"""Quantiles that a signal's ends are [-]; single impacts lie beyond; assumed."""
 
 _LEAST = 0.02
-"""Share of the samples that a pile has at least [-]; fewer may be the foot of an impact."""
+"""Share of the samples that a pile has at least [-]; fewer may be the foot of an impact;
+assumed."""
 
 _BOTH, _ONE = 3.0, 4.5
 """Ratios from which a channel is piled up at both ends, and at one [-]: beyond the 2.4 of a
@@ -47,7 +48,7 @@ _OF_SIMULATION = 0.5
 """Share of a ratio that the simulation's must stay below [-]; assumed."""
 
 _FEWEST_VALUES = 40
-"""That a signal takes; with fewer the steps of a converter are what piles up."""
+"""That a signal takes; with fewer the steps of a converter are what piles up; assumed."""
 
 
 def flat_channels(

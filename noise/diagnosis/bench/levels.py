@@ -32,19 +32,20 @@ __all__ = ["Levels", "PathFit", "levels_of", "path_fit"]
 KINDS = ("torque", "acceleration", "pressure", "angle")
 
 _BAND = (80.0, 6000.0)
-"""In which a path is compared [Hz]."""
+"""In which a path is compared [Hz]; assumed."""
 
 _LENGTH = 2048
 """Of a segment [samples]."""
 
 _LEAD, _TAIL = 0.08, 0.01
-"""Left out at the ends, where the structure rings from before and nothing follows [s]."""
+"""Left out at the ends, where the structure rings from before and nothing follows [s]; as of
+`noise.diagnosis.evidence.path_summary`."""
 
 _HEARD = 1e-3
-"""Share of the strongest line's power from which a prediction has a frequency [-]."""
+"""Share of the strongest line's power from which a prediction has a frequency [-]; assumed."""
 
 _LONGEST_DELAY = 2.5e-3
-"""Between channels, up to which signals are laid upon each other [s]."""
+"""Between channels, up to which signals are laid upon each other [s]; assumed."""
 
 
 @dataclass(frozen=True)

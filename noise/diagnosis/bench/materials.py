@@ -34,24 +34,26 @@ __all__ = ["another_level", "another_material"]
 
 _LEAST = 0.58
 """Share of the kinetic torque that is left at some condition, whatever is missing [-]: an effect
-that takes half away does so at some speeds."""
+that takes half away does so at some speeds; assumed."""
 
 _FOLLOWS = 0.9
-"""Share explained, and correlation, from which a path tells the gain of the torque [-]."""
+"""Share explained, and correlation, from which a path tells the gain of the torque [-];
+assumed."""
 
 _ERRORS = np.array([0.04, 0.08, 0.08])
-"""Differences of logarithms of mean, swing and frequency between repeats, and of a fit that another
-rig of the same material has [-]."""
+"""Differences of logarithms of mean, swing and frequency between repeats, and of a fit that
+another rig of the same material has [-]; assumed."""
 
 _LIKE, _UNLIKE = 2.0, 3.0
-"""Root mean square differences, in such errors: at most to the material, and at least so many times
-that to the rig file."""
+"""Root mean square differences, in such errors: at most to the material, and at least so many
+times that to the rig file; assumed."""
 
 _SILENT = 1.0
-"""The first of these where nothing slips, neither here nor there: the mean torque alone tells."""
+"""The first of these where nothing slips, neither here nor there: the mean torque alone tells;
+assumed."""
 
 _CYCLES = (15.0, 1500.0)
-"""Between which slips repeat [Hz]."""
+"""Between which slips repeat [Hz]; assumed."""
 
 
 def another_level(levels: Sequence[Levels]) -> str:

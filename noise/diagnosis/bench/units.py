@@ -7,7 +7,8 @@ import math
 __all__ = ["factor_words", "length_unit", "unit_of"]
 
 _EXACT = 0.16
-"""Difference of logarithms up to which a factor is that of a unit [-]; gains err by as much."""
+"""Difference of logarithms up to which a factor is that of a unit [-]; gains err by as much;
+assumed."""
 
 _UNITS = {
     "acceleration": {1.0 / 9.80665: "g", 1e3: "mm/s^2", 1e3 / 9.80665: "mg", 1e-3: "km/s^2"},

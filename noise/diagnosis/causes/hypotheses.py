@@ -42,7 +42,7 @@ _ENOUGH = 0.8
 """Share of the local cases without which they are not asked [-]."""
 
 _IN_TRIPLES = 5
-"""The likeliest effects, of which triples are made."""
+"""The likeliest effects, of which triples are made; assumed."""
 
 
 _KIND_OF_SIZE = {1: "one", 2: "pair", 3: "triple"}

@@ -47,25 +47,28 @@ if TYPE_CHECKING:
 __all__ = ["LONGEST", "MOST", "Bench", "LocalCase", "Run", "bench_of", "local_cases"]
 
 LONGEST = 1.0
-"""Of the end of a recording that is looked at [s]: as much has to be simulated many times."""
+"""Of the end of a recording that is looked at [s]: as much has to be simulated many times;
+assumed."""
 
 MOST = 6
-"""Recordings that are looked at, spread over all there are: how long it takes is to be known."""
+"""Recordings that are looked at, spread over all there are: how long it takes is to be known;
+assumed."""
 
 WEAKEST = 0.1
-"""Least strength of an effect: weaker ones are mostly not seen, and so tell nothing."""
+"""Least strength of an effect: weaker ones are mostly not seen, and so tell nothing; assumed."""
 
 _INACCURACY = 0.003
 """Relative standard deviation of the rig file's own numbers; assumed."""
 
 _OWN_STRENGTHS = (0.3, 10.0)
-"""Of a user's own effect, over its default."""
+"""Of a user's own effect, over its default; assumed."""
 
 _OWN_SPREAD = 0.3
-"""Of the logarithm of the other numbers of a user's own effect, about their defaults."""
+"""Of the logarithm of the other numbers of a user's own effect, about their defaults; assumed."""
 
 _NOISE_STEP = 1.25
-"""Of a rig's estimated noise, so that it is the same for recordings of about the same noise."""
+"""Of a rig's estimated noise, so that it is the same for recordings of about the same noise;
+assumed."""
 
 _SEVERAL = 16
 """Cases from which a second process is worth its start."""

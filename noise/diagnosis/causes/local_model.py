@@ -25,15 +25,16 @@ if TYPE_CHECKING:
 __all__ = ["LocalModel", "fit_local_model"]
 
 _LARGEST = 12.0
-"""Of a logarithm of odds."""
+"""Of a logarithm of odds; no library is large enough to tell more; assumed."""
 
 _UNIT = 4.0
 """Of logarithms of odds, so that they are about 1."""
 
 _OWN_SHARE = 0.5
-"""Of what a set's own weights count beside those of its members."""
+"""Of what a set's own weights count beside those of its members; assumed."""
 
 _RIDGES = (0.3, 1.0, 3.0, 10.0, 30.0)
+"""Tried; the cases left out in folds choose among them. Grid, folds and steps are assumed."""
 _FOLDS = 4
 _STEPS = 80
 

@@ -35,7 +35,7 @@ _FLAT = len(STAGES) / 140.0
 without clipping had such (`noise.diagnosis.bench.flat_tops`), and there are five stages."""
 
 _WHOLE_BAND = (0.0, 1800.0)
-"""Of a difference that is in no band: where the contact's cycle lives [Hz]."""
+"""Of a difference that is in no band: where the contact's cycle lives [Hz]; assumed."""
 
 _STICK = ("creep", "stick", "stiffness", "calm", "after", "before", "ring", "slow_")
 

@@ -46,10 +46,10 @@ _USUAL, _SELDOM = 0.9, 0.995
 """Shares of cases without a cause in which a number differs by less: the two quantiles."""
 
 _LEAST_USUAL = 0.5
-"""Of the first of them, in standard errors."""
+"""Of the first of them, in standard errors; assumed."""
 
 _NARROWEST = 1.4
-"""Ratio of the two at least; a tail is no steeper than that."""
+"""Ratio of the two at least; a tail is no steeper than that; assumed."""
 
 _KEPT = 1000
 """Quantiles of largest surprises that are kept."""

@@ -17,14 +17,14 @@ ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"
 """Hypotheses of a cause that no effect is named beside."""
 
 BEYOND = 5.0
-"""Floors from which a gap that repeats hardly ever have is one to explain."""
+"""Floors from which a gap that repeats hardly ever have is one to explain; assumed."""
 
 RARE = 0.002
-"""Probability of a gap between repeats that is hardly ever met."""
+"""Probability of a gap between repeats that is hardly ever met; assumed."""
 
 UNUSUAL = 0.05
 """Probability of a gap between repeats that has to be small for an alarm of models that have not
-seen such sensors."""
+seen such sensors; the customary level, assumed."""
 
 
 def needs_explaining(
@@ -93,9 +93,11 @@ def _is_beyond(gap: Gap) -> bool:
 
 
 _ALIKE = 0.2
-"""Two causes are declared alike if both are at least so probable and neither stands out."""
+"""Two causes are declared alike if both are at least so probable and neither stands out; assumed,
+as is the next."""
 
 _FACTOR = 2.5
+"""The likelier of them stands out from so many times the other's probability on [-]."""
 
 _PAIRS: Mapping[frozenset[str], str] = {
     frozenset({"frictional_heating", "velocity_weakening"}): (

@@ -30,7 +30,7 @@ BAND_EDGES = np.array([
 """[Hz]; band 1 lies between the first two."""
 
 USABLE = 0.42
-"""Share of the sampling rate up to which a band counts [-]."""
+"""Share of the sampling rate up to which a band counts [-], below what filters fade; assumed."""
 
 
 def band_levels(x: NDArray[np.float64], rate: float) -> dict[str, float]:

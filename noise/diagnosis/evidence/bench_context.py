@@ -27,7 +27,7 @@ CONTEXT = (
 """Names of the numbers, in their order."""
 
 _BAND = (100.0, 3000.0)
-"""In which a hammer test's coherence is looked at [Hz]."""
+"""In which a hammer test's coherence is looked at [Hz]; assumed."""
 
 
 def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]:

@@ -33,10 +33,10 @@ _FLOOR_BANDS = ((100.0, 700.0), (700.0, 2500.0), (2500.0, 6000.0), (6000.0, 1000
 """[Hz]"""
 
 _FLOOR_LENGTH = 1024
-"""Of the segments whose quietest tenth is the floor [samples]."""
+"""Of the segments whose quietest tenth is the floor [samples]; assumed."""
 
 _QUIET = 0.1
-"""Of the segments."""
+"""Of the segments; assumed."""
 
 _MAINS = (50, 60)
 """[Hz]"""

@@ -45,19 +45,19 @@ _EXPLANATIONS: tuple[str, ...] = ("speed", "stiffness", "softening", "damping", 
 stiffness that changes with torque, or a contact that gives before it breaks."""
 
 _SLIDES_ON = 0.3
-"""Share of a recording from which a contact slides on and on."""
+"""Share of a recording from which a contact slides on and on; assumed."""
 
 _FEWEST = 8
-"""Samples that make a mean."""
+"""Samples that make a mean; assumed."""
 
 _APART = 2e-4
-"""Slips closer than this are one [s]."""
+"""Slips closer than this are one [s]; assumed."""
 
 _AROUND = 4e-4
-"""What the band limit smears a slip over on either side [s]."""
+"""What the band limit smears a slip over on either side [s]; assumed."""
 
 _NEAR_PEAK = 6e-4
-"""In which the torque's peak before and its trough after a slip are looked for [s]."""
+"""In which the torque's peak before and its trough after a slip are looked for [s]; assumed."""
 
 
 def slip_starts(found: Reconstruction, speed: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

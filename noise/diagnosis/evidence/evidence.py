@@ -41,14 +41,16 @@ MISSING = -999.0
 """Stands for what a case does not show; a tree splits it off."""
 
 LARGEST = 1e4
-"""Larger numbers are all alike."""
+"""Larger numbers are all alike; assumed."""
 
 _LEAST_SCALE = 1e-3
 _LEAST_SHARE = 1e-2
-"""A number that hardly scatters has at least this share of its size as its scale."""
+"""A number that hardly scatters has at least this share of its size as its scale; assumed, as is
+the least scale of any number."""
 
 _OWN = 1.0 / 3.0
-"""How much the scatter at a recording's own condition counts, beside that at all conditions."""
+"""How much the scatter at a recording's own condition counts, beside that at all conditions;
+assumed."""
 
 
 def evidence_names(names: Sequence[str]) -> tuple[str, ...]:

@@ -28,23 +28,24 @@ __all__ = ["common_residual", "path_summary"]
 Numbers = dict[str, float]
 
 _LEAD, _TAIL = 0.08, 0.01
-"""Left out at the ends, where the structure rings from before and nothing follows [s]."""
+"""Left out at the ends, where the structure rings from before and nothing follows [s]; assumed."""
 
 _LONGEST_DELAY = 2.5e-3
 _COARSE, _FINE = 4, 16
 """The delay is looked for, and found, to so many parts of a sample."""
 
 _REFERENCE_BAND = (80.0, 6000.0)
-"""In which gain and delay are those of the whole channel [Hz]."""
+"""In which gain and delay are those of the whole channel [Hz]; assumed."""
 
 _ECHO = (6e-4, 2e-2)
-"""In which echoes are looked for, after what is direct [s]."""
+"""In which echoes are looked for, after what is direct [s]; assumed."""
 
 _SHORT = 256
-"""Samples of a short segment, in which impacts are told from what lasts."""
+"""Samples of a short segment, in which impacts are told from what lasts; assumed."""
 
 _LOW, _HIGHEST = (-1.0, 2500.0), 12e3
-"""Bands of short segments: low from the constant on, high from there up to the highest [Hz]."""
+"""Bands of short segments: low from the constant on, high from there up to the highest [Hz];
+assumed."""
 
 _CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
 

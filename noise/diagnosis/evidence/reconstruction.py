@@ -29,13 +29,14 @@ __all__ = [
 ]  # fmt: skip
 
 LIMIT = 8000.0
-"""Highest frequency kept [Hz], at most a third of the rate; its flank ends a third above."""
+"""Highest frequency kept [Hz], at most a third of the rate; its flank ends a third above;
+assumed."""
 
 LEAD = 0.06
-"""Left out at the start, where the clamp still rings from before the recording [s]."""
+"""Left out at the start, where the clamp still rings from before the recording [s]; assumed."""
 
 TAIL = 0.01
-"""Left out at the end, where the band limit has nothing to look at [s]."""
+"""Left out at the end, where the band limit has nothing to look at [s]; assumed."""
 
 _LEAST_RATE = 24e3
 """To which a motion is thinned out, above twice the end of the band limit [Hz]."""

@@ -35,10 +35,10 @@ _AFTER = (3e-4, 6e-4, 9e-4, 1.2e-3, 1.6e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4.2e-3, 
 """Times after the surface is caught [s]."""
 
 _MARGIN = 6e-4
-"""Of a stick at either end, which the band limit smears the slip into [s]."""
+"""Of a stick at either end, which the band limit smears the slip into [s]; assumed."""
 
 _FEWEST = 4
-"""Cycles, or samples of ringing per unknown, that make a mean."""
+"""Cycles, or samples of ringing per unknown, that make a mean; assumed."""
 
 
 def cycle_shape(
@@ -121,13 +121,13 @@ _SPEED_EDGES = np.array([2.0, 5.0, 9.0, 14.0, 20.0, 28.0, 40.0])
 """Of classes of the sliding speed [rad/s]."""
 
 _FITTED = (3.0, 40.0)
-"""Sliding speeds over which the law is fitted [rad/s]."""
+"""Sliding speeds over which the law is fitted [rad/s]; assumed."""
 
 _FEWEST_SAMPLES = 8
-"""Samples that make a mean."""
+"""Samples that make a mean; assumed."""
 
 _ENOUGH = 60
-"""Samples that make a law."""
+"""Samples that make a law; assumed."""
 
 
 def torque_by_speed(

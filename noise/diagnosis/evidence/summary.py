@@ -43,7 +43,7 @@ __all__ = ["CaseTable", "NominalNumbers", "case_table", "same_channels", "summar
 Numbers = dict[str, float]
 
 N_REPEATS = 3
-"""Simulated repeats a condition."""
+"""Simulated repeats a condition; what a case may cost settles it; assumed."""
 
 _OUTPUTS = ("acceleration", "pressure")
 

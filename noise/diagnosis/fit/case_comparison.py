@@ -44,13 +44,13 @@ __all__ = ["CaseComparison", "Model"]
 T = TypeVar("T")
 
 N_REPEATS = 12
-"""Simulated repeats that tell what repeats differ by."""
+"""Simulated repeats that tell what repeats differ by; as of `noise.diagnosis.gap.floor`."""
 
 _N_OF_MODEL = 6
-"""The first of these, that tell where a model lies."""
+"""The first of these, that tell where a model lies; assumed."""
 
 _BRIEF = 0.5
-"""Runs without scatter are no longer than this [s]."""
+"""Runs without scatter are no longer than this [s]; assumed."""
 
 _SLOW = ("frictional_heating", "transfer_film")
 """Effects that need as long as was recorded to show; so may those of users."""
@@ -65,7 +65,7 @@ _SATURATION = 4.0
 """Deviations beyond so many standard deviations hardly count in `CaseComparison.residuals`."""
 
 _WIDEST = 2.0
-"""A model's own repeats widen the floor by so much at most."""
+"""A model's own repeats widen the floor by so much at most; assumed."""
 
 _SEEDS = (0, 1)
 """Of runs without scatter; one is enough but for effects that are chance themselves."""

@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["ClosingOdds", "closed_of", "differing", "load_closing_odds", "room_of"]
 
 _HALF = 0.5
-"""Floors above the floor at which a gap tells half as much as a large one."""
+"""Floors above the floor at which a gap tells half as much as a large one; assumed, and the
+weights were learned with it."""
 
 _SURE = 0.05
-"""p-value from which down a stage differs for sure."""
+"""p-value from which down a stage differs for sure; the customary level, assumed."""
 
 
 @dataclass(frozen=True)

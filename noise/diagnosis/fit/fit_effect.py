@@ -43,7 +43,8 @@ __all__ = [
 ]  # fmt: skip
 
 _DRAWN = 18
-"""Of the simulator's own forms tried, and of variants."""
+"""Of the simulator's own forms tried, and of variants; what a fit may cost settles it, as all
+numbers to `_SETTLING`; assumed."""
 
 _VARIANTS = {
     Stage.DRIVE: 16, Stage.FRICTION: 16, Stage.STRUCTURE: 16, Stage.RADIATION: 16,
@@ -70,7 +71,8 @@ _SETTLING = (1.0, 0.7, 1.4)
 
 _LOOK = 0.3
 _LEAST_SURE = 1.5
-"""So far off the cost is looked at for how sure a strength is, and how unsure it is at most."""
+"""So far off the cost is looked at for how sure a strength is, and how unsure it is at most;
+assumed."""
 
 _SHARES = ("torque", "acceleration", "pressure", "angle")
 """Parameters that say which channel an effect is on; they are drawn, not searched."""

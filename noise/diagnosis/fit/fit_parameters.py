@@ -30,25 +30,25 @@ __all__ = [
 ]  # fmt: skip
 
 PRIOR = 0.12
-"""Relative standard deviation of what a rig file may be wrong by."""
+"""Relative standard deviation of what a rig file may be wrong by; assumed."""
 
 HOLD = 0.15
-"""Weight of the prior against the distance of one recording."""
+"""Weight of the prior against the distance of one recording; assumed."""
 
 _STEP = 0.08
 _SHRINK = (1.0, 0.5, 0.25, 0.125)
 
 _MOST = 4
-"""Recordings that a fit looks at, of different conditions."""
+"""Recordings that a fit looks at, of different conditions; assumed."""
 
 _BY_NUMBERS = ("channel_delay",)
 """Effects that change phases, of which a signature knows nothing and the summary does."""
 
 _NUMBERS = 20.0
-"""Weight of the summary's numbers, were all of them hopelessly off."""
+"""Weight of the summary's numbers, were all of them hopelessly off; assumed."""
 
 _LOOK = 0.04
-"""So far off the cost is looked at for how sure an offset is."""
+"""So far off the cost is looked at for how sure an offset is; assumed."""
 
 _UNSURE = 0.1
 """By how much the mean distance of a few repeats is off by chance; assumed."""

@@ -33,13 +33,14 @@ if TYPE_CHECKING:
 __all__ = ["CaseFits", "HypothesisFit", "fit_hypotheses", "settled", "updated"]
 
 _MOST = 5
-"""Fits of a diagnosis, those of the user's own effects not counted."""
+"""Fits of a diagnosis, those of the user's own effects not counted; what a diagnosis may cost
+settles it; assumed."""
 
 _ENOUGH = 0.9
-"""Probability of what was fitted, or needs no fit, from which on no more is fitted."""
+"""Probability of what was fitted, or needs no fit, from which on no more is fitted; assumed."""
 
 _LIKELY = 0.05
-"""Probability of a hypothesis that is worth a fit."""
+"""Probability of a hypothesis that is worth a fit; assumed."""
 
 _NO_FIT: tuple[Hypothesis, ...] = (frozenset(), *ALONE)
 

@@ -45,7 +45,7 @@ _STEP_OF_OFFSET, _STEP_OF_EFFECT = 0.02, 0.1
 """Of logarithms, for slopes."""
 
 _FARTHEST_OFFSET, _FARTHEST_EFFECT = 0.5, 3.0
-"""Of logarithms, from where a fit begins."""
+"""Of logarithms, from where a fit begins; assumed."""
 
 _ITERATIONS = 5
 _HOPELESS = 30.0

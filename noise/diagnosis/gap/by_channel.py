@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["channel_distances", "worst_places"]
 
 _LIKE_THE_MOST = 0.5
-"""Share of the largest deviation from which on others are as large."""
+"""Share of the largest deviation from which on others are as large; assumed."""
 
 _GROUP_OF = group_of()
 

@@ -43,17 +43,20 @@ __all__ = [
 _Distance = TypeVar("_Distance", float, "NDArray[np.float64]")
 
 _BEND = 3.0
-"""Deviations beyond so many standard deviations count linearly."""
+"""Deviations beyond so many standard deviations count linearly; assumed."""
 
 LEAST_SCALE = 0.03
 """Least standard deviation of a value, and of a spectrum as a whole where nothing is known of how
-far repeats scatter: 3 %, which between two repeats is half a decibel at one and a half sigma."""
+far repeats scatter: 3 %, which between two repeats is half a decibel at one and a half sigma;
+assumed."""
 
 _NEIGHBOURS = 2
-"""A few repeats tell a scatter badly, so it is averaged over so many values on either side."""
+"""A few repeats tell a scatter badly, so it is averaged over so many values on either side;
+assumed."""
 
 _UNUSUAL = 4.0
-"""Times the median squared distance of repeats, which counts as that much in their mean."""
+"""Times the median squared distance of repeats, which counts as that much in their mean;
+assumed."""
 
 _MOST_EXCHANGES = 200
 """Within one condition; beyond, as many are drawn."""

@@ -41,10 +41,11 @@ if TYPE_CHECKING:
 __all__ = ["case_gap", "floor_widening", "references_of", "repeat_gap"]
 
 N_REPEATS = 12
-"""Simulated repeats a condition."""
+"""Simulated repeats a condition; what a diagnosis may cost settles it; assumed."""
 
 _UNUSUAL = 0.99
-"""Quantile of simulated repeats' differences beyond which recorded ones widen the floor."""
+"""Quantile of simulated repeats' differences beyond which recorded ones widen the floor;
+assumed."""
 
 _N_SETS, _N_DRAWS = 60, 400
 """Of repeats of one condition, and of such sets over all conditions."""

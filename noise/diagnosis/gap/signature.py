@@ -41,10 +41,10 @@ KINDS = ("torque", "acceleration", "pressure")
 _PER_OCTAVE = 6
 _LOWEST, _HIGHEST = 50.0, 8000.0
 _RESOLUTION = 12.0
-"""Of the spectra [Hz]; the lowest bands share their lines with their neighbours."""
+"""Of the spectra [Hz]; the lowest bands share their lines with their neighbours; assumed."""
 
 _USABLE = 0.42
-"""Share of the sampling rate up to which a band counts."""
+"""Share of the sampling rate up to which a band counts; as of `noise.diagnosis.evidence.bands`."""
 
 _SENSOR_NOISE = {"torque": 0.025, "acceleration": 0.1, "pressure": 4e-3}
 """White noise from 0 to 15 kHz, rms in the channel's unit, five times that of good sensors: added
@@ -178,7 +178,7 @@ def _cycle(torque: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
 
 
 _BLOCK = 0.25
-"""Shortest block of a recording that has a signature of its own [s]."""
+"""Shortest block of a recording that has a signature of its own [s]; assumed."""
 
 _MOST_BLOCKS = 16
 _FEWEST_BLOCKS = 3

@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["HIGHEST_RATE", "LONGEST", "bounded"]
 
 LONGEST = 2.0
-"""Of a recording the last part of this length is looked at, in which it has settled [s]."""
+"""Of a recording the last part of this length is looked at, in which it has settled [s]; what a
+diagnosis may cost settles it; assumed."""
 
 HIGHEST_RATE = 51.2e3
-"""Recordings at higher rates are filtered and thinned out [Hz]."""
+"""Recordings at higher rates are filtered and thinned out [Hz]; assumed."""
 
 
 def bounded(

@@ -22,13 +22,13 @@ _ROUNDED = 2.0**-22
 """Error of samples that are kept in 32 bits, over the largest [-]."""
 
 _CLEAR = 20.0
-"""A step is so many times that error at least."""
+"""A step is so many times that error at least; assumed."""
 
 _REACHES = (1.0, 4.0, 64.0, np.inf)
 """Steps that values are apart at most, from which the step is found more and more exactly."""
 
 _SAME = 1e-4
-"""Relative difference of the steps of recordings through one converter [-]."""
+"""Relative difference of the steps of recordings through one converter [-]; assumed."""
 
 _FEWEST = 3
 """Different values between which a step can be told."""

@@ -24,10 +24,11 @@ __all__ = ["at_measured_speeds", "measured_speed"]
 
 FARTHEST = 0.08
 """Relative difference from which an angle's speed is no correction of the one that is stated but
-says that one of the two is wrong [-]."""
+says that one of the two is wrong [-]; assumed."""
 
 _OFF = 0.005
-"""Relative difference from which a stated speed is off [-]; runs of one speed differ by as much."""
+"""Relative difference from which a stated speed is off [-]; runs of one speed differ by as much;
+assumed."""
 
 
 def measured_speed(angle: NDArray[np.float64], rate: float) -> float:

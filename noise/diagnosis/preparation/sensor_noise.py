@@ -37,27 +37,27 @@ a torque about three times the rounding of the thesis's converter."""
 
 
 _LENGTH = 128
-"""Of a segment [samples]; a few milliseconds."""
+"""Of a segment [samples]; a few milliseconds; assumed."""
 
 _BANDS, _LOWEST, _LOWEST_SHARE = 4, 500.0, 0.18
-"""From the larger of a frequency [Hz] and of a share of the rate [-], up to `USABLE`."""
+"""From the larger of a frequency [Hz] and of a share of the rate [-], up to `USABLE`; assumed."""
 
 _QUIETEST = (0.05, 0.2)
-"""Shares of the segments, the quietest, of which either may be free of signals."""
+"""Shares of the segments, the quietest, of which either may be free of signals; assumed."""
 
 _OVERLAP = 1.94
-"""Neighbouring lines of a Hann window that count as one independent line."""
+"""Neighbouring lines of a Hann window that count as one independent line; 1 + 2 (4/9 + 1/36), from
+the squares of their correlations."""
 
 _FEWEST = 20
-"""Segments to tell it from."""
+"""Segments to tell it from; assumed."""
 
 _ALIKE, _ALIKE_CONDITIONS = 1.5, 1.8
-"""White noise is the floor of two bands, and of two conditions where there are two, since
-repeats sound alike: so many times
-the power of the lower at most [-]."""
+"""White noise is the floor of two bands, and of two conditions where there are two, since repeats
+sound alike: so many times the power of the lower at most [-]; assumed."""
 
 _ABOVE_STEP = 0.4
-"""Of a converter's step, below which white noise cannot be told from its rounding [-]."""
+"""Of a converter's step, below which white noise cannot be told from its rounding [-]; assumed."""
 
 
 def estimated_noise(recordings: Sequence[Recording], kind: str, step: float = 0.0) -> float | None:

@@ -23,31 +23,36 @@ if TYPE_CHECKING:
 __all__ = ["start_of"]
 
 _BLOCK, _LAG = 5e-3, 2
-"""Of which an angle is averaged [s], and blocks to either side that a speed is the slope of."""
+"""Of which an angle is averaged [s], and blocks to either side that a speed is the slope of;
+assumed."""
 
 _LATE = 0.6
-"""Share of a recording after which a start is over [-]."""
+"""Share of a recording after which a start is over [-]; assumed."""
 
 _EARLY = 0.08
-"""Within which a start shows [s]; a quarter of the slowest swing of a controller and more."""
+"""Within which a start shows [s]; a quarter of the slowest swing of a controller and more;
+assumed."""
 
 _SMALLEST, _LARGER = 0.04, 4.0
-"""Deviation of the speed that is a start [-], and how many times what comes after it at least."""
+"""Deviation of the speed that is a start [-], and how many times what comes after it at least;
+assumed."""
 
 _OVER = 0.012
-"""Deviation of the speed that is none any more [-]."""
+"""Deviation of the speed that is none any more [-]; assumed."""
 
 _RISE, _STUCK, _STEEP = 5e-4, 0.02, 0.8
-"""Over which a torque rises [s], how long that is looked at [s], and what share is exceeded [-]."""
+"""Over which a torque rises [s], how long that is looked at [s], and what share is exceeded [-];
+assumed."""
 
 _SMALLEST_RISE, _LARGER_RISE, _OVER_RISE = 0.12, 2.5, 0.05
-"""As of the speed, which a torque tells less exactly [-]."""
+"""As of the speed, which a torque tells less exactly [-]; assumed."""
 
 _FEWEST_LEVELS = 8
-"""Of an angle that is read between them."""
+"""Of an angle that is read between them; assumed."""
 
 _FROM_ZERO = 0.25
-"""Share of its lowest torque later at which the torque of a shaft that starts from rest begins."""
+"""Share of its lowest torque later at which the torque of a shaft that starts from rest begins;
+assumed."""
 
 
 def start_of(recording: Recording) -> float:

@@ -57,7 +57,7 @@ T = TypeVar("T")
 _EXACT = Scatter(0.0, 0.0, 0.0)
 
 _COARSE = 2e-5
-"""Error of a step of runs without scatter [-]: they are compared with each other."""
+"""Error of a step of runs without scatter [-]: they are compared with each other; assumed."""
 
 _CACHED = 24
 """Responses and signals that are kept."""

@@ -30,16 +30,19 @@ if TYPE_CHECKING:
 __all__ = ["supports_of", "with_told_conditions"]
 
 _NEAR, _FAR = (-0.2, 0.3), (-0.35, 0.5)
-"""Logarithm of mean over kinetic torque [-]: of a fit that it can be, and of all that it can be."""
+"""Logarithm of mean over kinetic torque [-]: of a fit that it can be, and of all that it can be;
+assumed."""
 
 _SWINGING = 0.05
-"""Standard deviation of a torque over its mean from which something sticks and slips [-]."""
+"""Standard deviation of a torque over its mean from which something sticks and slips [-];
+assumed."""
 
 _STICKS = {"stated": 0.3, "proposed": 0.12}
-"""By how much a surface that sticks may seem to leave the shaft [-], by how its speed is known."""
+"""By how much a surface that sticks may seem to leave the shaft [-], by how its speed is known;
+assumed."""
 
 _CLEARLY = 2.5, 0.12
-"""How many times, and by how much, another support must be further off [-]."""
+"""How many times, and by how much, another support must be further off [-]; assumed."""
 
 _Told = tuple["Condition", list[str]]
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["Sticking", "sticking"]
 
 _SHARE = 0.4
-"""Share of the time that a surface sticks at least, where it sticks and slips [-]."""
+"""Share of the time that a surface sticks at least, where it sticks and slips [-]; assumed."""
 
 
 @dataclass(frozen=True)

@@ -196,21 +196,21 @@ def _orders(blocks: RecordingBlocks, rows: Sequence[Row], duration: float) -> Or
     if blocks.first("pressure") is None or blocks.first("speed") is blocks.first("angle") is None:
         return None
     first = round(stretch_start(rows, duration, _RUN_UP) * blocks.rate)
-    return recorded_orders(
-        blocks.cut(first, min(blocks.n_samples, first + round(_RUN_UP * blocks.rate)))
-    )
+    return recorded_orders(blocks.part(first, first + round(_RUN_UP * blocks.rate)))
 
 
 def _heard(blocks: RecordingBlocks, offset: float, longest: float) -> tuple[Recording | None, str]:
     """Cut out what is heard; None, and why, where nothing is."""
-    if blocks.first("pressure") is None:
+    row = blocks.first("pressure")
+    if row is None:
         return None, "no sound pressure to be heard"
     if blocks.rate < LOWEST_HEARD:
         return None, f"sampled at {blocks.rate:g} Hz, so nothing can be heard"
     first = round(offset * blocks.rate)
     last = min(blocks.n_samples, first + round(longest * blocks.rate))
     others = sum(channel.kind == "pressure" for channel in blocks.channels) - 1
-    return blocks.cut(first, last), f"1 of {others + 1} channels is heard" if others else ""
+    heard = blocks.track(row).cut(first, last)
+    return heard, f"1 of {others + 1} channels is heard" if others else ""
 
 
 def _sound(heard: Recording) -> tuple[NDArray[np.float32], FastLevels]:

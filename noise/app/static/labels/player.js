@@ -10,9 +10,11 @@ const TARGET = -23, CEILING = -3, MOST_RAISED = 36; // LUFS, dB re full scale, d
 const SLOPES = [0.541, 1.307]; // quality of two second-order filters: Butterworth, 24 dB an octave
 
 export class Player extends EventTarget {
-  constructor(tell) {
+  // `read` gives the samples of a sound from a moment on, as many as there are in one answer.
+  constructor(tell, read = (sound, start) => samples(sound.id, { channel: sound.channel, start })) {
     super();
     this.tell = tell;
+    this.read = read;
     this.slots = { a: null, b: null }; // { id, name, channel, kind, calibrated, duration, anchor }
     this.active = "a";
     this.looping = true;
@@ -55,7 +57,7 @@ export class Player extends EventTarget {
   async #cut(sound, start, length) {
     const from = Math.max(0, Math.min(start, Math.max(0, sound.duration - LONGEST)));
     const key = `${sound.id} ${sound.channel} ${sound.duration > LONGEST ? from : 0}`;
-    const whole = this.kept.get(key) ?? samples(sound.id, { channel: sound.channel, start: sound.duration > LONGEST ? from : 0 });
+    const whole = this.kept.get(key) ?? this.read(sound, sound.duration > LONGEST ? from : 0);
     this.kept.delete(key); // the one used last is kept longest
     this.kept.set(key, whole);
     for (const old of this.kept.keys()) if (this.kept.size > KEPT) this.kept.delete(old);

@@ -21,20 +21,21 @@ if TYPE_CHECKING:
 __all__ = ["hum_forms", "noise_forms"]
 
 _SURE = 2.0
-"""An excess counts from so many standard errors."""
+"""An excess counts from so many standard errors; the usual two of a normal distribution,
+assumed."""
 
 _UNSTEADY = 0.1
 """Relative standard error of a band's power; assumed."""
 
 _HARMONICS = 80
 _WANDER = 0.008
-"""Of the mains' frequency."""
+"""Of the mains' frequency; assumed."""
 
 _BESIDE = (3, 8)
 """Lines beside one of the hum's that tell what it stands out of."""
 
 _STANDS_OUT = 3.0
-"""Times its neighbours' power."""
+"""Times its neighbours' power; assumed."""
 
 
 def noise_forms(compared: Sequence[Compared]) -> list[Form]:

@@ -30,7 +30,7 @@ _OF_TORQUE = 0.005
 """White noise of an acceleration over a mode's constant, rms [Nm]; assumed."""
 
 _FREE = 0.06
-"""How long beams ring [s]."""
+"""How long beams ring [s]; assumed."""
 
 
 def radiation_forms(name: str, compared: Sequence[Compared], length: float) -> list[Form]:

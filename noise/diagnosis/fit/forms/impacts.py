@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 __all__ = ["impact_forms"]
 
 _LENGTH = 0.08
-"""How long an impact rings on [s]."""
+"""How long an impact rings on [s]; assumed."""
 
 _POWERS = (0.5, 1.0, 0.0)
 """Of a drop, to which its impact is proportional."""
 
 _LEAST_DROP = 0.15
-"""Smallest drop that counts, as a share of the torque's range."""
+"""Smallest drop that counts, as a share of the torque's range; assumed."""
 
 
 def impact_forms(compared: Sequence[Compared]) -> list[Form]:

@@ -24,16 +24,17 @@ if TYPE_CHECKING:
 __all__ = ["gain_forms", "speed_forms"]
 
 _BLOCK = 0.03
-"""In which a gain is one number [s]."""
+"""In which a gain is one number [s]; assumed."""
 
 _FINE = 4096
 """Steps of a gain's modulation."""
 
 _LEFT_BY_JUMP = 0.25
-"""Of a modulation's variance, less than which a single jump must leave to be taken for one."""
+"""Of a modulation's variance, less than which a single jump must leave to be taken for one;
+assumed."""
 
 _ENDS = 0.02
-"""Left out of a speed at each end, where its differentiation has none to lean on [s]."""
+"""Left out of a speed at each end, where its differentiation has none to lean on [s]; assumed."""
 
 
 def speed_forms(compared: Sequence[Compared]) -> list[Form]:

@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 __all__ = ["Noise", "wiener_estimate"]
 
 _LEAD = 0.08
-"""Left out at the start, where what rings on from before is missing [s]."""
+"""Left out at the start, where what rings on from before is missing [s]; assumed."""
 
 _NEIGHBOURHOOD = 60.0
 """[Hz]"""
 
 _LEAST = 3e-3
-"""White noise added to the whitened input, over its power."""
+"""White noise added to the whitened input, over its power; assumed."""
 
 _USABLE = (0.40, 0.45)
-"""Shares of the sampling rate between which a transfer function fades."""
+"""Shares of the sampling rate between which a transfer function fades; assumed."""
 
 _FADE = 0.25
 """Of an impulse response, as a share of its length."""

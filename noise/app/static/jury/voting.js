@@ -1,0 +1,182 @@
+// Two sounds without names, in step; a vote is in the table before the next two come.
+import { api, told } from "../api.js";
+import { listen } from "../labels/keys.js";
+import { made } from "../labels/list.js";
+import { Player } from "../labels/player.js";
+import { wav } from "../labels/sounds.js";
+
+const RATE = 48000; // of the sounds that come [Hz]
+const VOTES = { 1: "first", 2: "second", 0: "equal" };
+const KEYS = "Keys: A, B to hear A, B; X the other one; Space to play and pause; L loop; 1, 2 to choose A, B; 0 no difference; U undo.";
+
+export class Voting {
+  constructor(element, goes) {
+    this.goes = goes;
+    this.player = new Player(told, ({ samples }) => Promise.resolve(samples));
+    this.kept = new Map(); // sounds of this comparison and the next
+    this.ready = false;
+    this.#build(element);
+    this.#playing();
+    this.player.addEventListener("change", () => this.#playing());
+    listen(element, {
+      a: () => this.hear("a"), b: () => this.hear("b"), x: () => this.hear(this.player.active === "a" ? "b" : "a"),
+      " ": () => this.toggle(), l: () => this.loop(), u: () => this.undo(),
+      1: () => this.vote("first"), 2: () => this.vote("second"), 0: () => this.vote("equal"),
+    });
+  }
+
+  #build(element) {
+    const button = (textContent, action, className = "") => {
+      const one = made("button", { type: "button", textContent, className });
+      // A click of the mouse leaves the keys where they were.
+      one.addEventListener("click", ({ detail }) => { if (detail) this.stage.focus(); action(); });
+      return one;
+    };
+    this.stage = made("h2", { tabIndex: -1 });
+    this.count = made("p", { className: "count" });
+    this.progress = made("progress", { ariaLabel: "Comparisons voted" });
+    this.a = button("A", () => this.hear("a"), "side");
+    this.b = button("B", () => this.hear("b"), "side");
+    this.play = button("Play", () => this.toggle(), "play");
+    this.looped = button("Loop", () => this.loop());
+    this.votes = [["A", 1], ["No difference", 0], ["B", 2]].map(([text, key]) => button(`${text} (${key})`, () => this.vote(VOTES[key])));
+    this.undone = button("Undo (U)", () => this.undo());
+    this.saved = made("p", { className: "saved" });
+    this.saved.setAttribute("role", "status");
+    this.gain = made("p", { className: "soft" });
+    element.append(this.stage, made("div", { className: "line" }, this.count, this.progress),
+      made("div", { className: "sides" }, this.a, this.b),
+      made("div", { className: "line" }, this.play, this.looped),
+      made("div", { className: "votes" }, ...this.votes), this.saved,
+      made("div", { className: "line" }, this.undone, button("Stop here", () => this.leave("setup")), button("Result, with names", () => this.leave("result"))),
+      this.gain, made("p", { className: "soft", textContent: KEYS }));
+  }
+
+  get voted() { return this.state ? this.state.waiting ?? this.state.total : 0; }
+
+  async open(number) {
+    this.number = number;
+    this.ready = false;
+    this.#playing();
+    this.kept.clear();
+    this.player.kept.clear();
+    this.saved.textContent = "";
+    this.state = null;
+    told(""); // what went wrong before may name a sound
+    const state = await api(`juries/${number}`);
+    this.gain.textContent = `Played at ${state.gain}.`;
+    await this.#show(state);
+    this.stage.focus();
+  }
+
+  async #show(state) {
+    this.player.stop();
+    this.state = state;
+    this.stage.textContent = state.question;
+    this.progress.max = state.total;
+    this.progress.value = this.voted;
+    const place = state.waiting;
+    this.count.textContent = place === null ? `all ${state.total} voted` : `${place + 1} of ${state.total}`;
+    this.heard = new Set();
+    this.ready = false;
+    this.player.active = "a";
+    this.player.position = 0;
+    this.#playing();
+    if (place === null) return;
+    const [a, b] = await this.#sounds(place);
+    if (place !== this.state.waiting) return;
+    const duration = Math.max(a.length, b.length) / RATE; // the shorter one is silent at its end
+    const slot = (side, samples) => ({ id: `${this.number} ${place} ${side}`, samples, channel: "", kind: "pressure", calibrated: false, duration, anchor: null });
+    this.player.put("a", slot("a", a));
+    this.player.put("b", slot("b", b));
+    this.player.position = 0;
+    this.ready = true;
+    this.began = performance.now();
+    this.#playing();
+    if (place + 1 < state.total) this.#sounds(place + 1).catch(() => {});
+  }
+
+  #sounds(place) {
+    if (!this.kept.has(place)) this.kept.set(place, Promise.all(["a", "b"].map((side) => wav(`juries/${this.number}/heard/${place}/${side}`))));
+    for (const other of this.kept.keys()) if (Math.abs(other - place) > 1) this.kept.delete(other);
+    const both = this.kept.get(place);
+    both.catch(() => this.kept.delete(place));
+    return both;
+  }
+
+  hear(side) {
+    if (!this.ready) return;
+    if (this.player.playing) this.player.hear(side);
+    else {
+      this.player.active = side;
+      this.#start();
+    }
+  }
+
+  toggle() {
+    if (!this.ready) return;
+    if (this.player.playing) this.player.stop();
+    else this.#start();
+  }
+
+  loop() {
+    this.player.looping = !this.player.looping;
+    if (this.player.playing) this.#start();
+    this.#playing();
+  }
+
+  #start() {
+    const { player } = this, { duration } = player.slots.a;
+    const from = player.playing ? player.now() : player.position;
+    return player.play({ start: 0, end: duration }, from < duration - 0.005 ? from : 0);
+  }
+
+  #playing() {
+    const { player } = this;
+    if (player.playing) this.heard?.add(player.active);
+    this.play.textContent = player.playing ? "Pause" : "Play";
+    this.looped.setAttribute("aria-pressed", player.looping);
+    for (const side of ["a", "b"]) {
+      this[side].setAttribute("aria-pressed", player.playing && player.active === side);
+      this[side].classList.toggle("heard", this.heard?.has(side) ?? false);
+      this[side].disabled = !this.ready;
+    }
+    const may = this.ready && this.heard.size === 2;
+    for (const vote of this.votes) vote.disabled = !may;
+    this.undone.disabled = !this.voted;
+  }
+
+  async vote(vote) {
+    if (!this.ready || this.busy) return;
+    if (this.heard.size < 2) {
+      this.saved.textContent = "Listen to both first.";
+      return;
+    }
+    const seconds = (performance.now() - this.began) / 1000;
+    await this.#write(() => api(`juries/${this.number}/vote`, { place: this.state.waiting, vote, seconds }), "saved");
+  }
+
+  async undo() {
+    if (!this.voted || this.busy) return;
+    await this.#write(() => api(`juries/${this.number}/undo`, {}), "undone, saved");
+  }
+
+  async #write(ask, word) {
+    this.busy = true;
+    let state = null;
+    try {
+      state = await ask();
+      this.saved.textContent = `${word} ${new Date().toTimeString().slice(0, 8)}`;
+    } catch (error) {
+      this.saved.textContent = `not saved: ${error.message}`;
+    } finally {
+      this.busy = false;
+    }
+    if (state) await this.#show(state);
+  }
+
+  leave(where) {
+    this.player.stop();
+    return this.goes[where](this.number);
+  }
+}

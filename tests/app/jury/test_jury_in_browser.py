@@ -1,0 +1,241 @@
+"""A jury in a browser: begun, voted by keys, killed, gone on with, its result; blind throughout."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from noise.base.tables import read_table
+from tests.helpers.browser import TAP, chromium
+from tests.helpers.jury_sounds import NAMES, RATE, write_tones
+from tests.helpers.opened_app import opened_app
+
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as started:
+        yield started
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return write_tones(tmp_path)
+
+
+class JuryPage:
+    """The view of a jury, as a person with a keyboard uses it."""
+
+    def __init__(self, browser, app, width=1280):
+        self.complaints, self.asked = [], []
+        self.page = browser.new_page(viewport={"width": width, "height": 900})
+        self.page.on("console", self._told)
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.add_init_script(TAP)
+        self.page.goto(f"{app.address}#jury")
+        self.begins = self.page.get_by_role("button", name="Begin")
+        self.begins.wait_for()
+
+    def _told(self, message):
+        if "ScriptProcessorNode" not in message.text:  # which is the tap, not the app
+            self.complaints.append(message.text)
+
+    def begin(self):
+        self.page.wait_for_function("() => !document.querySelector('.begin').disabled")
+        self.begins.click()
+        return self.turn(1)
+
+    def turn(self, place):
+        """Wait for a comparison, the first of which is 1, to be there."""
+        self.page.wait_for_function(
+            """(place) =>
+               document.querySelector(".voting .count").textContent.startsWith(`${place} of`)
+               && [...document.querySelectorAll(".side")].every((side) => !side.disabled)""",
+            arg=place,
+        )
+        return self
+
+    def hear(self, side, n=9600):
+        """Listen to a side, and return what went to the loudspeaker after the change."""
+        self.page.keyboard.press(side)
+        self.page.locator(f".side[aria-pressed=true] >> text={side.upper()}").wait_for()
+        self.page.wait_for_timeout(50)
+        self.page.evaluate("window.heard.length = 0")
+        self.page.wait_for_function("(n) => window.heard.length > n", arg=n)
+        return np.array(self.page.evaluate("window.heard"))
+
+    def listen(self):
+        """Press A, then B, and wait until both have been heard."""
+        for side in "ab":
+            self.page.keyboard.press(side)
+            self.page.locator(f".side.heard >> text={side.upper()}").wait_for()
+
+    def vote(self, key):
+        self.page.locator(".saved").evaluate("(one) => { one.textContent = ''; }")
+        self.listen()
+        self.page.keyboard.press(key)
+        self.page.locator(".saved").filter(has_text="saved").wait_for(state="attached")
+
+    def close(self):
+        assert self.complaints == []
+        self.page.close()
+
+
+def rows(folder):
+    return read_table(folder / "votes.csv")[1]
+
+
+def votes(folder):
+    return [row["vote"] for row in rows(folder) if row["vote"]]
+
+
+def pairs(folder):
+    return [(row["first"], row["second"]) for row in rows(folder)]
+
+
+def louder(pair):
+    return "1" if NAMES.index(pair[0]) < NAMES.index(pair[1]) else "2"
+
+
+def test_votes_by_keys_outlive_a_kill_and_go_on_in_the_same_order(browser, folder):
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app).begin()
+        order = pairs(folder)
+        for place in range(3):
+            jury.turn(place + 1).vote(louder(order[place]))
+        jury.turn(4)
+        app.kill()
+        assert votes(folder) == [{"1": "first", "2": "second"}[louder(p)] for p in order[:3]]
+        jury.listen()
+        jury.page.keyboard.press("0")  # it is not answered, and the page says so
+        jury.page.locator(".voting .saved").filter(has_text="not saved").wait_for()
+        jury.page.close()
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app)
+        assert pairs(folder) == order
+        jury.page.get_by_role("button", name="Go on with jury 1").click()
+        jury.turn(4)
+        for place in range(3, len(order)):
+            jury.turn(place + 1).vote(louder(order[place]))
+        jury.page.get_by_text(f"all {len(order)} voted").wait_for()
+        jury.page.keyboard.press("u")  # the last one, too, is undone
+        jury.turn(len(order)).vote(louder(order[-1]))
+        jury.page.get_by_role("button", name="Result, with names").click()
+        jury.page.locator(".result svg circle").nth(len(NAMES) - 1).wait_for()
+        shown = jury.page.locator(".result tbody th").all_text_contents()
+        assert shown == list(NAMES)
+        assert jury.page.locator(".result svg text", has_text="onerror").count() == 1
+        assert "Kendall's zeta 1.00" in jury.page.locator(".result").text_content()
+        with jury.page.expect_download() as downloaded:
+            jury.page.get_by_role("link", name="Scale as CSV").click()
+        assert len(read_table_of(downloaded.value)) == len(NAMES)
+        jury.close()
+    assert len(votes(folder)) == len(order)
+
+
+def read_table_of(download):
+    target = download.path().with_name("scale.csv")
+    download.save_as(target)
+    return read_table(target)[1]
+
+
+def test_while_votes_are_given_no_name_is_in_the_page_or_asked_for(browser, folder):
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app)
+        jury.page.get_by_text("softest.wav").wait_for()
+        jury.begin()
+        jury.vote("1")
+        jury.turn(2).listen()
+        for name in (*(name.removesuffix(".wav") for name in NAMES), "onerror", ".wav"):
+            assert name not in jury.page.content()
+            assert not any(name in url for url in jury.asked)
+        sounds = [url for url in jury.asked if "/heard/" in url]
+        assert len(sounds) == len(set(sounds)) == 6  # each comparison has addresses of its own
+        jury.close()
+
+
+def test_nothing_is_voted_that_was_not_heard_and_the_last_vote_is_undone(browser, folder):
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app).begin()
+        jury.page.keyboard.press("1")
+        jury.page.get_by_text("Listen to both first.").wait_for()
+        assert votes(folder) == []
+        jury.vote("0")
+        jury.turn(2)
+        assert votes(folder) == ["equal"]
+        jury.page.keyboard.press("u")
+        jury.turn(1)
+        assert votes(folder) == []
+        jury.vote("2")
+        jury.turn(2)
+        assert votes(folder) == ["second"]
+        jury.page.get_by_role("button", name="Stop here").click()
+        jury.page.get_by_text("1 of 7 voted").wait_for()
+        jury.close()
+
+
+def test_a_and_b_are_heard_in_step_at_one_gain(browser, folder):
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app).begin()
+        ratio = 2.0 ** (NAMES.index(pairs(folder)[0][1]) - NAMES.index(pairs(folder)[0][0]))
+        levels = [np.abs(jury.hear(side)).max() for side in "aba"]
+        assert levels[0] / levels[1] == pytest.approx(ratio, rel=0.02)
+        assert levels[2] == pytest.approx(levels[0], rel=0.02)
+        jury.page.keyboard.press(" ")
+        jury.page.get_by_role("button", name="Play").wait_for()
+        jury.page.wait_for_timeout(100)
+        jury.page.evaluate("window.heard.length = 0")
+        jury.page.wait_for_function("(n) => window.heard.length > n", arg=RATE // 10)
+        assert np.abs(jury.page.evaluate("window.heard")).max() == 0.0
+        jury.close()
+
+
+def test_sounds_are_chosen_by_label_and_name(browser, folder):
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app)
+        chosen = jury.page.locator("output.count")
+        chosen.filter(has_text="4 chosen").wait_for()
+        jury.page.get_by_role("button", name="None", exact=True).click()
+        assert jury.begins.is_disabled()
+        jury.page.get_by_role("combobox", name="With").select_option("squeal")
+        jury.page.get_by_label("softer.wav").wait_for(state="detached")
+        jury.page.get_by_role("button", name="All shown").click()
+        jury.page.get_by_role("combobox", name="With").select_option("")
+        jury.page.get_by_label("softer.wav").check()
+        chosen.filter(has_text="2 chosen").wait_for()
+        jury.page.get_by_text("All 1 pairs: 1 comparisons").wait_for()
+        jury.begin()
+        assert set(pairs(folder)[0]) == {"loudest.wav", "softer.wav"}
+        jury.close()
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, folder, width):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not there")
+
+    def check():
+        tags = {"runOnly": {"type": "tag", "values": RULES}}
+        found = axe.Axe().run(jury.page, options=tags).response
+        wrong = [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
+        assert wrong == []
+        assert jury.page.evaluate("document.documentElement.scrollWidth") <= width
+
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app, width)
+        jury.page.wait_for_function("() => !document.querySelector('.begin').disabled")
+        check()
+        jury.begin()
+        jury.listen()
+        check()
+        jury.vote("1")
+        jury.turn(2)
+        jury.page.get_by_role("button", name="Result, with names").click()
+        jury.page.locator(".result svg circle").nth(1).wait_for()
+        check()
+        jury.page.get_by_role("button", name="To all juries").click()
+        jury.page.get_by_role("button", name="Go on with jury 1").wait_for()
+        check()
+        jury.close()

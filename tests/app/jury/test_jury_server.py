@@ -1,0 +1,147 @@
+"""What the server tells of a jury: nothing that tells sounds apart, but the sounds."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+import soundfile
+
+from models.recording import Channel, Recording
+from noise.base.tables import read_table
+from noise.recordings.writing import write_recording
+from tests.helpers.jury_sounds import NAMES, RATE, tone, write_tones
+from tests.helpers.opened_app import opened_app
+
+ASKED = {"sounds": [0, 1, 2, 3], "question": "Which is louder?"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = write_tones(tmp_path_factory.mktemp("tones"))
+    write_recording(folder / "z-short.wav", tone(1000.0, 1.0, 0.2))
+    torque = Recording(np.ones((1, RATE)), RATE, (Channel("torque"),), calibrated=True)
+    write_recording(folder / "z-torque.wav", torque)
+    soundfile.write(folder / "z-uncalibrated.wav", 0.1 * np.ones(RATE), RATE)
+    (folder / "zz-broken.wav").write_bytes(b"no sound")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def app(folder):
+    with opened_app(folder) as running:
+        yield running
+
+
+def heard(app, jury, place, side):
+    status, said = app.request(f"api/juries/{jury}/heard/{place}/{side}")
+    assert status == 200, said
+    samples, rate = soundfile.read(io.BytesIO(said))
+    assert rate == RATE
+    return samples
+
+
+def rms(samples):
+    return float(np.sqrt(np.mean(samples[RATE // 10 : -RATE // 10] ** 2)))
+
+
+def planned(folder, jury):
+    rows = read_table(folder / "votes.csv")[1]
+    return [(row["first"], row["second"]) for row in rows if row["jury"] == str(jury)]
+
+
+def test_a_jury_is_asked_without_a_name_and_heard_at_one_gain(app, folder):
+    begun = app.json("api/juries", ASKED)
+    assert begun["total"] == 6
+    status, said = app.request(f"api/juries/{begun['jury']}")
+    assert status == 200
+    assert b".wav" not in said
+    assert b"full scale = 1.00" in said
+    for place, names in enumerate(planned(folder, begun["jury"])):
+        for side, name in zip("ab", names, strict=True):
+            level = rms(heard(app, begun["jury"], place, side))
+            assert level == pytest.approx(0.5 ** NAMES.index(name) / np.sqrt(2.0), rel=0.01)
+
+
+def test_at_equal_loudness_nothing_is_left_of_the_level(app):
+    begun = app.json("api/juries", ASKED | {"played": "equal loudness"})
+    levels = [rms(heard(app, begun["jury"], place, side)) for place in range(6) for side in "ab"]
+    assert max(levels) == pytest.approx(min(levels), rel=0.01)
+
+
+def test_votes_are_answered_by_what_is_next_and_undone(app, folder):
+    begun = app.json("api/juries", ASKED | {"listener": "L. Istener", "repeats": 50})
+    one = f"api/juries/{begun['jury']}"
+    vote = {"place": 0, "vote": "second", "seconds": 2.5}
+    assert app.json(f"{one}/vote", vote)["waiting"] == 1
+    status, said = app.request(f"{one}/vote", vote)  # pressed twice
+    assert (status, b"not the one whose turn it is" in said) == (400, True)
+    assert app.json(f"{one}/undo", {})["waiting"] == 0
+    assert begun["total"] == 9
+    assert app.request(f"{one}/undo", {})[0] == 400
+
+
+def test_the_result_has_names_and_remarks_and_is_a_table(app, folder):
+    jury = app.json("api/juries", ASKED)["jury"]
+    for place, (first, second) in enumerate(planned(folder, jury)):
+        said = "first" if NAMES.index(first) < NAMES.index(second) else "second"
+        app.json(f"api/juries/{jury}/vote", {"place": place, "vote": said, "seconds": 1})
+    found = app.json(f"api/juries/{jury}/result")
+    assert [one["sound"] for one in found["sounds"]] == list(NAMES)
+    assert any("chosen in all comparisons: loudest.wav" in one for one in found["remarks"])
+    assert any("Kendall's zeta 1.00" in one for one in found["facts"])
+    text = app.request(f"api/juries/{jury}/result.csv")[1].decode()
+    assert text.splitlines()[1].startswith(f"{jury},,Which is louder?,one gain,loudest.wav,")
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"sounds": [0]}, "2 to 40 can be compared"),
+        ({"sounds": list(range(41))}, "2 to 40 can be compared"),
+        ({"sounds": "all"}, "must be a list"),
+        ({"sounds": [0, 99]}, "there is no recording 99"),
+        ({"question": " "}, "must say what is asked"),
+        ({"question": "x" * 201}, "at most 200 characters"),
+        ({"played": "loud"}, "must be one of one gain, equal loudness"),
+        ({"repeats": 51}, "from 0 to 50"),
+        ({"each": "1"}, "from 2 to 40"),
+        ({"sounds": [0, 4], "played": "equal loudness"}, "z-short.wav: has no loudness"),
+        ({"sounds": [0, 5]}, "z-torque.wav: has no sound pressure"),
+        ({"sounds": [0, 6]}, "z-uncalibrated.wav is not, so they share no gain"),
+        ({"sounds": [0, 7]}, "zz-broken.wav: cannot be heard"),
+    ],
+)
+def test_what_cannot_be_compared_is_said_and_begins_nothing(app, said, told):
+    before = len(app.json("api/juries")["juries"])
+    status, answer = app.request("api/juries", ASKED | said)
+    assert status == 400
+    assert told in answer.decode()
+    assert len(app.json("api/juries")["juries"]) == before
+
+
+@pytest.mark.parametrize("path", ["api/juries", "api/juries/1/heard/0/a", "api/juries/1/result"])
+def test_without_the_token_there_is_nothing(app, path):
+    assert app.request(path, token="x")[0] == 403
+
+
+def test_a_vote_from_another_site_is_none(app):
+    jury = app.json("api/juries", ASKED)["jury"]
+    vote = {"place": 0, "vote": "first", "seconds": 1}
+    assert app.request(f"api/juries/{jury}/vote", vote, Origin="http://x.example")[0] == 403
+    assert app.json(f"api/juries/{jury}")["waiting"] == 0
+
+
+def test_a_jury_whose_sounds_are_gone_keeps_its_result(app, folder, tmp_path):
+    names = ("a.wav", "b.wav")
+    write_tones(tmp_path, names)
+    with opened_app(tmp_path) as first:
+        first.json("api/juries", {"sounds": [0, 1], "question": "?"})
+        first.json("api/juries/1/vote", {"place": 0, "vote": "first", "seconds": 1})
+    (tmp_path / "a.wav").unlink()
+    with opened_app(tmp_path) as second:
+        assert not second.json("api/juries")["juries"][0]["open"]
+        status, said = second.request("api/juries/1")
+        assert (status, said.decode().count("a.wav: is not open")) == (400, 1)
+        assert len(second.json("api/juries/1/result")["sounds"]) == 2
