@@ -42,17 +42,31 @@ class Beside(Generic[_Question, _Answer]):
         self._changed = Condition()
         self._wanted: tuple[_Question] | None = None
         self._newest: tuple[_Question, _Answer | None, str] | None = None
-        self._busy = self._stopped = False
+        self._current: tuple[_Question] | None = None
+        self._stopped = False
         self._thread: Thread | None = None
 
     def ask(self, question: _Question) -> None:
         """Ask, and forget those questions that have not been begun."""
         with self._changed:
-            self._wanted = (question,)
-            if self._thread is None:
-                self._thread = Thread(target=self._work, daemon=True)
-                self._thread.start()
-            self._changed.notify()
+            self._ask(question)
+
+    def answer_to(self, question: _Question) -> tuple[_Answer | None, str] | None:
+        """Return the answer and what went wrong, None while there is none; asks if need be."""
+        with self._changed:
+            if self._newest is not None and self._newest[0] == question:
+                return self._newest[1:]
+            waiting = self._wanted or self._current
+            if waiting is None or waiting[0] != question:
+                self._ask(question)
+            return None
+
+    def _ask(self, question: _Question) -> None:
+        self._wanted = (question,)
+        if self._thread is None:
+            self._thread = Thread(target=self._work, daemon=True)
+            self._thread.start()
+        self._changed.notify()
 
     @property
     def newest(self) -> tuple[_Question, _Answer | None, str] | None:
@@ -64,7 +78,7 @@ class Beside(Generic[_Question, _Answer]):
     def busy(self) -> bool:
         """Whether something that was asked is not answered yet."""
         with self._changed:
-            return self._busy or self._wanted is not None
+            return self._current is not None or self._wanted is not None
 
     def stop(self) -> None:
         """End the process."""
@@ -77,11 +91,12 @@ class Beside(Generic[_Question, _Answer]):
         process = link = None
         while True:
             with self._changed:
-                self._busy = False
+                self._current = None
                 self._changed.wait_for(lambda: self._wanted is not None or self._stopped)
                 if self._stopped or self._wanted is None:
                     break
-                [question], self._wanted, self._busy = self._wanted, None, True
+                self._current, self._wanted = self._wanted, None
+                [question] = self._current
             if process is None or link is None or not process.is_alive():
                 link, theirs = context.Pipe()
                 arguments = (theirs, self._answer, self._nice)
@@ -96,7 +111,7 @@ class Beside(Generic[_Question, _Answer]):
             except (OSError, EOFError):
                 answer, error = None, "the process beside the sound died"
             with self._changed:
-                self._newest = question, answer, error
+                self._newest, self._current = (question, answer, error), None
         if process is not None:
             process.kill()
 

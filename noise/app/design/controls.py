@@ -208,7 +208,7 @@ def _condition(rig: Rig) -> Iterator[Control]:
         log=True, only=("fixed", False),
     )  # fmt: skip
     yield _number(
-        "temperature", group, "Temperature", 23.0, "degree Celsius",
+        "temperature", group, "Temperature", 23.0, "°C",
         BOUNDS["temperature_C"].usual, BOUNDS["temperature_C"].possible,
     )  # fmt: skip
 

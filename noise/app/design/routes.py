@@ -9,7 +9,10 @@ from starlette.routing import Route
 
 from models.errors import ParameterError
 from noise.app.design.bases import base_of, bases_of
+from noise.app.design.beside import Beside
+from noise.app.design.chart import ChartAsked, HelpAsked, chart_of, helps_of
 from noise.app.design.design import base_controls, design_of
+from noise.app.design.keeping import Keeping
 from noise.app.design.saving import save_rig
 from noise.app.design.sound import BLOCK, RATE, TORQUE_STEP, LiveSounds
 from noise.app.requests import body
@@ -23,12 +26,19 @@ if TYPE_CHECKING:
 
 __all__ = ["routes"]
 
+_NICE = 5
+"""Whoever listens goes first."""
+
 
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     bases = bases_of(opened)
     sounds = LiveSounds(bases)
-    opened.leaving.callback(sounds.stop)
+    charts: Beside[ChartAsked, dict[str, object]] = Beside(chart_of, _NICE)
+    helps: Beside[HelpAsked, dict[str, object]] = Beside(helps_of, _NICE)
+    keeping = Keeping(bases, opened.folder)
+    for one in (sounds, charts, helps, keeping):
+        opened.leaving.callback(one.stop)
 
     def listed(_: Request) -> Response:
         named = [{"id": key, "name": base.name} for key, base in bases.items()]
@@ -53,6 +63,15 @@ def routes(opened: Opened) -> list[BaseRoute]:
             raise ParameterError(f"sound: run {said[:20]!r} is no number")
         return JSONResponse(sounds.levels(int(said)))
 
+    def charted(_: Request, said: object) -> Response:
+        return _waited(charts.answer_to(ChartAsked.of(design_of(said, bases).setting)))
+
+    def helped(_: Request, said: object) -> Response:
+        return _waited(helps.answer_to(HelpAsked.of(design_of(said, bases).setting, said)))
+
+    def kept(_: Request, said: object) -> Response:
+        return JSONResponse(keeping.start(said))
+
     def saved(_: Request, said: object) -> Response:
         return JSONResponse(save_rig(said, bases, opened.folder))
 
@@ -62,5 +81,15 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/design/block", body(block), methods=["POST"]),
         Route("/api/design/facts", body(told), methods=["POST"]),
         Route("/api/design/levels", levels),
+        Route("/api/design/chart", body(charted), methods=["POST"]),
+        Route("/api/design/helps", body(helped), methods=["POST"]),
         Route("/api/design/rig", body(saved), methods=["POST"]),
+        Route("/api/design/set", body(kept), methods=["POST"]),
+        Route("/api/design/set", lambda _: JSONResponse(keeping.state()), methods=["GET"]),
     ]
+
+
+def _waited(answer: tuple[dict[str, object] | None, str] | None) -> Response:
+    """Answer what is known by now: the page asks again until it is."""
+    found, error = answer or (None, "")
+    return JSONResponse({"known": answer is not None, "found": found, "error": error})

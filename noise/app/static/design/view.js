@@ -1,6 +1,7 @@
 // A design that is heard while it is changed.
 import { api, told } from "../api.js";
 import { made } from "../labels/list.js";
+import { Chart } from "./chart.js";
 import { Controls } from "./controls.js";
 import { Drawings } from "./drawings.js";
 import { Saving } from "./saving.js";
@@ -44,6 +45,9 @@ export async function mount(panel) {
   let slot = "A", asked = 0;
 
   design.stated = () => ({ base: base.value, values: controls.changed });
+  design.both = () => ({ ...states, [slot]: design.stated() });
+  design.hidden = () => panel.hidden;
+  const chart = new Chart(right, design);
   new Saving(right, design);
 
   async function take(base_) {
@@ -56,6 +60,7 @@ export async function mount(panel) {
     states[slot] = design.stated();
     sound.change(states[slot]);
     facts();
+    chart.changed();
   }
 
   function facts() {
@@ -97,12 +102,17 @@ export async function mount(panel) {
   fit.addEventListener("click", () => sound.fit());
   play.addEventListener("click", () => (sound.playing ? sound.stop() : sound.start()));
   sound.addEventListener("change", () => {
+    if (!sound.playing) design.speed = undefined;
     play.textContent = sound.playing ? "Stop sound" : "Play";
     gain.textContent = `Full scale = ${sound.fullScale} Pa (${(20 * Math.log10(sound.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`;
   });
   sound.addEventListener("refused", ({ detail }) => told(detail));
   sound.addEventListener("heard", () => told(""));
-  sound.addEventListener("block", ({ detail }) => { drawings.take(detail); design.speed = detail.speed; });
+  sound.addEventListener("block", ({ detail }) => {
+    drawings.take(detail);
+    design.speed = detail.speed;
+    chart.point();
+  });
   sound.dispatchEvent(new Event("change"));
 
   setInterval(async () => {
@@ -110,7 +120,10 @@ export async function mount(panel) {
     const found = await api(`design/levels?run=${sound.run}`).catch(() => null);
     if (found) level.textContent = words(found, sound.fullScale);
   }, LEVELS_EVERY);
-  document.addEventListener("view-shown", ({ detail }) => { if (detail !== "design") sound.stop(); });
+  document.addEventListener("view-shown", ({ detail }) => {
+    if (detail === "design") chart.changed();
+    else sound.stop();
+  });
 
   await take(about.bases[0].id);
   level.textContent = "Not playing.";

@@ -1,0 +1,133 @@
+"""What is computed beside the sound: maps, suggestions, sets."""
+
+from __future__ import annotations
+
+import json
+import math
+import operator
+import time
+from dataclasses import replace
+
+import pytest
+
+from models.errors import ParameterError
+from noise.app.design.bases import bases_of
+from noise.app.design.beside import Beside
+from noise.app.design.chart import ChartAsked, HelpAsked, chart_of, helps_of
+from noise.app.design.design import design_of
+from noise.app.design.keeping import Keeping
+from noise.app.opened import open_paths
+from noise.recordings import read_recording
+
+BASES = bases_of(open_paths([]))
+PATIENCE = 120.0
+
+
+def waited(found):
+    end = time.monotonic() + PATIENCE
+    while not (known := found()):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    return known
+
+
+def setting(values, base="fluorocarbon"):
+    return design_of({"base": base, "values": values}, BASES).setting
+
+
+def test_only_the_newest_question_is_answered_and_each_once():
+    beside = Beside(operator.neg)
+    try:
+        assert beside.answer_to(1) is None
+        for question in range(2, 50):
+            beside.answer_to(question)
+        assert waited(lambda: beside.answer_to(49)) == (-49, "")
+        assert not beside.busy
+        assert beside.newest == (49, -49, "")
+    finally:
+        beside.stop()
+
+
+def test_what_cannot_be_answered_is_told_and_the_next_question_is_answered():
+    beside = Beside(chart_of)
+    wrong = ChartAsked(setting({}).rig, -5.0, 23.0)
+    try:
+        answer, error = waited(lambda: beside.answer_to(wrong))
+        assert answer is None
+        assert "support" in error
+        assert waited(lambda: beside.answer_to(ChartAsked.of(setting({}, "PDMS"))))[0]
+    finally:
+        beside.stop()
+
+
+@pytest.mark.slow
+def test_the_change_that_is_suggested_ends_the_noise():
+    values = {"speed": 5.0}
+    found = helps_of(HelpAsked.of(setting(values), None))
+    assert found["noise"] == "squawk"
+    names = [one["name"] for one in found["changes"]]
+    assert "damping" in names
+    more = found["changes"][names.index("damping")]["factor"]
+    quiet = helps_of(HelpAsked.of(setting({**values, "change.damping": more * 1.02}), None))
+    assert quiet["noise"] == "none"
+    assert quiet["changes"] == []
+
+
+def test_the_speed_at_which_help_is_asked_for_is_that_which_is_heard():
+    run_up = setting({"motion": "run_up"})
+    assert HelpAsked.of(run_up, {"speed": -6.5}).speed == 6.5
+    assert HelpAsked.of(setting({"speed": -3.0}), {}).speed == 3.0
+    for wrong in ("5", math.nan, 1e9):
+        with pytest.raises(ParameterError, match="speed"):
+            HelpAsked.of(run_up, {"speed": wrong})
+
+
+def test_charts_are_the_same_whatever_the_motion():
+    one = setting({"motion": "swing", "interference": 0.2})
+    assert ChartAsked.of(one) == ChartAsked.of(setting({}))
+    assert ChartAsked.of(one) != ChartAsked.of(replace(one, temperature=60.0))
+
+
+def kept(keeping, said):
+    keeping.start(said)
+    state = waited(lambda: None if keeping.state()["running"] else keeping.state())
+    assert state["error"] == ""
+    return state["result"]
+
+
+@pytest.mark.slow
+def test_both_designs_are_kept_as_sounds_at_one_gain_and_as_a_page(tmp_path):
+    keeping = Keeping(BASES, tmp_path)
+    designs = {
+        "A": {"base": "fluorocarbon", "values": {}},
+        "B": {"base": "fluorocarbon", "values": {"change.damping": 2.0, "motion": "swing"}},
+    }
+    said = {"name": "both", "designs": designs, "seconds": 0.5}
+    assert kept(keeping, said) == str(tmp_path / "both")
+    recording = read_recording(tmp_path / "both" / "recordings" / "B.wav")
+    assert recording.rate == 48e3
+    sounds = [tmp_path / "both" / "sounds" / f"{slot}.json" for slot in "AB"]
+    told = [json.loads(path.read_text(encoding="utf-8"))["render"] for path in sounds]
+    assert told[0]["full_scale_Pa"] == told[1]["full_scale_Pa"]
+    with pytest.raises(ParameterError, match="is there already"):
+        keeping.start(said)
+    page = kept(keeping, {**said, "page": True, "replace": True})
+    assert page == str(tmp_path / "both.html")
+    keeping.stop()
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"designs": {}}, "A, B or both"),
+        ({"designs": {"C": {}}}, "A, B or both"),
+        ({"seconds": 1e9}, "from 0.5 to 60"),
+        ({"seconds": "4"}, "a number"),
+        ({"name": "../x"}, "must begin"),
+    ],
+)
+def test_sets_that_cannot_be_are_refused_in_a_line(said, told, tmp_path):
+    plain = {"name": "x", "designs": {"A": {"base": "PDMS", "values": {}}}}
+    with pytest.raises(ParameterError, match=told):
+        Keeping(BASES, tmp_path).start(plain | said)
+    assert list(tmp_path.iterdir()) == []
