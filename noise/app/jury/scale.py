@@ -91,6 +91,8 @@ def scale(names: Sequence[str], votes: Sequence[Vote]) -> Scale:
     >>> round(loud.value - calm.value, 3), loud.chosen, loud.low < loud.value < loud.high
     (0.762, 7, True)
     """
+    from scipy.sparse.csgraph import connected_components
+
     n = len(names)
     wins, ties = np.zeros((n, n)), np.zeros((n, n))
     for vote in votes:
@@ -108,7 +110,8 @@ def scale(names: Sequence[str], votes: Sequence[Vote]) -> Scale:
             equal = int(ties[place].sum())
             found[place] = Placed(value, low, high, chosen, not_chosen, equal, number)
     placed = tuple(found[place] for place in range(n))
-    return Scale(placed, tuple(_remarks(names, placed, groups)))
+    parts = connected_components(wins + ties > 0.0, connection="strong")[0]
+    return Scale(placed, tuple(_remarks(names, placed, groups, parts)))
 
 
 def _groups(compared: Array) -> list[list[int]]:
@@ -171,8 +174,12 @@ def _end(
 
 
 def _remarks(
-    names: Sequence[str], placed: Sequence[Placed], groups: Sequence[Sequence[int]]
+    names: Sequence[str],
+    placed: Sequence[Placed],
+    groups: Sequence[Sequence[int]],
+    parts: int,
 ) -> list[str]:
+    """Say what is to be known; `parts` are as many as no votes join in both directions."""
     if any(one.votes for one in placed) and not any(one.chosen for one in placed):
         return ["no sound was chosen over another, so nothing tells them apart"]
     remarks = []
@@ -185,10 +192,7 @@ def _remarks(
             f"no vote joins these {len(joined)} groups, so that values of one say nothing of "
             "another: " + "; ".join(_listed([names[place] for place in group]) for group in joined)
         )
-    for count, word, end in (
-        ("not_chosen", "chosen in all of its comparisons", "high"),
-        ("chosen", "never chosen", "low"),
-    ):
+    for count, word in (("not_chosen", "chosen in all comparisons"), ("chosen", "never chosen")):
         beyond = [
             name
             for name, one in zip(names, placed, strict=True)
@@ -196,9 +200,14 @@ def _remarks(
         ]
         if beyond:
             remarks.append(
-                f"{word}: {_listed(beyond)}; so how {end} is not known, and value and outer end of "
-                "the interval are the least that the votes support (Firth's correction)"
+                f"{word}: {_listed(beyond)}; how far beyond the others these votes do not tell, "
+                "and value and outer end of the interval rest on Firth's correction"
             )
+    if parts > len(joined) + len(unheard):
+        remarks.append(
+            f"no vote contradicts the order of {parts - len(unheard)} groups of sounds, so how far "
+            "these stand apart rests on Firth's correction as well"
+        )
     return remarks
 
 

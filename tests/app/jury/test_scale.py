@@ -109,8 +109,16 @@ def test_a_sound_that_never_lost_has_a_value_and_a_remark():
     assert np.isfinite(shown).all()
     assert shown[0] == shown.max()
     assert shown[3] == shown.min()
-    assert any(text.startswith("chosen in all of its comparisons: best;") for text in found.remarks)
+    assert any(text.startswith("chosen in all comparisons: best;") for text in found.remarks)
     assert any(text.startswith("never chosen: <img onerror>;") for text in found.remarks)
+
+
+def test_two_that_beat_all_others_are_said_to_stand_apart_by_the_correction():
+    both_ways = [(0, 1), (1, 0), (2, 3), (3, 2)]
+    votes = [Vote(*pair, "first") for pair in (*both_ways, (0, 2), (0, 3), (1, 2), (1, 3))]
+    (remark,) = scale("abcd", votes).remarks
+    assert remark.startswith("no vote contradicts the order of 2 groups of sounds")
+    assert scale("abcd", [*votes, Vote(2, 0, "first")]).remarks == ()
 
 
 def test_groups_that_no_vote_joins_are_said():
