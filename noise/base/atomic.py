@@ -5,12 +5,20 @@ takes for a result. So every output is written under another name beside its tar
 volume, and moved over it in one step of the file system. The passing name starts with a dot, which
 folder walks leave out, and ends as the target does, because many writers choose their format by
 that ending. A target that cannot be written is refused before the work whose result it is to hold.
+
+A process that is killed while it writes cannot remove what it wrote. So the passing name says whose
+it is, and who next writes into the folder removes what processes left there that are gone.
 """
 
 from __future__ import annotations
 
+import hashlib
+import os
+import platform
+import re
 import uuid
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,12 +61,13 @@ def atomic(target: str | Path) -> Iterator[Path]:
     """
     target = Path(target)
     place = _behind_links(target)
-    temporary = place.parent / f".{uuid.uuid4().hex}.part{target.suffix}"
+    temporary = place.parent / f".{_here()}-{os.getpid()}-{uuid.uuid4().hex}.part{target.suffix}"
     try:
         if place.is_dir():
             raise ParameterError(f"{target}: is a folder; name a file to write")
         _refuse_device(place, target)
         place.parent.mkdir(parents=True, exist_ok=True)
+        _tidy(place.parent, os.getpid())
         yield temporary
         temporary.replace(place)
     except OSError as error:
@@ -117,6 +126,38 @@ def _behind_links(target: Path) -> Path:
         return target.resolve()
     except (OSError, RuntimeError):
         raise ParameterError(f"{target}: is a link that leads nowhere") from None
+
+
+@cache
+def _here() -> str:
+    """Name of what gives processes their numbers: this machine, or a container of it."""
+    numbers = ""
+    with suppress(OSError):  # where the system has no such thing
+        numbers = str(Path("/proc/self/ns/pid").readlink())
+    return hashlib.sha256(f"{platform.node()} {numbers}".encode()).hexdigest()[:12]
+
+
+@cache
+def _tidy(folder: Path, process: int) -> None:
+    """Remove what processes that are gone left in a folder; once a `process` and folder."""
+    if os.name == "nt":  # asking whether a process lives would end it
+        return
+    ours = re.compile(rf"\.{_here()}-(\d{{1,9}})-[0-9a-f]{{32}}\.part")
+    with suppress(OSError):  # a folder that may be written to but not listed
+        for path in folder.iterdir():
+            found = ours.match(path.name)
+            if found is not None and int(found[1]) != process and not _lives(int(found[1])):
+                _remove(path)
+
+
+def _lives(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # another user's
+        pass
+    return True
 
 
 def _remove(path: Path) -> None:

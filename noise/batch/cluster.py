@@ -13,6 +13,8 @@ a screen's points, by the same rules.
 
 from __future__ import annotations
 
+import logging
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -94,7 +96,8 @@ def cluster(
     Raises
     ------
     ParameterError
-        There is no scheduler, it has no workers, or they run another version of the program.
+        There is no scheduler, it has no workers, or they run another version of the program; while
+        it spreads, that the scheduler is gone.
     """
     check_cluster()
     from joblib import Parallel, delayed, parallel_config
@@ -103,13 +106,31 @@ def cluster(
         perform: Callable[..., tuple[int, Any]], calls: Iterable[tuple[Any, ...]]
     ) -> Generator[tuple[int, Any]]:
         parallel = Parallel(batch_size=1, pre_dispatch="all", return_as="generator_unordered")
-        yield from parallel(delayed(perform)(*call) for call in calls)
+        try:
+            yield from parallel(delayed(perform)(*call) for call in calls)
+        except CancelledError:
+            raise ParameterError(
+                f"--scheduler {scheduler}: went away during the work; call again once it is back"
+            ) from None
 
     with (
+        _unsaid(),
         _client(scheduler) as client,
         parallel_config(backend=_surviving_backend()(client=client)),
     ):
         yield spread
+
+
+@contextmanager
+def _unsaid() -> Iterator[None]:
+    """Keep Dask from printing how a scheduler went away: the error says that it did."""
+    logger = logging.getLogger("distributed.client")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def _client(scheduler: str) -> Any:

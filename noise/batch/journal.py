@@ -2,9 +2,10 @@
 
 It lies hidden beside the table and outlives it. A line is one recording with its rows, and is on
 the disk before the next is begun; so a process may be killed at any moment, and what it leaves
-behind is whole lines and at most one torn one, which is cut off. A line counts as long as the
-recording is the same file as then, and the same program does the same work; otherwise the recording
-is done again, and the later line stands.
+behind is whole lines and at most one torn one, which is cut off. Each line ends with its checksum,
+so that what a failing disk or a crash of the system garbled is no result. A line counts as long as
+the recording is the same file as then, and the same program does the same work; otherwise the
+recording is done again, and the later line stands.
 
 Refused recordings are not in it. They cost little, and what was at fault may have been put right
 since without the file changing: a share that was away, a library that was not installed.
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 import json
 import os
+import zlib
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Journal", "JournalReader", "journal_path", "open_journal"]
 
-_FORMAT = 1
+_FORMAT = 2
 
 
 class Journal:
@@ -57,7 +59,7 @@ class Journal:
             return
         entry = [_key(job), identity, done.calibrated, done.rows]
         with _writing(self._path):
-            _write(self._file, json.dumps(entry).encode() + b"\n")
+            _write(self._file, _line(entry))
             os.fsync(self._file.fileno())
 
 
@@ -190,14 +192,22 @@ def _header(work: Work) -> bytes:
     return json.dumps([_FORMAT, work_identity(work)]).encode() + b"\n"
 
 
+def _line(entry: list[object]) -> bytes:
+    content = json.dumps(entry).encode()
+    return b"%s %08x\n" % (content, zlib.crc32(content))
+
+
 def _entries(content: bytes, n_columns: int) -> Entries:
     entries = {}
-    for line in content.splitlines():
+    for line in content.split(b"\n"):
+        entry, _, checksum = line.rpartition(b" ")
+        if checksum != b"%08x" % zlib.crc32(entry):  # damaged: the recording is done again
+            continue
         try:
-            key, identity, calibrated, rows = json.loads(line)
+            key, identity, calibrated, rows = json.loads(entry)
             if {len(row) for row in rows} <= {n_columns} and isinstance(calibrated, bool):
                 entries[key] = identity, Done(rows, calibrated)
-        except (ValueError, TypeError, RecursionError):  # damaged: the recording is done again
+        except (ValueError, TypeError, RecursionError):  # no line of ours
             continue
     return entries
 

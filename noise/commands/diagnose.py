@@ -119,7 +119,7 @@ def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
     finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
     if finding is not None and finding.closed is not None:
         say(closed_sentence(finding))
-    told |= {*diagnosis.bench, *diagnosis.faults}
+    told |= {*diagnosis.bench, *diagnosis.faults}  # sentences of the answer
     for text in diagnosis.notes:
         if text not in told:
             note(text)

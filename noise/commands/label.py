@@ -66,9 +66,10 @@ def configure(parser: ArgumentParser) -> None:
         type=opt.number(least=0.1, most=10.0),
         default=1.0,
         metavar="RATIO",
-        help="odds at which a noise is named, over the classifier's own (default: 1, chosen for at "
-        "most 12 false names an hour of real sounds that are no noise): 2 finds fainter noises and "
-        "names more that are none; how many is told",
+        help="how readily a noise is named, a ratio of odds from 0.1 to 10 (default: 1): 2 names a "
+        "noise at half the odds, so fainter ones and more that are none. How many false names were "
+        "counted is told for any but 1. Nothing changes where an operating condition is logged: "
+        "there the likeliest label is said",
     )
     parser.add_argument(
         "--loudness",
@@ -130,14 +131,16 @@ def _note_sensitivity(work: Labelling) -> None:
     """Say how many false names were counted at another sensitivity than 1."""
     if work.sensitivity == 1.0:
         return
-    counted_at = work.false_names_an_hour()
+    counted_at, hours = work.false_names_an_hour()
     nearest = min(counted_at, key=lambda s: abs(math.log(s / work.sensitivity)), default=None)
     if nearest is None:
         note("the classifier's card does not say how many false names a sensitivity brings")
     else:
+        there, at_1 = counted_at[nearest], counted_at[1.0]
         note(
-            f"at a sensitivity of {nearest:g} this classifier gave {counted_at[nearest]:g} false "
-            f"names an hour of real sounds that are no noise ({counted_at[1.0]:g} at 1)"
+            f"at a sensitivity of {nearest:g} this classifier gave {there:.0f} false names an hour "
+            f"of real sounds that are no noise ({at_1:.0f} at 1), counted in {hours:g} h: "
+            f"{there * hours:.0f} names ({at_1 * hours:.0f})"
         )
 
 

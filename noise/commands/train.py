@@ -37,7 +37,8 @@ def configure(parser: ArgumentParser) -> None:
         "Build the classifier again from simulated runs, made-up sounds that are none of the "
         "three noises and the features of some real sounds, and from labelled recordings of your "
         "own if --add names some; the same call gives the same classifier. It takes some twenty "
-        "minutes. Use it with `bushing-noise label --classifier FILE.npz`."
+        "minutes, of which --keep saves most the next time. Use it with `bushing-noise label "
+        "--classifier FILE.npz`."
     )
     parser.add_argument(
         "--out",
@@ -55,21 +56,24 @@ def configure(parser: ArgumentParser) -> None:
         "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
         "a label table, or by Audacity's label tracks (run07.txt beside run07.wav); or the label "
         "table itself. Of a table that somebody has corrected (label_source is human) the "
-        "corrections count alone. All are learned from, calibrate, and are scored, each by trees "
-        "that were grown without its file",
+        "corrections count alone. All are learned from. What is said of them, which probability "
+        "that means, from which on a noise is named (of those in none and unknown), and the score "
+        "that is told, come from trees that were grown without their file",
     )
     parser.add_argument(
         "--surroundings",
         choices=("any", "car", "rig"),
         default="any",
-        help="what else may sound where recordings are made; a car and a rig have no animals and "
-        "no keyboards (default: any)",
+        help="where the classifier is to be used: what cannot sound there, such as animals and "
+        "keyboards in a car or at a rig, is not learned, so that less has to be told apart "
+        "(default: any); your own recordings are learned in any case",
     )
     parser.add_argument(
         "--samples",
         type=opt.whole_number(1),
         metavar="N",
-        help="simulated samples to learn from (default: 4300); fewer are quicker and know less",
+        help="simulated bushings and other bodies to learn from (default: 4300), beside which 0.6 "
+        "as many made-up sounds are drawn; fewer are quicker and know less",
     )
     parser.add_argument(
         "--keep",
@@ -110,7 +114,7 @@ def run(options: Namespace) -> int:
             from noise.training.inference.fit import train_inference
 
             tell("simulating what to infer from")
-            model = train_inference(seed=options.seed, progress=partial(_progress, tell))
+            model = train_inference(seed=options.seed, progress=partial(_inferring, tell))
             model.save(options.inference)
     say(f"trained: {_scores(classifier.card)}")
     if added:
@@ -132,7 +136,8 @@ def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Cla
         added=added,
         surroundings=options.surroundings,
         keep=options.keep,
-        progress=partial(_progress, tell),
+        progress=_simulating,
+        growing=partial(_growing, tell),
     )
 
 
@@ -169,9 +174,18 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     return samples, bool(refusals)
 
 
-def _progress(tell: Steps, samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
-    yield from track(samples, "simulating", total=total, unit="training sample")
+def _simulating(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+    return track(samples, "simulating", total=total, unit="training sample")
+
+
+def _inferring(tell: Steps, samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
+    yield from _simulating(samples, total)
+    tell("growing trees that infer conditions")
+
+
+def _growing(tell: Steps, fits: Iterable[int], total: int) -> Iterable[int]:
     tell("growing trees, and scoring them by what they have not seen")
+    yield from track(fits, "growing trees", total=total, unit="fit")
 
 
 def _scores(card: Mapping[str, object]) -> str:
@@ -189,7 +203,10 @@ def _scores(card: Mapping[str, object]) -> str:
 def _own_scores(card: object) -> str:
     if not isinstance(card, dict):
         return "none"
-    told = [f"{counted(card['files'], 'file')}, each scored by trees grown without it"]
+    told = [
+        f"{counted(card['files'], 'file')}, each scored by trees grown without it (in brackets: by "
+        "trees grown without any of them)"
+    ]
     for label, found in card["labels"].items():
         if not found["windows"]:
             told.append(f"{label} said {counted(found['false_names'], 'time')} of something else")
@@ -197,7 +214,7 @@ def _own_scores(card: object) -> str:
         few = "" if found["enough"] else ", too few files to tell"
         told.append(
             f"{label}: {counted(found['windows'], 'window')} of {counted(found['files'], 'file')}, "
-            f"found {found['recall']:.0%} (without your recordings {found['recall_before']:.0%}), "
+            f"found {found['recall']:.0%} ({found['recall_before']:.0%}), "
             f"said {counted(found['false_names'], 'time')} of something else "
             f"({found['false_names_before']}){few}"
         )

@@ -50,6 +50,9 @@ _SHOWN = 5
 _AS_REPEATS = 0.5
 """p-value from which on a stage differs as repeats do [-]; assumed."""
 
+_ROOM = (18.0, 28.0)
+"""Between which the shipped bushings, given at 23, are as they are [degree Celsius]; assumed."""
+
 
 def diagnose_case(
     case: Case,
@@ -259,8 +262,10 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     """
     at = [known_condition(recording.condition) for recording in case.recordings]
     heat = sorted({c.temperature for c in at if c.temperature is not None})
+    shipped = assumed_fit(case.rig, [c.interference for c in at])
+    elsewhere = shipped and any(not _ROOM[0] <= t <= _ROOM[1] for t in heat)
     found = [
-        assumed_fit(case.rig, [c.interference for c in at]),
+        shipped,
         *use_remarks(
             case.rig,
             speed=[c.speed for c in at],
@@ -269,7 +274,9 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
             temperature=heat,
         ),
         *effect_remarks(case.rig, library),
-        temperature_remark(case.rig, *heat) if case.rig.temperature or len(heat) > 1 else "",
+        temperature_remark(case.rig, *heat)
+        if case.rig.temperature or len(heat) > 1 or elsewhere
+        else "",
     ]
     return [text for text in dict.fromkeys(found) if text]
 

@@ -168,7 +168,8 @@ def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:
     Yields
     ------
     str
-        Of the segment that names the file, with what else is heard in it; or why it was refused.
+        Of the segment that names the file, and of the longest of each other noise in it; or why
+        it was refused.
 
     Examples
     --------
@@ -183,9 +184,11 @@ def result_lines(rows: Iterable[Mapping[str, object]]) -> Iterator[str]:
         if row is None:
             yield f"{file}  refused: {segments[0].get('error')}"
             continue
-        others = {str(one["label"]): None for one in segments if one["label"] in NAMED}
-        others.pop(str(row["label"]), None)
-        also = f"  also {', '.join(others)}" if others else ""
+        also = ""
+        for label in labels_in(segments)[1:]:
+            other = naming_row([one for one in segments if one["label"] == label])
+            if label in NAMED and other is not None:
+                also += f"  also {'  '.join(_result_words(other))}"
         yield f"{file}  {'  '.join(_result_words(row))}{also}"
 
 
@@ -203,7 +206,11 @@ def _result_words(row: Mapping[str, object]) -> Iterator[str]:
     if row.get("label_source") == "human":
         yield "by hand"
     elif isinstance(probability, float):
-        yield f"p {probability:.2f}"
+        # `unknown` may be the less likely: a noise that is likelier was not likely enough.
+        noises = [(p, name) for name in NAMED if isinstance(p := row.get(f"p_{name}"), float)]
+        p, name = max(noises, default=(0.0, ""))
+        less = label == "unknown" and p > probability
+        yield f"p {probability:.2f}" + (f" ({name} {p:.2f})" if less else "")
 
 
 def segments_html(segments: Sequence[Segment]) -> str:

@@ -137,12 +137,16 @@ class Labelling:
             said[name] = None if path is None else file_digest(path)
         return said
 
-    def false_names_an_hour(self) -> dict[float, float]:
-        """Return what the classifier's card counted, by sensitivity [1/h]; empty if nothing."""
+    def false_names_an_hour(self) -> tuple[dict[float, float], float]:
+        """Return what the card counted, by sensitivity [1/h], and in how much sound [h].
+
+        Empty where it counted nothing.
+        """
         counted = self._loaded.card.get("real_sources_left_out")
         if not isinstance(counted, dict):
-            return {}
-        return {float(s): float(n) for s, n in counted["false_names_an_hour"].items()}
+            return {}, 0.0
+        found = {float(s): float(n) for s, n in counted["false_names_an_hour"].items()}
+        return found, float(counted["background_hours"])
 
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""

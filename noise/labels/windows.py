@@ -66,6 +66,7 @@ _DECLARED = {feature.name: feature for feature in WINDOW_FEATURES}
 _BLOCKS_A_PAGE = 3
 
 _FRAMES_A_HOP = round(HOP * FRAME_RATE)
+_FRAMES_A_WINDOW = round(LENGTH * FRAME_RATE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,25 +138,32 @@ def describe(blocks: RecordingBlocks) -> Described:
     heard = next(iter(channels.values()))
     acoustic = [row for kind, row in channels.items() if kind in ACOUSTIC_KINDS]
     reader = _Reader(blocks, sorted({heard, *acoustic}), heard)
-    features, levels, frames = [], [], []
+    # Filled page by page: a list of pages and what it is put together to would take twice as much.
+    table = np.empty((reader.count, len(FEATURE_NAMES)), dtype=np.float32)
+    levels, frames, n_frames = [], np.empty((0, 0), dtype=np.float32), 0
     for first, windows in reader.pages():
         own = reader.page(heard, first, windows)
         levels.append(own.level)
-        frames.append(own.frames[: windows * _FRAMES_A_HOP])
+        if first == 0:
+            more = len(own.frames) - windows * _FRAMES_A_HOP  # beyond the last window's hop
+            most = reader.count * _FRAMES_A_HOP + max(more, _FRAMES_A_WINDOW)
+            frames = np.empty((most, own.frames.shape[1]), dtype=np.float32)
+        start = first * _FRAMES_A_HOP
+        n_frames = start + len(own.frames)
+        frames[start:n_frames] = own.frames
         parts = []
         for kind in ACOUSTIC_KINDS:
             if kind not in channels:
                 parts.append(np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32))
             else:
                 row = channels[kind]
-                page = own if row == heard else reader.page(row, first, windows)
-                parts.append(page.features)
+                described = own if row == heard else reader.page(row, first, windows)
+                parts.append(described.features)
         parts.append(_torque(blocks, channels.get("torque"), first, windows))
-        features.append(np.concatenate(parts, axis=1))
-    frames[-1] = own.frames
-    table = np.concatenate(features)
-    table[~np.isfinite(table)] = np.nan
-    return Described(table, np.concatenate(levels), np.concatenate(frames), reader.cells)
+        page = table[first : first + windows]
+        np.concatenate(parts, axis=1, out=page)
+        page[~np.isfinite(page)] = np.nan
+    return Described(table, np.concatenate(levels), frames[:n_frames], reader.cells)
 
 
 class _Reader:
@@ -166,16 +174,16 @@ class _Reader:
         rate = blocks.rate
         self._useful = block_length(blocks.n_samples / rate)
         self._n = max(1, round(blocks.n_samples * RATE / rate))
+        self.count = window_count(self._n)
         self._limit = min(WORKING_LIMIT, USABLE_SHARE * rate)
         self._held: dict[int, dict[int, Block]] = {}
         self.cells = CellLevels(rate, blocks.n_samples)
 
     def pages(self) -> Iterator[tuple[int, int]]:
         """Yield the first window of each page and their number."""
-        count = window_count(self._n)
         a_page = round(_BLOCKS_A_PAGE * self._useful / HOP)
-        for first in range(0, count, a_page):
-            yield first, min(a_page, count - first)
+        for first in range(0, self.count, a_page):
+            yield first, min(a_page, self.count - first)
 
     def page(self, row: int, first: int, windows: int) -> WindowTable:
         """Describe a page of a channel."""

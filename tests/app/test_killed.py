@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from http.client import HTTPException
 from threading import Event, Thread
@@ -10,7 +9,6 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from noise.app.opened import open_paths
 from noise.batch import find_jobs, open_journal
 from noise.batch.identity import file_identity
 from noise.batch.work import Done
@@ -18,7 +16,7 @@ from noise.labels.files import label
 from noise.labels.labelling import Labelling
 from noise.labels.table import read_label_table
 from tests.helpers.labelled_folder import made_row, write_folder
-from tests.helpers.opened_app import OpenedApp
+from tests.helpers.opened_app import quick_processes, started_app
 
 NAMES = [f"run{number:02d}.wav" for number in range(30)]
 LABELS = ("creak", "squawk", "squeal", "unknown")
@@ -29,19 +27,9 @@ LATER = 0.05
 """After the last that is waited for, within what one takes [s]."""
 
 
-def served(folder, told):
-    """Serve in a process of its own."""
-    from noise.app.server import serve
-
-    serve(open_paths([folder]), 0, told.send)
-
-
 @pytest.fixture(scope="module")
 def processes():
-    """Processes that need no time to start, as they have read the program."""
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["noise.app.server", "noise.app.labels.routes", "uvicorn"])
-    return context
+    return quick_processes()
 
 
 def labelled_journal(folder):
@@ -55,10 +43,7 @@ def labelled_journal(folder):
 
 def kill_while_correcting(processes, folder, rng):
     """Correct until the kill; return what was answered, by file, and what was under way."""
-    hears, told = processes.Pipe(duplex=False)
-    process = processes.Process(target=served, args=(folder, told))
-    process.start()
-    app = OpenedApp(process, hears.recv())
+    app = started_app(processes, folder)
     answers, asked, dead = [], {}, Event()
 
     def correct():
@@ -83,8 +68,8 @@ def kill_while_correcting(processes, folder, rng):
     while len(answers) < n_answers:
         time.sleep(1e-3)
     time.sleep(later)
-    process.kill()
-    process.join()
+    app.process.kill()
+    app.process.join()
     dead.set()
     for thread in others:
         thread.join()

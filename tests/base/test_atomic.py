@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import errno
 import os
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -58,6 +60,38 @@ def test_what_a_killed_program_leaves_behind_is_no_recording(tmp_path):
         assert path.parent == tmp_path
         assert path.suffix == ".wav"
         assert find_recordings([tmp_path]) == []
+
+
+WRITER = """
+import os, signal, sys
+from pathlib import Path
+from noise.base.atomic import atomic
+with atomic(Path(sys.argv[1])) as path:
+    path.write_text("half")
+    if sys.argv[2] == "dies":
+        os.kill(os.getpid(), signal.SIGKILL)
+    print("writing", flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_what_a_killed_program_left_behind_goes_with_the_next_and_what_another_writes_stays(
+    tmp_path,
+):
+    target = tmp_path / "table.csv"
+    call = [sys.executable, "-c", WRITER, str(target)]
+    for _ in range(2):
+        subprocess.run([*call, "dies"], check=False)
+    with subprocess.Popen(
+        [*call, "lives"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as other:
+        assert other.stdout.readline() == "writing\n"
+        assert len(list(tmp_path.iterdir())) == 1
+        with atomic(tmp_path / "another.csv") as path:
+            path.write_text("whole")
+        assert len(list(tmp_path.iterdir())) == 2
+        other.communicate()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["another.csv", "table.csv"]
 
 
 def test_two_writers_of_one_file_do_not_meet(tmp_path):

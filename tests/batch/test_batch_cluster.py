@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -15,6 +16,8 @@ from models.errors import ParameterError
 from noise.batch import journal_path, perform_all
 from noise.cli import main
 from tests.helpers.batch_work import Counting, in_order, make_jobs, make_recordings
+
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
 
 
 def test_the_missing_library_is_named_with_the_command_that_installs_it(
@@ -118,3 +121,58 @@ def test_a_worker_is_killed_and_the_table_is_the_same(tmp_path, cluster):
         if len(found) == 5:
             os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
     assert in_order(found) == alone
+
+
+def dask(port, *, folder):
+    """A scheduler and two workers, processes of this machine."""
+    address, module = f"tcp://127.0.0.1:{port}", [sys.executable, "-m", "distributed.cli.dask_"]
+    given = {
+        "scheduler": ["--host", "127.0.0.1", "--port", str(port)],
+        "worker": [address, "--nthreads", "1", "--no-nanny"],
+    }
+    started = []
+    for kind in ("scheduler", "worker", "worker"):
+        call = [*module[:2], f"{module[2]}{kind}", *given[kind], "--no-dashboard"]
+        started.append(
+            subprocess.Popen(call, cwd=folder, env=ENVIRONMENT, stderr=subprocess.DEVNULL)
+        )
+    return address, started
+
+
+@pytest.mark.slow
+def test_a_scheduler_is_killed_and_the_same_call_goes_on_with_another(tmp_path):
+    pytest.importorskip("distributed")
+    make_recordings(tmp_path / "runs", 120, 6, 1.0)
+    out = tmp_path / "cluster.csv"
+    call = [sys.executable, "-m", "noise", "label", str(tmp_path / "runs"), "--out", str(out)]
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    for again in (False, True):
+        address, started = dask(port, folder=tmp_path)
+        try:
+            command = subprocess.Popen(
+                [*call, "--scheduler", address], env=ENVIRONMENT, stderr=subprocess.PIPE, text=True
+            )
+            while not again and (
+                not journal_path(out).exists() or len(journal_path(out).read_bytes()) < 2000
+            ):
+                assert command.poll() is None, command.communicate()
+                time.sleep(0.05)
+            if not again:
+                started[0].kill()
+                kept = journal_path(out).read_bytes().rpartition(b"\n")[0].splitlines()
+            _, told = command.communicate(timeout=120)
+        finally:
+            for process in started:
+                process.kill()
+                process.wait()
+        if not again:
+            assert command.returncode == 2
+            assert f"--scheduler {address}: went away during the work" in told
+            assert "Traceback" not in told
+            assert not out.exists()
+    assert command.returncode == 1, told
+    assert journal_path(out).read_bytes().splitlines()[: len(kept)] == kept
+    assert main(["label", str(tmp_path / "runs"), "--out", str(tmp_path / "one.csv")]) == 1
+    assert out.read_bytes() == (tmp_path / "one.csv").read_bytes()

@@ -40,7 +40,12 @@ def labelled(monkeypatch):
     asked = Namespace(classifiers=[], recordings=[], sensitivities=[])
 
     class Stand:
-        card: ClassVar = {"real_sources_left_out": {"false_names_an_hour": {"1": 8.0, "2": 21.0}}}
+        card: ClassVar = {
+            "real_sources_left_out": {
+                "false_names_an_hour": {"1": 8.0, "2": 20.0},
+                "background_hours": 0.25,
+            }
+        }
 
         def sensitive(self, sensitivity):
             asked.sensitivities.append(sensitivity)
@@ -304,14 +309,17 @@ def test_tracks_of_a_plain_sound_file_stand_for_themselves(runs, labelled, capsy
 def test_another_sensitivity_is_taken_and_its_false_names_are_told(runs, labelled, capsys):
     assert main(["label", "runs/a.wav", "--out", "t.csv", "--sensitivity", "2"]) == 0
     assert labelled.sensitivities == [2.0]
-    assert "21 false names an hour" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "20 false names an hour" in said
+    assert "in 0.25 h: 5 names (2)" in said
 
 
 def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
     asked = []
 
-    def train(*, seed, added, progress, **_):
+    def train(*, seed, added, progress, growing, **_):
         assert not added
+        assert list(growing(range(6), 6)) == [0, 1, 2, 3, 4, 5]
         asked.append((seed, list(progress(iter([1, 2]), 2))))
         card = {"pressure": {"n": 600, "macro_f1": 0.9}}
         return Namespace(save=lambda path: path.write_bytes(b"trained"), card=card)
@@ -323,6 +331,7 @@ def test_train_saves_what_it_made(tmp_path, monkeypatch, capsys):
     assert printed == f"{out}\n"
     assert out.read_bytes() == b"trained"
     assert asked == [(3, [1, 2])]
+    assert "growing trees 6 fits" in err
     assert "pressure: n 600, macro f1 0.9" in err
 
 

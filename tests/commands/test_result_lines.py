@@ -15,6 +15,10 @@ SQUEAL = {
     "frequency_hz": 974.2, "level_dba": 59.9, "level_dbfs": -34.0, "p_squeal": 0.93,
     "label_source": "classifier", "error": None,
 }  # fmt: skip
+CREAK = SQUEAL | {
+    "label": "creak", "start_s": 6.01, "end_s": 7.0, "frequency_hz": 83.0, "level_dba": 51.0,
+    "p_creak": 0.7,
+}  # fmt: skip
 NONE = SQUEAL | {"label": "none", "start_s": 0.0, "end_s": 1.99, "p_none": 0.99}
 
 
@@ -23,8 +27,22 @@ NONE = SQUEAL | {"label": "none", "start_s": 0.0, "end_s": 1.99, "p_none": 0.99}
     [
         ([SQUEAL], "run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93"),
         (
-            [NONE, SQUEAL, SQUEAL | {"label": "creak", "start_s": 6.01, "end_s": 7.0}],
-            "run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93  also creak",
+            [NONE, SQUEAL, CREAK],
+            "run07.wav  squeal 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.93"
+            "  also creak 83 Hz  51.0 dB(A)  6.01-7.00 s  p 0.70",
+        ),
+        (
+            [
+                SQUEAL | {"label": "unknown", "p_unknown": 0.81, "p_squeal": 0.1},
+                CREAK,
+                CREAK | {"end_s": 6.5},
+            ],
+            "run07.wav  unknown 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.81"
+            "  also creak 83 Hz  51.0 dB(A)  6.01-7.00 s  p 0.70",
+        ),
+        (
+            [SQUEAL | {"label": "unknown", "p_unknown": 0.3, "p_squeal": 0.65}],
+            "run07.wav  unknown 974 Hz  59.9 dB(A)  1.99-6.01 s  p 0.30 (squeal 0.65)",
         ),
         (
             [SQUEAL | {"level_dba": None, "frequency_hz": None}],

@@ -29,7 +29,7 @@ def done_in(journal):
     if not journal.exists():
         return []
     whole = journal.read_bytes().rpartition(b"\n")[0].splitlines()
-    return [json.loads(line)[0] for line in whole[1:]]
+    return [json.loads(line.rpartition(b" ")[0])[0] for line in whole[1:]]
 
 
 def kill_when(process, out, number, how=signal.SIGKILL, *, group=False):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -10,6 +11,9 @@ from models.rig_files.rig_file import load_material_rig, load_rig
 from models.rig_files.shipped import material_names
 from noise.cli import main
 from noise.diagnosis.assumed_fit import assumed_fit
+from noise.diagnosis.case import Case
+from noise.diagnosis.diagnose import case_remarks
+from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG_FILE, at, run, write_case
 
 
@@ -30,12 +34,23 @@ def test_the_bushing_that_was_not_stated_is_named(tmp_path, text):
     assert assumed_fit(load_rig(path), [0.279e-3]) == ""
 
 
+@pytest.mark.parametrize(("heat", "far"), [(25.0, False), (60.0, True)])
+def test_recordings_far_from_the_temperature_of_a_shipped_bushing_say_so(heat, far):
+    recording = run(at(1.0))
+    hot = replace(recording, condition=replace(recording.condition, temperature=heat))
+    case = Case(load_material_rig("fluorocarbon-thesis"), ("run",), (hot,))
+    assert far == any("temperature 60" in text for text in case_remarks(case, EFFECTS))
+
+
 def test_json_page_and_terminal_say_the_same_of_it(tmp_path, capsys):
     recordings = [run(at(speed), seed=i) for i, speed in enumerate((1.0, 1.6))]
     data, rig = write_case(tmp_path, recordings, 'base = "fluorocarbon-thesis"')
     out = tmp_path / "out"
     assert main(["diagnose", str(data), "--rig", str(rig), "--quick", "--out", str(out)]) == 0
     words = assumed_fit(load_rig(rig), [0.279e-3])
-    assert words in json.loads((out / "diagnosis.json").read_text())["notes"]
-    assert words in " ".join(capsys.readouterr().err.split())
+    notes = json.loads((out / "diagnosis.json").read_text())["notes"]
+    said = " ".join(capsys.readouterr().err.split())
+    assert words in notes
+    assert any("repeats differ is assumed" in note for note in notes)
+    assert all(said.count(note) == 1 for note in notes)
     assert words.split(",")[0] in (out / "report.html").read_text()

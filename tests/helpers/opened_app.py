@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import subprocess
 import sys
 import urllib.error
 import urllib.request
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from noise.app.opened import open_paths
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -61,3 +64,25 @@ def opened_app(*arguments) -> Iterator[OpenedApp]:
             if process.poll() is None:
                 process.terminate()
                 process.wait(PATIENCE)
+
+
+def quick_processes():
+    """Processes that need no time to start, as they have read the program."""
+    context = multiprocessing.get_context("forkserver")
+    views = [f"noise.app.{view}.routes" for view in ("sounds", "labels", "design", "jury")]
+    context.set_forkserver_preload(["noise.app.server", *views, "uvicorn"])
+    return context
+
+
+def started_app(processes, folder):
+    """Serve a folder in one of these processes."""
+    hears, told = processes.Pipe(duplex=False)
+    process = processes.Process(target=_served, args=(folder, told))
+    process.start()
+    return OpenedApp(process, hears.recv())
+
+
+def _served(folder, told):
+    from noise.app.server import serve
+
+    serve(open_paths([folder]), 0, told.send)

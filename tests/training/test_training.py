@@ -85,7 +85,15 @@ def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after()
         OwnSample(sample.features[:, ::-1].copy(), "squawk", f"{i}.wav")
         for i, sample in enumerate(s for s in SAMPLES if s.label in labels)
     ]
-    said = learn(SAMPLES, 34, seed=3, added=own).card["own"]
+    begun = []
+
+    def growing(fits, total):
+        for fit in fits:
+            begun.append((fit, total))
+            yield fit
+
+    said = learn(SAMPLES, 34, seed=3, added=own, growing=growing).card["own"]
+    assert begun == [(fit, N_FOLDS + 2) for fit in range(N_FOLDS + 2)]
     squawk = said["labels"]["squawk"]
     assert said["files"] == squawk["files"] == len(own)
     assert squawk["enough"]

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from starlette.requests import Request
     from starlette.routing import BaseRoute
 
+    from noise.app.jury.order import Pair
     from noise.app.jury.store import Jury
     from noise.app.opened import Opened
 
@@ -102,14 +103,17 @@ def routes(opened: Opened) -> list[BaseRoute]:
         names = [opened.job(index).name for index in beginning.sounds]
         indices(names)
         playing.gain(beginning.sounds, beginning.played)  # or nobody could begin
-        seed = opened.seed, len(votes.juries())
+
+        def drawn(number: int) -> list[Pair]:
+            return ordered_pairs(beginning.design, np.random.default_rng([opened.seed, number]))
+
         jury = votes.begin(
             names,
-            ordered_pairs(beginning.design, np.random.default_rng(seed)),
+            drawn,
             listener=beginning.listener,
             question=beginning.question,
             played=beginning.played,
-            seed="/".join(map(str, seed)),
+            seed=opened.seed,
         )
         return JSONResponse(state(jury))
 

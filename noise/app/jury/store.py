@@ -19,7 +19,7 @@ from noise.base.lock import locked
 from noise.base.tables import read_table, write_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from noise.app.jury.order import Pair
@@ -121,12 +121,12 @@ class Votes:
     def begin(
         self,
         names: Sequence[str],
-        pairs: Sequence[Pair],
+        drawn: Callable[[int], Sequence[Pair]],
         *,
         listener: str,
         question: str,
         played: str,
-        seed: str,
+        seed: int,
     ) -> Jury:
         """Write a new jury and return it.
 
@@ -134,12 +134,13 @@ class Votes:
         ----------
         names : sequence of str
             Of the sounds.
-        pairs : sequence of tuple
-            Numbers among `names` of the first and the second sound of each comparison.
+        drawn : callable
+            From the number of the jury to its comparisons in their order, each of them the numbers
+            among `names` of the first and the second sound.
         listener, question, played
             As of `Jury`.
-        seed : str
-            Of the order.
+        seed : int
+            Of the order, with the number of the jury.
 
         Raises
         ------
@@ -153,7 +154,7 @@ class Votes:
             about = {"listener": listener, "question": question, "played": played, "seed": seed}
             juries[number] = [
                 {"jury": number, **about, "order": order, "first": names[a], "second": names[b]}
-                for order, (a, b) in enumerate(pairs, start=1)
+                for order, (a, b) in enumerate(drawn(number), start=1)
             ]
         return self.jury(number)
 

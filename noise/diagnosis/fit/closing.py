@@ -26,7 +26,8 @@ CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor; assumed."""
 
 _FLOOR_SPREAD = 0.35
-"""Standard deviation of one recording's distance where nothing is left to explain."""
+"""Standard deviation of one recording's distance where nothing is left to explain; assumed. Of 66
+recordings of quiet development cases without a cause (seed 4) it is 0.36."""
 
 _LEVEL = (5.0, 95.0)
 _DRAWS = 400

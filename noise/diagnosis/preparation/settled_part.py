@@ -16,6 +16,7 @@ from models.condition import known_condition
 from noise.diagnosis.evidence.bands import segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
 from noise.diagnosis.preparation.start import start_of
+from noise.diagnosis.text.words import joined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +39,9 @@ thesis's, 2 J_C / c."""
 _LENGTHS = 0.05
 """Parts have lengths in such steps [s]: what is simulated for one then serves for others;
 assumed."""
+
+_MOST_NAMED = 6
+"""Recordings that a note names; assumed."""
 
 _SHORTENED = 0.5
 """Share that a recording keeps at least where it is shortened to the length of its repeat;
@@ -106,20 +110,29 @@ def settled_parts(
         fewest = min(n_kept[i] for i in alike)
         if fewest >= _SHORTENED * max(n_kept[i] for i in alike):
             n_kept |= dict.fromkeys(alike, fewest)
-    parts, notes = [], []
+    parts = []
+    cut: dict[str, list[tuple[str, float]]] = {}
     for i in kept:
         recording = recordings[i]
         first = recording.samples.shape[1] - n_kept[i]
         parts.append(_from(recording, first))
         if first:
-            why = "as it is of another recording of its condition"
+            why = "as much as of another recording of the same condition"
             if starts[i]:
                 why = "in which the shaft comes to its speed"
                 if too_short:
                     why += " and beyond which too little is left"
             name = recording.name or f"recording {i + 1}"
-            notes.append(f"{name}: the first {first / recording.rate:.2g} s, {why}, were left out")
-    return tuple(parts), tuple(notes), refused
+            cut.setdefault(why, []).append((name, first / recording.rate))
+    return tuple(parts), tuple(_cut_note(why, each) for why, each in cut.items()), refused
+
+
+def _cut_note(why: str, cut: Sequence[tuple[str, float]]) -> str:
+    """Say of recordings how much was cut off for one reason [s]."""
+    names = [name for name, _ in cut]
+    which = joined(names) if len(names) <= _MOST_NAMED else f"{len(names)} recordings"
+    ends = dict.fromkeys(f"{end(seconds for _, seconds in cut):.2g}" for end in (min, max))
+    return f"{which}: the first {' to '.join(ends)} s, {why}, were left out"
 
 
 def _n_kept(recording: Recording, start: float) -> int:

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 __all__ = ["AGREES", "agreement_sentence", "far_ones", "remainder_sentence"]
 
 AGREES = 2.0
-"""Floors up to which a recording agrees with the rig file: of repeats, one in a hundred is farther
-off."""
+"""Floors up to which a recording agrees with the rig file; assumed. Of 480 simulated repeats of ten
+quiet development cases of the second rig (seed 3), each against the other eleven of its condition,
+5 % are farther off; of 66 recordings without a cause (quiet, seed 4) 3 %."""
 
 _LIKE_THE_MOST = 0.5
 """Share of the largest distance from which on channels are named beside the farthest [-];

@@ -106,7 +106,9 @@ def waterfall(diagnosis: Diagnosis) -> Waterfall | None:
         bars.append(_step(_effect_label(diagnosis, fitted), gap, fitted.gap_after))
         gap, closed = fitted.gap_after, closed_sentence(fitted)
         if diagnosis.verdict == ("unknown",):
-            closed = closed.replace("The fit closes", "The best fit that was tried closes", 1)
+            tried = joined([cause_of(name).name for name in (fitted.name, *fitted.fitted_with)])
+            best = f"The best fit that was tried, with {tried}, closes"
+            closed = closed.replace("The fit closes", best, 1)
     if len(bars) > 1:
         bars.append(Bar("what is left", 0.0, gap, "left", f"{gap:.2f}"))
     top = 1.04 * max(floor, *(bar.high for bar in bars))
@@ -133,8 +135,7 @@ def _fitted(diagnosis: Diagnosis) -> EffectFinding | None:
 
 def _effect_label(diagnosis: Diagnosis, fitted: EffectFinding) -> str:
     if diagnosis.verdict == ("unknown",):
-        tried = [cause_of(name).name for name in (fitted.name, *fitted.fitted_with)]
-        return f"best tried: {joined(tried)}"
+        return "best fit tried"
     together = [
         name
         for name in diagnosis.verdict

@@ -36,7 +36,7 @@ from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
 from noise.training.trees import grow_boosted_trees
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -67,13 +67,17 @@ class LeftOut:
     together: list[NDArray[np.float64] | None]
 
 
-def grown(sounds: Sequence[Sample | OwnSample], seed: int) -> tuple[Classifier, LeftOut]:
+def grown(
+    sounds: Sequence[Sample | OwnSample], seed: int, fits: Iterator[object]
+) -> tuple[Classifier, LeftOut]:
     """Grow trees, calibrate them by trees that knew other kinds alone, and find the thresholds.
 
     Parameters
     ----------
     sounds : sequence of Sample or OwnSample
     seed : int
+    fits : iterator
+        Gone on with as each fit begins, of which there are `N_FOLDS` and one: a progress bar.
 
     Returns
     -------
@@ -87,6 +91,7 @@ def grown(sounds: Sequence[Sample | OwnSample], seed: int) -> tuple[Classifier, 
     x = x[:, known]
 
     def trees_of(rows: NDArray[np.bool_]) -> BoostedTrees:
+        next(fits, None)
         return _trees(x[rows], y[rows], weight[rows], seed)
 
     alone: list[NDArray[np.float64]] = [np.empty(0)] * len(sounds)

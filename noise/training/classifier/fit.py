@@ -32,7 +32,7 @@ from noise.training.classifier.masked_rows import (
     windows_of,
 )
 from noise.training.classifier.operating_point import scores
-from noise.training.classifier.own_samples import OwnSample, own_card
+from noise.training.classifier.own_samples import N_FOLDS, OwnSample, own_card
 from noise.training.classifier.real_sounds import load_real_sounds
 from noise.training.classifier.surroundings import may_sound
 
@@ -64,6 +64,7 @@ def train(
     surroundings: str = "any",
     keep: Path | None = None,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
+    growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
     """Train a classifier; the same seed gives the same classifier.
 
@@ -82,6 +83,8 @@ def train(
         taken from it where it holds those of the same call by the same program.
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.
+    growing : callable, optional
+        The same of the fits of trees, which take some minutes.
 
     Returns
     -------
@@ -119,7 +122,15 @@ def train(
         "real_sounds": _counts(heard),
         "licences": sorted({f"{s.name}: {real.licences[s.name]}" for s in heard}),
     }
-    return learn(samples, n_made_up + n_training, seed=seed, real=heard, added=added, card=card)
+    return learn(
+        samples,
+        n_made_up + n_training,
+        seed=seed,
+        real=heard,
+        added=added,
+        card=card,
+        growing=growing,
+    )
 
 
 def _drawn(
@@ -146,6 +157,7 @@ def learn(
     real: Sequence[OwnSample] = (),
     added: Sequence[OwnSample] = (),
     card: Mapping[str, object] | None = None,
+    growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
     """Learn from the first samples and all recorded sounds, and score on the other samples.
 
@@ -168,9 +180,12 @@ def learn(
         "ambiguous": round(float(np.mean([sample.ambiguous for sample in samples])), 4),
     }
     known: list[Sample | OwnSample] = [*training, *real]
-    classifier, left_out = grown([*known, *added], seed)
+    n_fits = N_FOLDS + 1 + bool(added)
+    fits = iter(growing(range(n_fits), n_fits) if growing else range(n_fits))
+    classifier, left_out = grown([*known, *added], seed, fits)
     said |= left_out_scores([*known, *added], left_out, classifier.thresholds)
     if added:
+        next(fits, None)
         without = with_trees_of(classifier, known, seed)
         before = [
             named(without.predict_proba(mask(s.features, KINDS)[:, _columns(without)]), without)
@@ -178,6 +193,7 @@ def learn(
         ]
         after = [named(p, classifier) for p in left_out.alone[-len(added) :]]
         said["own"] = own_card(added, np.array(before), np.array(after))
+    next(fits, None)  # the bar is at its end
     for name, kinds in (("pressure", SUBSETS[0]), ("three_channels", SUBSETS[1])):
         scored = masked(test, kinds)
         if scored:

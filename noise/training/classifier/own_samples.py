@@ -122,8 +122,9 @@ def own_card(
     ----------
     samples : sequence of OwnSample
     before, after : ndarray of int, shape (n_samples,)
-        Columns of their labels by the classifier without the user's recordings, and with all of
-        them but those of the same part.
+        Columns of their labels by trees that were grown without any of the user's recordings, and
+        by trees that were grown without those of the same part. Calibration and thresholds are the
+        new ones for both.
     """
     y = np.array([LABELS.index(sample.label) for sample in samples])
     files = [{s.name for s in samples if s.label == label} for label in LABELS]

@@ -10,13 +10,13 @@ from noise.base.tables import read_table
 
 NAMES = ["=cmd.wav", "<img src=x onerror=alert(1)>.wav", "c d.wav"]
 PAIRS = [(0, 1), (2, 0), (1, 2)]
-ABOUT = {"listener": "Ärger", "question": "-Which?", "played": "one gain", "seed": "0"}
+ABOUT = {"listener": "Ärger", "question": "-Which?", "played": "one gain", "seed": 0}
 
 
 @pytest.fixture
 def votes(tmp_path):
     table = Votes(tmp_path / "votes.csv")
-    table.begin(NAMES, PAIRS, **ABOUT)
+    table.begin(NAMES, lambda _: PAIRS, **ABOUT)
     return table
 
 
@@ -60,7 +60,7 @@ def test_a_vote_that_is_not_asked_for_changes_nothing(votes, number, place, said
 
 def test_juries_follow_each_other_and_do_not_touch_each_other(votes):
     votes.vote(1, 0, "first", 1.0)
-    second = votes.begin(NAMES, PAIRS[:1], **ABOUT)
+    second = votes.begin(NAMES, lambda number: PAIRS[: number - 1], **ABOUT)
     votes.vote(second.number, 0, "equal", 1.0)
     assert [jury.votes for jury in votes.juries()] == [("first",), ("equal",)]
     assert votes.jury(2).waiting is None

@@ -82,8 +82,9 @@ export class Setup {
 
   async #list() {
     const query = new URLSearchParams({ label: this.kind.value, text: this.find.value, count: 1000 });
-    const { rows } = await api(`recordings?${query}`);
+    const { rows, total } = await api(`recordings?${query}`);
     this.shown = rows;
+    this.more = total - rows.length; // are not shown
     this.chosen ??= new Set(rows.slice(0, AT_FIRST).map(({ id }) => id));
     this.#draw();
   }
@@ -99,9 +100,9 @@ export class Setup {
 
   async #tell() {
     const { size } = this.chosen;
-    this.count.textContent = `${size} chosen${size > this.most ? `: at most ${this.most} can be compared` : ""}`;
+    this.count.textContent = `${size} chosen${this.more ? `; ${this.more} recordings are not shown, find them by name` : ""}${size > this.most ? `: at most ${this.most} can be compared` : ""}`;
     this.begin.disabled = true;
-    this.plan.textContent = size < 2 ? "Choose two sounds or more." : "";
+    this.plan.textContent = size < 2 ? "Choose two sounds or more; they are the recordings that were opened." : "";
     if (size < 2 || size > this.most) return;
     const query = new URLSearchParams({ sounds: size, each: this.each.value, repeats: this.repeats.value });
     const { pairs, again } = await api(`juries/plan?${query}`);

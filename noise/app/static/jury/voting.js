@@ -52,6 +52,8 @@ export class Voting {
       this.gain, made("p", { className: "soft", textContent: KEYS }));
   }
 
+  get voted() { return this.state ? this.state.waiting ?? this.state.total : 0; }
+
   async open(number) {
     this.number = number;
     this.ready = false;
@@ -59,6 +61,8 @@ export class Voting {
     this.kept.clear();
     this.player.kept.clear();
     this.saved.textContent = "";
+    this.state = null;
+    told(""); // what went wrong before may name a sound
     const state = await api(`juries/${number}`);
     this.gain.textContent = `Played at ${state.gain}.`;
     await this.#show(state);
@@ -70,15 +74,15 @@ export class Voting {
     this.state = state;
     this.stage.textContent = state.question;
     this.progress.max = state.total;
-    this.progress.value = state.waiting ?? state.total;
-    if (state.waiting === null) return this.goes.result(this.number);
-    this.count.textContent = `${state.waiting + 1} of ${state.total}`;
+    this.progress.value = this.voted;
+    const place = state.waiting;
+    this.count.textContent = place === null ? `all ${state.total} voted` : `${place + 1} of ${state.total}`;
     this.heard = new Set();
     this.ready = false;
     this.player.active = "a";
     this.player.position = 0;
     this.#playing();
-    const place = state.waiting;
+    if (place === null) return;
     const [a, b] = await this.#sounds(place);
     if (place !== this.state.waiting) return;
     const duration = Math.max(a.length, b.length) / RATE; // the shorter one is silent at its end
@@ -139,7 +143,7 @@ export class Voting {
     }
     const may = this.ready && this.heard.size === 2;
     for (const vote of this.votes) vote.disabled = !may;
-    this.undone.disabled = !this.state?.waiting;
+    this.undone.disabled = !this.voted;
   }
 
   async vote(vote) {
@@ -153,7 +157,7 @@ export class Voting {
   }
 
   async undo() {
-    if (!this.state?.waiting || this.busy) return;
+    if (!this.voted || this.busy) return;
     await this.#write(() => api(`juries/${this.number}/undo`, {}), "undone, saved");
   }
 

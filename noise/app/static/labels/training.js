@@ -46,7 +46,7 @@ export function mountTraining(element, changed) {
   };
 }
 
-// Each file scored by trees that were grown without it, beside what was said without these files.
+// Each file scored by trees that were grown without it, and by trees grown without any of these files.
 function table({ files, labels }) {
   const head = made("tr", {}, ...["label", "pieces", "found before", "found now", "false before", "false now"].map((text) => Object.assign(made("th", { textContent: text }), { scope: "col" })));
   const rows = labels.map(({ label, windows, enough, recall_before: before, recall: now, false_names_before: wrong, false_names: stillWrong }) =>
@@ -55,7 +55,7 @@ function table({ files, labels }) {
   const few = labels.some((one) => !one.enough) ? " * too few files to tell." : "";
   return made("figure", {},
     made("table", {}, made("thead", {}, head), made("tbody", {}, ...rows)),
-    made("figcaption", { textContent: `Pieces of at most a second from ${files} corrected files, each scored by what was learned without its file.${few}` }));
+    made("figcaption", { textContent: `Pieces of at most a second from ${files} corrected files, each scored by trees grown without its file; before: by trees grown without any of these files.${few}` }));
 }
 
 function share(value) {

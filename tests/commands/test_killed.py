@@ -1,0 +1,184 @@
+"""Commands killed anywhere on their way and called again: as if nothing had happened."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from noise.batch import journal_path
+from noise.cli import main
+from tests.helpers import dying_command
+from tests.helpers.batch_work import make_recordings
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no SIGKILL")
+
+ROOT = Path(__file__).parents[2]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
+SHARES = (0.0, 0.1, 0.5, 0.9)
+
+BENCH = [
+    ["simulate", "--speed", str(n), "--seconds", "0.5", "--seed", str(n), "--out", f"bench/{n}"]
+    for n in (1, 2, 3)
+]
+MAP = ("--speed", "1,5", "--interference", "0.279", "--support-stiffness", "2214")
+CALLS = {
+    "render": ["render", "bench", "--out", "set"],
+    "render, simulated": ["render", "--interference 0.279", "--interference 0.381", "--speed", "5",
+                          "--seconds", "0.3", "--out", "set"],
+    "screen": ["screen", "PDMS", *MAP, "--simulations", "4", "--no-tolerances", "--sounds", "1",
+               "--out", "screen"],
+    "diagnose": ["diagnose", "bench", "--rig", "rig.toml", "--quick", "--out", "diagnosis"],
+    "train": ["train", "--samples", "20", "--keep", "kept.npz", "--out", "mine.npz"],
+}  # fmt: skip
+
+_TOOK = re.compile(rb'"seconds": [\d.]+|Screened in [\d.]+ s|Time taken</dt><dd>[\d.]+ s')
+"""How long it took is told, and differs."""
+
+
+def contents(folder):
+    """All files of a folder, hidden ones as well, but for journals."""
+    return {
+        path.relative_to(folder).as_posix(): _TOOK.sub(b"", path.read_bytes())
+        for path in folder.rglob("*")
+        if path.is_file() and path.suffix != ".journal"
+    }
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("of") / "all"
+    folder.mkdir()
+    for call in BENCH:
+        assert subprocess.run([sys.executable, "-m", "noise", *call], cwd=folder, env=ENVIRONMENT,
+                              capture_output=True, check=False).returncode == 0  # fmt: skip
+    (folder / "rig.toml").write_text('base = "fluorocarbon"\n')
+    return folder
+
+
+def run(folder, call, at=-1):
+    """Run a command that dies at a moment; return its exit code and the number of moments."""
+    told = folder.with_suffix(".told")
+    script = Path(dying_command.__file__)
+    done = subprocess.run(
+        [sys.executable, script, str(at), told, *call], cwd=folder, env=ENVIRONMENT,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert "Traceback" not in done.stderr, done.stderr
+    return done.returncode, int(told.read_text()) if at < 0 else at
+
+
+def is_as_if_never_killed(call, given, tmp_path, shares, *, twice=True):
+    undisturbed = Path(shutil.copytree(given, tmp_path / "undisturbed"))
+    code, n = run(undisturbed, call)
+    assert code == 0
+    assert n > 3
+    for share in shares:
+        folder = Path(shutil.copytree(given, tmp_path / f"at{share}"))
+        # Twice, since what the first leaves is in the way of the second.
+        for at in (int(share * n), int(share * n) + 1)[: 1 + twice]:
+            died, _ = run(folder, call, at)
+            assert died == -signal.SIGKILL
+        assert run(folder, call)[0] == 0
+        assert contents(folder) == contents(undisturbed)
+
+
+def test_a_set_of_sounds_killed_half_way_comes_out_as_if_it_had_not_been(tmp_path):
+    make_recordings(tmp_path / "given" / "bench", 3, 1, 0.2)
+    (tmp_path / "given" / "bench" / "day1" / "shift1" / "run0001.flac").unlink()
+    is_as_if_never_killed(CALLS["render"], tmp_path / "given", tmp_path, [0.6], twice=False)
+
+
+@pytest.mark.parametrize("command", CALLS)
+@pytest.mark.slow
+def test_a_command_killed_anywhere_comes_out_as_if_it_had_not_been(command, bench, tmp_path):
+    is_as_if_never_killed(CALLS[command], bench, tmp_path, SHARES)
+
+
+# With a journal
+
+
+def start(call, folder):
+    return subprocess.Popen(
+        [sys.executable, "-m", "noise", *call], cwd=folder, env=ENVIRONMENT,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def grown(process, journal, size):
+    """Wait until a journal has a size [byte]; return what is in it."""
+    while not journal.exists() or journal.stat().st_size < size:
+        assert process.poll() is None, process.communicate()
+        time.sleep(1e-3)
+
+
+def lines_of(journal):
+    return journal.read_bytes().rpartition(b"\n")[0].splitlines()
+
+
+def goes_on_where_it_was(command, tmp_path, shares, n=12, n_broken=2, seconds=0.2):
+    undisturbed = tmp_path / "undisturbed"
+    make_recordings(undisturbed / "runs", n, n_broken, seconds)
+    call = [command, "runs", "--out", "table.csv"]
+    start(call, undisturbed).communicate()
+    whole = journal_path(undisturbed / "table.csv")
+    for share in shares:
+        folder = tmp_path / f"at{share}"
+        shutil.copytree(undisturbed / "runs", folder / "runs")
+        journal = journal_path(folder / "table.csv")
+        process = start(call, folder)
+        grown(process, journal, share * whole.stat().st_size)
+        process.kill()
+        process.communicate()
+        assert not (folder / "table.csv").exists()
+        kept = lines_of(journal)
+        assert len(kept) >= int(share * (n - n_broken))
+        last = start(call, folder)
+        _, told = last.communicate()
+        assert last.returncode == 1
+        if len(kept) > 1:
+            assert f"{len(kept) - 1} of {n} recordings are done already" in told
+        assert lines_of(journal)[: len(kept)] == kept  # nothing was done again
+        assert len(lines_of(journal)) == len(lines_of(whole))
+        assert contents(folder) == contents(undisturbed)
+
+
+def test_labels_go_on_where_half_of_the_journal_was(tmp_path):
+    goes_on_where_it_was("label", tmp_path, [0.5])
+
+
+@pytest.mark.parametrize("command", ["label", "features"])
+@pytest.mark.slow
+def test_tables_go_on_where_the_journal_was(command, tmp_path):
+    goes_on_where_it_was(command, tmp_path, SHARES, 60, 4, 0.5)
+
+
+def workers_of(process):
+    """Processes that work for another."""
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    return [
+        int(pid) for pid in children if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    ]
+
+
+@pytest.mark.parametrize("n", [12, pytest.param(120, marks=pytest.mark.slow)])
+@pytest.mark.skipif(sys.platform != "linux", reason="tells no children of a process")
+def test_one_of_two_workers_is_killed_and_the_table_is_the_same(tmp_path, n):
+    make_recordings(tmp_path / "runs", n, 2, 0.2)
+    process = start(["label", "runs", "--out", "two.csv", "--workers", "2"], tmp_path)
+    grown(process, journal_path(tmp_path / "two.csv"), 500)
+    os.kill(workers_of(process)[0], signal.SIGKILL)
+    _, told = process.communicate()
+    assert process.returncode == 1, told
+    assert f"{n} recordings, 2 refused" in told
+    assert main(["label", str(tmp_path / "runs"), "--out", str(tmp_path / "one.csv")]) == 1
+    # A file that is refused is named as the call names it.
+    said = (tmp_path / "one.csv").read_bytes().replace(os.fsencode(f"{tmp_path}/"), b"")
+    assert (tmp_path / "two.csv").read_bytes() == said

@@ -1,0 +1,123 @@
+"""Recordings far longer, wider and more than memory: what a command needs is bounded.
+
+The files are written block by block, and taken away again; two hours of stereo are 1.4 GB.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads /proc"),
+]
+
+MOST = 600e6
+"""Memory that any of these needs at most [byte]."""
+
+GROWTH = 60e6
+"""What half an hour more, or 4,500 tiny files more, may cost [byte]: tables, not sound."""
+
+MEASURED = """
+import sys
+from noise.cli import main
+code = main(sys.argv[1:])
+with open("/proc/self/status") as file:
+    print("peak", next(line for line in file if line.startswith("VmHWM")).split()[1])
+sys.exit(code)
+"""
+
+COMMANDS = ("features", "label", "render", "review")
+OUTPUTS = {"features": "table.csv", "label": "table.csv", "render": "sound", "review": "page"}
+
+
+def ten_seconds(rate, channels):
+    """A squeal, blows, and what else there is."""
+    rng, time = np.random.default_rng(1), np.arange(10 * rate) / rate
+    sound = 0.05 * rng.standard_normal(time.size)
+    sound[3 * rate : 6 * rate] += 0.3 * np.sin(2.0 * np.pi * 1046.0 * time[: 3 * rate])
+    blow = np.exp(-np.arange(rate // 50) / (0.003 * rate))
+    for at in np.arange(6.5, 9.5, 0.05):
+        first = round(at * rate)
+        sound[first : first + blow.size] += 0.5 * blow * rng.standard_normal(blow.size)
+    return np.repeat(sound[:, np.newaxis], channels, axis=1)
+
+
+def written(path, rate, channels, seconds):
+    block = ten_seconds(rate, channels)
+    with soundfile.SoundFile(path, "w", rate, channels, subtype="PCM_16") as file:
+        for number in range(seconds // 10):
+            file.write(block * (0.5 + (number * 7919 % 13) / 30.0))
+    return path
+
+
+def peak(folder, command, *options):
+    """Memory that a call needs, in a process of its own [byte]."""
+    call = [sys.executable, "-c", MEASURED, command, *map(str, options)]
+    out = folder / OUTPUTS[command]
+    done = subprocess.run([*call, "--out", str(out)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return 1024.0 * int(done.stdout.rsplit("peak", 1)[1])
+
+
+@pytest.fixture(scope="module")
+def two_hours(tmp_path_factory):
+    path = written(tmp_path_factory.mktemp("long") / "stereo.wav", 48_000, 2, 7200)
+    yield path
+    path.unlink()
+
+
+@pytest.fixture(scope="module")
+def eight_channels(tmp_path_factory):
+    path = written(tmp_path_factory.mktemp("wide") / "eight.wav", 192_000, 8, 600)
+    yield path
+    path.unlink()
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_two_hours_of_stereo(tmp_path, two_hours, command):
+    assert peak(tmp_path, command, two_hours) < MOST
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_ten_minutes_of_eight_channels_at_192_khz(tmp_path, eight_channels, command):
+    assert peak(tmp_path, command, eight_channels) < MOST
+
+
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        *((command, ()) for command in COMMANDS),
+        ("features", ("--plot", "plots")),
+        ("render", ("--band", "200..4000", "--rate", "44100", "--bits", "16")),
+    ],
+)
+def test_memory_does_not_grow_with_length(tmp_path, monkeypatch, command, options):
+    monkeypatch.chdir(tmp_path)
+    peaks = []
+    for seconds in (600, 2400):
+        path = written(tmp_path / f"{seconds}.wav", 48_000, 2, seconds)
+        peaks.append(peak(tmp_path, command, path, *options))
+        path.unlink()
+    assert peaks[1] < peaks[0] + GROWTH
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_five_thousand_tiny_files(tmp_path, command):
+    block = ten_seconds(8000, 1)
+    peaks = []
+    for count in (500, 5000):
+        folder, out = tmp_path / f"in-{count}", tmp_path / f"out-{count}"
+        folder.mkdir()
+        out.mkdir()
+        for number in range(count):
+            start = number * 13 % 70_000
+            soundfile.write(folder / f"{number}.wav", block[start : start + 4000], 8000)
+        peaks.append(peak(out, command, folder))
+    assert peaks[1] < peaks[0] + GROWTH
