@@ -50,6 +50,9 @@ _NICE = 3
 _PATIENCE = 2.0
 """For blocks that come before one that was asked for too early [s]."""
 
+_MOST_AT_ONCE = 8
+"""Blocks in one answer."""
+
 _MOST_RUNS = 4
 """That go on at once: of pages that are open."""
 
@@ -97,7 +100,6 @@ class _Paths:
 @dataclass(eq=False)
 class _Run:
     live: LiveRun
-    design: Design
     sequence: int = 0
     turn: Condition = field(default_factory=Condition)
     heard: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
@@ -128,15 +130,16 @@ class LiveSounds:
         Parameters
         ----------
         said : object
-            ``{"run": number, "sequence": number, "serial": number, "design": {...}}``; the design
-            comes with the first block and where it has changed, and `serial` counts changes.
+            ``{"run": number, "sequence": number, "serial": number, "count": 1, "design": {...}}``;
+            the design comes with the first block and where it has changed, `serial` counts changes,
+            and `count` blocks in a row are made where the page is behind.
 
         Returns
         -------
         bytes
-            Sequence, serial, samples of pressure and of torque as unsigned integers of 32 bits;
+            Of each block sequence, serial, samples of pressure and of torque as unsigned integers;
             milliseconds that it took and speed of the shaft [rad/s], then pressure [Pa] and torque
-            [Nm] as floating-point numbers of 32 bits; all little-endian.
+            [Nm] as floating-point numbers; all of 32 bits, little-endian.
 
         Raises
         ------
@@ -144,23 +147,31 @@ class LiveSounds:
             Something of it cannot be; the run goes on as it was with the next request.
         """
         number, sequence, serial = (_whole(said, key) for key in ("run", "sequence", "serial"))
-        stated = said.get("design") if isinstance(said, dict) else None
+        assert isinstance(said, dict)
+        stated, count = said.get("design"), _whole({"count": 1} | said, "count")
+        if not 1 <= count <= _MOST_AT_ONCE:
+            raise ParameterError(f"sound: count must be from 1 to {_MOST_AT_ONCE}")
         design = None if stated is None else design_of(stated, self._bases)
         run = self._run(number, sequence, design)
         with run.turn:
             run.turn.wait_for(lambda: sequence <= run.sequence, _PATIENCE)
             if sequence != run.sequence:
                 raise ParameterError(f"sound: block {sequence} was asked for, not {run.sequence}")
-            started = time.perf_counter()
-            made = run.live.block(None if design is None else design.setting)
-            run.design = design or run.design
-            pressure = made.pressure.astype("<f4")
-            torque = made.torque[::TORQUE_STEP].astype("<f4")
-            run.heard = np.concatenate([run.heard, made.pressure])[-round(_METER * RATE) :]
-            took = 1e3 * (time.perf_counter() - started)
-            header = _HEADER.pack(sequence, serial, pressure.size, torque.size, took, made.speed)
-            run.sequence = sequence + 1
+            made = b"".join(
+                self._next(run, serial, design if i == 0 else None) for i in range(count)
+            )
             run.turn.notify_all()
+        return made
+
+    def _next(self, run: _Run, serial: int, design: Design | None) -> bytes:
+        started = time.perf_counter()
+        made = run.live.block(None if design is None else design.setting)
+        pressure = made.pressure.astype("<f4")
+        torque = made.torque[::TORQUE_STEP].astype("<f4")
+        run.heard = np.concatenate([run.heard, made.pressure])[-round(_METER * RATE) :]
+        took = 1e3 * (time.perf_counter() - started)
+        header = _HEADER.pack(run.sequence, serial, pressure.size, torque.size, took, made.speed)
+        run.sequence += 1
         return header + pressure.tobytes() + torque.tobytes()
 
     def levels(self, number: int) -> dict[str, float | None]:
@@ -183,7 +194,7 @@ class LiveSounds:
                 if design is None or sequence != 0:
                     raise ParameterError("sound: there is no such run; begin another one")
                 live = LiveRun(design.setting, rate=RATE, n=BLOCK, paths=_Paths(self._beside))
-                run = self._runs[number] = _Run(live, design)
+                run = self._runs[number] = _Run(live)
             self._runs.move_to_end(number)
             while len(self._runs) > _MOST_RUNS:
                 self._runs.popitem(last=False)

@@ -73,6 +73,19 @@ def test_another_support_is_heard_once_its_response_is_known(sounds):
     )
 
 
+def test_several_blocks_at_once_are_those_that_come_one_by_one(sounds):
+    one_by_one = heard(sounds, [PLAIN, *[None] * 3])
+    said = {"run": 9, "sequence": 0, "serial": 0, "count": 4, "design": PLAIN}
+    answer = sounds.block(said)
+    size = len(answer) // 4
+    blocks = [read(answer[i * size : (i + 1) * size]) for i in range(4)]
+    assert [block["sequence"] for block in blocks] == [0, 1, 2, 3]
+    together = np.concatenate([block["pressure"] for block in blocks])
+    np.testing.assert_array_equal(together, one_by_one)
+    with pytest.raises(ParameterError, match="count"):
+        sounds.block({**said, "sequence": 4, "count": 99})
+
+
 def test_a_design_that_cannot_be_changes_nothing(sounds):
     heard(sounds, [PLAIN, None])
     broken = {"base": "fluorocarbon", "values": {"change.critical_torque": 0.1}}

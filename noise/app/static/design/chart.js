@@ -66,8 +66,11 @@ export class Chart {
   // Where on the map it is.
   point() {
     if (!this.dot) return;
-    this.dot.setAttribute("cx", this.x(Math.abs(this.design.speed ?? this.design.controls.values.get("speed"))));
-    this.dot.setAttribute("cy", this.y(this.design.controls.values.get("interference")));
+    const at = {
+      cx: this.x(Math.abs(this.design.speed ?? this.design.controls.values.get("speed"))).toFixed(1),
+      cy: this.y(this.design.controls.values.get("interference")).toFixed(1),
+    };
+    for (const [key, value] of Object.entries(at)) if (this.dot.getAttribute(key) !== value) this.dot.setAttribute(key, value);
   }
 
   async help() {

@@ -2,10 +2,11 @@
 const REFERENCE = 2e-5, SIZE = 8192, FLOOR = 0, TOP = 100; // Pa, samples, dB
 const LOWEST = 50, HIGHEST = 20000; // Hz
 const SHOWN = 0.2; // of the torque [s]
-const EVERY = 80; // drawn anew [ms]
+const EVERY = 120; // drawn anew [ms]
 
-export class Drawings {
+export class Drawings extends EventTarget {
   constructor({ rate, torque_step: step }, torque, spectrum) {
+    super();
     this.rate = rate;
     this.torqueRate = rate / step;
     this.pressure = new Float32Array(SIZE);
@@ -20,7 +21,7 @@ export class Drawings {
     push(this.torque, torque);
     if (this.dirty) return;
     this.dirty = true;
-    setTimeout(() => requestAnimationFrame(() => { this.dirty = false; this.draw(); }), EVERY);
+    setTimeout(() => requestAnimationFrame(() => { this.dirty = false; this.draw(); this.dispatchEvent(new Event("drawn")); }), EVERY);
   }
 
   draw() {

@@ -1,6 +1,6 @@
 // In the audio thread: plays blocks of pressure one after the other at one gain, asks for more in time, counts what is missing.
-const MOST = 6; // blocks that are asked for at most, where the machine is busy
-const CALM = 15; // without a gap, after which one block less will do [s]
+const MOST = 10; // blocks that are asked for at most, where the machine is busy
+const CALM = 5; // without a gap, after which one block less will do [s]
 const RAMP = 240; // samples in which a gain is another
 
 class Ring extends AudioWorkletProcessor {

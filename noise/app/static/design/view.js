@@ -119,10 +119,10 @@ export async function mount(panel) {
   sound.addEventListener("block", ({ detail }) => {
     drawings.take(detail);
     design.speed = detail.speed;
-    chart.point();
   });
   sound.dispatchEvent(new Event("change"));
 
+  drawings.addEventListener("drawn", () => chart.point());
   setInterval(async () => {
     if (!sound.playing || panel.hidden) return;
     const found = await api(`design/levels?run=${sound.run}`).catch(() => null);
