@@ -2,7 +2,7 @@
 const HEADER = 24, HEADROOM = 1.12; // bytes; peaks between two samples are higher
 const STEPS = [1, 2, 5, 10];
 
-const AT_ONCE = 4, MOST = 8; // requests on their way; blocks in one of them, where the machine is busy
+const AT_ONCE = 2, MOST = 8; // requests on their way; blocks in one of them, where the machine is busy
 
 let address = "", run = 0, design = null, serial = 0, sent = -1, port = null, fullScale = 0.1, next = 0;
 let onTheWay = 0, begun = false;
