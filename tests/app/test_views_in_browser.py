@@ -8,7 +8,7 @@ from tests.helpers.browser import chromium
 from tests.helpers.jury_sounds import write_tones
 from tests.helpers.opened_app import opened_app
 
-STYLES = """(selector) => [...document.querySelectorAll(selector)].map((node) => {
+STYLES = """(selector) => [document.querySelector(selector)].map((node) => {
   const style = getComputedStyle(node);
   return [node.className, style.position, style.display, style.borderWidth, style.padding];
 })"""
