@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from models.recording import Recording
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from models.condition import Condition
@@ -100,7 +101,19 @@ def reader_of(recording: Recording | Parts, row: int) -> Read:
     """
     if isinstance(recording, Recording):
         return lambda first, last: recording.samples[row, first:last]
-    return lambda first, last: recording.read(first, last)[row]
+
+    def read(first: int, last: int) -> NDArray[np.float64]:
+        last = min(last, recording.n_samples)
+        if last - first <= _PIECE:
+            return np.asarray(recording.read(first, last)[row])
+        # No more at once of the other channels than has to be.
+        kept = np.empty(last - first)
+        for start in range(first, last, _PIECE):
+            end = min(start + _PIECE, last)
+            kept[start - first : end - first] = recording.read(start, end)[row]
+        return kept
+
+    return read
 
 
 def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Pieces:

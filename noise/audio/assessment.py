@@ -107,7 +107,7 @@ class Assessment:
             f"{levels.level_af_max:.1f} {unit}{re}"
         ]
         if bands:
-            measured = {k: v for k, v in levels.third_octaves.items() if not math.isnan(v)}
+            measured = {k: v for k, v in levels.third_octaves.items() if math.isfinite(v)}
             listed = ", ".join(f"{band} Hz {level:.1f}" for band, level in measured.items())
             lines.append(f"one-third octaves in {unit}{re}: {listed or 'none is measured'}")
         if (found := self.quality) is not None:

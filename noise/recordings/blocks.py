@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import soundfile
 
+from features.long.parts import reader_of
 from models.errors import RecordingError
 from models.foreign_file import refusing
 from models.recording import Channel, Recording
@@ -43,9 +44,6 @@ _LARGE = 64 << 20
 
 _CHUNK = 8 << 20
 """What is read at once [byte of 64-bit samples]."""
-
-_PIECE = 1 << 17
-"""Samples that are read at once where one channel of several is wanted."""
 
 _EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
 """Formats of the sound library that can be entered at any sample."""
@@ -127,23 +125,12 @@ class RecordingBlocks:
 
     def track(self, row: int) -> RecordingBlocks:
         """Return one channel as a recording of its own."""
-        channel = self.channels[row]
+        channel, read = self.channels[row], reader_of(self, row)
         return replace(
             self,
             channels=(replace(channel, name=channel.kind),),
-            read=lambda first, last: self._row(row, first, last),
+            read=lambda first, last: read(first, last)[np.newaxis],
         )
-
-    def _row(self, row: int, first: int, last: int) -> NDArray[np.float64]:
-        """Read one channel, and no more at once of the others than has to be."""
-        last = min(last, self.n_samples)
-        if last - first <= _PIECE:
-            return self.read(first, last)[row : row + 1]
-        kept = np.empty((1, last - first))
-        for start in range(first, last, _PIECE):
-            end = min(start + _PIECE, last)
-            kept[0, start - first : end - first] = self.read(start, end)[row]
-        return kept
 
 
 @contextmanager

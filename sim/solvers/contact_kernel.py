@@ -157,8 +157,8 @@ def contact_loop(*, with_effects: bool, with_memory: bool = False) -> Any:
         Else None takes the place of each hook and of `Hooks`.
     with_memory : bool
         Of the contact with memory and no other effect than the scatter of its critical torque,
-        whose steps are made without a call through `pointers`, in whose place there is None;
-        `draws` are the scatter's numbers, if it acts.
+        whose steps are made without a call through `pointers`: None takes the place of these, of
+        the law and of each hook; `draws` are the scatter's numbers, if it acts.
 
     Returns
     -------
@@ -170,11 +170,14 @@ def contact_loop(*, with_effects: bool, with_memory: bool = False) -> Any:
     >>> contact_loop(with_effects=False).py_func.__name__
     '_run_contact'
     """
-    hook, hooks = (_HOOK, _HOOKS) if with_effects else (types.none, types.none)
+    # Taking a function up from Python costs as much as some hundred steps.
+    law = types.none if with_memory else _LAW
+    hook = _HOOK if with_effects and not with_memory else types.none
+    hooks = _HOOKS if with_effects else types.none
     pointers = types.none if with_memory else int64
     draws = _VECTOR if with_memory and with_effects else types.none
     signature = types.void(
-        _BUSHING, _LAW, *[hook] * MOST_HOOKS, hooks, pointers, draws, _DRIVE, _LIMITS, _VECTOR,
+        _BUSHING, law, *[hook] * MOST_HOOKS, hooks, pointers, draws, _DRIVE, _LIMITS, _VECTOR,
         _ROWS, _MATRIX, int64[::1],
     )  # fmt: skip
     return njit(signature, cache=True, nogil=True, **COMPILED)(_run_contact)

@@ -138,14 +138,16 @@ class ContactRun:
         law_state = np.zeros(0) if law_state is None else law_state
         alone = [hook.function for hook in hooks] in ([], [SCATTER.contact])
         with_memory = law is MEMORY.torque and alone
+        functions: list[Any] = [None] * MOST_HOOKS
+        if hooks and not with_memory:
+            functions = [*(hook.function for hook in hooks), *[no_hook] * MOST_HOOKS][:MOST_HOOKS]
         self._rows = empty_rows(n_variables(law_state, hooks))
         self._constants = (
             contact_record(
                 system, critical_torque, kinetic_torque, coefficients, has_law=law is not None
             ),
-            law or no_law,
-            *[hook.function for hook in hooks],
-            *[no_hook if hooks else None] * (MOST_HOOKS - len(hooks)),
+            None if with_memory else law or no_law,
+            *functions,
             hooks_record(hooks, self._rows, law_state.size),
             None if with_memory else 0,
             hooks[0].values if with_memory and hooks else None,

@@ -44,6 +44,9 @@ TORQUE_STEP = 4
 _METER = 1.0
 """Of the sound, over which its level is told [s]."""
 
+_NICE = 3
+"""The sound goes on before what carries it is another."""
+
 _PATIENCE = 2.0
 """For blocks that come before one that was asked for too early [s]."""
 
@@ -113,7 +116,7 @@ class LiveSounds:
         self._bases = bases
         self._runs: OrderedDict[int, _Run] = OrderedDict()
         self._lock = Lock()
-        self._beside: Beside[Setting, ImpulseResponses] = Beside(block_paths)
+        self._beside: Beside[Setting, ImpulseResponses] = Beside(block_paths, _NICE)
 
     def stop(self) -> None:
         """End what is computed beside."""

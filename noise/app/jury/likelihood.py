@@ -30,8 +30,11 @@ __all__ = ["Likelihood"]
 _OUTCOMES = np.array([[0.5, 0.0], [-0.5, 0.0], [0.0, 1.0]])
 """By what the logarithm of an outcome's odds grows with the difference, and with t."""
 
-_STEPS, _CLOSE = 200, 1e-7
-_HALVINGS = 30
+_CLOSE = 1e-4
+"""How closely the highest point is found, in standard deviations."""
+
+_STEP = 1e-4
+"""By which a derivative is taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,9 +52,9 @@ class Likelihood:
     Examples
     --------
     >>> three_to_one = Likelihood(2, np.array([[0, 1]]), np.array([[3.0, 1.0, 0.0]]))
-    >>> best, _ = three_to_one.highest(np.zeros(3), three_to_one.free)
-    >>> round(float(np.exp(best[0] - best[1])), 4)  # 3.5 to 1.5
-    2.3333
+    >>> best, _ = three_to_one.highest(np.zeros(3), three_to_one.free, np.eye(1))
+    >>> round(float(np.exp(best[0] - best[1])), 3)  # 3.5 to 1.5
+    2.333
     """
 
     n: int
@@ -113,24 +116,19 @@ class Likelihood:
 
     def value(self, at: Array) -> float:
         """Return the logarithm of the likelihood with what is added to it."""
-        p = self.probabilities(at)
-        voted = self.counts > 0.0
-        if np.any(p[voted] <= 0.0):
-            return -np.inf
-        sign, determinant = np.linalg.slogdet(self.free.T @ self._information(p) @ self.free)
-        if sign <= 0.0:
-            return -np.inf
-        return float(self.counts[voted] @ np.log(p[voted]) + 0.5 * determinant)
+        return self.value_and_slope(at)[0]
 
-    def slope(self, at: Array) -> Array:
-        """Return the derivatives of `value`, shape (n + 1,)."""
+    def value_and_slope(self, at: Array) -> tuple[float, Array]:
+        """Return `value` and its derivatives, shape (n + 1,)."""
         p = self.probabilities(at)
-        mean = p @ _OUTCOMES
-        inverse = self.free @ np.linalg.inv(self.free.T @ self._information(p) @ self.free)
-        inverse = inverse @ self.free.T
+        information = self.free.T @ self._information(p) @ self.free
+        inverse = self.free @ np.linalg.inv(information) @ self.free.T
+        voted = self.counts > 0.0
+        value = self.counts[voted] @ np.log(p[voted]) + 0.5 * np.linalg.slogdet(information)[1]
         spread = self._differences @ inverse
         # Of each pair the covariance of its difference and t, and by it that of each outcome.
         dd, dt = (spread * self._differences).sum(axis=1), spread[:, -1]
+        mean = p @ _OUTCOMES
         off = _OUTCOMES[None] - mean[:, None]
         variance = off[..., 0] ** 2 * dd[:, None] + off[..., 1] ** 2 * inverse[-1, -1]
         variance += 2.0 * off[..., 0] * off[..., 1] * dt[:, None]
@@ -138,9 +136,18 @@ class Likelihood:
         pull = self.counts @ _OUTCOMES + self._totals[:, None] * (0.5 * skew - mean)
         slope = self._differences.T @ pull[:, 0]
         slope[-1] += pull[:, 1].sum()
-        return np.asarray(slope)
+        return float(value), np.asarray(slope)
 
-    def highest(self, start: Array, along: Array) -> tuple[Array, float]:
+    def curvature(self, at: Array) -> Array:
+        """Return how fast `slope` falls along the directions that are free, (n_free, n_free)."""
+        slopes = [
+            self.value_and_slope(at - step)[1] - self.value_and_slope(at + step)[1]
+            for step in _STEP * self.free.T
+        ]
+        curvature = np.array(slopes) @ self.free / (2.0 * _STEP)
+        return np.asarray(0.5 * (curvature + curvature.T))
+
+    def highest(self, start: Array, along: Array, curvature: Array) -> tuple[Array, float]:
         """Return where `value` is highest, and how high.
 
         Parameters
@@ -149,19 +156,19 @@ class Likelihood:
             Values and t to begin with.
         along : ndarray, shape (n + 1, n_along)
             Directions in which it looks.
+        curvature : ndarray, shape (n_along, n_along)
+            About how fast the slope falls along them, by which steps are measured.
         """
-        at, height = start, self.value(start)
-        for _ in range(_STEPS):
-            curvature = along.T @ self.information(at) @ along
-            step = along @ np.linalg.solve(curvature, along.T @ self.slope(at))
-            if np.abs(step).max(initial=0.0) < _CLOSE:
-                break
-            for _ in range(_HALVINGS):
-                new = self.value(at + step)
-                if new >= height:
-                    break
-                step = 0.5 * step
-            else:
-                break
-            at, height = at + step, new
-        return at, height
+        from scipy.optimize import minimize
+
+        if not along.shape[1]:
+            return start, self.value(start)
+        steps = along @ np.linalg.inv(np.linalg.cholesky(curvature)).T
+
+        def fall(by: Array) -> tuple[float, Array]:
+            value, slope = self.value_and_slope(start + steps @ by)
+            return -value, -steps.T @ slope
+
+        begin = np.zeros(along.shape[1])
+        found = minimize(fall, begin, jac=True, method="BFGS", options={"gtol": _CLOSE})
+        return start + steps @ found.x, -float(found.fun)

@@ -33,7 +33,7 @@ _SURE_95 = 3.8415
 """Of chi-squared with one degree of freedom [-]."""
 
 _TRIES = 60
-_CLOSE = 1e-3
+_CLOSE = 2e-3
 """How closely the ends of an interval are found, of its half width [-]."""
 
 
@@ -130,40 +130,43 @@ def _fit(wins: Array, ties: Array) -> list[tuple[float | None, float | None, flo
     first, second = np.nonzero(np.triu(wins + wins.T + ties))
     counts = np.stack([wins[first, second], wins[second, first], ties[first, second]], axis=1)
     likelihood = Likelihood(n, np.stack([first, second], axis=1), counts)
-    best, height = likelihood.highest(np.zeros(n + 1), likelihood.free)
-    floor = height - 0.5 * _SURE_95
+    free = likelihood.free
+    start = np.zeros(n + 1)
+    best, _ = likelihood.highest(start, free, free.T @ likelihood.information(start) @ free)
+    curvature = likelihood.curvature(best)
+    best, height = likelihood.highest(best, free, curvature)
     ends = [
-        [_end(likelihood, best, height, floor, place, side) for side in (-1.0, 1.0)]
+        [_end(likelihood, best, height, curvature, place, side) for side in (-1.0, 1.0)]
         for place in range(n)
     ]
     return [(float(best[place]), low, high) for place, (low, high) in enumerate(ends)]
 
 
 def _end(
-    likelihood: Likelihood, best: Array, height: float, floor: float, place: int, side: float
+    likelihood: Likelihood, best: Array, height: float, curvature: Array, place: int, side: float
 ) -> float:
-    """Return where the likelihood with one value held has fallen to the floor."""
-    free = likelihood.free
-    covariance = np.linalg.inv(free.T @ likelihood.information(best) @ free)
-    # Directions that leave this value as it is, and the one that moves it by one.
-    row = free[place]
-    others = free @ np.linalg.svd(row[None])[2][1:].T
-    moving = free @ covariance @ row
-    width = math.sqrt(float(row @ covariance @ row) * _SURE_95)
-    moving = moving / moving[place]
+    """Return where the likelihood with one value held has fallen by what 95 % allow."""
+    row = likelihood.free[place]
+    # Directions that leave this value as it is, and the likeliest one that moves it by one.
+    held = np.linalg.svd(row[None])[2][1:].T
+    others, across = likelihood.free @ held, held.T @ curvature @ held
+    towards = np.linalg.solve(curvature, row)
+    moving = likelihood.free @ towards / (row @ towards)
+    allowed = 0.5 * _SURE_95
+    width = math.sqrt(2.0 * allowed * float(row @ towards))
     low, high, away = 0.0, math.inf, width
     at = best
     for _ in range(_TRIES):
         start = at + moving * (best[place] + side * away - at[place])
-        at, reached = likelihood.highest(start, others)
-        if reached > floor:
+        at, reached = likelihood.highest(start, others, across)
+        if height - reached < allowed:
             low = max(low, away)
         else:
             high = min(high, away)
         # The root of how far it has fallen is nearly a straight line.
         fallen = math.sqrt(max(height - reached, 1e-12))
-        slope = -side * float(likelihood.slope(at) @ moving) / (2.0 * fallen)
-        step = (math.sqrt(height - floor) - fallen) / slope if slope > 0.0 else math.inf
+        slope = -side * float(likelihood.value_and_slope(at)[1] @ moving) / (2.0 * fallen)
+        step = (math.sqrt(allowed) - fallen) / slope if slope > 0.0 else math.inf
         if abs(step) < _CLOSE * width:
             away += step
             break

@@ -100,7 +100,15 @@ export async function mount(panel) {
   });
   reset.addEventListener("click", () => { controls.put({}); changed(); });
   fit.addEventListener("click", () => sound.fit());
-  play.addEventListener("click", () => (sound.playing ? sound.stop() : sound.start()));
+  play.addEventListener("click", () => {
+    if (sound.playing) {
+      sound.stop();
+      level.textContent = "Not playing.";
+    } else {
+      level.textContent = "Begins; the very first time that takes a while.";
+      sound.start();
+    }
+  });
   sound.addEventListener("change", () => {
     if (!sound.playing) design.speed = undefined;
     play.textContent = sound.playing ? "Stop sound" : "Play";
