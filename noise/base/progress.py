@@ -128,9 +128,12 @@ def track(
     from tqdm import tqdm
 
     # The bar goes away at the end: the line that says what came of the work follows.
-    with tqdm(
-        items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr
-    ) as advancing:
+    with (
+        tqdm(
+            items, desc=doing, total=total, unit=f" {unit}", leave=False, file=sys.stderr
+        ) as advancing,
+        _ticking(advancing),
+    ):
         yield from advancing
 
 
@@ -189,20 +192,29 @@ def steps(doing: str, number: int) -> Iterator[Steps]:
         return
     from tqdm import tqdm
 
-    with tqdm(desc=doing, total=number, unit=" step", leave=False, file=sys.stderr) as bar:
-        ended = threading.Event()
+    with (
+        tqdm(desc=doing, total=number, unit=" step", leave=False, file=sys.stderr) as bar,
+        _ticking(bar),
+    ):
+        yield Steps(bar)
 
-        def tick() -> None:
-            while not ended.wait(_TICK):
-                bar.refresh()
 
-        ticking = threading.Thread(target=tick, daemon=True)
-        ticking.start()
-        try:
-            yield Steps(bar)
-        finally:
-            ended.set()
-            ticking.join()
+@contextmanager
+def _ticking(bar: tqdm[object]) -> Iterator[None]:
+    """Let the time of a bar go on while one item takes long."""
+    ended = threading.Event()
+
+    def tick() -> None:
+        while not ended.wait(_TICK):
+            bar.refresh()
+
+    ticking = threading.Thread(target=tick, daemon=True)
+    ticking.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        ticking.join()
 
 
 def _on_terminal() -> bool:

@@ -20,7 +20,7 @@ def configure(parser: ArgumentParser) -> None:
         "Open recordings, a label table or a rig in a local app: listen, see, correct labels, hear "
         "a design while it is changed, compare sounds blind. Its address is the first line on "
         "standard output; only this machine reaches it, and only by that address. It stops by the "
-        "button Stop, or by Ctrl-C here. Corrections are written at once."
+        "button Stop, or by Ctrl-C here. Corrections and votes are written at once."
     )
     parser.epilog = (
         "examples: bushing-noise open recordings; bushing-noise open labels.csv; "

@@ -137,7 +137,7 @@ def configure(parser: ArgumentParser) -> None:
         "--sound-quality",
         action="store_true",
         help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
-        "needs the extra sound-quality, and some seconds a second of sound",
+        "needs the extra sound-quality, and some seconds a second of sound; 10 minutes at most",
     )
     opt.add_excel(parser)
     opt.add_calibration(parser)

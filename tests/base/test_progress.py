@@ -62,6 +62,16 @@ def test_the_bar_of_a_long_step_goes_on_showing_how_long_it_takes(monkeypatch):
     assert "[00:02<" in shown
 
 
+def test_the_bar_of_items_goes_on_while_one_takes_long(monkeypatch):
+    def long():
+        for _ in track(["drive"], "computing", unit="row group"):
+            time.sleep(2.2)
+
+    shown = on_terminal(monkeypatch, long)
+    assert "0/1 " in shown
+    assert "[00:02<" in shown
+
+
 def test_more_steps_than_were_expected_are_never_more_than_all(monkeypatch):
     def fits():
         with steps("diagnosing", 1) as tell:

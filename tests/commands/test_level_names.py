@@ -107,6 +107,7 @@ def test_a_diagnosis_tells_the_levels_of_the_label_table(recorded, labelled):
     assert round(found.level_measured, 2) == labelled["level_dba"]
 
 
+@pytest.mark.slow
 def test_the_demo_page_tells_the_levels_of_its_table(tmp_path):
     assert main(["demo", "--out", str(tmp_path)]) == 0
     with (tmp_path / "labels.csv").open(newline="") as file:
@@ -153,6 +154,7 @@ def test_segments_have_the_levels_of_what_they_hold(tmp_path):
         ]
 
 
+@pytest.mark.slow
 def test_loudness_has_one_number_in_tables_of_labels_and_of_sounds(squeal, tmp_path):
     pytest.importorskip("mosqito")
     (row,) = label(squeal, loudness=True)

@@ -41,7 +41,7 @@ CALLS = {
     "diagnose": ["run.wav", "--rig", "rig.toml", "--quick", "--out", "diagnosis"],
     "identify": ["run.wav", "--out", "mine"],
     "review": ["demo/recordings", "--out", "review.html"],
-    "train": ["--samples", "1", "--out", "mine.npz"],
+    "train": ["--samples", "20", "--out", "mine.npz"],
     "open": ["demo/recordings", "--no-browser"],
     "thesis": ["--out", "thesis.csv"],
 }  # fmt: skip

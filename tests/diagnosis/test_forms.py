@@ -112,3 +112,11 @@ def test_an_impulse_response_has_the_levels_of_its_transfer_function_within_the_
     at_lines = np.array([80.0, 200.0, 690.0, 2000.0, 6000.0])
     got = np.exp(-2j * np.pi * np.outer(at_lines, np.arange(n)) / rate) @ taps
     assert np.abs(got) == pytest.approx(np.abs(transfer.at(at_lines, falls_below=True)), rel=0.05)
+
+
+def test_a_plain_hum_is_not_taken_for_the_lines_of_slips():
+    runs = tuple(run(at(v, 2214.0), ("mains_hum", {}), seed=40 + i) for i, v in enumerate(SPEEDS))
+    comparison = CaseComparison(RIG, runs, EFFECTS, None, (), np.empty(0))
+    (form,) = estimated_forms(comparison, (0, 1, 2), "mains_hum")
+    lines = 1.0 / runs[0].duration
+    assert float(form.name.split()[0]) == pytest.approx(50.0, abs=0.2 * lines)

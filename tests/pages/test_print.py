@@ -78,7 +78,8 @@ def identification(folder):
 
 
 KINDS_OF_PAGE = (
-    demo, review, screen, diagnosis, pytest.param(identification, marks=pytest.mark.slow),
+    review, diagnosis,
+    *(pytest.param(made, marks=pytest.mark.slow) for made in (demo, screen, identification)),
 )  # fmt: skip
 
 

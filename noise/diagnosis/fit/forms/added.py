@@ -34,12 +34,16 @@ _WANDER = 0.008
 _BESIDE = (3, 8)
 """Lines beside one of the hum's that tell what it stands out of."""
 
+_MOST_OF_LEAST = 4.0
+"""Times the power that the recording with the least of it has in a line of the hum, which is in all
+of them; assumed."""
+
 _STANDS_OUT = 3.0
 """Times its neighbours' power; assumed."""
 
 
-def noise_forms(compared: Sequence[Compared]) -> list[Form]:
-    """Estimate stationary noise: power that bands have too much, channel by channel."""
+def _excess(compared: Sequence[Compared]) -> NDArray[np.float64]:
+    """Power that bands surely have too much beside the nominal model, 0 elsewhere."""
     measured, nominal = (
         np.exp(2.0 * np.array([getattr(c, part) for c in compared]))
         for part in ("signature", "nominal")
@@ -47,11 +51,15 @@ def noise_forms(compared: Sequence[Compared]) -> list[Form]:
     scale = np.array([c.scale for c in compared])
     weight = 1.0 / ((2.0 * scale * nominal) ** 2 + (_UNSTEADY * measured) ** 2)
     excess = np.nansum(weight * (measured - nominal), axis=0) / np.nansum(weight, axis=0)
-    excess = np.where(excess > _SURE / np.sqrt(np.nansum(weight, axis=0)), excess, 0.0)
+    return np.where(excess > _SURE / np.sqrt(np.nansum(weight, axis=0)), excess, 0.0)
+
+
+def noise_forms(compared: Sequence[Compared]) -> list[Form]:
+    """Estimate stationary noise: power that bands have too much, channel by channel."""
+    excess = _excess(compared)
     bands: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
     for kind in KINDS:
-        place = [i for i, name in enumerate(NAMES) if name.startswith(kind)]
-        low = np.array([float(NAMES[i].rpartition("_")[2]) for i in place])
+        place, low = _bands(kind)
         power = np.nan_to_num(np.maximum(excess[place], 0.0))
         if power.any():
             edges = np.append(low, low[-1] * low[1] / low[0])
@@ -70,6 +78,12 @@ def noise_forms(compared: Sequence[Compared]) -> list[Form]:
         return noisy
 
     return [amount_form("background_noise", "estimated", sensors=sensors)]
+
+
+def _bands(kind: str) -> tuple[list[int], NDArray[np.float64]]:
+    """Places of a channel's bands in a signature, and where they begin [Hz]."""
+    place = [i for i, name in enumerate(NAMES) if name.startswith(kind)]
+    return place, np.array([float(NAMES[i].rpartition("_")[2]) for i in place])
 
 
 def _noise(
@@ -92,6 +106,7 @@ def hum_forms(compared: Sequence[Compared]) -> list[Form]:
     kinds = [kind for kind in KINDS if all(kind in c.measured for c in compared)]
     spectra = {k: [_spectrum(c.measured[k]) for c in compared] for k in kinds}
     rates = [c.rate / c.measured[k].size for k in kinds[:1] for c in compared]
+    excess = _excess(compared)
 
     def found_at(frequency: float) -> tuple[float, dict[str, NDArray[np.float64]]]:
         score, lines = 0.0, {}
@@ -100,9 +115,15 @@ def hum_forms(compared: Sequence[Compared]) -> list[Form]:
             line, usual = (np.array(x) for x in zip(*parts, strict=True))
             weight = 1.0 / usual**2
             mean = (weight * (line - usual)).sum(axis=0) / weight.sum(axis=0)
+            mean = np.minimum(mean, _MOST_OF_LEAST * line.min(axis=0))
             sure = mean * np.sqrt(weight.sum(axis=0))
-            lines[kind] = np.where(sure > _STANDS_OUT, mean, 0.0)
-            score += float(np.log1p(np.maximum(sure, 0.0)).sum())
+            # Slips have lines too, which other recordings and the nominal model tell from hum; and
+            # chance in eighty lines that do not stand out would outweigh a plain tone.
+            place, low = _bands(kind)
+            band = np.searchsorted(low, frequency * np.arange(1, _HARMONICS + 1), "right") - 1
+            clear = (sure > _STANDS_OUT) & (excess[place][np.maximum(band, 0)] > 0.0)
+            lines[kind] = np.where(clear, mean, 0.0)
+            score += float(np.log1p(sure[clear]).sum())
         return score, lines
 
     grid = [m * (1.0 + x) for m in (50.0, 60.0) for x in np.linspace(-_WANDER, _WANDER, 33)]
