@@ -59,7 +59,7 @@ class LiveConvolution:
         self._next: NDArray[np.complex128] | None = None
 
     def exchange(self, responses: Sequence[NDArray[np.float64]]) -> None:
-        """Let other responses, as many as there were, take over within the next block."""
+        """Let other responses, shape (m,) each and as many as before, take over within a block."""
         self._next = self._spectra(responses)
 
     def __call__(self, signals: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:

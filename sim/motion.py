@@ -313,7 +313,7 @@ class MotionSolver:
         held[3] = 0.0
 
     def advance(self, drive: NDArray[np.float64], n: int) -> Motion:
-        """Solve the next `n` samples; `drive` goes on beyond them unless the run ends there."""
+        """Solve the next `n` samples; `drive`, shape (m,), goes beyond them unless the run ends."""
         if self._contact is None:
             states, _, _ = advance_stick_slip(
                 self._packed, *self._torques, drive[: n + 1], self._step, self._state, n

@@ -181,7 +181,7 @@ class ContactRun:
         motion : ndarray, shape (4,)
             theta1 [rad], theta1' [rad/s], theta2, theta2'.
         direction : float
-            Of the sliding, by its sign: +1 or -1, 0 in stick.
+            Of the sliding, by its sign: +1 or -1, 0 in stick [-].
         """
         motion = self._rows.end[:N_MOTION].copy()
         if not self._constants[0].has_law:
@@ -198,7 +198,7 @@ class ContactRun:
     def go_on_from(self, before: ContactRun, shaft_speed: float) -> None:
         """Start where another run has come to: its motion, and the inner states that both have.
 
-        What the other one lacks starts as after a long rest.
+        What the other one lacks starts as after a long rest. The shaft has a speed [rad/s].
         """
         self._constants[0].context[:] = before._constants[0].context
         kept = self._carried.copy()

@@ -61,7 +61,7 @@ def test_pauses_do_not_make_a_sound_less_loud():
 
 
 @given(st.floats(1e-6, 1e3), st.floats(-60.0, -10.0))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_matched_sounds_have_the_loudness_asked_for(peak, target):
     rng = np.random.default_rng(3)
     bursts = rng.standard_normal(RATE) * (np.arange(RATE) % 12000 < 600)

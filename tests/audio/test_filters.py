@@ -30,7 +30,7 @@ def left(through, frequency):
     return 20.0 * np.log10(np.sqrt(np.mean(kept**2)) + 1e-12)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(50.0, 2000.0), st.floats(1.5, 8.0))
 def test_a_band_keeps_what_lies_in_it_is_6_db_down_at_its_ends_and_takes_out_the_rest(low, ratio):
     through = SoundFilter((low, low * ratio))

@@ -23,7 +23,7 @@ def levels_of(samples, grid):
     return line_levels(reader(samples), samples.size, RATE, 1.0, grid)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(200.0, 15e3))
 def test_a_steady_tone_has_its_own_level_in_its_own_row(frequency):
     grid = Grid(4000, 20000, 20, 200, 50.0, 20e3, 2048, padding=2)
@@ -36,7 +36,7 @@ def test_a_steady_tone_has_its_own_level_in_its_own_row(frequency):
     assert abs(strongest - row) <= 1 + wide / per_row
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(200.0, 15e3), st.floats(-0.02, 0.02))
 def test_the_line_near_the_cursor_is_found_to_a_thousandth(frequency, off):
     samples = tone(frequency)

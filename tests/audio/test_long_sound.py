@@ -27,7 +27,6 @@ def hiss(n, seed=1):
     return np.random.default_rng(seed).normal(size=n)
 
 
-@settings(deadline=None)
 @given(st.integers(1, 400), st.data())
 def test_chunks_give_any_part(n, data):
     whole = np.arange(float(n))
@@ -57,7 +56,7 @@ def test_sound_resampled_in_chunks_is_that_of_the_whole(rate, new_rate, monkeypa
     )
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(100.0, 1000.0), st.integers(2000, 9000))
 def test_a_filter_in_chunks_is_that_of_the_whole(frequency, length):
     through, x = SoundFilter((frequency, 3000.0), (2.0 * frequency,)), hiss(60_000)
@@ -75,7 +74,7 @@ def test_sounds_are_joined_with_silence_between_them():
     np.testing.assert_array_equal(joined.read(3, 9), [1.0, 1.0, 0.0, 0.0, 2.0, 2.0])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     seconds=st.floats(0.4, 6.0),
     rate=st.sampled_from([44_100, 48_000]),

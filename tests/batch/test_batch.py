@@ -94,9 +94,7 @@ def test_a_journal_torn_at_any_byte_can_be_gone_on_with(work, jobs, tmp_path):
 
 
 @given(st.data())
-@settings(
-    max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_journal_torn_or_garbled_anywhere_tells_nothing_wrong_and_can_be_gone_on_with(
     work, tmp_path, data
 ):

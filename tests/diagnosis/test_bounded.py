@@ -20,7 +20,7 @@ def _tone(rate, seconds, frequency=1000.0):
     return Recording(samples, rate, (Channel("torque"),))
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(rate=st.sampled_from([8e3, 30e3, 51.2e3, 65.536e3, 96e3, 192e3]), seconds=st.floats(0.3, 4))
 def test_no_recording_is_longer_or_finer_than_is_looked_at(rate, seconds):
     before = _tone(rate, seconds)

@@ -33,7 +33,7 @@ def _ordered(table, order):
 values = st.one_of(st.floats(-1e6, 1e6), st.just(np.nan), st.just(np.inf))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(values, values, values), min_size=1, max_size=6), st.booleans())
 def test_no_case_gives_a_number_that_is_none(rows, repeated):
     speeds = [2.0] * len(rows) if repeated else None
@@ -43,7 +43,7 @@ def test_no_case_gives_a_number_that_is_none(rows, repeated):
     assert np.isfinite(row).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.permutations(range(6)), st.integers(0, 100))
 def test_the_order_of_recordings_does_not_count(order, seed):
     measured = np.random.default_rng(seed).normal(size=(6, 3))

@@ -50,7 +50,7 @@ def test_two_recordings_are_too_few(plain):
     assert flat_channels(cut, lambda one: plain[cut.index(one)]) == ()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(20.0, 3000.0), st.floats(0.0, 1.0), st.integers(0, 99))
 def test_no_tone_in_noise_passes_its_peak_slower_than_a_parabola(frequency, noise, seed):
     rng = np.random.default_rng(seed)

@@ -140,7 +140,7 @@ def test_an_effect_on_the_chain_is_in_what_a_torque_is_expected_to_sound_like():
 AMOUNTS = st.floats(0.7, 1.4)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(AMOUNTS, AMOUNTS, AMOUNTS, st.floats(0.01, 0.9))
 def test_an_improved_rig_file_reads_as_the_rig_it_was_written_of(
     tmp_path_factory, damping, inertia, stiffness, share
@@ -160,7 +160,7 @@ def test_an_improved_rig_file_reads_as_the_rig_it_was_written_of(
     assert load_rig(path) == made
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(AMOUNTS, AMOUNTS)
 def test_a_change_and_a_recalibration_multiply(change, factor):
     rig = load_material_rig("fluorocarbon")

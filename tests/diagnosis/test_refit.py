@@ -165,7 +165,7 @@ conditions = st.lists(
 )
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(conditions)
 def test_whole_conditions_are_held_out(at):
     fitted, held = split(at)

@@ -47,7 +47,7 @@ def _slips(n, rng):
     return edges[::2].astype(np.int64), edges[1::2].astype(np.int64)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(signals)
 def test_a_distribution_is_counted_as_defined(x):
     found = np.empty(12)
@@ -63,7 +63,7 @@ def test_a_distribution_is_counted_as_defined(x):
     assert found.tolist() == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(signals, st.floats(0.0, 1.0))
 def test_a_quantile_is_that_of_numpy(x, share):
     assert quantile(x, share) == pytest.approx(float(np.quantile(x, share)), **CLOSE)
@@ -72,7 +72,7 @@ def test_a_quantile_is_that_of_numpy(x, share):
     assert found[0] == pytest.approx(float(np.quantile(x**2, share)), **CLOSE)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(signals)
 def test_a_signal_is_windowed_about_its_trend(x):
     window, found = np.hanning(x.size), np.empty(x.size)
@@ -80,7 +80,7 @@ def test_a_signal_is_windowed_about_its_trend(x):
     assert found == pytest.approx(detrend(x) * window, rel=1e-9, abs=1e-9)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seeds, st.lists(st.integers(0, 199), min_size=1, max_size=20))
 def test_a_line_stands_out_of_the_median_of_what_lies_beside_it(seed, lines):
     power = np.random.default_rng(seed).exponential(size=200)
@@ -95,7 +95,7 @@ def test_a_line_stands_out_of_the_median_of_what_lies_beside_it(seed, lines):
         assert ratio == pytest.approx(expected, **CLOSE)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds)
 def test_powers_of_bands_and_between_signals_are_sums_of_squares(seed):
     one, other = _spectra(seed, 5, 40), _spectra(seed + 1, 5, 40)
@@ -111,7 +111,7 @@ def test_powers_of_bands_and_between_signals_are_sums_of_squares(seed):
     assert np.allclose(cross, np.mean(np.conj(one) * other, axis=0), rtol=1e-9, atol=1e-12)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(signals)
 def test_quarters_are_each_about_their_own_mean(x):
     found = np.empty(6)
@@ -122,7 +122,7 @@ def test_quarters_are_each_about_their_own_mean(x):
     assert found.tolist() == pytest.approx(expected, rel=1e-9, abs=1e-12)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds, st.integers(256, 2000))
 def test_segments_are_windowed_about_their_mean(seed, n):
     x = np.random.default_rng(seed).normal(3.0, 1.0, n)
@@ -133,7 +133,7 @@ def test_segments_are_windowed_about_their_mean(seed, n):
     assert np.allclose(segment_spectra(x, 256), expected, rtol=1e-9, atol=1e-12)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seeds)
 def test_what_a_contact_does_in_stick_is_gathered(seed):
     rng = np.random.default_rng(seed)
@@ -165,7 +165,7 @@ def test_what_a_contact_does_in_stick_is_gathered(seed):
         assert row.tolist() == pytest.approx(sums, rel=1e-9, abs=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seeds)
 def test_the_friction_torque_of_slips_is_gathered_by_speed(seed):
     rng = np.random.default_rng(seed)
@@ -186,7 +186,7 @@ def test_the_friction_torque_of_slips_is_gathered_by_speed(seed):
             assert classes[way, i].tolist() == pytest.approx(sums, rel=1e-9, abs=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seeds, st.integers(0, 40))
 def test_each_slip_is_described_by_its_own_samples_and_those_near(seed, near):
     rng = np.random.default_rng(seed)
@@ -202,7 +202,7 @@ def test_each_slip_is_described_by_its_own_samples_and_those_near(seed, near):
         assert found[:, k].tolist() == pytest.approx(expected, **CLOSE)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seeds)
 def test_the_mean_cycle_leaves_out_what_reaches_into_another_slip(seed):
     rng = np.random.default_rng(seed)
@@ -219,7 +219,7 @@ def test_the_mean_cycle_leaves_out_what_reaches_into_another_slip(seed):
     assert found == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds)
 def test_rings_are_about_the_mean_of_their_stick(seed):
     rng = np.random.default_rng(seed)

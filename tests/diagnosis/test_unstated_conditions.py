@@ -34,7 +34,7 @@ def _recorded(speed, interference, support, *kinds, seed=0):
     return replace(only(made, *kinds), name="run03.wav")
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     speed=st.floats(0.3, 12.0),
     backwards=st.booleans(),

@@ -123,7 +123,7 @@ def test_a_channel_without_a_share_is_read_as_it_is(name):
 
 
 @given(st.integers(0, 2**31))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_a_drawn_curve_rises_from_nothing_to_one(seed):
     table = drawn_curve(np.random.default_rng(seed))
     assert table[0] == table.size - 1

@@ -89,7 +89,7 @@ def test_short_blocks_at_odd_rates_are_finite_or_undefined(kind, rate, n):
 
 
 @pytest.mark.filterwarnings("error")
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     n=st.integers(16, 3000),
     seed=st.integers(0, 2**16),

@@ -124,7 +124,7 @@ def test_8_khz_is_within_reach_of_48_khz():
     assert found.fundamental == pytest.approx(7900, rel=0.001)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     frequency=st.floats(40.0, 2000.0),
     seed=st.integers(0, 100),
@@ -140,7 +140,7 @@ def test_fundamental_of_a_sawtooth_does_not_depend_on_gain_offset_or_noise(
     assert found.harmonicity > 0.9
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(first=st.floats(200.0, 6500.0), second=st.floats(200.0, 6500.0), ratio=st.floats(0.15, 1.0))
 def test_any_two_tones_apart_are_told_from_each_other(first, second, ratio):
     assume(abs(first - second) > 100.0)

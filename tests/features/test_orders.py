@@ -20,7 +20,7 @@ def middles(found):
 
 
 @given(first=st.floats(300.0, 900.0), slowest=st.floats(0.5, 5.0), ratio=st.floats(1.5, 5.0))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_an_order_stays_while_the_speed_changes(first, slowest, ratio):
     order = 2.0 * np.pi * first / slowest  # at the frequency `first` where it begins
     speed = np.linspace(slowest, ratio * slowest, round(3.0 * RATE))

@@ -109,7 +109,7 @@ def test_silence_has_no_pulses():
     assert math.isnan(found.kurtosis)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     frequency=st.floats(20.0, 200.0),
     drop=st.floats(0.5, 20.0),
@@ -222,7 +222,7 @@ def test_four_slips_have_no_glide():
 # --- slips of a sliding speed -----------------------------------------------------------------
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(n=st.integers(0, 300), seed=st.integers(0, 2**16), apart=st.integers(0, 12))
 def test_slips_of_a_speed_are_those_that_a_reader_marks_from_sample_to_sample(n, seed, apart):
     speed = 2.0 * np.cumsum(noise(n, seed))

@@ -30,7 +30,7 @@ def test_density_is_that_of_scipy_where_its_segments_fit():
     assert ours.density == pytest.approx(density)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     rate=st.sampled_from([8e3, 16e3, 44.1e3, 51.2e3]),
     resolution=st.floats(2.0, 100.0),

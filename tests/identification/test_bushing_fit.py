@@ -42,7 +42,7 @@ def simulated(stiffness, speed, support, critical=10.7, kinetic=8.0, damping=0.0
     return rig, recorded(run.recording["torque"], speed, support=support)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(
     stiffness=st.floats(300.0, 1000.0),
     speed=st.floats(0.4, 1.6),

@@ -56,7 +56,7 @@ def slow_test(law, seed=3):
     return static_test(torque, angle, RATE, Condition(None, 0.279e-3, SUPPORT), law)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(
     stiffness=st.floats(300.0, 1200.0),
     support=st.sampled_from([2214.0, 3745.0, math.inf]),
@@ -124,7 +124,7 @@ def test_swinging_that_slips_is_no_static_test():
     assert our_own(rig, Oscillation(0.1, 1.0), SUPPORT, 1.0) is None
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     n=st.integers(1, 3000),
     seed=st.integers(0, 1000),

@@ -62,7 +62,7 @@ def test_a_stiffness_that_no_beam_has_is_refused(stiffness):
 
 
 @given(stiffnesses, st.floats(1 / 1300, 1 / 800))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_first_torsional_mode_is_the_lumped_models(stiffness, inertia):
     model = beam_structure(STEEL, stiffness, inertia, 0.02, 40e3)
     lumped = math.sqrt(stiffness / inertia) / (2 * math.pi)
@@ -108,7 +108,7 @@ def test_anchors_receive_what_the_exact_beam_passes_on(frequency):
 
 
 @given(stiffnesses)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_at_rest_the_anchors_balance_the_torque(stiffness):
     model = beam_structure(STEEL, stiffness, J_C, 0.02, 40e3)
     static = model.frequency_response([0.0])[:, TORQUE, 0].real

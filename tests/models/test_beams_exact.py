@@ -110,7 +110,7 @@ def test_frequencies_are_those_of_many_finite_elements(beams, motion, length):
     st.floats(0.06, 0.2), st.floats(2e-4, 3e-3), st.floats(1.0, 1e7), st.floats(1e4, 1e10),
     st.sampled_from(MOTIONS),
 )  # fmt: skip
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_no_mode_is_missed(length, inertia, rotation, translation, motion):
     beams = replace(STEEL, anchor_rotation=rotation, anchor_translation=translation)
     structure = replace(BENCH, beams=beams, length=length, clamp_inertia=inertia)
@@ -195,7 +195,7 @@ def test_stations_are_points_of_clamp_and_beam():
 
 
 @given(st.floats(0.05, 0.2), st.floats(20.0, 1e6), st.floats(2e6, 1e12))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_anchors_that_yield_leave_less_stiffness_and_no_anchor_any(length, rotation, translation):
     beams = replace(STEEL, anchor_rotation=rotation, anchor_translation=translation)
     stiffness = torsional_stiffness(beams, length)

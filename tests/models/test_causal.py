@@ -93,7 +93,7 @@ def test_what_was_not_measured_above_stays_no_larger_than_what_was():
     assert gain[5500:].max() < gain[:5000].max()
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(delay=st.integers(40, 300), gain=st.floats(0.1, 10))
 def test_a_delay_stays_a_delay(delay, gain):
     f = lines(low=20.0, high=8000.0, spacing=20.0)

@@ -70,7 +70,7 @@ def test_mode_is_followed_until_it_is_inaudible():
     assert ringing_samples(500.0, 0.0, RATE, 4800) == 4800
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(natural=st.floats(20.0, 9e3), damping=st.floats(1.0, 1e3))
 def test_an_overdamped_mode_follows_the_continuous_one_up_to_a_sixth_of_the_rate(natural, damping):
     omega, omega_r = 2 * np.pi * np.geomspace(10, 16e3, 100), 2 * np.pi * natural
@@ -101,7 +101,7 @@ def test_response_goes_on_through_critical_damping(section, natural):
     assert above - at == pytest.approx(at - below, rel=0.0, abs=1e-8 * scale)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(natural=st.floats(50.0, 1000.0), damping=st.floats(0.6, 8.0))
 def test_a_mode_moves_as_integrated_in_time_whether_it_rings_or_not(natural, damping):
     omega, seconds = 2 * np.pi * natural, 0.02

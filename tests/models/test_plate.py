@@ -22,7 +22,7 @@ def _bending_stiffness(plate):
 
 
 @given(st.floats(0.2, 2.0), st.floats(0.2, 2.0), st.floats(2e-3, 2e-2))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_frequencies_are_those_of_the_closed_form(length, width, thickness):
     plate = _plate(length, width, thickness)
     modes = plate_modes(plate, 6e3)

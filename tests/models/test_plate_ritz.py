@@ -77,7 +77,7 @@ def test_a_strip_clamped_at_one_end_bends_as_a_beam():
     st.integers(0, 3),
     st.floats(0.4, 2.5),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_holding_an_edge_more_lowers_no_frequency(edges, held, ratio):
     def lowest(edges):
         return ritz_modes((ratio, 1.0), tuple(edges), 0.3, 1.0, 8.0).frequencies

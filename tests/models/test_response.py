@@ -13,7 +13,7 @@ CHAIN = ImpulseResponses(48e3, *random.normal(size=(4, 300)))
 
 
 @given(st.integers(1, 400), st.integers(1, 120), st.integers(1, 64))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_blocks_leave_no_trace_in_a_convolution(n, m, block):
     signal, impulse_response = np.split(np.random.default_rng(n).normal(size=n + m), [n])
     with pytest.MonkeyPatch.context() as patch:
@@ -30,7 +30,7 @@ def test_a_steady_torque_is_silent(torque):
 
 
 @given(st.floats(-40, 40))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_the_mean_torque_is_not_heard(mean):
     torque = np.random.default_rng(5).normal(size=500)
     for lifted, plain in zip(radiate(CHAIN, torque + mean), radiate(CHAIN, torque), strict=True):

@@ -94,9 +94,7 @@ HOSTILE = st.one_of(
 )  # fmt: skip
 
 
-@settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(HOSTILE, min_size=2, max_size=2, unique=True))
 def test_a_hostile_name_is_text_and_nothing_else(two, tmp_path, names):
     plain = page_of(two, tmp_path, sounds=0)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 ENDINGS = (*WRITERS, ".uff")
 MEMORY_OF_THE_LIBRARIES = 48 << 20  # bytes, for a file of any size: asammdf has a buffer of 32 MB
 RATE = 51200.0
-FAST = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+FAST = settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
 LONG = settings(FAST, max_examples=1000)
 
 

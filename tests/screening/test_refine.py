@@ -23,7 +23,7 @@ def counting(code_at):
     return simulate, asked
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.floats(8, 24), st.floats(25, 75), st.floats(9, 14), st.floats(18, 40))
 def test_a_region_larger_than_the_coarse_cells_is_found_to_the_point(row, column, high, wide):
     def inside(points):

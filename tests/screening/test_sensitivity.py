@@ -80,7 +80,7 @@ def test_what_matters_most_stands_first():
     assert [one.name for one in found] == ["x2", "x3", "x1"]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.lists(st.floats(-3.0, 3.0), min_size=3, max_size=3), st.integers(0, 100))
 def test_without_interaction_first_and_total_agree(weights, seed):
     variance = np.square(weights) + 1e-300
@@ -96,7 +96,7 @@ def test_without_interaction_first_and_total_agree(weights, seed):
 
 
 @given(st.floats(-1e3, 1e3), st.floats(0.1, 1e3))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_the_unit_of_the_output_does_not_matter(offset, scale):
     plain, changed = (
         sobol_indices(output, ANGLES, np.random.default_rng(0), samples=64)

@@ -85,9 +85,7 @@ def quick(monkeypatch):
     monkeypatch.setattr("noise.screening.screen.first_hint", lambda *_: "")
 
 
-@settings(
-    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     designs=st.lists(bushings(), min_size=2, max_size=3),
     asked=st.none() | USE,

@@ -151,7 +151,7 @@ def test_no_sensors_change_nothing():
     assert np.array_equal(first, second)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(2, 5), st.integers(2, 3000), st.integers(0, 1000))
 def test_decimation_is_that_of_scipy_to_the_last_bit(factor, n, seed):
     x = np.random.default_rng(seed).normal(3.0, 1.0, n).cumsum()

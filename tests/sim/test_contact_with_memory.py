@@ -62,7 +62,7 @@ def test_both_ways_of_renewal_add_up():
     assert driven(speed, split)[0] == pytest.approx(driven(speed)[0], rel=1e-9)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     speed=st.floats(0.01, 30.0), load=st.floats(2e-6, 1e-3), ageing=st.floats(1e-5, 1e-1),
     direction=st.sampled_from([-1.0, 1.0]),

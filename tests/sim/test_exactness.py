@@ -114,7 +114,7 @@ systems = st.builds(
     way=st.sampled_from([-1.0, 1.0]),
     change=st.sampled_from([0.0, 0.0, -5.0, 30.0]),
 )
-@settings(max_examples=6, deadline=None, phases=PHASES)
+@settings(max_examples=6, phases=PHASES)
 def test_events_and_states_agree_with_a_general_solver(system, kinetic, drop, speed, way, change):
     n = 9001
     shaft = way * (speed + change * STEP * np.arange(n))
@@ -211,7 +211,7 @@ def free(system, x, speed, n, step, kinetic=0.0, critical=1.0, way=1.0):
 
 
 @given(x=st.tuples(*[st.floats(-0.01, 0.01), st.floats(-30.0, 30.0)] * 2))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_undamped_free_vibration_runs_back_the_way_it_came(x):
     undamped = np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0, 0.0])
     n = 3000

@@ -240,7 +240,7 @@ def test_ageing_ends_stick_slip_at_a_lower_speed(form):
     assert not stick_slips(5.0, aged)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     st.sampled_from(EFFECTS["static_ageing"].forms),
     st.floats(0.0, 1.0),

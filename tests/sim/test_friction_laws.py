@@ -167,7 +167,7 @@ def any_values(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(data=st.data())
 def test_sliding_one_way_never_gives_energy_back(name, data):
     values = data.draw(any_values(name))
@@ -177,7 +177,7 @@ def test_sliding_one_way_never_gives_energy_back(name, data):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(data=st.data())
 def test_any_parameters_are_followed(name, data):
     values = data.draw(any_values(name))

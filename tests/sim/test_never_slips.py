@@ -39,7 +39,7 @@ def test_a_swing_that_does_not_wind_the_bushing_up_never_slips(material):
     assert never_slips(motion(load_material_rig(material), Oscillation(math.radians(0.3), 2.0)))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(cut=st.integers(1, 26999))
 def test_parts_are_seen_as_the_whole(cut):
     watch = SlidingWatch()

@@ -72,7 +72,7 @@ def test_shares_move_the_mount_to_another_sensor():
     amount=st.floats(1e-4, 0.95), form=st.sampled_from(EFFECTS["clipping"].forms),
     mean=st.floats(-20.0, 20.0), seed=st.integers(0, 99),
 )  # fmt: skip
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_every_form_cuts_the_same_share_of_the_peak(amount, form, mean, seed):
     signal = mean + np.random.default_rng(seed).standard_normal(500)
     peak, offset = np.abs(signal).max(), abs(signal.mean())
@@ -110,7 +110,7 @@ def test_silence_and_constants_cannot_be_clipped():
 
 
 @given(error=st.floats(-0.9, 2.0), share=st.floats(-1.0, 1.0))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_a_constant_error_of_gain_is_a_factor(error, share):
     signals = random_signals()
     changed = read(signals, "gain_error", error=error, torque=share)

@@ -49,7 +49,7 @@ def sawtooth(drops, speed=5.0, fall=0.4e-3):
 
 
 @pytest.mark.parametrize("shape", [np.sin, lambda x: 2.0 / np.pi * np.arcsin(np.sin(x))])
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(frequency=st.floats(50.0, 900.0), reach=st.floats(0.05, 1.0))
 def test_an_oscillation_that_does_not_outrun_the_shaft_has_no_sudden_fall(shape, frequency, reach):
     turn = 2.0 * np.pi * frequency

@@ -43,7 +43,7 @@ def test_a_depth_gives_the_same_rms_in_every_form(form):
 
 
 @given(speed=st.floats(0.1, 20.0), depth=st.floats(1e-6, 0.3), form=st.sampled_from(EFFECT.forms))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_shaft_that_turns_backward_fluctuates_as_one_that_turns_forward(speed, depth, form):
     given_ = {"depth": depth, "form": form, "frequency": 7.0}
     forward, backward = (driven(even(s, 0.2), **given_) for s in (speed, -speed))
@@ -51,7 +51,7 @@ def test_a_shaft_that_turns_backward_fluctuates_as_one_that_turns_forward(speed,
 
 
 @given(depth=st.floats(1e-3, 0.3), seed=st.integers(0, 99))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_a_depth_is_the_amplitude_of_the_sine(depth, seed):
     speed = driven(even(), seed, depth=depth, frequency=3.0)
     assert speed.max() == pytest.approx(5.0 * (1.0 + depth), rel=1e-4)

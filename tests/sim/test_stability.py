@@ -104,7 +104,7 @@ def test_effects_on_the_contact_leave_growth_finite(effect):
     assert np.isfinite(found.growth).all()
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.floats(0.3, 13.0), st.floats(0.178e-3, 0.381e-3), st.floats(1500.0, 5000.0))
 def test_either_way_of_turning_is_alike_and_many_at_once_are_as_one(speed, fit, support):
     one = steady_sliding(MEMORY, speed, fit, support).growth

@@ -61,7 +61,7 @@ def test_torque_never_exceeds_what_the_contact_can_bear():
     stiffness=st.floats(1500.0, 6000.0),
     drop=st.floats(0.5, 8.0),
 )
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 def test_first_slips_agree_with_an_independent_solver(speed, damping, stiffness, drop):
     kinetic, critical = 1.0, 1.0 + drop
     system = packed(damping, stiffness)
@@ -121,7 +121,7 @@ def reference_events(system, critical, kinetic, speed, seconds):
 
 
 @given(offset=st.floats(0.0, 40.0))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_vibration_depends_on_the_difference_of_the_torques_alone(offset):
     shaft = constant(1.0, 1.0, 1e-4)
     periods = []

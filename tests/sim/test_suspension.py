@@ -168,7 +168,7 @@ def test_an_integrator_of_its_own_finds_the_same_motion():
             assert getattr(own, name) == pytest.approx(values, abs=1e-5 * np.abs(values).max())
 
 
-@settings(deadline=None, max_examples=8)
+@settings(max_examples=8)
 @given(
     st.sampled_from(["opposite", "together", "left"]), st.floats(0.5, 6.0), st.floats(1.0, 4.0),
     st.sampled_from([2214.0, 3745.0, math.inf]), st.floats(2e5, 3e6), st.floats(0.0, 500.0),

@@ -50,7 +50,7 @@ def test_a_candidate_has_its_strength_and_at_most_two_further_parameters():
 
 
 @pytest.mark.parametrize("candidate", ALL, ids=lambda c: c.name)
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(data=st.data())
 def test_every_point_of_the_cube_is_a_rig(candidate, data):
     place = st.floats(0.0, 1.0)
@@ -157,7 +157,7 @@ def test_fits_can_be_repeated(bowl):
 errors_strategy = st.lists(st.floats(0.2, 2.0), min_size=6, max_size=6).map(np.array)
 
 
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 @given(before=errors_strategy)
 def test_no_change_closes_nothing_and_the_floor_closes_all(before):
     floor = reading_error()
@@ -166,7 +166,7 @@ def test_no_change_closes_nothing_and_the_floor_closes_all(before):
     assert (whole.share, whole.low, whole.high) == pytest.approx((1.0, 1.0, 1.0))
 
 
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 @given(before=errors_strategy, factor=st.floats(0.1, 3.0))
 def test_closed_falls_as_the_error_left_grows(before, factor):
     floor = reading_error()

@@ -58,7 +58,7 @@ class Control:
     group, label, meaning : str
         What it is called, and where it stands.
     value : float, bool or str
-        That of the base.
+        That of the base [`unit`].
     unit : str
     low, high : float
         Ends of the slider, within which a value is plausible [`unit`].

@@ -43,7 +43,7 @@ class Design:
     ----------
     base : Base
     values : mapping of str to float, bool or str
-        Of all controls.
+        Of all controls [unit of each].
     setting : Setting
         Of the run that is heard.
     changes : dict of str to str or float

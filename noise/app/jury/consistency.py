@@ -41,7 +41,7 @@ class Consistency:
         Triads that go in a circle, of those whose three pairs were decided at first [-].
     zeta : float or None
         Kendall's coefficient: 1 without circles, 0 with as many as there can be; None where not
-        all pairs were decided.
+        all pairs were decided [-].
     alike, repeats : int
         Pairs that were answered alike when they came again with sides changed, of so many [-].
     first, decided : int

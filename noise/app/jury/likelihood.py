@@ -153,11 +153,11 @@ class Likelihood:
         Parameters
         ----------
         start : ndarray, shape (n + 1,)
-            Values and t to begin with.
+            Values and t to begin with [-].
         along : ndarray, shape (n + 1, n_along)
-            Directions in which it looks.
+            Directions in which it looks [-].
         curvature : ndarray, shape (n_along, n_along)
-            About how fast the slope falls along them, by which steps are measured.
+            About how fast the slope falls along them, by which steps are measured [-].
         """
         from scipy.optimize import minimize
 

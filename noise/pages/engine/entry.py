@@ -64,7 +64,7 @@ class Entry:
     calibrated : bool
     orders : OrderMap, optional
         Of a sound whose shaft's speed was recorded and changes.
-    fast_levels : tuple of 2 ndarrays, optional
+    fast_levels : tuple of 2 ndarrays, shape (n,), optional
         Time [s] and A-weighted level, Fast [dB], where they were measured before the sound was
         faded and resampled, as by `noise.pictures.recorded.recorded_levels`.
     note : str

@@ -60,7 +60,7 @@ class OrdersDisplay:
     picture : bytes
         A PNG file, the highest order at the top.
     speeds, orders : tuple of (float, str)
-        Ticks in per cent from the left, and from below.
+        Ticks in % from the left, and from below.
     words : str
         What it shows.
     """

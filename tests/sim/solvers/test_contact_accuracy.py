@@ -61,7 +61,7 @@ def test_first_slips_agree_with_a_general_solver(interference, stiffness, speed,
     assert np.abs(states[:, 1] - exact).max() < 1e-5 * exact.max()
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(
     interference=st.sampled_from([0.178e-3, 0.279e-3, 0.381e-3]),
     stiffness=st.floats(1500.0, 6000.0),
