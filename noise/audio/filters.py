@@ -27,7 +27,7 @@ __all__ = ["SoundFilter", "filtered"]
 _ORDER = 4
 """Of a band's ends, once."""
 
-_MARGIN = 3
+_MARGIN = 6
 """What a chunk is filtered with on either side, over the time in which a filter dies out [-]."""
 
 _NOTCH_ORDER = 3

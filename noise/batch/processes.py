@@ -2,7 +2,8 @@
 
 Each process is given one recording at a time, so that when one dies it is known which recording it
 was at. That one is tried once more, in a new process; if that dies as well, the recording is
-refused. A process ends by itself when the one that feeds it is gone.
+refused. Where no process can be started the work is done in this one. A process ends by itself when
+the one that feeds it is gone.
 """
 
 from __future__ import annotations
@@ -43,25 +44,34 @@ def perform_on_processes(
                     if not worker.give(job):  # it died before it was given anything
                         worker.end()
                         team[place] = _Worker(work)
-                        team[place].give(job)
-            ready = connection.wait([worker.link for worker in team if worker.job])
+                        if not team[place].give(job):
+                            yield job, _performed_here(work, job)
+            given = [worker.link for worker in team if worker.job]
+            ready = connection.wait(given) if given else []
             for place, worker in enumerate(team):
-                if worker.link not in ready or worker.job is None:
+                if worker.link not in ready or worker.job is None or worker.begins():
                     continue
                 job = worker.job
                 done = worker.take()
                 if done is None:
+                    began = worker.began
                     worker.end()
                     team[place] = _Worker(work)
                     tried[job.index] += 1
                     if tried[job.index] < _ATTEMPTS:
                         waiting.appendleft(job)
                         continue
-                    done = refusal(work, job.name, DIED)
+                    done = refusal(work, job.name, DIED) if began else _performed_here(work, job)
                 yield job, done
     finally:
         for worker in team:
             worker.end()
+
+
+def _performed_here(work: Work, job: Job) -> Done:
+    """Do in this process what no other one can be started for."""
+    with one_thread():
+        return perform(work, job.path, job.name)
 
 
 class _Worker:
@@ -72,6 +82,7 @@ class _Worker:
         context = get_context("spawn")
         self.link, theirs = context.Pipe()
         self.job: Job | None = None
+        self.began = False
         self._process = context.Process(target=_serve, args=(theirs, work), daemon=True)
         self._process.start()
         theirs.close()
@@ -83,6 +94,16 @@ class _Worker:
         except OSError:
             return False
         self.job = job
+        return True
+
+    def begins(self) -> bool:
+        """Return whether all that it has said is that it began."""
+        if self.began:
+            return False
+        try:
+            self.began = bool(self.link.recv())
+        except (EOFError, OSError):
+            return False
         return True
 
     def take(self) -> Done | None:
@@ -106,9 +127,10 @@ def _serve(link: Connection, work: Work) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # meant for the process that feeds this one
     work.prepare()
     with one_thread():
-        while True:
-            try:
+        try:
+            link.send(True)
+            while True:
                 job: Job = link.recv()
                 link.send(perform(work, job.path, job.name))
-            except (EOFError, OSError):
-                return
+        except (EOFError, OSError):
+            return

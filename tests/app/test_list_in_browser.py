@@ -199,4 +199,4 @@ def test_what_was_learned_is_told_beside_what_was_known_before(page):
     row = page.locator(".training tbody tr")
     row.wait_for()
     assert row.inner_text().split() == ["squeal", "*", "12", "25", "%", "75", "%", "3", "1"]
-    assert "learned without its file" in page.locator(".training figcaption").inner_text()
+    assert "grown without its file" in page.locator(".training figcaption").inner_text()

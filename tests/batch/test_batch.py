@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import resource
+import sys
 import tempfile
 import zlib
 from pathlib import Path
@@ -51,6 +53,15 @@ def test_a_recording_that_no_process_survives_is_refused_and_the_others_are_not(
     assert [done.error for done in found] == [None, DIED, None, None]
     assert found[1].rows == [["deadly.wav", None, DIED]]
     assert work.log.read_text().split().count("deadly.wav") == 2
+
+
+def test_where_no_process_can_be_started_the_work_is_done_all_the_same(work, jobs):
+    multiprocessing.set_executable("/nowhere/python")
+    try:
+        shared = in_order(perform_all(work, jobs, workers=2))
+    finally:
+        multiprocessing.set_executable(sys.executable)
+    assert shared == in_order(perform_all(work, jobs))
 
 
 def keep(table, work, jobs, *, fresh=False):
