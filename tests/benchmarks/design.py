@@ -47,14 +47,12 @@ if __name__ == "__main__":
             _, clock, served, whole = timed(
                 app.process.pid, os.getpid(), lambda: sliding(shown, n_seconds)
             )
-            print(shown.page.evaluate("(() => { const c = document.querySelector('#view-design').design.sound.context; return [c.outputLatency, c.baseLatency, JSON.stringify(c.getOutputTimestamp()), c.currentTime] })()"))
-            import json; json.dump(shown.page.evaluate('window.dbg'), open('/tmp/dbg.json','w'))
             latencies = np.array(shown.sound("latencies"))
             costs = np.array(shown.sound("costs"))
             print(
-                f"{latencies.size} changes in {clock:.0f} s: heard after {np.median(latencies):.0f} "
-                f"ms (median; 95 %: {np.percentile(latencies, 95):.0f} ms), "
-                f"{shown.sound('missing') - missed} samples missing, {shown.sound('doubled')} "
+                f"{latencies.size} changes in {clock:.0f} s: heard after "
+                f"{np.median(latencies):.0f} ms (median; 95 %: "
+                f"{np.percentile(latencies, 95):.0f} ms), {shown.sound('missing') - missed} samples missing, {shown.sound('doubled')} "
                 f"doubled; a block costs {np.median(costs):.1f} ms (processor: server "
                 f"{served:.0f} s, browser {whole - served:.0f} s)"
             )

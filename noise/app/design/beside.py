@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from contextlib import suppress
 from importlib import import_module
 from multiprocessing import get_context
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
 __all__ = ["Beside"]
+
+_REST = 0.5
+"""Longest rest after an answer, as long as it took: half a processor is left to the sound [s]."""
 
 _Question = TypeVar("_Question")
 _Answer = TypeVar("_Answer")
@@ -121,12 +125,16 @@ def _serve(link: Connection, answer: str, nice: int) -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     with suppress(AttributeError, OSError):
         os.nice(nice)
+    with suppress(AttributeError, OSError):  # on Linux: nothing that waits for it is woken late
+        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
     module, _, name = answer.partition(":")
     answered = getattr(import_module(module), name)
     with one_thread(), suppress(EOFError, OSError):
         while True:
             question = link.recv()
+            began = time.perf_counter()
             try:
                 link.send((answered(question), ""))
             except BushingNoiseError as error:
                 link.send((None, str(error)))
+            time.sleep(min(_REST, time.perf_counter() - began))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     ResponsesBeside = Beside[Setting, ImpulseResponses]
 
-__all__ = ["RATE", "PathsBeside", "responses_beside"]
+__all__ = ["RATE", "PathsBeside", "block_paths", "responses_beside"]
 
 RATE = 48000
 """Of the sound [Hz]."""
@@ -42,6 +42,7 @@ class PathsBeside:
         self._asked: dict[int, tuple[Setting, tuple[object, ...]]] = {}
 
     def __call__(self, setting: Setting) -> ImpulseResponses | None:
+        """Return those of a setting, None while they are not known."""
         if self._known is None:
             self._known = paths_key(setting), paths_of(setting, RATE)
         if self._wanted is None or self._wanted[0] is not setting:

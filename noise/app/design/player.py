@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BLOCK", "HEADER", "RATE", "REFUSED", "TORQUE_STEP", "Player", "play"]
 
-BLOCK = 480
+BLOCK = 960
 """Samples of a block: 10 ms."""
 
 TORQUE_STEP = 4

@@ -8,6 +8,7 @@ computed and takes over when it is known.
 from __future__ import annotations
 
 import asyncio
+import gc
 import math
 from collections import deque
 from contextlib import suppress
@@ -85,6 +86,9 @@ class LiveSounds:
             process = context.Process(target=play, args=(theirs,))
             process.start()
             theirs.close()
+            sound_levels(np.zeros(RATE), RATE)  # compiled now, not while it plays
+            gc.collect()
+            gc.freeze()  # or all that is loaded is walked through while it plays
             Thread(target=self._read, args=(self._link,), daemon=True).start()
 
     def stop(self) -> None:

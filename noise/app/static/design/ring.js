@@ -1,5 +1,5 @@
 // In the audio thread: plays blocks of pressure one after the other at one gain, keeps a small reserve, counts what is missing.
-const FIRST = 0.06; // to be in reserve before it begins [s]
+const FIRST = 0.12; // to be in reserve before it begins, when there is most to do besides [s]
 const LOW = 0.006, AIM = 0.014, HIGH = 0.02; // reserve as a block comes, below and above which blocks are to come sooner and later [s]
 const CALM = 2; // without less in reserve, before blocks are to come later [s]
 const PATIENCE = 0.25; // until what was asked for shows [s]
@@ -40,7 +40,6 @@ class Ring extends AudioWorkletProcessor {
 
   take(block) {
     const reserve = this.reserve;
-    this.port.postMessage({ debug: [currentTime, reserve] });
     if (block.sequence < this.next) this.doubled += block.pressure.length;
     else {
       this.missing += (block.sequence - this.next) * this.block;
@@ -64,7 +63,6 @@ class Ring extends AudioWorkletProcessor {
   }
 
   ask(sooner) {
-    this.port.postMessage({ debug: [currentTime, 'asked', sooner] });
     this.asked = currentTime;
     this.feed.postMessage(sooner);
     this.afresh();
@@ -86,7 +84,6 @@ class Ring extends AudioWorkletProcessor {
       const block = this.blocks[0];
       if (!block) {
         this.missing += output.length - first;
-        this.port.postMessage({ debug: [currentTime, this.next, 'miss', output.length - first] });
         this.port.postMessage({ missing: this.missing, doubled: this.doubled, frame: currentFrame + first });
         break;
       }

@@ -44,7 +44,7 @@ export class Sound extends EventTarget {
     this.node = new AudioWorkletNode(this.context, "ring", {
       numberOfInputs: 0, outputChannelCount: [1], processorOptions: { block: this.block },
     });
-    this.node.port.onmessage = ({ data }) => { if (data.debug) (window.dbg ??= []).push(data.debug); else this.#played(data); };
+    this.node.port.onmessage = ({ data }) => this.#played(data);
     const { port1, port2 } = new MessageChannel();
     this.waiting = [];
     const address = new URL("api/design/", document.baseURI).href;
