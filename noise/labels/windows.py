@@ -32,15 +32,9 @@ if TYPE_CHECKING:
     from noise.recordings.blocks import RecordingBlocks
 
 __all__ = [
-    "FEATURE_NAMES",
-    "FRAMES_A_HOP",
-    "Described",
-    "Page",
-    "Pages",
-    "can_be_described",
-    "describe",
+    "FEATURE_NAMES", "FRAMES_A_HOP", "Described", "Page", "Pages", "can_be_described", "describe",
     "tracks",
-]
+]  # fmt: skip
 
 FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
@@ -195,15 +189,13 @@ class Pages:
         for first, windows in self._reader.pages():
             own = self._reader.page(self._heard, first, windows)
             parts = []
-            for kind in ACOUSTIC_KINDS:
-                row = self._channels.get(kind)
+            for row in map(self._channels.get, ACOUSTIC_KINDS):
                 if row is None:
                     parts.append(np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32))
+                elif row == self._heard:
+                    parts.append(own.features)
                 else:
-                    described = (
-                        own if row == self._heard else self._reader.page(row, first, windows)
-                    )
-                    parts.append(described.features)
+                    parts.append(self._reader.page(row, first, windows).features)
             parts.append(_torque(self._blocks, self._channels.get("torque"), first, windows))
             features = np.concatenate(parts, axis=1, dtype=np.float32)
             features[~np.isfinite(features)] = np.nan
