@@ -200,7 +200,8 @@ def find_recordings(
     ----------
     paths : path-like or iterable of path-like
         A file stands for itself, whatever its ending. In a folder hidden files and folders and
-        unknown endings are passed over, and links to folders are followed.
+        unknown endings are passed over, links to folders are followed, and what is no file is left
+        out with a note.
 
     Returns
     -------
@@ -231,7 +232,7 @@ def find_recordings(
             if path.is_dir():
                 found += [
                     (file, readable(name))
-                    for file, name in files_below(path)
+                    for file, name in files_below(path, tell=True)
                     if file.suffix.lower() in READERS
                 ]
             elif path.exists():

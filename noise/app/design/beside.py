@@ -16,6 +16,7 @@ from threading import Condition, Thread
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from models.errors import BushingNoiseError
+from noise.batch.deaf import deaf_to_interrupts
 from noise.batch.work import one_thread
 
 if TYPE_CHECKING:
@@ -105,7 +106,8 @@ class Beside(Generic[_Question, _Answer]):
                 link, theirs = context.Pipe()
                 arguments = (theirs, self._answer, self._nice)
                 process = context.Process(target=_serve, args=arguments, daemon=True)
-                process.start()
+                with deaf_to_interrupts():
+                    process.start()
                 theirs.close()
             try:
                 link.send(question)
