@@ -49,10 +49,10 @@ if __name__ == "__main__":
             )
             latencies = np.array(shown.sound("latencies"))
             costs = np.array(shown.sound("costs"))
+            median, high = np.median(latencies), np.percentile(latencies, 95)
             print(
-                f"{latencies.size} changes in {clock:.0f} s: heard after "
-                f"{np.median(latencies):.0f} ms (median; 95 %: "
-                f"{np.percentile(latencies, 95):.0f} ms), {shown.sound('missing') - missed} samples missing, {shown.sound('doubled')} "
-                f"doubled; a block costs {np.median(costs):.1f} ms (processor: server "
-                f"{served:.0f} s, browser {whole - served:.0f} s)"
+                f"{latencies.size} changes in {clock:.0f} s: heard after {median:.0f} ms (median; "
+                f"95 %: {high:.0f} ms), {shown.sound('missing') - missed} samples missing, "
+                f"{shown.sound('doubled')} doubled; a block costs {np.median(costs):.1f} ms "
+                f"(processor: server {served:.0f} s, browser {whole - served:.0f} s)"
             )
