@@ -2,8 +2,8 @@
 
 Reading a part gives the samples that reading the whole gives, bit for bit, so what is computed from
 parts does not depend on how long the file is. Compressed sound that cannot be entered at a given
-sample is decoded from its beginning; MP3 does not join where it is read in parts, and the formats
-of measurement systems are held by their own libraries: those are read whole.
+sample is decoded from its beginning; the formats of measurement systems are held by their own
+libraries: those are read whole.
 """
 
 from __future__ import annotations
@@ -205,7 +205,7 @@ def _opened(path: Path) -> Any:
         size = 8 * n * int(sound.channels)
         possible = MIN_SAMPLES <= n <= DENSEST * path.stat().st_size
         possible &= LOWEST_RATE <= sound.samplerate <= HIGHEST_RATE
-        if size >= _LARGE and possible and sound.format != "MP3":
+        if size >= _LARGE and possible:
             return sound
         sound.close()
     except (OSError, soundfile.LibsndfileError):

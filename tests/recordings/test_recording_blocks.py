@@ -28,7 +28,7 @@ def noise(channels, seconds, seed=0):
     return np.random.default_rng(seed).uniform(-0.5, 0.5, (channels, round(seconds * RATE)))
 
 
-@pytest.mark.parametrize("ending", ["wav", "flac", "ogg", "aiff"])
+@pytest.mark.parametrize("ending", ["wav", "flac", "ogg", "aiff", "mp3"])
 def test_parts_are_those_of_the_whole_in_any_order(tmp_path, ending):
     path = tmp_path / f"run.{ending}"
     soundfile.write(path, noise(2, 1.0).T, RATE)
@@ -114,10 +114,23 @@ def test_a_flac_that_breaks_off_is_refused(tmp_path):
         label_recording(blocks, load_classifier())
 
 
-def test_short_recordings_and_mp3_are_read_whole(tmp_path, monkeypatch):
-    soundfile.write(tmp_path / "run.mp3", noise(1, 1.0).T, RATE)
-    with open_blocks(tmp_path / "run.mp3") as blocks:
-        assert blocks is None
+@pytest.mark.parametrize(("rate", "channels"), [(48_000, 1), (22_050, 1), (44_100, 2)])
+def test_mp3_does_not_click_where_it_is_read_in_parts(tmp_path, rate, channels):
+    path = tmp_path / "run.mp3"
+    time = np.arange(6 * rate) / rate
+    sound = np.where(time % 1.0 < 0.5, np.sin(2 * np.pi * 380.0 * time), 0.0)
+    sound = np.stack([0.5 * sound] * channels, axis=1) + 0.2 * noise(channels, time.size / RATE).T
+    soundfile.write(path, sound, rate, bitrate_mode="VARIABLE", compression_level=0.5)
+    with soundfile.SoundFile(path) as file:
+        at_once = file.read(always_2d=True).T
+    np.testing.assert_allclose(read_recording(path).samples, at_once, atol=1e-6)
+    with open_blocks(path) as blocks:
+        for _ in range(2):  # from the beginning again
+            pieces = [piece.samples for piece in blocks.pieces(0, blocks.n_samples, 1777)]
+            np.testing.assert_allclose(np.concatenate(pieces, axis=1), at_once, atol=1e-6)
+
+
+def test_short_recordings_are_read_whole(tmp_path, monkeypatch):
     monkeypatch.setattr("noise.recordings.blocks._LARGE", 1 << 20)
     soundfile.write(tmp_path / "run.wav", noise(1, 1.0).T, RATE)
     with open_blocks(tmp_path / "run.wav") as blocks:
