@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 import soundfile
@@ -14,6 +16,8 @@ from noise.labels.labelling import label_rows
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording, write_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.formats import isolated
+from tests.helpers.logger_files import WRITERS, Wave
 
 RATE = 8000
 
@@ -21,7 +25,7 @@ RATE = 8000
 @pytest.fixture(autouse=True)
 def small_is_large(monkeypatch):
     monkeypatch.setattr("noise.recordings.blocks._LARGE", 1)
-    monkeypatch.setattr("noise.recordings.blocks._CHUNK", 5000)
+    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 5000)
 
 
 def noise(channels, seconds, seed=0):
@@ -141,3 +145,54 @@ def test_a_recording_in_memory_is_not_copied():
     recording = Recording(noise(1, 1.0), float(RATE), (Channel("pressure"),))
     part = RecordingBlocks.of(recording).cut(10, 20)
     assert np.shares_memory(part.samples, recording.samples)
+
+
+@pytest.mark.parametrize("ending", WRITERS)
+def test_parts_of_a_loggers_file_are_those_of_the_whole(tmp_path, ending):
+    x = noise(2, 1.0)
+    waves = [Wave("Arm", "N mm", 1e3 * x[0]), Wave("Oil", "degC", x[1]), Wave("mic", "Pa", x[1])]
+    path = WRITERS[ending](tmp_path / f"run{ending}", waves)
+    whole = read_recording(path)
+    with open_blocks(path) as blocks:
+        assert blocks is not None
+        assert (blocks.channels, blocks.rate) == (whole.channels, whole.rate)
+        assert (blocks.condition, blocks.calibrated) == (whole.condition, whole.calibrated)
+        assert blocks.n_samples == whole.samples.shape[1]
+        for first, last in [(0, 10), (300, 2000), (7000, 8000), (5, 320), (0, 8000)]:
+            np.testing.assert_array_equal(blocks.read(first, last), whole.samples[:, first:last])
+
+
+@pytest.mark.parametrize("ending", WRITERS)
+def test_of_a_loggers_file_the_sidecar_names_what_it_likes(tmp_path, ending):
+    x = noise(2, 1.0)
+    waves = [Wave("A", "degC", x[0]), Wave("mic", "Pa", x[1])]
+    path = WRITERS[ending](tmp_path / f"run{ending}", waves)
+    named = {"channels": [{"name": "torque"}, {"name": "pressure"}]}
+    path.with_suffix(".json").write_text(json.dumps(named))
+    whole = read_recording(path)
+    with open_blocks(path) as blocks:
+        assert [channel.kind for channel in blocks.channels] == ["torque", "pressure"]
+        np.testing.assert_array_equal(blocks.read(100, 900), whole.samples[:, 100:900])
+
+
+def test_a_loggers_file_that_is_damaged_or_no_recording_is_refused_alike(tmp_path):
+    path = WRITERS[".h5"](tmp_path / "run.h5", [Wave("oil", "degC", noise(1, 1.0)[0])])
+    bad = tmp_path / "bad.h5"
+    bad.write_bytes(b"no file of that sort")
+    for one in (path, bad):
+        with pytest.raises(RecordingError) as whole:
+            read_recording(one)
+        with pytest.raises(RecordingError) as parts, open_blocks(one):
+            pass
+        assert str(parts.value) == str(whole.value)
+
+
+def test_no_process_is_left_of_a_loggers_file_that_was_read_in_parts(tmp_path, monkeypatch):
+    started = []
+    start = isolated._started
+    monkeypatch.setattr(isolated, "_started", lambda: started.append(start()) or started[-1])
+    path = WRITERS[".h5"](tmp_path / "run.h5", [Wave("mic", "Pa", noise(1, 1.0)[0])])
+    with open_blocks(path) as blocks:
+        blocks.read(0, 100)
+    assert len(started) == 1
+    assert started[0].poll() is not None
