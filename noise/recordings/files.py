@@ -34,29 +34,39 @@ if TYPE_CHECKING:
     from models.recording import Channel
     from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = ["MIN_SAMPLES", "READERS", "RawSamples", "find_recordings", "read_raw", "read_recording"]
+__all__ = [
+    "LOGGER",
+    "MIN_SAMPLES",
+    "READERS",
+    "RawSamples",
+    "find_recordings",
+    "read_raw",
+    "read_recording",
+]
 
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
 
 _SOUND = "noise.recordings.formats.sound_file:read_sound_file"
-_LOGGER = "noise.recordings.formats.isolated:read_isolated"
+LOGGER = "noise.recordings.formats.isolated:read_isolated"
+"""Reader of what loggers write."""
+
 _UNIVERSAL = "noise.recordings.formats.universal_file:read_universal_file"
 
 READERS = {
     ".aif": _SOUND,
     ".aiff": _SOUND,
     ".flac": _SOUND,
-    ".h5": _LOGGER,
-    ".hdf5": _LOGGER,
-    ".mdf": _LOGGER,
-    ".mf4": _LOGGER,
+    ".h5": LOGGER,
+    ".hdf5": LOGGER,
+    ".mdf": LOGGER,
+    ".mf4": LOGGER,
     ".mp3": _SOUND,
     ".oga": _SOUND,
     ".ogg": _SOUND,
     ".opus": _SOUND,
     ".rf64": _SOUND,
-    ".tdms": _LOGGER,
+    ".tdms": LOGGER,
     ".uff": _UNIVERSAL,
     ".unv": _UNIVERSAL,
     ".wav": _SOUND,

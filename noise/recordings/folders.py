@@ -107,7 +107,7 @@ def _walked(
         seen.add(identity)
         here = Path(place)
         folders[:] = [name for name in folders if not name.startswith(".")]
-        links += [here / name for name in folders if (here / name).is_symlink()]
+        links += [here / name for name in folders if os.path.islink(here / name)]  # noqa: PTH114
         for path in (here / name for name in names if not name.startswith(".")):
             if is_file(path):
                 yield path
@@ -123,7 +123,7 @@ def _tell(folder: Path, others: list[Path]) -> None:
 
 def _why(path: Path) -> str:
     """Tell what something is that is no file to be read, without opening it."""
-    if path.is_symlink() and not os.path.exists(path):  # noqa: PTH110  # never raises
+    if os.path.islink(path) and not os.path.exists(path):  # noqa: PTH110, PTH114  # never raise
         return "links to nothing"
     if os.path.isdir(path):  # noqa: PTH112  # never raises
         return "cannot be looked into"

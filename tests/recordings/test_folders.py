@@ -83,6 +83,22 @@ def test_a_folder_that_nobody_may_look_into_costs_no_other(day, tmp_path, capsys
     assert "left out day2: cannot be looked into" in capsys.readouterr().err
 
 
+def test_a_folder_of_names_alone_costs_no_other(day, tmp_path, capsys, monkeypatch):
+    (tmp_path / "day2").mkdir()
+    (tmp_path / "day2" / "run10.wav").touch()
+    for name in ("stat", "lstat"):
+        asked = getattr(os, name)
+
+        def refusing(path, *, asked=asked, **how):
+            if Path(path).parent.name == "day2":
+                raise PermissionError(13, "Permission denied", str(path))
+            return asked(path, **how)
+
+        monkeypatch.setattr(os, name, refusing)
+    assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
+    assert "left out day2/run10.wav: cannot be read" in capsys.readouterr().err
+
+
 def test_a_folder_that_goes_away_while_it_is_searched_costs_no_other(day, tmp_path, monkeypatch):
     (tmp_path / "day2").mkdir()
     (tmp_path / "day2" / "run10.wav").touch()
