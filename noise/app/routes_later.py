@@ -40,7 +40,7 @@ class RoutesLater(BaseRoute):
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request."""
-        router = self._router or await run_in_threadpool(self._made)
+        router = await run_in_threadpool(self._made) if self._router is None else self._router
         await router(scope, receive, send)
 
     def _made(self) -> Router:
