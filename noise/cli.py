@@ -18,7 +18,7 @@ import sys
 import traceback
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from models.errors import BushingNoiseError, RecordingError
 from noise.base.progress import discard, note, say
@@ -129,7 +129,17 @@ def _failed(message: str) -> int:
     return _USAGE_ERROR
 
 
+def _path(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError("is '', expected a path ('.' is the current folder)")
+    return Path(text)
+
+
 class _Parser(argparse.ArgumentParser):
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.register("type", Path, _path)
+
     def error(self, message: str) -> NoReturn:
         """Tell an error of the call in one line."""
         _failed(f"{_plain(message)} (see {self.prog} --help)")

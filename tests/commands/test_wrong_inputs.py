@@ -180,3 +180,17 @@ def test_what_cannot_be_is_refused_before_it_overflows(tmp_path, capsys, given, 
 )
 def test_a_band_and_a_gain_that_nothing_can_be_heard_with_are_refused(capsys, given, cause):
     assert cause in refusal(capsys, "render", "run07.wav", "--out", "heard.wav", *given)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("label", ""),
+        ("frf", ""),
+        ("review", ""),
+        ("simulate", "--out", ""),
+        ("render", "", "--out", "x.wav"),
+    ],
+)
+def test_a_path_of_no_characters_is_not_the_current_folder(given, capsys):
+    assert "is '', expected a path" in refusal(capsys, *given)
