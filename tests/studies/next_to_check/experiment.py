@@ -1,0 +1,126 @@
+"""Corrections by the order of the app against as many at random, learned from as the app does."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import repeat
+from pathlib import Path
+
+import numpy as np
+from joblib import Parallel, delayed, dump, load
+
+from noise.app.labels.describing import mean_features
+from noise.app.labels.next_check import NextCheck
+from noise.base.label_names import LABELS
+from noise.batch import Job
+from noise.labels import segments
+from noise.labels.label_display import naming_row
+from noise.labels.labelling import segment_cells
+from noise.training.classifier.cross_fitting import grown
+from noise.training.classifier.described_samples import draw_sample
+from noise.training.classifier.own_samples import OwnSample
+
+__all__ = [
+    "SAMPLES",
+    "at_random",
+    "by_next_to_check",
+    "errors",
+    "labels_of",
+    "learned",
+    "simulated",
+]
+
+SAMPLES = 600
+"""As of ``bushing-noise open --samples``: the usual 4300 would take days for a table."""
+
+_MADE_UP = 0.6
+_WEIGHT = 4.0
+"""Of a real background that is known at the start, as of those that are stored."""
+
+
+def simulated(keep: Path, n: int = SAMPLES):
+    """Draw what `noise.training.classifier.fit.train` draws, or take it from where it was kept."""
+    if keep.is_file():
+        return load(keep)
+    made_up = round(_MADE_UP * n)
+    seeds = [*np.random.SeedSequence((0, 1)).spawn(made_up), *np.random.SeedSequence(0).spawn(n)]
+    drawn = Parallel(n_jobs=-1)(
+        delayed(draw_sample)(seed, bushings=i >= made_up) for i, seed in enumerate(seeds)
+    )
+    dump(drawn, keep)
+    return drawn
+
+
+def learned(samples, known, corrected, seed: int = 0):
+    """Return the classifier that ``train --add`` makes of samples, backgrounds and corrections."""
+    real = [
+        OwnSample(clip.described.features[clip.loud], clip.label, clip.source, _WEIGHT)
+        for clip in known
+    ]
+    added = [sample for clip in corrected for sample in clip.correction]
+    kept = [sample for sample in samples if not sample.ambiguous]
+    return grown([*kept, *real, *added], seed, repeat(None))[0]
+
+
+def labels_of(clips, classifier):
+    """Return the rows of each recording, as `label` would write them."""
+    described = {id(clip.blocks): clip.described for clip in clips}
+    before, segments.describe = segments.describe, lambda blocks: described[id(blocks)]
+    try:
+        return [
+            [
+                segment_cells(one) | {"label_source": "classifier"}
+                for one in segments._label(clip.blocks, classifier, "all")
+            ]
+            for clip in clips
+        ]
+    finally:
+        segments.describe = before
+
+
+def errors(clips, rows) -> dict[str, float]:
+    """Shares of recordings that are named wrongly: of all, of each label, and their mean."""
+    wrong = np.array(
+        [not c.right(naming_row(r)["label"]) for c, r in zip(clips, rows, strict=True)]
+    )
+    label = np.array([clip.label for clip in clips])
+    each = {name: float(wrong[label == name].mean()) for name in LABELS if (label == name).any()}
+    return {"all": float(wrong.mean()), "mean": float(np.mean(list(each.values()))), **each}
+
+
+class _AllDescribed:
+    """What is asked for is known at once, as to somebody who takes seconds to listen."""
+
+    def __init__(self) -> None:
+        self._known = {}
+
+    def ask(self, wanted) -> None:
+        for one in wanted:
+            if one not in self._known:
+                self._known[one] = _mean_features(*one)
+
+    def known(self):
+        return self._known
+
+
+@cache
+def _mean_features(path, channel, start, end):
+    return mean_features(Path(path), channel, start, end)
+
+
+def by_next_to_check(clips, rows, n: int):
+    """Return the recordings that "Next to check" asks for, one after the other."""
+    jobs = [Job(i, clip.path, clip.path.name) for i, clip in enumerate(clips)]
+    check, rows, found, last = NextCheck(jobs, _AllDescribed()), list(rows), [], None
+    while len(found) < n and (last := check.next(rows, last)["id"]) is not None:
+        rows[last] = [
+            row | {"label": clips[last].label, "label_source": "human"} for row in rows[last]
+        ]
+        found.append(clips[last])
+    return found
+
+
+def at_random(clips, seed: int, n: int):
+    """Return recordings at random."""
+    order = np.random.default_rng([seed, 4]).permutation(len(clips))
+    return [clips[i] for i in order[:n].tolist()]
