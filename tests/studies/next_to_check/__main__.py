@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,9 @@ from tests.studies.next_to_check.experiment import (
     errors,
     labels_of,
     learned,
+    rounds,
     simulated,
+    sound_alone,
 )
 from tests.studies.next_to_check.folders import (
     LEFT_OUT,
@@ -41,10 +44,21 @@ def main() -> None:
     parser.add_argument("--work", type=Path, required=True, help="keeps what was drawn")
     parser.add_argument("--partitions", type=int, default=10, metavar="N")
     parser.add_argument("--random", type=int, default=2, metavar="N", help="of each partition")
+    parser.add_argument("--samples", type=int, default=600, metavar="N", help="as of `open`")
+    parser.add_argument(
+        "--quick", action="store_true", help="sound alone, and 60 rounds of trees instead of 220"
+    )
     options = parser.parse_args()
+    with rounds(60) if options.quick else nullcontext():
+        _study(options)
+
+
+def _study(options: argparse.Namespace) -> None:
     options.work.mkdir(parents=True, exist_ok=True)
     clips = _clips(options.folder, options.work)
-    samples = simulated(options.work / "samples.joblib")
+    samples = simulated(options.work / f"samples{options.samples}.joblib", options.samples)
+    if options.quick:
+        samples = sound_alone(samples)
     if options.folder == "drawn":
         samples = [sample for sample in samples if sample.name not in LEFT_OUT]
     known, folder = known_and_folder(clips)

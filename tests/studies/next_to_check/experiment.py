@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import cache
 from itertools import repeat
 from pathlib import Path
@@ -16,29 +18,28 @@ from noise.batch import Job
 from noise.labels import segments
 from noise.labels.label_display import naming_row
 from noise.labels.labelling import segment_cells
-from noise.training.classifier.cross_fitting import grown
+from noise.training.classifier import cross_fitting
 from noise.training.classifier.described_samples import draw_sample
+from noise.training.classifier.masked_rows import mask
 from noise.training.classifier.own_samples import OwnSample
 
 __all__ = [
-    "SAMPLES",
     "at_random",
     "by_next_to_check",
     "errors",
     "labels_of",
     "learned",
+    "rounds",
     "simulated",
+    "sound_alone",
 ]
-
-SAMPLES = 600
-"""As of ``bushing-noise open --samples``: the usual 4300 would take days for a table."""
 
 _MADE_UP = 0.6
 _WEIGHT = 4.0
 """Of a real background that is known at the start, as of those that are stored."""
 
 
-def simulated(keep: Path, n: int = SAMPLES):
+def simulated(keep: Path, n: int):
     """Draw what `noise.training.classifier.fit.train` draws, or take it from where it was kept."""
     if keep.is_file():
         return load(keep)
@@ -51,6 +52,22 @@ def simulated(keep: Path, n: int = SAMPLES):
     return drawn
 
 
+def sound_alone(samples):
+    """Return samples without other channels than sound, which the folders do not have."""
+    kept = [replace(one, features=mask(one.features, ("pressure",))) for one in samples]
+    return [one for one in kept if np.isfinite(one.features).any()]
+
+
+@contextmanager
+def rounds(n: int):
+    """Grow so many trees of each label, instead of as many as `train` does."""
+    before, cross_fitting._N_ROUNDS = cross_fitting._N_ROUNDS, n
+    try:
+        yield
+    finally:
+        cross_fitting._N_ROUNDS = before
+
+
 def learned(samples, known, corrected, seed: int = 0):
     """Return the classifier that ``train --add`` makes of samples, backgrounds and corrections."""
     real = [
@@ -59,7 +76,7 @@ def learned(samples, known, corrected, seed: int = 0):
     ]
     added = [sample for clip in corrected for sample in clip.correction]
     kept = [sample for sample in samples if not sample.ambiguous]
-    return grown([*kept, *real, *added], seed, repeat(None))[0]
+    return cross_fitting.grown([*kept, *real, *added], seed, repeat(None))[0]
 
 
 def labels_of(clips, classifier):
