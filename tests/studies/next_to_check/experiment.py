@@ -68,15 +68,21 @@ def rounds(n: int):
         cross_fitting._N_ROUNDS = before
 
 
-def learned(samples, known, corrected, seed: int = 0):
-    """Return the classifier that ``train --add`` makes of samples, backgrounds and corrections."""
+def learned(samples, known, corrected, start=None):
+    """Return the classifier that ``train --add`` makes of samples, backgrounds and corrections.
+
+    With a start its trees alone are grown anew: calibration and thresholds stay.
+    """
     real = [
         OwnSample(clip.described.features[clip.loud], clip.label, clip.source, _WEIGHT)
         for clip in known
     ]
     added = [sample for clip in corrected for sample in clip.correction]
     kept = [sample for sample in samples if not sample.ambiguous]
-    return cross_fitting.grown([*kept, *real, *added], seed, repeat(None))[0]
+    sounds = [*kept, *real, *added]
+    if start is not None:
+        return cross_fitting.with_trees_of(start, sounds, seed=0)
+    return cross_fitting.grown(sounds, 0, repeat(None))[0]
 
 
 def labels_of(clips, classifier):
@@ -96,13 +102,26 @@ def labels_of(clips, classifier):
 
 
 def errors(clips, rows) -> dict[str, float]:
-    """Shares of recordings that are named wrongly: of all, of each label, and their mean."""
-    wrong = np.array(
-        [not c.right(naming_row(r)["label"]) for c, r in zip(clips, rows, strict=True)]
+    """Shares of recordings that are named wrongly, and of probability that goes elsewhere.
+
+    ``all`` counts recordings, ``mean`` and ``probability`` are means over the labels, so that a few
+    noises among many others count as much as they.
+    """
+    naming = [naming_row(of_one) for of_one in rows]
+    told = list(zip(clips, naming, strict=True))
+    wrong = np.array([not clip.right(row["label"]) for clip, row in told])
+    elsewhere = np.array(
+        [1.0 - sum(row[f"p_{name}"] for name in LABELS if clip.right(name)) for clip, row in told]
     )
     label = np.array([clip.label for clip in clips])
-    each = {name: float(wrong[label == name].mean()) for name in LABELS if (label == name).any()}
-    return {"all": float(wrong.mean()), "mean": float(np.mean(list(each.values()))), **each}
+    there = [name for name in LABELS if (label == name).any()]
+    each = {name: float(wrong[label == name].mean()) for name in there}
+    return {
+        "all": float(wrong.mean()),
+        "mean": float(np.mean(list(each.values()))),
+        "probability": float(np.mean([elsewhere[label == name].mean() for name in there])),
+        **each,
+    }
 
 
 class _AllDescribed:
