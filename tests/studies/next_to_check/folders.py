@@ -160,7 +160,7 @@ def variants(clips: list[Clip], n: int, work: Path) -> list[Clip]:
     return found
 
 
-def drawn_clips(work: Path, n_noises: int = 24, n_others: int = 14) -> list[Clip]:
+def drawn_clips(work: Path, n_noises: int = 16, n_others: int = 8) -> list[Clip]:
     """Draw sounds of kinds that are left out at the start, each of a body of its own."""
     clips = []
     for kind in LEFT_OUT:
