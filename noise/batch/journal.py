@@ -2,7 +2,8 @@
 
 It lies hidden beside the table and outlives it. A line is one recording with its rows, and is on
 the disk before the next is begun; so a process may be killed at any moment, and what it leaves
-behind is whole lines and at most one torn one, which is cut off. Each line ends with its checksum,
+behind is whole lines and at most one torn one, which is cut off. Many rows of one recording are
+several lines, which count together or not at all. Each line ends with its checksum,
 so that what a failing disk or a crash of the system garbled is no result. A line counts as long as
 the recording is the same file as then, and the same program does the same work; otherwise the
 recording is done again, and the later line stands.
@@ -17,10 +18,11 @@ import json
 import os
 import zlib
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from noise.batch.identity import file_identity, work_identity
+from noise.batch.rows import StoredRows, part_count, parts_of
 from noise.batch.work import Done
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from io import FileIO
     from pathlib import Path
 
+    from noise.batch.rows import Cell
     from noise.batch.work import Job, Work
 
     Entries = dict[str, tuple[list[int], Done]]
@@ -57,9 +60,12 @@ class Journal:
         """Keep what came of a recording; `identity` is the file's from before it was read."""
         if identity is None or done.error is not None:
             return
-        entry = [_key(job), identity, done.calibrated, done.rows]
+        entry = [_key(job), identity, done.calibrated]
+        n_parts = part_count(done.rows)
         with _writing(self._path):
-            _write(self._file, _line(entry))
+            for number, part in enumerate(parts_of(done.rows), start=1):
+                place = [] if n_parts == 1 else [number, n_parts]
+                _write(self._file, _line([*entry, part, *place]))
             os.fsync(self._file.fileno())
 
 
@@ -77,24 +83,31 @@ class JournalReader:
         self._path = journal_path(table)
         self._header = _header(work)
         self._n_columns = len(work.columns)
+        self._begin()
+
+    def _begin(self) -> None:
         self._read = 0
+        self._reading = _Reading(self._n_columns)
 
     def news(self, jobs: Sequence[Job]) -> dict[int, Done]:
         """Return what came of recordings since the last call, by their index."""
         try:
             with self._path.open("rb") as file:
                 if file.readline() != self._header:
-                    self._read = 0
+                    self._begin()
                     return {}
                 if os.fstat(file.fileno()).st_size < self._read:  # begun again
-                    self._read = 0
+                    self._begin()
                 file.seek(max(self._read, len(self._header)))
                 content = file.read()
         except OSError:
             return {}
         whole = content[: content.rfind(b"\n") + 1]
         self._read = max(self._read, len(self._header)) + len(whole)
-        return _known(_entries(whole, self._n_columns), jobs) if whole else {}
+        found: Entries = {}
+        for line in whole.splitlines():
+            found.update(self._reading.entries(line))
+        return _known(found, jobs)
 
 
 def journal_path(table: Path) -> Path:
@@ -150,18 +163,14 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
         file = path.open("a+b", buffering=0)
     with file:
         _claim(file, table)
-        file.seek(0)
-        content = b"" if fresh else file.read()
-        # What follows the last line break was torn off when the process was killed.
-        whole = content[: content.rfind(b"\n") + 1]
-        if not whole.startswith(header):
+        entries, end = ({}, 0) if fresh else _read(path, header, len(work.columns))
+        if not end:
             with _writing(path):
                 file.truncate(0)
                 _write(file, header)
-            whole = header
-        elif len(whole) < len(content):
-            file.truncate(len(whole))
-        yield Journal(path, file, _entries(whole[len(header) :], len(work.columns)))
+        else:  # what follows the last line break was torn off when the process was killed
+            file.truncate(end)
+        yield Journal(path, file, entries)
 
 
 @contextmanager
@@ -197,19 +206,55 @@ def _line(entry: list[object]) -> bytes:
     return b"%s %08x\n" % (content, zlib.crc32(content))
 
 
-def _entries(content: bytes, n_columns: int) -> Entries:
-    entries = {}
-    for line in content.split(b"\n"):
-        entry, _, checksum = line.rpartition(b" ")
+def _read(path: Path, header: bytes, n_columns: int) -> tuple[Entries, int]:
+    """Return what is in a journal, and how far it is whole: nowhere if it is of other work."""
+    with path.open("rb") as lines:
+        if lines.readline() != header:
+            return {}, 0
+        end, entries, reading = len(header), {}, _Reading(n_columns)
+        for line in lines:
+            if not line.endswith(b"\n"):
+                break
+            end += len(line)
+            entries.update(reading.entries(line))
+        return entries, end
+
+
+class _Reading:
+    """Recordings from the lines of a journal, as they come."""
+
+    def __init__(self, n_columns: int) -> None:
+        self._n_columns = n_columns
+        self._begun: tuple[list[object], StoredRows] = ([], StoredRows())
+        self._number = 0
+
+    def entries(self, line: bytes) -> Entries:
+        """Return the recording that a line completes, by its key."""
+        entry, _, checksum = line.rstrip(b"\n").rpartition(b" ")
         if checksum != b"%08x" % zlib.crc32(entry):  # damaged: the recording is done again
-            continue
+            return {}
         try:
-            key, identity, calibrated, rows = json.loads(entry)
-            if {len(row) for row in rows} <= {n_columns} and isinstance(calibrated, bool):
-                entries[key] = identity, Done(rows, calibrated)
+            key, identity, calibrated, rows, *place = json.loads(entry)
+            if not (
+                {len(row) for row in rows} <= {self._n_columns} and calibrated in (True, False)
+            ):
+                return {}
+            if not place:
+                return {key: (identity, Done(rows, calibrated))}
+            return self._part([key, identity, calibrated], rows, *place)
         except (ValueError, TypeError, RecursionError):  # no line of ours
-            continue
-    return entries
+            return {}
+
+    def _part(self, of: list[Any], rows: list[list[Cell]], number: int, n_parts: int) -> Entries:
+        if number == 1:
+            self._begun = of, StoredRows()
+        elif (of, number) != (self._begun[0], self._number + 1):  # one before it is damaged
+            return {}
+        self._number = number
+        kept = self._begun[1]
+        kept.add(rows)
+        key, identity, calibrated = of
+        return {key: (identity, Done(kept, calibrated))} if number == n_parts else {}
 
 
 def _key(job: Job) -> str:

@@ -26,6 +26,7 @@ __all__ = ["configure", "run"]
 
 _RATES = (44100, 48000)
 _BITS = (16, 24, 32)
+_LOWEST, _NARROWEST = 1.0, 1.01  # Hz, and upper over lower end of a band: filters of it hold
 _LONG_ENOUGH = 2.0  # s, to be judged by ear
 
 
@@ -105,7 +106,7 @@ def configure(parser: ArgumentParser) -> None:
     gain = parser.add_mutually_exclusive_group()
     gain.add_argument(
         "--pascal-per-full-scale",
-        type=opt.number(above=0.0),
+        type=opt.number(above=0.0, most=1e9),
         metavar="PA",
         help="sound pressure in Pa of a full-scale sample of the output, for a listening room "
         "that is calibrated to it (default: what puts the largest peak of all 3 dB below full "
@@ -154,8 +155,11 @@ def _repeats(text: str) -> int:
 
 def _band(text: str) -> tuple[float, float]:
     low, high = opt.band(text)
-    if low <= 0.0:
-        raise ArgumentTypeError(f"is {text!r}, expected a band that begins above 0 Hz")
+    if low < _LOWEST or high < low * _NARROWEST:
+        raise ArgumentTypeError(
+            f"is {text!r}, expected a band that begins at {_LOWEST:g} Hz or above and is at least "
+            f"{_NARROWEST - 1.0:.0%} wide"
+        )
     return low, high
 
 
