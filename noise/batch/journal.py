@@ -1,11 +1,8 @@
 """The journal of a table: what has been done so far, on disk after each recording.
 
-It lies hidden beside the table and outlives it. A line is one recording with its rows, and is on
-the disk before the next is begun; so a process may be killed at any moment, and what it leaves
-behind is whole lines and at most one torn one, which is cut off. Each line ends with its checksum,
-so that what a failing disk or a crash of the system garbled is no result. A line counts as long as
-the recording is the same file as then, and the same program does the same work; otherwise the
-recording is done again, and the later line stands.
+It is kept as `noise.batch.lines` keeps results, and outlives the table. A line is one recording
+with its rows. It counts as long as the recording is the same file as then, and the same program
+does the same work; otherwise the recording is done again, and the later line stands.
 
 Refused recordings are not in it. They cost little, and what was at fault may have been put right
 since without the file changing: a share that was away, a library that was not installed.
@@ -13,37 +10,32 @@ since without the file changing: a share that was away, a library that was not i
 
 from __future__ import annotations
 
-import json
 import os
-import zlib
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from models.errors import ParameterError
 from noise.batch.identity import file_identity, work_identity
+from noise.batch.lines import header_of, journal_path, open_lines, parsed
 from noise.batch.work import Done
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from io import FileIO
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
+    from noise.batch.lines import Lines
     from noise.batch.work import Job, Work
 
     Entries = dict[str, tuple[list[int], Done]]
 
-__all__ = ["Journal", "JournalReader", "journal_path", "open_journal"]
-
-_FORMAT = 2
+__all__ = ["Journal", "JournalReader", "open_journal"]
 
 
 class Journal:
     """What is done of a table; see `open_journal`."""
 
-    def __init__(self, path: Path, file: FileIO, entries: Entries) -> None:
-        self._path = path
-        self._file = file
-        self._entries = entries
+    def __init__(self, lines: Lines, n_columns: int) -> None:
+        self._lines = lines
+        self._entries = _entries(([key, *found] for key, found in lines.found.items()), n_columns)
 
     def find(self, job: Job) -> Done | None:
         """Return what came of a recording, None where it is still to be done."""
@@ -57,10 +49,7 @@ class Journal:
         """Keep what came of a recording; `identity` is the file's from before it was read."""
         if identity is None or done.error is not None:
             return
-        entry = [_key(job), identity, done.calibrated, done.rows]
-        with _writing(self._path):
-            _write(self._file, _line(entry))
-            os.fsync(self._file.fileno())
+        self._lines.add(_key(job), identity, done.calibrated, done.rows)
 
 
 class JournalReader:
@@ -75,7 +64,7 @@ class JournalReader:
 
     def __init__(self, table: Path, work: Work) -> None:
         self._path = journal_path(table)
-        self._header = _header(work)
+        self._header = header_of(work_identity(work))
         self._n_columns = len(work.columns)
         self._read = 0
 
@@ -94,19 +83,7 @@ class JournalReader:
             return {}
         whole = content[: content.rfind(b"\n") + 1]
         self._read = max(self._read, len(self._header)) + len(whole)
-        return _known(_entries(whole, self._n_columns), jobs) if whole else {}
-
-
-def journal_path(table: Path) -> Path:
-    """Where the journal of a table lies.
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> journal_path(Path("runs") / "labels.csv").name
-    '.labels.csv.journal'
-    """
-    return table.with_name(f".{table.name}.journal")
+        return _known(_entries(parsed(whole), self._n_columns), jobs) if whole else {}
 
 
 @contextmanager
@@ -143,39 +120,8 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
     ...         journal.find(job) == done
     True
     """
-    path = journal_path(table)
-    header = _header(work)
-    with _writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        file = path.open("a+b", buffering=0)
-    with file:
-        _claim(file, table)
-        file.seek(0)
-        content = b"" if fresh else file.read()
-        # What follows the last line break was torn off when the process was killed.
-        whole = content[: content.rfind(b"\n") + 1]
-        if not whole.startswith(header):
-            with _writing(path):
-                file.truncate(0)
-                _write(file, header)
-            whole = header
-        elif len(whole) < len(content):
-            file.truncate(len(whole))
-        yield Journal(path, file, _entries(whole[len(header) :], len(work.columns)))
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
-
-
-def _write(file: FileIO, data: bytes) -> None:
-    """Write all of it: of what a disk has no more room for, the system takes a part."""
-    while data:
-        data = data[file.write(data) :]
+    with open_lines(table, work_identity(work), fresh=fresh) as lines:
+        yield Journal(lines, len(work.columns))
 
 
 def _find(entries: Entries, job: Job) -> Done | None:
@@ -188,43 +134,17 @@ def _known(entries: Entries, jobs: Sequence[Job]) -> dict[int, Done]:
     return {index: done for index, done in found.items() if done is not None}
 
 
-def _header(work: Work) -> bytes:
-    return json.dumps([_FORMAT, work_identity(work)]).encode() + b"\n"
-
-
-def _line(entry: list[object]) -> bytes:
-    content = json.dumps(entry).encode()
-    return b"%s %08x\n" % (content, zlib.crc32(content))
-
-
-def _entries(content: bytes, n_columns: int) -> Entries:
+def _entries(lines: Iterable[list[Any]], n_columns: int) -> Entries:
     entries = {}
-    for line in content.split(b"\n"):
-        entry, _, checksum = line.rpartition(b" ")
-        if checksum != b"%08x" % zlib.crc32(entry):  # damaged: the recording is done again
-            continue
+    for line in lines:
         try:
-            key, identity, calibrated, rows = json.loads(entry)
+            key, identity, calibrated, rows = line
             if {len(row) for row in rows} <= {n_columns} and isinstance(calibrated, bool):
                 entries[key] = identity, Done(rows, calibrated)
-        except (ValueError, TypeError, RecursionError):  # no line of ours
+        except (ValueError, TypeError):  # no line of ours
             continue
     return entries
 
 
 def _key(job: Job) -> str:
     return f"{job.name}\n{job.path.absolute()}"
-
-
-def _claim(file: FileIO, table: Path) -> None:
-    """Keep other processes from the journal, as far as the system knows of locks."""
-    try:
-        import fcntl
-    except ImportError:
-        return
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise ParameterError(f"{table}: is being written by another process; wait for it") from None
-    except OSError:  # a file system without locks
-        return

@@ -1,0 +1,191 @@
+"""Results on disk line by line, each as soon as it is there, for a call that goes on after a kill.
+
+They lie hidden beside what the call is to write. A line is one result, and is on the disk before
+the next is begun; so a process may be killed at any moment, and what it leaves behind is whole
+lines and at most one torn one, which is cut off. Each line ends with its checksum, so that what a
+failing disk or a crash of the system garbled is no result. The first line says what decides the
+results; where that is another, the file begins again.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import zlib
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from models.errors import ParameterError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from io import FileIO
+    from pathlib import Path
+
+__all__ = ["Lines", "header_of", "journal_path", "kept_results", "open_lines", "parsed"]
+
+_FORMAT = 2
+
+
+class Lines:
+    """What is kept of a call; see `open_lines`."""
+
+    def __init__(self, path: Path, file: FileIO, content: bytes) -> None:
+        self._path = path
+        self._file = file
+        self._found = {key: values for key, *values in parsed(content)}
+        self.n_kept = len(self._found)
+
+    @property
+    def found(self) -> dict[str, list[Any]]:
+        """What earlier calls kept, by its key."""
+        return self._found
+
+    def add(self, key: str, *values: object) -> None:
+        """Keep a result as JSON knows it; it is on the disk when this returns."""
+        with _writing(self._path):
+            _write(self._file, _line([key, *values]))
+            os.fsync(self._file.fileno())
+        self.n_kept += 1
+
+
+def journal_path(target: Path) -> Path:
+    """Where the results lie that are kept for a file, or folder, to be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> journal_path(Path("runs") / "labels.csv").name
+    '.labels.csv.journal'
+    """
+    return target.with_name(f".{target.name}.journal")
+
+
+def header_of(identity: str) -> bytes:
+    """Return the first line of what this decides."""
+    return json.dumps([_FORMAT, identity]).encode() + b"\n"
+
+
+@contextmanager
+def open_lines(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Lines]:
+    """Open what is kept for a file to be written.
+
+    Parameters
+    ----------
+    target : Path
+        Parent folders are made.
+    identity : str
+        Digest of all that decides the results beside their keys.
+    fresh : bool
+        Whether to forget what is in it.
+
+    Raises
+    ------
+    ParameterError
+        It cannot be written, or another process is writing it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with open_lines(Path(folder) / "t.csv", "a") as lines:
+    ...         lines.add("run07", 1.5, None)
+    ...     with open_lines(Path(folder) / "t.csv", "a") as lines:
+    ...         lines.found
+    {'run07': [1.5, None]}
+    """
+    path, header = journal_path(target), header_of(identity)
+    with _writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = path.open("a+b", buffering=0)
+    with file:
+        _claim(file, target)
+        file.seek(0)
+        content = b"" if fresh else file.read()
+        # What follows the last line break was torn off when the process was killed.
+        whole = content[: content.rfind(b"\n") + 1]
+        if not whole.startswith(header):
+            with _writing(path):
+                file.truncate(0)
+                _write(file, header)
+            whole = header
+        elif len(whole) < len(content):
+            file.truncate(len(whole))
+        yield Lines(path, file, whole[len(header) :])
+
+
+@contextmanager
+def kept_results(target: Path | None, identity: str) -> Iterator[Lines | None]:
+    """Keep results until the block ends well and has no more need of them.
+
+    Parameters
+    ----------
+    target : Path, optional
+        Without it nothing is kept.
+    identity : str
+        As for `open_lines`.
+    """
+    if target is None:
+        yield None
+        return
+    done_with = False
+    try:
+        with open_lines(target, identity) as lines:
+            try:
+                yield lines
+                done_with = True
+            finally:
+                done_with |= not lines.n_kept
+    finally:
+        if done_with:
+            journal_path(target).unlink(missing_ok=True)
+
+
+def parsed(content: bytes) -> Iterator[list[Any]]:
+    """Go through what whole lines hold, each beginning with its key; passes over damaged ones."""
+    for line in content.split(b"\n"):
+        entry, _, checksum = line.rpartition(b" ")
+        if checksum != b"%08x" % zlib.crc32(entry):  # damaged: it is done again
+            continue
+        try:
+            found = json.loads(entry)
+        except (ValueError, RecursionError):  # no line of ours
+            continue
+        if isinstance(found, list) and found and isinstance(found[0], str):
+            yield found
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
+
+
+def _write(file: FileIO, data: bytes) -> None:
+    """Write all of it: of what a disk has no more room for, the system takes a part."""
+    while data:
+        data = data[file.write(data) :]
+
+
+def _line(entry: list[object]) -> bytes:
+    content = json.dumps(entry).encode()
+    return b"%s %08x\n" % (content, zlib.crc32(content))
+
+
+def _claim(file: FileIO, target: Path) -> None:
+    """Keep other processes from the journal, as far as the system knows of locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise ParameterError(
+            f"{target}: is being written by another process; wait for it"
+        ) from None
+    except OSError:  # a file system without locks
+        return
