@@ -12,10 +12,10 @@ from __future__ import annotations
 import json
 import os
 import zlib
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
-from models.errors import ParameterError
+from models.errors import BushingNoiseError, ParameterError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -117,7 +117,7 @@ def open_lines(target: Path, identity: str, *, fresh: bool = False) -> Iterator[
 
 @contextmanager
 def kept_results(target: Path | None, identity: str) -> Iterator[Lines | None]:
-    """Keep results until the block ends well and has no more need of them.
+    """Keep results until the block ends well, or is refused, and has no more need of them.
 
     Parameters
     ----------
@@ -129,17 +129,23 @@ def kept_results(target: Path | None, identity: str) -> Iterator[Lines | None]:
     if target is None:
         yield None
         return
-    done_with = False
+    done_with, made = False, not target.parent.exists()
     try:
         with open_lines(target, identity) as lines:
             try:
                 yield lines
                 done_with = True
+            except BushingNoiseError as error:  # what is refused leaves nothing, a full disk does
+                done_with = not isinstance(error.__context__, OSError)
+                raise
             finally:
                 done_with |= not lines.n_kept
     finally:
         if done_with:
             journal_path(target).unlink(missing_ok=True)
+            if made:
+                with suppress(OSError):  # there is something in it
+                    target.parent.rmdir()
 
 
 def parsed(content: bytes) -> Iterator[list[Any]]:

@@ -176,7 +176,8 @@ def run(options: Namespace) -> int:
     check_target(options.out)
     plans = _plans(options, sources, folder)
     _keep_inputs(options.out, sources, plans)
-    with kept_results(folder, measuring_identity(options)) as kept:
+    table = None if folder is None else folder / "levels.csv"
+    with kept_results(table, measuring_identity(options)) as kept:
         return _rendered(options, plans, folder, kept)
 
 

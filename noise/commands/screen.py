@@ -150,7 +150,8 @@ def run(options: Namespace) -> int:
         environment(name)  # refused before everything is loaded
     of_each = 2 if options.tolerances is False else 3  # map, grade, parts
     number = 1 + of_each * len(options.designs) * len(environments)
-    with kept_results(options.out, call_identity("screening")) as kept:
+    table = None if options.out is None else options.out / "map.csv"
+    with kept_results(table, call_identity("screening")) as kept:
         with steps("screening", number) as tell:
             found = _screened(options, given, environments, tell, kept)
         from noise.screening.tables.summary import summary_lines

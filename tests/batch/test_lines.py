@@ -19,9 +19,16 @@ def call(target, identity, end=None):
     return there
 
 
+def no_room():
+    """As of a file that was to be written."""
+    error = ParameterError("labels.csv: cannot be written (no space left on device)")
+    error.__context__ = OSError("no space left on device")
+    return error
+
+
 def test_what_is_kept_is_there_until_the_call_has_come_to_its_end(tmp_path):
     target = tmp_path / "new" / "set"
-    for end in (KeyboardInterrupt(), ParameterError("no room left")):
+    for end in (KeyboardInterrupt(), no_room()):
         with pytest.raises(type(end)):
             call(target, "same", end)
     assert call(target, "same") == {"a": [[0.1, float("inf")], "said"]}
@@ -34,10 +41,14 @@ def test_of_another_call_nothing_is_taken(tmp_path):
     assert call(tmp_path / "set", "another") == {}
 
 
-def test_a_call_that_is_refused_before_anything_is_done_leaves_nothing(tmp_path):
-    with pytest.raises(ParameterError), kept_results(tmp_path / "set", "same"):
-        raise ParameterError("no such design")
-    assert not list(tmp_path.iterdir())
+def test_a_call_that_is_refused_leaves_nothing(tmp_path):
+    (tmp_path / "there").mkdir()
+    for folder in ("there", "new"):
+        with pytest.raises(ParameterError, match="clip"):
+            call(tmp_path / folder / "set", "same", ParameterError("would clip"))
+        with pytest.raises(ParameterError), kept_results(tmp_path / folder / "set", "same"):
+            raise ParameterError("no such design")
+    assert [path.name for path in tmp_path.rglob("*")] == ["there"]
 
 
 def test_what_another_process_keeps_is_left_to_it(tmp_path):

@@ -159,10 +159,10 @@ def held(process, journal, size=0):
     return second
 
 
-def simulates_and_measures_nothing_again(call, given, tmp_path, shares):
+def simulates_and_measures_nothing_again(call, target, given, tmp_path, shares):
     """Of what a call keeps until it is done."""
     undisturbed = Path(shutil.copytree(given, tmp_path / "undisturbed"))
-    journal = journal_path(Path(call[call.index("--out") + 1]))
+    journal = journal_path(Path(target))
     process = start(call, undisturbed)
     whole = held(process, undisturbed / journal)
     process.communicate()
@@ -188,21 +188,23 @@ def test_a_set_of_sounds_goes_on_where_half_of_it_was_measured(tmp_path):
     make_recordings(tmp_path / "given" / "runs", 12, 1, 1.0)
     (tmp_path / "given" / "runs" / "day1" / "shift1" / "run0001.flac").unlink()
     call = ["render", "runs", "--out", "set"]
-    simulates_and_measures_nothing_again(call, tmp_path / "given", tmp_path, [0.5])
+    simulates_and_measures_nothing_again(
+        call, "set/levels.csv", tmp_path / "given", tmp_path, [0.5]
+    )
 
 
 KEEPING = {
-    "render": CALLS["render"],
-    "screen": ["screen", "fluorocarbon", "PDMS", "--simulations", "200", "--no-tolerances",
-               "--sounds", "1", "--out", "screen"],
-    "train": ["train", "--samples", "20", "--out", "mine.npz"],
+    "render": (CALLS["render"], "set/levels.csv"),
+    "screen": (["screen", "fluorocarbon", "PDMS", "--simulations", "200", "--no-tolerances",
+                "--sounds", "1", "--out", "screen"], "screen/map.csv"),
+    "train": (["train", "--samples", "20", "--out", "mine.npz"], "mine.npz"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("command", KEEPING)
 @pytest.mark.slow
 def test_what_is_kept_until_it_is_done_is_not_done_again(command, bench, tmp_path):
-    simulates_and_measures_nothing_again(KEEPING[command], bench, tmp_path, SHARES)
+    simulates_and_measures_nothing_again(*KEEPING[command], bench, tmp_path, SHARES)
 
 
 def test_labels_go_on_where_half_of_the_journal_was(tmp_path):
