@@ -43,6 +43,15 @@ _SHORT = 1e-3
 """Below this L / (2 l) the share of the bulk is its leading term."""
 
 
+_POSSIBLE = {
+    "inner_radius": (1e-5, 10.0),  # m
+    "wall": (1e-8, 100.0),  # m
+    "length": (1e-6, 100.0),  # m, or endless
+    "youngs_modulus": (1.0, 1e13),  # Pa
+}
+"""Beyond these nothing can be computed of a sleeve, such as the pressure in one without a wall."""
+
+
 @dataclass(frozen=True)
 class Sleeve:
     """A rubber sleeve glued into a rigid housing, pressed on a rigid shaft.
@@ -79,12 +88,11 @@ class Sleeve:
     poisson_ratio: float = 0.4995
 
     def __post_init__(self) -> None:
-        for name in ("inner_radius", "wall", "youngs_modulus"):
+        for name, (low, high) in _POSSIBLE.items():
             value = getattr(self, name)
-            if not 0.0 < value < math.inf:
-                raise ParameterError(f"sleeve: {name} = {value:g} must be above 0 and finite")
-        if not self.length > 0.0:
-            raise ParameterError(f"sleeve: length = {self.length:g} m must be above 0")
+            endless = name == "length" and value == math.inf
+            if not (low <= value <= high or endless):
+                raise ParameterError(f"sleeve: {name} = {value:g} must lie in {low:g} to {high:g}")
         if not 0.0 <= self.poisson_ratio <= 0.5:
             raise ParameterError(
                 f"sleeve: poisson_ratio = {self.poisson_ratio:g} must lie between 0 and 0.5"

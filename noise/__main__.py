@@ -11,13 +11,20 @@ __all__ = ["run"]
 def run() -> None:
     """Run the command line, and end the process with its exit code.
 
-    Until then an interrupt ends the process at once, as `noise` has it; from then on what was done
-    is kept.
+    Before and after an interrupt ends the process at once, as `noise` has it; in between what was
+    done is kept.
     """
     from noise.cli import main
 
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    sys.exit(main())
+    at_once = signal.getsignal(signal.SIGINT)
+    try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        code = main()
+    except KeyboardInterrupt:  # a second one, while the first was dealt with
+        code = 130  # 128 + SIGINT
+    finally:
+        signal.signal(signal.SIGINT, at_once)
+    sys.exit(code)
 
 
 if __name__ == "__main__":

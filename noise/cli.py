@@ -18,9 +18,9 @@ import sys
 import traceback
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from models.errors import BushingNoiseError
+from models.errors import BushingNoiseError, RecordingError
 from noise.base.progress import discard, note, say
 from noise.commands import COMMANDS, load_command
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["main"]
 
 _NAME = "bushing-noise"
+_REFUSED = 1
 _USAGE_ERROR = 2
 _INTERRUPTED = 130  # 128 + SIGINT
 _CLOSED_PIPE = 141  # 128 + SIGPIPE
@@ -85,6 +86,9 @@ def _report_errors(arguments: list[str]) -> int:
         if sys.stdout is not None:
             sys.stdout.flush()
         return code
+    except RecordingError as error:  # the only input that there was
+        say(f"{_NAME}: refused: {error}")
+        return _REFUSED
     except BushingNoiseError as error:
         return _failed(str(error))
     except MemoryError:
@@ -125,7 +129,17 @@ def _failed(message: str) -> int:
     return _USAGE_ERROR
 
 
+def _path(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError("is '', expected a path ('.' is the current folder)")
+    return Path(text)
+
+
 class _Parser(argparse.ArgumentParser):
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.register("type", Path, _path)
+
     def error(self, message: str) -> NoReturn:
         """Tell an error of the call in one line."""
         _failed(f"{_plain(message)} (see {self.prog} --help)")

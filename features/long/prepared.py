@@ -22,55 +22,37 @@ from features.kernels.bands import (
     relative_db,
     resolved_third_octaves,
 )
-from features.kernels.conditioning import (
-    NOTHING,
-    WORKING_RATE,
-    band_analytic,
-    band_signal,
-    usable_limit,
-)
+from features.kernels.conditioning import NOTHING, WORKING_RATE, band_signal, usable_limit
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of_period
 from features.kernels.levels import weighted_levels
 from features.kernels.lines import line_resolution
-from features.kernels.modulation import MODULATION_BAND, Modulation, described_modulation
-from features.kernels.short_time import (
-    DescribedSegments,
-    describe_segments,
-    segment_lengths,
-    short_time_of,
-)
-from features.kernels.slip_pulses import pulse_band_from, squared
+from features.kernels.short_time import short_time_of
 from features.kernels.spectra import Spectrum
+from features.long.acoustic import Acoustic
 from features.long.overlapped import Overlapped, block_sizes
 from features.long.parts import in_pieces
-from features.long.pulses import LongPulses, envelope_kurtosis
+from features.long.pulses import envelope_kurtosis
 from features.long.slips import long_torque_slips
-from features.long.sums import Correlation, Moments, SegmentPowers, WelchSum
+from features.long.sums import Correlation, Moments, WelchSum
 from features.named.prepared import ACOUSTIC_KINDS, TOP_BANDS, Prepared, TopBand
 from models.errors import ParameterError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
     from features.kernels.conditioning import Transform
+    from features.kernels.modulation import Modulation
     from features.kernels.periodicity import Period
     from features.kernels.short_time import ShortTime
     from features.kernels.slip_drops import TorqueSlips
     from features.kernels.slip_pulses import Pulses
+    from features.long.acoustic import AcousticSums
     from features.long.parts import Pieces, Read
 
 __all__ = ["LongPrepared", "prepare_long"]
 
 _BLOCK = {True: (8.0, 1.0), False: (16.0, 8.0)}
 """Useful length and margin of a block [s]: the flank of a torque's band, at 5 Hz, rings longer."""
-
-_ENVELOPE_BLOCK = (32.0, 4.0)
-"""The same, where the modulation of an envelope is told [s]: from 2 Hz on."""
-
-_WHOLE_RATE, _HIGH_RATE, _TOP_RATES = 0.625, 0.5, (0.75, 0.875)
-"""Rates of envelopes over the working rate: of the whole band, its high part, what lies above."""
 
 
 class _Passed(NamedTuple):
@@ -81,10 +63,7 @@ class _Passed(NamedTuple):
     spectrum: Spectrum
     period: Period
     duration: float
-    short_time: DescribedSegments | None
-    pulses: Pulses | None
-    modulation: Modulation | None
-    top: tuple[Moments, ...]
+    acoustic: AcousticSums | None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -151,24 +130,23 @@ class LongPrepared(Prepared):
     @cached_property
     def short_time(self) -> ShortTime:
         """As in `Prepared`."""
-        described = self._passed.short_time
-        if described is None:
+        if self._passed.acoustic is None:
             raise ParameterError(f"a channel of {self.kind} is not described in short segments")
-        return short_time_of(described)
+        return short_time_of(self._passed.acoustic.short_time)
 
     @cached_property
     def pulses(self) -> Pulses:
         """As in `Prepared`."""
-        if self._passed.pulses is None:
+        if self._passed.acoustic is None:
             raise ParameterError(f"a channel of {self.kind} is not searched for pulses")
-        return self._passed.pulses
+        return self._passed.acoustic.pulses
 
     @cached_property
     def modulation(self) -> Modulation:
         """As in `Prepared`."""
-        if self._passed.modulation is None:
+        if self._passed.acoustic is None:
             raise ParameterError(f"of a channel of {self.kind} no modulation is told")
-        return self._passed.modulation
+        return self._passed.acoustic.modulation
 
     @cached_property
     def slips(self) -> TorqueSlips:
@@ -193,9 +171,10 @@ class LongPrepared(Prepared):
         return resolved_third_octaves(self.fine, reference=1.0)
 
     def _top_band(self, low: float, high: float) -> TopBand:
-        if high > usable_limit(self.rate):
+        acoustic = self._passed.acoustic
+        if acoustic is None or high > usable_limit(self.rate):
             return TopBand(math.nan, math.nan)
-        power = self._passed.top[TOP_BANDS.index((low, high))]
+        power = acoustic.top[TOP_BANDS.index((low, high))]
         level = relative_db(0.5 * power.mean, self.in_band_power)
         return TopBand(level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan)
 
@@ -213,7 +192,7 @@ class LongPrepared(Prepared):
 
     def _finer(self, resolution: float) -> Spectrum:
         blocks, transforms = self._blocks()
-        working = _working_rate(self.rate)
+        working = min(WORKING_RATE, self.rate)
         inside = blocks.interior(working / self.rate)
         total = WelchSum(inside.n_samples, working, resolution)
         for transform in transforms:
@@ -223,7 +202,7 @@ class LongPrepared(Prepared):
     @cached_property
     def _passed(self) -> _Passed:
         blocks, transforms = self._blocks()
-        rate = _working_rate(self.rate)
+        rate = min(WORKING_RATE, self.rate)
         ratio = rate / self.rate
         inside, inside_too = blocks.interior(ratio), blocks.interior(ratio)
         n = inside.n_samples
@@ -232,7 +211,7 @@ class LongPrepared(Prepared):
         correlation = Correlation(n, rate, LOWEST)
         acoustic = None
         if self.kind in ACOUSTIC_KINDS:
-            acoustic = _Acoustic(blocks, self.rate, rate, n, (self.low, self.limit))
+            acoustic = Acoustic(blocks, self.rate, rate, n, (self.low, self.limit))
         for transform in transforms:
             below.add(inside_too.of(band_signal(transform, 0.0, self.limit)[0]))
             x = inside.of(band_signal(transform, self.low, self.limit)[0])
@@ -247,96 +226,8 @@ class LongPrepared(Prepared):
             spectrum.spectrum(),
             correlation.period(highest=highest, whiten=True),
             n / rate,
-            *((None, None, None, ()) if acoustic is None else acoustic.results()),
+            None if acoustic is None else acoustic.results(),
         )
-
-
-class _Acoustic:
-    """What only sound and acceleration are asked for, summed up block by block."""
-
-    def __init__(
-        self, blocks: Overlapped, rate: float, working: float, n: int, band: tuple[float, float]
-    ) -> None:
-        self._rate, self._working, self._band = rate, working, band
-        segment, self._length, self._lobe = segment_lengths(n, working)
-        self._segments = SegmentPowers(n, segment)
-        self._described: list[DescribedSegments] = []
-        self._bands: NDArray[np.float64] | None = None
-        self._start = blocks.lead / rate
-        self._inside = [blocks.interior(s * working / rate) for s in (_WHOLE_RATE, _HIGH_RATE)]
-        self._power, self._high_power = Moments(), Moments()
-        self._pulses = LongPulses(_HIGH_RATE * working)
-        self._envelope = _LongModulation(self._inside[0].n_samples, _WHOLE_RATE * working)
-        self._top = [
-            (limits, share, blocks.interior(share * working / rate), Moments())
-            for limits, share in zip(TOP_BANDS, _TOP_RATES, strict=True)
-        ]
-
-    def add(self, transform: Transform, x: NDArray[np.float64]) -> None:
-        low, high = self._band
-        for power in self._segments.add(x):
-            described, self._bands = describe_segments(
-                power, self._working / self._length, self._lobe, low=low, high=high,
-                before=self._bands,
-            )  # fmt: skip
-            self._described.append(described)
-        whole, _ = band_analytic(transform, low, high, rate=_WHOLE_RATE * self._working)
-        power = squared(self._inside[0].of(whole))
-        self._power.add(power)
-        self._envelope.add(np.sqrt(power))
-        pulsed = pulse_band_from(high)
-        top, _ = band_analytic(transform, pulsed, high, rate=_HIGH_RATE * self._working)
-        power = squared(self._inside[1].of(top))
-        self._high_power.add(power)
-        self._pulses.add(power)
-        for (begin, end), share, inside, moments in self._top:
-            if end <= usable_limit(self._rate):
-                top, _ = band_analytic(transform, begin, end, rate=share * self._working)
-                moments.add(squared(inside.of(top)))
-
-    def results(
-        self,
-    ) -> tuple[DescribedSegments, Pulses, Modulation, tuple[Moments, ...]]:
-        described = DescribedSegments(*map(np.concatenate, zip(*self._described, strict=True)))
-        pulses = self._pulses.pulses(self._power, self._high_power, self._start)
-        modulation = self._envelope.modulation()
-        return described, pulses, modulation, tuple(moments for *_, moments in self._top)
-
-
-class _LongModulation:
-    """Modulation of an envelope that comes piece by piece."""
-
-    def __init__(self, n_samples: int, rate: float) -> None:
-        low, high = MODULATION_BAND
-        self._band = (low, min(high, 0.4 * rate))
-        self._blocks = Overlapped(n_samples, rate, *block_sizes(rate, *_ENVELOPE_BLOCK))
-        self._envelope, self._beats = Moments(), Moments()
-        self._about = math.nan
-        ratio = min(1.0, self._band[1] / usable_limit(rate))
-        self._inside = self._blocks.interior(ratio)
-        self._correlation = Correlation(self._inside.n_samples, ratio * rate, low)
-
-    def add(self, envelope: NDArray[np.float64]) -> None:
-        if not envelope.size:
-            return
-        if not self._envelope.n:  # the mean is faded in and out, and should be near nothing
-            self._about = float(envelope.mean())
-        self._envelope.add(envelope)
-        self._take(self._blocks.add(envelope - self._about))
-
-    def modulation(self) -> Modulation:
-        self._take(self._blocks.finish())
-        return described_modulation(
-            self._envelope.mean,
-            math.sqrt(self._beats.variance),
-            lambda: self._correlation.period(highest=MODULATION_BAND[1]),
-        )
-
-    def _take(self, transforms: Iterator[Transform]) -> None:
-        for transform in transforms:
-            beats = self._inside.of(band_signal(transform, *self._band)[0])
-            self._beats.add(beats)
-            self._correlation.add(beats)
 
 
 def prepare_long(
@@ -405,7 +296,3 @@ def prepare_long(
         n_samples=n_samples,
         fine=fine.spectrum(),
     )
-
-
-def _working_rate(rate: float) -> float:
-    return min(WORKING_RATE, rate)

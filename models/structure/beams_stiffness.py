@@ -6,12 +6,12 @@ between rigid anchors, by equation (4.11). Anchors that yield leave less of it.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
+from models.plausible import BOUNDS
 
 if TYPE_CHECKING:
     from models.rig import Beams
@@ -75,7 +75,7 @@ def beam_length(beams: Beams, stiffness: float) -> float:
     Raises
     ------
     ParameterError
-        If the stiffness is not positive and finite.
+        If no beam can have such a stiffness.
 
     Examples
     --------
@@ -84,10 +84,11 @@ def beam_length(beams: Beams, stiffness: float) -> float:
     >>> round(beam_length(steel, 2214.0), 4)
     0.1225
     """
-    if not 0 < stiffness < math.inf:
+    low, high = BOUNDS["support_stiffness_Nm_rad"].possible
+    if not low <= stiffness <= high:
         raise ParameterError(
-            f"support stiffness {stiffness:g} Nm/rad belongs to no beam; "
-            f"give a positive, finite one"
+            f"support stiffness {stiffness:g} Nm/rad belongs to no beam; possible is {low:g} to "
+            f"{high:g}"
         )
     bending, lever = bending_stiffness(beams), beams.lever
     cubic = [stiffness, -8.0 * bending, -24.0 * bending * lever, -24.0 * bending * lever**2]

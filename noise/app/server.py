@@ -7,6 +7,7 @@ import secrets
 import signal
 import socket
 import threading
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +20,7 @@ from starlette.staticfiles import StaticFiles
 
 from models.errors import BushingNoiseError
 from noise.app.gate import Gate
+from noise.app.routes_later import RoutesLater
 from noise.base.label_looks import LABEL_LOOKS
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 
     from starlette.requests import Request
     from starlette.responses import Response
+    from starlette.routing import BaseRoute
     from starlette.types import ASGIApp
 
     from noise.app.opened import Opened
@@ -37,6 +40,9 @@ VIEWS = {"labels": "Listen and label", "design": "Design", "jury": "Jury"}
 
 _SHARED = ("sounds",)
 """Routes that several views use."""
+
+_LATER = {"design": "/api/design"}
+"""Views that take a while to be loaded, and what all their routes begin with."""
 
 _STATIC = Path(__file__).parent / "static"
 
@@ -67,12 +73,18 @@ def create_app(
         stop()
         return JSONResponse({"stopped": True})
 
-    modules = (import_module(f"noise.app.{name}.routes") for name in (*_SHARED, *VIEWS))
+    def routes_of(name: str) -> list[BaseRoute]:
+        found: list[BaseRoute] = import_module(f"noise.app.{name}.routes").routes(opened)
+        return found
+
+    # A rig that is named is read at once: what is wrong with it is told where it was named.
+    later = {} if opened.rigs else _LATER
     routes = [
         Route("/", shown),
         Route("/api/stop", stopped, methods=["POST"]),
         Mount("/static", StaticFiles(directory=_STATIC)),
-        *(route for module in modules for route in module.routes(opened)),
+        *(route for name in (*_SHARED, *VIEWS) if name not in later for route in routes_of(name)),
+        *(RoutesLater(prefix, partial(routes_of, name)) for name, prefix in later.items()),
     ]
     app = Starlette(routes=routes, exception_handlers={BushingNoiseError: _told})
     return Gate(app, token, port)

@@ -204,7 +204,7 @@ class Heard:
 
         Raises
         ------
-        ParameterError
+        RecordingError
             There is no pressure channel, or nothing to be heard.
         """
         if isinstance(recording, Heard):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import ParameterError
+from models.errors import RecordingError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -63,7 +63,7 @@ def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> N
 
     Raises
     ------
-    ParameterError
+    RecordingError
         The recording has no pressure channel, or nothing to be heard.
 
     Examples
@@ -138,7 +138,7 @@ def pressure_channel(recording: Recording) -> Channel:
 
     Raises
     ------
-    ParameterError
+    RecordingError
         There is none, or what it is sampled at leaves nothing to be heard.
 
     Examples
@@ -149,7 +149,7 @@ def pressure_channel(recording: Recording) -> Channel:
     'pressure_2'
     """
     if recording.rate < LOWEST_HEARD:
-        raise ParameterError(
+        raise RecordingError(
             f"recording {recording.name!r} is sampled at {recording.rate:g} Hz, so nothing in it "
             f"can be heard; {LOWEST_HEARD:g} Hz at least"
         )
@@ -157,7 +157,7 @@ def pressure_channel(recording: Recording) -> Channel:
         if channel.kind == "pressure":
             return channel
     have = ", ".join(recording.channel_names)
-    raise ParameterError(
+    raise RecordingError(
         f"recording {recording.name!r} has no pressure channel to be heard; it has {have}"
     )
 

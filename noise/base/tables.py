@@ -16,14 +16,16 @@ import json
 import math
 import numbers
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
-from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
+from models.foreign_file import LARGEST_TEXT, parse_json, reading
 from noise.base.atomic import atomic
 from noise.base.csv_text import finite_or_fixed, read_csv, write_csv
 from noise.base.excel_csv import excel_signs, separator_of
+from noise.base.parquet import finite, read_parquet, write_parquet
 from noise.base.readable import readable
 
 if TYPE_CHECKING:
@@ -44,9 +46,6 @@ __all__ = [
 
 TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
-
-_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
-"""Cells that a Parquet file may hold: so many, and so many a byte."""
 
 _LONGEST_LINE = 1 << 20
 """Characters of a line that are looked at for the columns."""
@@ -141,7 +140,7 @@ def write_table(
     run07.wav,81.5
     bad.wav,
     """
-    cells = [[_cell(row.get(column)) for column in columns] for row in rows]
+    cells = _Cells(rows, columns)
     columns = [readable(column) for column in columns]
     signs = None if excel is None else excel_signs(excel)
     if path is None:
@@ -155,7 +154,7 @@ def write_table(
     ending = path.suffix.lower()
     with atomic(path) as temporary:
         if ending == ".parquet":
-            _write_parquet(temporary, columns, cells)
+            write_parquet(temporary, columns, cells)
         elif ending == ".xlsx":
             from noise.base.workbook import write_workbook
 
@@ -203,7 +202,7 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     ending = path.suffix.lower()
     with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
         if ending == ".parquet":
-            return _read_parquet(path)
+            return read_parquet(path)
         if ending == ".xlsx":
             from noise.base.workbook import read_workbook
 
@@ -213,17 +212,6 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
                 return read_csv(file)
         with path.open(encoding="utf-8-sig") as file:
             return [], [parse_json(line) for line in file if line.strip()]
-
-
-def _read_parquet(path: Path) -> tuple[list[str], list[dict[str, object]]]:
-    from pyarrow import parquet
-
-    with parquet.ParquetFile(path) as file:
-        announced = file.metadata.num_rows * file.metadata.num_columns
-        if announced > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
-            raise ExcessError(f"announces {announced} cells, more than a file of its size holds")
-        table = file.read()
-    return list(table.column_names), table.to_pylist()
 
 
 def table_columns(path: Path) -> set[str]:
@@ -284,22 +272,19 @@ def _cell(value: object) -> Cell:
     return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
+class _Cells:
+    """Rows as they are written, each made when it is its turn; to be gone through again."""
+
+    def __init__(self, rows: Iterable[Mapping[str, object]], columns: Sequence[str]) -> None:
+        self._rows = list(rows) if isinstance(rows, Iterator) else rows
+        self._columns = columns
+
+    def __iter__(self) -> Iterator[list[Cell]]:
+        for row in self._rows:
+            yield [_cell(row.get(column)) for column in self._columns]
+
+
 def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     for row in rows:
-        line = json.dumps(dict(zip(columns, map(_finite, row), strict=True)), ensure_ascii=False)
+        line = json.dumps(dict(zip(columns, map(finite, row), strict=True)), ensure_ascii=False)
         file.write(line + "\n")
-
-
-def _write_parquet(path: Path, columns: Sequence[str], rows: Sequence[Sequence[Cell]]) -> None:
-    import pyarrow as pa
-    from pyarrow import parquet
-
-    arrays = {
-        column: pa.array([_finite(row[index]) for row in rows])
-        for index, column in enumerate(columns)
-    }
-    parquet.write_table(pa.table(arrays), path)
-
-
-def _finite(value: Cell) -> Cell:
-    return None if isinstance(value, float) and math.isinf(value) else value

@@ -1,8 +1,9 @@
 """The journal of a table: what has been done so far, on disk after each recording.
 
 It is kept as `noise.batch.lines` keeps results, and outlives the table. A line is one recording
-with its rows. It counts as long as the recording is the same file as then, and the same program
-does the same work; otherwise the recording is done again, and the later line stands.
+with its rows; many rows of one recording are several lines, which count together or not at all. It
+counts as long as the recording is the same file as then, and the same program does the same work;
+otherwise the recording is done again, and the later line stands.
 
 Refused recordings are not in it. They cost little, and what was at fault may have been put right
 since without the file changing: a share that was away, a library that was not installed.
@@ -16,13 +17,15 @@ from typing import TYPE_CHECKING, Any
 
 from noise.batch.identity import file_identity, work_identity
 from noise.batch.lines import header_of, journal_path, open_lines, parsed
+from noise.batch.rows import StoredRows, part_count, parts_of
 from noise.batch.work import Done
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from noise.batch.lines import Lines
+    from noise.batch.rows import Cell
     from noise.batch.work import Job, Work
 
     Entries = dict[str, tuple[list[int], Done]]
@@ -33,9 +36,9 @@ __all__ = ["Journal", "JournalReader", "open_journal"]
 class Journal:
     """What is done of a table; see `open_journal`."""
 
-    def __init__(self, lines: Lines, n_columns: int) -> None:
+    def __init__(self, lines: Lines, entries: Entries) -> None:
         self._lines = lines
-        self._entries = _entries(([key, *found] for key, found in lines.found.items()), n_columns)
+        self._entries = entries
 
     def find(self, job: Job) -> Done | None:
         """Return what came of a recording, None where it is still to be done."""
@@ -49,7 +52,14 @@ class Journal:
         """Keep what came of a recording; `identity` is the file's from before it was read."""
         if identity is None or done.error is not None:
             return
-        self._lines.add(_key(job), identity, done.calibrated, done.rows)
+        n_parts = part_count(done.rows)
+        self._lines.add(
+            *(
+                [_key(job), identity, done.calibrated, part]
+                + ([] if n_parts == 1 else [number, n_parts])
+                for number, part in enumerate(parts_of(done.rows), start=1)
+            )
+        )
 
 
 class JournalReader:
@@ -66,24 +76,31 @@ class JournalReader:
         self._path = journal_path(table)
         self._header = header_of(work_identity(work))
         self._n_columns = len(work.columns)
+        self._begin()
+
+    def _begin(self) -> None:
         self._read = 0
+        self._reading = _Reading(self._n_columns)
 
     def news(self, jobs: Sequence[Job]) -> dict[int, Done]:
         """Return what came of recordings since the last call, by their index."""
         try:
             with self._path.open("rb") as file:
                 if file.readline() != self._header:
-                    self._read = 0
+                    self._begin()
                     return {}
                 if os.fstat(file.fileno()).st_size < self._read:  # begun again
-                    self._read = 0
+                    self._begin()
                 file.seek(max(self._read, len(self._header)))
                 content = file.read()
         except OSError:
             return {}
         whole = content[: content.rfind(b"\n") + 1]
         self._read = max(self._read, len(self._header)) + len(whole)
-        return _known(_entries(parsed(whole), self._n_columns), jobs) if whole else {}
+        found: Entries = {}
+        for line in whole.splitlines():
+            found.update(self._reading.entries(parsed(line)))
+        return _known(found, jobs)
 
 
 @contextmanager
@@ -120,8 +137,14 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
     ...         journal.find(job) == done
     True
     """
-    with open_lines(table, work_identity(work), fresh=fresh) as lines:
-        yield Journal(lines, len(work.columns))
+    entries: Entries = {}
+    reading = _Reading(len(work.columns))
+
+    def take(found: list[Any]) -> None:
+        entries.update(reading.entries(found))
+
+    with open_lines(table, work_identity(work), take=take, fresh=fresh) as lines:
+        yield Journal(lines, entries)
 
 
 def _find(entries: Entries, job: Job) -> Done | None:
@@ -134,16 +157,38 @@ def _known(entries: Entries, jobs: Sequence[Job]) -> dict[int, Done]:
     return {index: done for index, done in found.items() if done is not None}
 
 
-def _entries(lines: Iterable[list[Any]], n_columns: int) -> Entries:
-    entries = {}
-    for line in lines:
+class _Reading:
+    """Recordings from the lines of a journal, as they come."""
+
+    def __init__(self, n_columns: int) -> None:
+        self._n_columns = n_columns
+        self._begun: tuple[list[object], StoredRows] = ([], StoredRows())
+        self._number = 0
+
+    def entries(self, line: list[Any]) -> Entries:
+        """Return the recording that a line completes, by its key."""
         try:
-            key, identity, calibrated, rows = line
-            if {len(row) for row in rows} <= {n_columns} and isinstance(calibrated, bool):
-                entries[key] = identity, Done(rows, calibrated)
+            key, identity, calibrated, rows, *place = line
+            if not (
+                {len(row) for row in rows} <= {self._n_columns} and calibrated in (True, False)
+            ):
+                return {}
+            if not place:
+                return {key: (identity, Done(rows, calibrated))}
+            return self._part([key, identity, calibrated], rows, *place)
         except (ValueError, TypeError):  # no line of ours
-            continue
-    return entries
+            return {}
+
+    def _part(self, of: list[Any], rows: list[list[Cell]], number: int, n_parts: int) -> Entries:
+        if number == 1:
+            self._begun = of, StoredRows()
+        elif (of, number) != (self._begun[0], self._number + 1):  # one before it is damaged
+            return {}
+        self._number = number
+        kept = self._begun[1]
+        kept.add(rows)
+        key, identity, calibrated = of
+        return {key: (identity, Done(kept, calibrated))} if number == n_parts else {}
 
 
 def _key(job: Job) -> str:

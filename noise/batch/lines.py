@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any
 from models.errors import BushingNoiseError, ParameterError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from io import FileIO
     from pathlib import Path
 
-__all__ = ["Lines", "header_of", "journal_path", "kept_results", "open_lines", "parsed"]
+__all__ = ["Lines", "Results", "header_of", "journal_path", "kept_results", "open_lines", "parsed"]
 
 _FORMAT = 2
 
@@ -30,23 +30,30 @@ _FORMAT = 2
 class Lines:
     """What is kept of a call; see `open_lines`."""
 
-    def __init__(self, path: Path, file: FileIO, content: bytes) -> None:
+    def __init__(self, path: Path, file: FileIO) -> None:
         self._path = path
         self._file = file
-        self._found = {key: values for key, *values in parsed(content)}
-        self.n_kept = len(self._found)
+        self.n_kept = 0
 
-    @property
-    def found(self) -> dict[str, list[Any]]:
-        """What earlier calls kept, by its key."""
-        return self._found
+    def add(self, *entries: list[Any]) -> None:
+        """Keep a result as JSON knows it, in a line or several; it is on the disk on return."""
+        with _writing(self._path):
+            for entry in entries:
+                _write(self._file, _line(entry))
+            os.fsync(self._file.fileno())
+        self.n_kept += len(entries)
+
+
+class Results:
+    """Results by their keys, of earlier calls and of this one; see `kept_results`."""
+
+    def __init__(self, found: dict[str, list[Any]], lines: Lines) -> None:
+        self.found = found
+        self._lines = lines
 
     def add(self, key: str, *values: object) -> None:
-        """Keep a result as JSON knows it; it is on the disk when this returns."""
-        with _writing(self._path):
-            _write(self._file, _line([key, *values]))
-            os.fsync(self._file.fileno())
-        self.n_kept += 1
+        """Keep a result as JSON knows it."""
+        self._lines.add([key, *values])
 
 
 def journal_path(target: Path) -> Path:
@@ -67,7 +74,9 @@ def header_of(identity: str) -> bytes:
 
 
 @contextmanager
-def open_lines(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Lines]:
+def open_lines(
+    target: Path, identity: str, *, take: Callable[[list[Any]], None], fresh: bool = False
+) -> Iterator[Lines]:
     """Open what is kept for a file to be written.
 
     Parameters
@@ -75,7 +84,9 @@ def open_lines(target: Path, identity: str, *, fresh: bool = False) -> Iterator[
     target : Path
         Parent folders are made.
     identity : str
-        Digest of all that decides the results beside their keys.
+        Digest of all that decides the results beside what their lines say.
+    take : callable
+        Is given each line that is kept of these, without those that are damaged.
     fresh : bool
         Whether to forget what is in it.
 
@@ -89,11 +100,11 @@ def open_lines(target: Path, identity: str, *, fresh: bool = False) -> Iterator[
     >>> import tempfile
     >>> from pathlib import Path
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     with open_lines(Path(folder) / "t.csv", "a") as lines:
-    ...         lines.add("run07", 1.5, None)
-    ...     with open_lines(Path(folder) / "t.csv", "a") as lines:
-    ...         lines.found
-    {'run07': [1.5, None]}
+    ...     with open_lines(Path(folder) / "t.csv", "a", take=print) as lines:
+    ...         lines.add(["run07", 1.5, None])
+    ...     with open_lines(Path(folder) / "t.csv", "a", take=print):
+    ...         pass
+    ['run07', 1.5, None]
     """
     path, header = journal_path(target), header_of(identity)
     with _writing(path):
@@ -101,22 +112,20 @@ def open_lines(target: Path, identity: str, *, fresh: bool = False) -> Iterator[
         file = path.open("a+b", buffering=0)
     with file:
         _claim(file, target)
-        file.seek(0)
-        content = b"" if fresh else file.read()
-        # What follows the last line break was torn off when the process was killed.
-        whole = content[: content.rfind(b"\n") + 1]
-        if not whole.startswith(header):
+        lines = Lines(path, file)
+        end = 0 if fresh else _read(path, header, take)
+        if not end:
             with _writing(path):
                 file.truncate(0)
                 _write(file, header)
-            whole = header
-        elif len(whole) < len(content):
-            file.truncate(len(whole))
-        yield Lines(path, file, whole[len(header) :])
+        else:  # what follows the last line break was torn off when the process was killed
+            file.truncate(end)
+        lines.n_kept = int(end > len(header))
+        yield lines
 
 
 @contextmanager
-def kept_results(target: Path | None, identity: str) -> Iterator[Lines | None]:
+def kept_results(target: Path | None, identity: str) -> Iterator[Results | None]:
     """Keep results until the block ends well, or is refused, and has no more need of them.
 
     Parameters
@@ -129,11 +138,16 @@ def kept_results(target: Path | None, identity: str) -> Iterator[Lines | None]:
     if target is None:
         yield None
         return
+    found: dict[str, list[Any]] = {}
     done_with, made = False, not target.parent.exists()
+
+    def take(line: list[Any]) -> None:
+        found[str(line[0])] = line[1:]
+
     try:
-        with open_lines(target, identity) as lines:
+        with open_lines(target, identity, take=take) as lines:
             try:
-                yield lines
+                yield Results(found, lines)
                 done_with = True
             except BushingNoiseError as error:  # what is refused leaves nothing, a full disk does
                 done_with = not isinstance(error.__context__, OSError)
@@ -148,18 +162,31 @@ def kept_results(target: Path | None, identity: str) -> Iterator[Lines | None]:
                     target.parent.rmdir()
 
 
-def parsed(content: bytes) -> Iterator[list[Any]]:
-    """Go through what whole lines hold, each beginning with its key; passes over damaged ones."""
-    for line in content.split(b"\n"):
-        entry, _, checksum = line.rpartition(b" ")
-        if checksum != b"%08x" % zlib.crc32(entry):  # damaged: it is done again
-            continue
-        try:
-            found = json.loads(entry)
-        except (ValueError, RecursionError):  # no line of ours
-            continue
-        if isinstance(found, list) and found and isinstance(found[0], str):
-            yield found
+def parsed(line: bytes) -> list[Any]:
+    """Return what a line holds; nothing where it is damaged or none."""
+    entry, _, checksum = line.rstrip(b"\n").rpartition(b" ")
+    if checksum != b"%08x" % zlib.crc32(entry):  # damaged: it is done again
+        return []
+    try:
+        found = json.loads(entry)
+    except (ValueError, RecursionError):  # no line of ours
+        return []
+    return found if isinstance(found, list) else []
+
+
+def _read(path: Path, header: bytes, take: Callable[[list[Any]], None]) -> int:
+    """Go through what is kept; return how far it is whole: nowhere if something else decides it."""
+    with path.open("rb") as lines:
+        if lines.readline() != header:
+            return 0
+        end = len(header)
+        for line in lines:
+            if not line.endswith(b"\n"):
+                break
+            end += len(line)
+            if found := parsed(line):
+                take(found)
+        return end
 
 
 @contextmanager
@@ -176,7 +203,7 @@ def _write(file: FileIO, data: bytes) -> None:
         data = data[file.write(data) :]
 
 
-def _line(entry: list[object]) -> bytes:
+def _line(entry: list[Any]) -> bytes:
     content = json.dumps(entry).encode()
     return b"%s %08x\n" % (content, zlib.crc32(content))
 

@@ -13,13 +13,16 @@ from collections import deque
 from multiprocessing import connection, get_context
 from typing import TYPE_CHECKING
 
-from noise.batch.work import one_thread, perform, refusal
+from noise.batch.deaf import deaf_to_interrupts
+from noise.batch.rows import parts_of, stored
+from noise.batch.work import Done, one_thread, perform, refusal
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Generator, Iterator, Sequence
     from multiprocessing.connection import Connection
 
-    from noise.batch.work import Done, Job, Work
+    from noise.batch.rows import Cell
+    from noise.batch.work import Job, Work
 
 __all__ = ["DIED", "perform_on_processes"]
 
@@ -84,7 +87,8 @@ class _Worker:
         self.job: Job | None = None
         self.began = False
         self._process = context.Process(target=_serve, args=(theirs, work), daemon=True)
-        self._process.start()
+        with deaf_to_interrupts():
+            self._process.start()
         theirs.close()
 
     def give(self, job: Job) -> bool:
@@ -110,10 +114,21 @@ class _Worker:
         """Return what came of the recording, None where the process died at it."""
         self.job = None
         try:
-            done: Done = self.link.recv()
+            return self._received()
         except (EOFError, OSError):
             return None
-        return done
+
+    def _received(self) -> Done:
+        """Wait for all rows, which come in parts, and what goes with them."""
+        ended: list[Done] = []
+
+        def rows() -> Iterator[list[Cell]]:
+            while not isinstance(answer := self.link.recv(), Done):
+                yield from answer
+            ended.append(answer)
+
+        kept = stored(rows())
+        return ended[0]._replace(rows=kept)
 
     def end(self) -> None:
         """End the process, whatever it is at."""
@@ -131,6 +146,9 @@ def _serve(link: Connection, work: Work) -> None:
             link.send(True)
             while True:
                 job: Job = link.recv()
-                link.send(perform(work, job.path, job.name))
+                done = perform(work, job.path, job.name)
+                for part in parts_of(done.rows):
+                    link.send(part)
+                link.send(done._replace(rows=[]))
         except (EOFError, OSError):
             return

@@ -18,16 +18,16 @@ from models.foreign_file import one_line
 from noise.base.readable import readable
 from noise.base.tables import plain_cell
 from noise.batch.identity import file_identity
+from noise.batch.rows import stored
 from noise.recordings import find_recordings
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping, Sequence
+    from collections.abc import Generator, Iterable, Mapping, Sequence
     from contextlib import AbstractContextManager
     from pathlib import Path
 
     from noise.batch.journal import Journal
-
-    Cell = bool | int | float | str | None
+    from noise.batch.rows import Rows
 
 __all__ = ["Done", "Job", "Work", "find_jobs", "one_thread", "perform", "perform_all", "refusal"]
 
@@ -55,14 +55,14 @@ class Done(NamedTuple):
 
     Parameters
     ----------
-    rows : list of list
+    rows : list of list, or StoredRows
         One a row of the table, in the order of its columns.
     calibrated : bool
     error : str, optional
         Why it was refused; its one row then says so, too.
     """
 
-    rows: list[list[Cell]]
+    rows: Rows
     calibrated: bool
     error: str | None = None
 
@@ -88,8 +88,8 @@ class Work(Protocol):
         """Return what decides the rows beside the recording and the program."""
         ...
 
-    def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
-        """Return the rows of a recording, and whether it is calibrated."""
+    def rows(self, path: Path, name: str) -> tuple[Iterable[dict[str, object]], bool]:
+        """Return the rows of a recording, once, and whether it is calibrated."""
         ...
 
 
@@ -200,11 +200,10 @@ def perform(work: Work, path: Path, name: str) -> Done:
     """Do the work on one recording; a recording that cannot be used is a row that says so."""
     try:
         rows, calibrated = work.rows(path, name)
+        cells = stored([plain_cell(row.get(column)) for column in work.columns] for row in rows)
     except Exception as error:  # whatever it is, the next file may be fine
         return refusal(work, name, _message(error))
-    return Done(
-        [[plain_cell(row.get(column)) for column in work.columns] for row in rows], calibrated
-    )
+    return Done(cells, calibrated)
 
 
 def refusal(work: Work, name: str, message: str) -> Done:

@@ -21,11 +21,11 @@ from noise.commands.options import MOST_WORKERS, add_excel, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
     from noise.batch import Done, Job, Journal, Work
 
-    Rows = list[dict[str, object]]
+    Rows = Collection[dict[str, object]]
 
 __all__ = ["add_batch", "check_batch", "run_batch"]
 
@@ -177,6 +177,24 @@ def _progress(
         yield from track(advancing, work.doing, total=len(left))
 
 
+class _Rows:
+    """All rows of a table, each made when it is its turn."""
+
+    def __init__(self, columns: Sequence[str], outcomes: Sequence[Done]) -> None:
+        self._columns, self._outcomes = columns, outcomes
+
+    def __len__(self) -> int:
+        return sum(len(done.rows) for done in self._outcomes)
+
+    def __contains__(self, row: object) -> bool:
+        return any(row == one for one in self)
+
+    def __iter__(self) -> Iterator[dict[str, object]]:
+        for done in self._outcomes:
+            for row in done.rows:
+                yield dict(zip(self._columns, row, strict=True))
+
+
 def _write(
     options: Namespace,
     work: Work,
@@ -187,7 +205,7 @@ def _write(
     table: bool,
 ) -> tuple[Rows, list[Path]]:
     columns, out = work.columns, options.out
-    rows: Rows = [dict(zip(columns, row, strict=True)) for done in outcomes for row in done.rows]
+    rows: Rows = _Rows(columns, outcomes)
     # Nobody may change the table between the look at what stays of it and the writing.
     with nullcontext() if out is None else locked(out):
         rows = keep(out, rows)

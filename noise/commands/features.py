@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -12,7 +13,7 @@ from noise.commands.plots import add_plots, check_plots, draw_recordings
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from noise.recordings.blocks import RecordingBlocks
@@ -64,7 +65,7 @@ def run(options: Namespace) -> int:
         return run_batch(options, work, jobs)
     check_plots(options.plot, jobs)
 
-    def draw(_: list[dict[str, object]]) -> list[Path]:
+    def draw(_: object) -> list[Path]:
         return draw_recordings(options.plot, jobs, full_scale=work.full_scale)
 
     return run_batch(options, work, jobs, also=draw)
@@ -110,42 +111,54 @@ class Featuring:
         """Return the options that decide the rows, beside the columns."""
         return {"full_scale": self.full_scale}
 
-    def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
+    def rows(self, path: Path, name: str) -> tuple[Iterable[dict[str, object]], bool]:
         """Return the rows of a recording, and whether it is calibrated."""
         from noise.recordings import read_recording
         from noise.recordings.blocks import RecordingBlocks, open_blocks
 
+        if self.windows:
+            with ExitStack() as stack:
+                opened = stack.enter_context(open_blocks(path, full_scale=self.full_scale))
+                read = opened or read_recording(path, full_scale=self.full_scale)
+                blocks = RecordingBlocks.of(read)
+                return _windows(path, name, blocks, stack.pop_all()), blocks.calibrated
         with open_blocks(path, full_scale=self.full_scale) as opened:
             read = opened or read_recording(path, full_scale=self.full_scale)
-            if self.windows:
-                from noise.labels.labelling import names_no_channels
-                from noise.labels.windows import tracks
-
-                blocks = RecordingBlocks.of(read)
-                found = tracks(blocks, per_track=names_no_channels(path))
-                rows = [row for channel, track in found for row in _windows(path, channel, track)]
-                return [{"file": name, **row} for row in rows], blocks.calibrated
             from features import recording_features
 
             pitch = _pitch(RecordingBlocks.of(read)) if self.pitch else {}
             return [{"file": name, **recording_features(read), **pitch}], read.calibrated
 
 
-def _windows(path: Path, channel: str, blocks: RecordingBlocks) -> Iterator[dict[str, object]]:
+def _windows(
+    path: Path, name: str, recording: RecordingBlocks, opened: ExitStack
+) -> Iterator[dict[str, object]]:
+    """Yield the rows of the windows of a recording, which is closed after the last one."""
+    from noise.labels.labelling import names_no_channels
+    from noise.labels.windows import tracks
+
+    with opened:
+        for channel, track in tracks(recording, per_track=names_no_channels(path)):
+            for row in _windows_of(path, track):
+                yield {"file": name, "channel": channel, **row}
+
+
+def _windows_of(path: Path, blocks: RecordingBlocks) -> Iterator[dict[str, object]]:
     """Yield the rows of the windows of one channel or of all that a recording names."""
     from features.windows.table import HOP, LENGTH
     from models.errors import ParameterError
-    from noise.labels.windows import FEATURE_NAMES, can_be_described, describe
+    from noise.labels.windows import FEATURE_NAMES, Pages, can_be_described
 
     if not can_be_described(blocks):
         raise ParameterError(
             f"{path}: has no channel of pressure, acceleration or torque sampled at 1000 Hz or "
             "more, so that no window can be described"
         )
-    for i, values in enumerate(describe(blocks).features):
-        end = min(i * HOP + LENGTH, blocks.n_samples / blocks.rate)
-        named = dict(zip(FEATURE_NAMES, values.tolist(), strict=True))
-        yield {"channel": channel, "start_s": i * HOP, "end_s": round(end, 6), **named}
+    for page in Pages(blocks):
+        for i, values in enumerate(page.features.tolist(), start=page.first):
+            end = min(i * HOP + LENGTH, blocks.n_samples / blocks.rate)
+            named = dict(zip(FEATURE_NAMES, values, strict=True))
+            yield {"start_s": i * HOP, "end_s": round(end, 6), **named}
 
 
 def _pitch(blocks: RecordingBlocks) -> dict[str, float]:

@@ -22,6 +22,7 @@ from noise.pictures.files import check_picture_path
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
+    from collections.abc import Iterable
 
     from noise.labels.labelling import Labelling
 
@@ -107,7 +108,11 @@ def run(options: Namespace) -> int:
     from noise.labels.labelling import Labelling
     from noise.labels.table import with_corrections
 
-    def export(rows: list[dict[str, object]]) -> list[Path]:
+    def keep(out: Path | None, rows: Iterable[dict[str, object]]) -> list[dict[str, object]]:
+        return with_corrections(out, list(rows))
+
+    def export(rows: Iterable[dict[str, object]]) -> list[Path]:
+        rows = list(rows)
         _note_assumed(rows)
         written = _export(options, rows)
         if options.plot is not None:
@@ -124,7 +129,7 @@ def run(options: Namespace) -> int:
         loudness=options.loudness,
     )
     _note_sensitivity(work)
-    return run_batch(options, work, jobs, also=export, keep=with_corrections, lines=result_lines)
+    return run_batch(options, work, jobs, also=export, keep=keep, lines=result_lines)
 
 
 def _note_sensitivity(work: Labelling) -> None:

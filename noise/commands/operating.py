@@ -192,7 +192,9 @@ def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) ->
 
     if options.rig is None:
         try:
-            rig = load_material_rig(options.material or opt.DEFAULT_MATERIAL)
+            rig = load_material_rig(
+                opt.DEFAULT_MATERIAL if options.material is None else options.material
+            )
         except ParameterError as error:
             raise ParameterError(f"--material: {error}") from None
     else:

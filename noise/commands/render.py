@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
     from noise.audio.rendering import Survey
-    from noise.batch.lines import Lines
+    from noise.batch.lines import Results
     from noise.commands.render_plans import Plan
     from noise.commands.render_sources import Source
 
@@ -24,6 +24,7 @@ __all__ = ["configure", "run"]
 
 _RATES = (44100, 48000)
 _BITS = (16, 24, 32)
+_LOWEST, _NARROWEST = 1.0, 1.01  # Hz, and upper over lower end of a band: filters of it hold
 _LONG_ENOUGH = 2.0  # s, to be judged by ear
 
 
@@ -103,7 +104,7 @@ def configure(parser: ArgumentParser) -> None:
     gain = parser.add_mutually_exclusive_group()
     gain.add_argument(
         "--pascal-per-full-scale",
-        type=opt.number(above=0.0),
+        type=opt.number(above=0.0, most=1e9),
         metavar="PA",
         help="sound pressure in Pa of a full-scale sample of the output, for a listening room "
         "that is calibrated to it (default: what puts the largest peak of all 3 dB below full "
@@ -152,8 +153,11 @@ def _repeats(text: str) -> int:
 
 def _band(text: str) -> tuple[float, float]:
     low, high = opt.band(text)
-    if low <= 0.0:
-        raise ArgumentTypeError(f"is {text!r}, expected a band that begins above 0 Hz")
+    if low < _LOWEST or high < low * _NARROWEST:
+        raise ArgumentTypeError(
+            f"is {text!r}, expected a band that begins at {_LOWEST:g} Hz or above and is at least "
+            f"{_NARROWEST - 1.0:.0%} wide"
+        )
     return low, high
 
 
@@ -230,7 +234,7 @@ def _keep_inputs(out: Path, sources: list[Source], plans: list[Plan]) -> None:
 
 
 def _rendered(
-    options: Namespace, plans: list[Plan], folder: Path | None, kept: Lines | None
+    options: Namespace, plans: list[Plan], folder: Path | None, kept: Results | None
 ) -> int:
     from noise.audio.rendering import COLUMNS, render
     from noise.base.tables import write_table

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from noise.audio.filters import SoundFilter
     from noise.audio.long_sound import Heard
     from noise.audio.rendering import Survey
-    from noise.batch.lines import Lines
+    from noise.batch.lines import Results
     from noise.commands.render_sources import Source
 
 __all__ = ["Plan", "measuring_identity"]
@@ -46,7 +46,7 @@ class Plan(NamedTuple):
                 whole = [filtered(one, self.through) for one in whole]
             yield whole
 
-    def surveyed(self, kept: Lines | None, **how: Any) -> tuple[Survey, list[Sequence[str]]]:
+    def surveyed(self, kept: Results | None, **how: Any) -> tuple[Survey, list[Sequence[str]]]:
         """Measure it as `noise.audio.rendering.survey` does; return the notes of its takes, too."""
         from noise.audio.rendering import survey
         from noise.audio.survey_lines import survey_line, survey_of_line

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
     from noise.base.progress import Steps
-    from noise.batch.lines import Lines
+    from noise.batch.lines import Results
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
 
@@ -173,7 +173,7 @@ def _screened(
     given: Use,
     environments: list[str],
     tell: Steps,
-    kept: Lines | None,
+    kept: Results | None,
 ) -> Screening:
     tell("preparing")
     import numpy as np

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from noise.base.progress import Steps
-    from noise.batch.lines import Lines
+    from noise.batch.lines import Results
     from noise.classifier import Classifier
     from noise.training.classifier.own_samples import OwnSample
 
@@ -132,7 +132,7 @@ def run(options: Namespace) -> int:
 
 
 def _trained(
-    options: Namespace, added: Sequence[OwnSample], tell: Steps, lines: Lines | None
+    options: Namespace, added: Sequence[OwnSample], tell: Steps, lines: Results | None
 ) -> Classifier:
     from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition, same_support
-from models.errors import BushingNoiseError, ParameterError
+from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.diagnosis.bench.channels import misplaced_torque
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
 from noise.diagnosis.bench.units import length_unit
@@ -82,7 +82,9 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
     Raises
     ------
     ParameterError
-        There is no recording, or none that can be used; the message says what would be right.
+        There is no recording.
+    RecordingError
+        There is none that can be used; the message says what would be right.
     """
     names, recordings, refused = [], [], []
     for path, name in find_recordings(paths):
@@ -94,10 +96,10 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
             names.append(name)
             recordings.append(recording)
     if not recordings:
-        reason = f"; {refused[0][0]}: {refused[0][1]}" if refused else ""
-        raise ParameterError(
-            f"{', '.join(str(path) for path in paths)}: no recording that can be diagnosed{reason}"
-        )
+        what = f"{', '.join(map(str, paths))}: no recording that can be diagnosed"
+        if not refused:
+            raise ParameterError(what)
+        raise RecordingError("; ".join([what, *(f"{name}: {why}" for name, why in refused)]))
     faults = clipped_channels(recordings, rig)
     sounding = without_dead_channels(names, recordings)
     if any(recording is not None for recording in sounding.recordings):  # else the check says it

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from noise.labels.frequencies import TELLING, segment_frequency
 from noise.labels.labelling import label_rows, names_no_channels
 from noise.labels.levels import sound_levels, with_weighted_levels
 from noise.labels.segments import Segment
 from noise.labels.table import HUMAN
-from noise.labels.windows import can_be_described, describe, segment_frequency, tracks
+from noise.labels.windows import can_be_described, describe, tracks
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 
@@ -94,7 +95,7 @@ def _measured(
         level = level_dbfs = frequency = None
         if can_be_described(blocks):
             found = describe(blocks)
-            frequency = segment_frequency(found.features, label)
+            frequency = segment_frequency(found.features[:, TELLING], label)
             row = blocks.first("pressure")
             if row is not None:
                 level, level_dbfs = sound_levels(

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from noise.labels.kept_frames import KeptFrames
+
 __all__ = [
     "NOISES", "QUIET", "change_points", "clearest", "labelled_stretches", "named", "viterbi_path"
 ]  # fmt: skip
@@ -244,12 +246,14 @@ def clearest(probabilities: NDArray[np.float64], group: NDArray[np.intp]) -> NDA
     return np.asarray(sums / taken[:, None])
 
 
-def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDArray[np.float64]:
+def change_points(
+    frames: NDArray[np.float32] | KeptFrames, changes: NDArray[np.intp]
+) -> NDArray[np.float64]:
     """Find when each change between two windows happens.
 
     Parameters
     ----------
-    frames : ndarray of float32, shape (n_frames, n_columns)
+    frames : KeptFrames or ndarray of float32, shape (n_frames, n_columns)
         As `features.windows.table.WindowTable` has them.
     changes : ndarray of int, shape (n_changes,)
         Window after which each change is; rising.
@@ -276,7 +280,9 @@ def change_points(frames: NDArray[np.float32], changes: NDArray[np.intp]) -> NDA
     return np.array(times)
 
 
-def _change(frames: NDArray[np.float32], middle: float, low: float, high: float) -> float:
+def _change(
+    frames: NDArray[np.float32] | KeptFrames, middle: float, low: float, high: float
+) -> float:
     first = max(0, round((max(low, middle - _CONTEXT) - _LEAD) * FRAME_RATE))
     last = min(len(frames), round((min(high, middle + _CONTEXT) - _LEAD) * FRAME_RATE))
     allowed = np.arange(

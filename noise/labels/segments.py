@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from features.windows.table import HOP, LENGTH
-from models.recording import REFERENCE_PRESSURE
 from models.short_repr import short_repr
 from noise.base.label_names import LABELS
+from noise.labels.classified import at_a_condition, classified
+from noise.labels.frequencies import segment_frequency
 from noise.labels.levels import CELL_RATE, CellLevels, sound_levels, with_weighted_levels
 from noise.labels.segmentation import change_points, labelled_stretches
-from noise.labels.windows import (
-    FEATURE_NAMES,
-    can_be_described,
-    describe,
-    segment_frequency,
-    tracks,
-)
+from noise.labels.windows import can_be_described, tracks
 from noise.recordings.blocks import RecordingBlocks
 
 if TYPE_CHECKING:
@@ -33,19 +26,9 @@ if TYPE_CHECKING:
 
     from models.recording import Recording
     from noise.classifier import Classifier
-    from noise.labels.windows import Described
+    from noise.labels.classified import Classified
 
 __all__ = ["Segment", "Segments", "file_label", "label_recording"]
-
-_SILENT_LEVEL = 10.0
-"""Calibrated sound below it is silence [dB re 20 uPa]: below any microphone's own noise."""
-
-_SILENT_LEVEL_DBFS = -90.0
-"""Uncalibrated sound below it is silence [dBFS]: the last bit of 16."""
-
-_SURELY = 6.0
-"""What is louder than silence by so much in its described part needs no second look [dB]."""
-
 
 _MOST_SHOWN = 4
 """Segments that are named one by one where they are printed."""
@@ -232,33 +215,12 @@ def file_label(segments: list[Segment]) -> Segment:
     return max(audible or segments, key=lambda segment: segment.end - segment.start)
 
 
-_STRANGERS = 0.5
-"""Odds of a sound that is none of the noises and no quiet where an operating condition is stated,
-over those elsewhere [-]; assumed: of the recordings that the classifier learned from, a third are
-such sounds."""
-
-
-def _at_a_condition(blocks: RecordingBlocks) -> bool:
-    """Whether it is of a bushing at a stated condition, where nothing else is expected to sound."""
-    at = blocks.condition
-    stated = (at.speed, at.interference, at.support_stiffness)
-    return any(value is not None for value in stated)
-
-
 def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> list[Segment]:
     if not can_be_described(blocks):
         return [_nothing_to_tell(blocks, channel)]
-    found = describe(blocks)
-    columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
-    probabilities = classifier.predict_proba(found.features[:, columns])
-    known = _at_a_condition(blocks)
-    if known:
-        probabilities[:, LABELS.index("unknown")] *= _STRANGERS
-        probabilities /= probabilities.sum(axis=1, keepdims=True)
-    silent = _silent_windows(blocks, found)
-    probabilities[silent] = np.eye(len(LABELS))[LABELS.index("none")]
-    thresholds = None if known else classifier.thresholds
-    edges, names, heard = labelled_stretches(probabilities, thresholds, found.level)
+    found = classified(blocks, classifier)
+    thresholds = None if at_a_condition(blocks) else classifier.thresholds
+    edges, names, heard = labelled_stretches(found.probabilities, thresholds, found.level)
     cells = np.round(change_points(found.frames, edges[1:-1] - 1) * CELL_RATE).astype(int)
     last_cell = found.cells.count
     limits = [0, *np.clip(cells, 1, max(1, last_cell - 1)).tolist(), last_cell]
@@ -270,35 +232,9 @@ def _label(blocks: RecordingBlocks, classifier: Classifier, channel: str) -> lis
     ]
 
 
-def _silent_windows(blocks: RecordingBlocks, found: Described) -> NDArray[np.bool_]:
-    """Whether nothing is to be heard in each window."""
-    cells, n = found.cells, len(found.features)
-    row = blocks.first("pressure")
-    full_scale = 1.0 if row is None else blocks.channels[row].full_scale
-    silent = np.zeros(n, dtype=np.bool_)
-    # All that is heard is no less than the part of it that is described.
-    limit = _SILENT_LEVEL_DBFS + 20.0 * math.log10(full_scale)
-    if blocks.calibrated:
-        limit = _SILENT_LEVEL + 20.0 * math.log10(REFERENCE_PRESSURE)
-    loud = (found.level > limit + _SURELY) & (row is not None)
-    for window in np.flatnonzero(~loud).tolist():
-        first = min(round(window * HOP * CELL_RATE), cells.count - 1)
-        last = min(first + round(LENGTH * CELL_RATE), cells.count)
-        rms = cells.rms_db(first, last)
-        if rms is None or row is None:
-            silent[window] = rms is None
-            continue
-        level, level_dbfs = sound_levels(rms, calibrated=blocks.calibrated, full_scale=full_scale)
-        if level is not None:
-            silent[window] = level < _SILENT_LEVEL
-        else:
-            silent[window] = level_dbfs is None or level_dbfs < _SILENT_LEVEL_DBFS
-    return silent
-
-
 def _segment(
     blocks: RecordingBlocks,
-    found: Described,
+    found: Classified,
     channel: str,
     windows: tuple[int, int],
     cells: tuple[int, int],
@@ -313,7 +249,7 @@ def _segment(
         end=float(edges[1]),
         label=label,
         probabilities=dict(zip(LABELS, probabilities.tolist(), strict=True)),
-        frequency=segment_frequency(found.features[slice(*windows)], label),
+        frequency=segment_frequency(found.telling[slice(*windows)], label),
         level=level,
         level_dbfs=level_dbfs,
     )

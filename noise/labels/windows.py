@@ -1,15 +1,15 @@
 """A recording described window by window, reading each of its samples once.
 
 Blocks lie on a grid that begins with the recording, and pages hold three of them; so the same
-numbers come out whether the recording is in memory or read from its file, and memory does not grow
-with its length but for a few kilobytes a second that are kept of it.
+numbers come out whether the recording is in memory or read from its file, and whoever takes a page
+at a time needs no more memory for a longer one.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,9 +17,9 @@ from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
 from features.named.prepared import ACOUSTIC_KINDS, prepare
 from features.named.torque_features import TORQUE_FEATURES
 from features.windows.blocks import FRAME_RATE, MARGIN, RATE, block_length, resampled_block
-from features.windows.declared import WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH, WINDOW_NAMES, describe_windows, window_count
 from models.errors import ParameterError
+from noise.labels.kept_frames import KeptFrames
 from noise.labels.levels import CellLevels
 
 if TYPE_CHECKING:
@@ -32,13 +32,9 @@ if TYPE_CHECKING:
     from noise.recordings.blocks import RecordingBlocks
 
 __all__ = [
-    "FEATURE_NAMES",
-    "Described",
-    "can_be_described",
-    "describe",
-    "segment_frequency",
+    "FEATURE_NAMES", "FRAMES_A_HOP", "Described", "Page", "Pages", "can_be_described", "describe",
     "tracks",
-]
+]  # fmt: skip
 
 FEATURE_NAMES = (
     *(f"{kind}_{name}" for kind in ACOUSTIC_KINDS for name in WINDOW_NAMES),
@@ -54,19 +50,10 @@ _LEAST_RATE = 1000.0
 _FADE = 0.01
 """The ends of a recording are faded in and out [s]: cut hum would click."""
 
-_PERIODIC = 0.3
-"""Least autocorrelation of an envelope for its period to be that of slips."""
-
-_LEAST_BLOWS = math.log2(3.0 / 10.0)
-"""Fewer blows a second tell no rate [octave re 10 Hz]."""
-
-_COLUMN = {name: i for i, name in enumerate(FEATURE_NAMES)}
-_DECLARED = {feature.name: feature for feature in WINDOW_FEATURES}
-
 _BLOCKS_A_PAGE = 3
 
-_FRAMES_A_HOP = round(HOP * FRAME_RATE)
-_FRAMES_A_WINDOW = round(LENGTH * FRAME_RATE)
+FRAMES_A_HOP = round(HOP * FRAME_RATE)
+"""From the first frame of a window to that of the next."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,37 +120,86 @@ def describe(blocks: RecordingBlocks) -> Described:
     >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]
     (True, 97)
     """
-    rows = {kind: blocks.first(kind) for kind in _KINDS}
-    channels = {kind: row for kind, row in rows.items() if row is not None}
-    heard = next(iter(channels.values()))
-    acoustic = [row for kind, row in channels.items() if kind in ACOUSTIC_KINDS]
-    reader = _Reader(blocks, sorted({heard, *acoustic}), heard)
+    described = Pages(blocks)
     # Filled page by page: a list of pages and what it is put together to would take twice as much.
-    table = np.empty((reader.count, len(FEATURE_NAMES)), dtype=np.float32)
-    levels, frames, n_frames = [], np.empty((0, 0), dtype=np.float32), 0
-    for first, windows in reader.pages():
-        own = reader.page(heard, first, windows)
-        levels.append(own.level)
-        if first == 0:
-            more = len(own.frames) - windows * _FRAMES_A_HOP  # beyond the last window's hop
-            most = reader.count * _FRAMES_A_HOP + max(more, _FRAMES_A_WINDOW)
-            frames = np.empty((most, own.frames.shape[1]), dtype=np.float32)
-        start = first * _FRAMES_A_HOP
-        n_frames = start + len(own.frames)
-        frames[start:n_frames] = own.frames
-        parts = []
-        for kind in ACOUSTIC_KINDS:
-            if kind not in channels:
-                parts.append(np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32))
-            else:
-                row = channels[kind]
-                described = own if row == heard else reader.page(row, first, windows)
-                parts.append(described.features)
-        parts.append(_torque(blocks, channels.get("torque"), first, windows))
-        page = table[first : first + windows]
-        np.concatenate(parts, axis=1, out=page)
-        page[~np.isfinite(page)] = np.nan
-    return Described(table, np.concatenate(levels), frames[:n_frames], reader.cells)
+    table = np.empty((described.count, len(FEATURE_NAMES)), dtype=np.float32)
+    levels, frames = [], KeptFrames()
+    for page in described:
+        table[page.first : page.first + len(page.features)] = page.features
+        levels.append(page.level)
+        frames.put(page.first * FRAMES_A_HOP, page.frames)
+    return Described(table, np.concatenate(levels), frames[:], described.cells)
+
+
+class Page(NamedTuple):
+    """Some windows of a recording.
+
+    Parameters
+    ----------
+    first : int
+        Window that it begins with.
+    features, level, frames : ndarray
+        As `Described` has them; the frames from those of its first window on, as far as its last
+        one reaches.
+    """
+
+    first: int
+    features: NDArray[np.float32]
+    level: NDArray[np.float32]
+    frames: NDArray[np.float32]
+
+
+class Pages:
+    """A recording described page by page, once.
+
+    Parameters
+    ----------
+    blocks : RecordingBlocks
+        As for `describe`.
+
+    Examples
+    --------
+    >>> from models.recording import Channel, Recording
+    >>> from noise.recordings.blocks import RecordingBlocks
+    >>> hiss = np.random.default_rng(0).normal(size=(1, 480_000))
+    >>> pages = Pages(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
+    >>> pages.count, sum(len(page.features) for page in pages)
+    (39, 39)
+    """
+
+    def __init__(self, blocks: RecordingBlocks) -> None:
+        rows = {kind: blocks.first(kind) for kind in _KINDS}
+        self._blocks = blocks
+        self._channels = {kind: row for kind, row in rows.items() if row is not None}
+        self._heard = next(iter(self._channels.values()))
+        acoustic = [row for kind, row in self._channels.items() if kind in ACOUSTIC_KINDS]
+        self._reader = _Reader(blocks, sorted({self._heard, *acoustic}), self._heard)
+
+    @property
+    def count(self) -> int:
+        """Number of windows."""
+        return self._reader.count
+
+    @property
+    def cells(self) -> CellLevels:
+        """Levels of the channel listened to, complete after the last page."""
+        return self._reader.cells
+
+    def __iter__(self) -> Iterator[Page]:
+        for first, windows in self._reader.pages():
+            own = self._reader.page(self._heard, first, windows)
+            parts = []
+            for row in map(self._channels.get, ACOUSTIC_KINDS):
+                if row is None:
+                    parts.append(np.full((windows, len(WINDOW_NAMES)), np.nan, dtype=np.float32))
+                elif row == self._heard:
+                    parts.append(own.features)
+                else:
+                    parts.append(self._reader.page(row, first, windows).features)
+            parts.append(_torque(self._blocks, self._channels.get("torque"), first, windows))
+            features = np.concatenate(parts, axis=1, dtype=np.float32)
+            features[~np.isfinite(features)] = np.nan
+            yield Page(first, features, own.level, own.frames)
 
 
 class _Reader:
@@ -261,69 +297,3 @@ def _torque(
         except ParameterError:  # too short to be described
             continue
     return out
-
-
-def segment_frequency(features: NDArray[np.float32], label: str) -> float | None:
-    """Return slip frequency of creak and squawk, else of the strongest line [Hz].
-
-    Parameters
-    ----------
-    features : ndarray of float32, shape (n_windows, n_features)
-        Of the segment's windows, by `FEATURE_NAMES` [unit of each feature].
-    label : str
-
-    Returns
-    -------
-    float or None
-        [Hz], of the torque where there is one; ``None`` for ``none``, or where nothing is found.
-
-    Examples
-    --------
-    >>> features = np.full((2, len(FEATURE_NAMES)), np.nan, dtype=np.float32)
-    >>> features[:, FEATURE_NAMES.index("pressure_line_frequency")] = 1.0
-    >>> features[:, FEATURE_NAMES.index("pressure_line_count")] = 1.0
-    >>> segment_frequency(features, "squeal")
-    2000.0
-    """
-    if label == "none":
-        return None
-    slips = label in ("creak", "squawk")
-    torque = _median(features, "torque_fundamental" if slips else "torque_line_frequency")
-    if torque is not None:
-        return torque
-    for kind in ("pressure", "acceleration"):
-        found = None
-        if label == "creak":
-            found = _blow_rate(features, kind)
-        if slips and found is None:
-            found = _frequency(features, kind, "fundamental")
-        if found is None:
-            counted = features[features[:, _COLUMN[f"{kind}_line_count"]] > 0]
-            found = _frequency(counted, kind, "line_frequency")
-        if found is not None:
-            return found
-    return None
-
-
-def _blow_rate(features: NDArray[np.float32], kind: str) -> float | None:
-    """Rate of a creak's blows [Hz], of their period where most windows have one."""
-    for part in ("high_", ""):
-        strength = features[:, _COLUMN[f"{kind}_{part}period_strength"]]
-        periodic = features[strength > _PERIODIC]
-        if 2 * len(periodic) > len(features):
-            return _frequency(periodic, kind, f"{part}period_rate")
-    rate = features[:, _COLUMN[f"{kind}_high_blow_rate"]]
-    return _frequency(features[rate > _LEAST_BLOWS], kind, "high_blow_rate")
-
-
-def _frequency(features: NDArray[np.float32], kind: str, name: str) -> float | None:
-    """Median of a window feature that counts in octaves [Hz]."""
-    octave = _median(features, f"{kind}_{name}")
-    return None if octave is None else _DECLARED[name].hertz(octave)
-
-
-def _median(features: NDArray[np.float32], name: str) -> float | None:
-    """Median of what is known of a column, in the column's unit."""
-    values = features[:, _COLUMN[name]]
-    values = values[np.isfinite(values)]
-    return float(np.median(values)) if values.size else None

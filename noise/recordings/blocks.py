@@ -2,16 +2,13 @@
 
 Reading a part gives the samples that reading the whole gives, bit for bit, so what is computed from
 parts does not depend on how long the file is. Compressed sound that cannot be entered at a given
-sample is decoded from its beginning; MP3 does not join where it is read in parts, and the formats
-of measurement systems are held by their own libraries: those are read whole.
+sample is decoded from its beginning; universal files, which are text, are read whole.
 """
 
 from __future__ import annotations
 
-import math
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,11 +19,13 @@ from features.long.parts import reader_of
 from models.errors import RecordingError
 from models.foreign_file import refusing
 from models.recording import Channel, Recording
+from noise.recordings.chunks import Chunks, SoundSamples, to_units
 from noise.recordings.decimation import decimated
-from noise.recordings.files import MIN_SAMPLES, READERS, RawSamples
-from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE
+from noise.recordings.files import LOGGER, MIN_SAMPLES, READERS, RawSamples
+from noise.recordings.formats.isolated import open_isolated
+from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE, check_rate
 from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes, open_sound
-from noise.recordings.meaning import check_finite, describe
+from noise.recordings.meaning import chosen_rows, describe
 
 if TYPE_CHECKING:
     import os
@@ -42,11 +41,8 @@ __all__ = ["RecordingBlocks", "open_blocks"]
 _LARGE = 64 << 20
 """Recordings of fewer bytes, as 64-bit samples, are read whole."""
 
-_CHUNK = 8 << 20
-"""What is read at once [byte of 64-bit samples]."""
-
-_EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
-"""Formats of the sound library that can be entered at any sample."""
+_WIDER = 4
+"""A logger's file of so many times fewer bytes is not looked at: 16 bits become 64."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,6 +168,8 @@ def open_blocks(
 def _open(
     path: Path, full_scale: PascalPerFullScale | None, stack: ExitStack
 ) -> RecordingBlocks | None:
+    if READERS.get(path.suffix.lower()) == LOGGER:
+        return _open_logged(path, full_scale, stack)
     sound = _opened(path)
     if sound is None:
         return None
@@ -184,8 +182,40 @@ def _open(
         comment=sound.comment,
     )
     meaning = describe(path, raw, full_scale)
-    file = _File(path, sound, meaning.channels)
+    file = Chunks(
+        SoundSamples(path, sound, meaning.channels).read, int(sound.frames), len(meaning.channels)
+    )
     read, n_samples, rate = decimated(file.read, int(sound.frames), raw.rate)
+    return RecordingBlocks(
+        rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, read
+    )
+
+
+def _open_logged(
+    path: Path, full_scale: PascalPerFullScale | None, stack: ExitStack
+) -> RecordingBlocks | None:
+    """Open a large file of a logger; None for any other."""
+    try:
+        if not path.is_file() or path.stat().st_size < _LARGE // _WIDER:
+            return None
+    except OSError:  # whoever reads it whole says what is wrong
+        return None
+    raw, n, read_rows = stack.enter_context(open_isolated(path))
+    check_rate(raw.rate, str(path))
+    if 8 * n * len(raw.samples) < _LARGE or n < MIN_SAMPLES:
+        return None
+    # Which rows it is that count is told from numbers in place of samples.
+    raw = chosen_rows(path, replace(raw, samples=np.arange(float(len(raw.samples)))[:, np.newaxis]))
+    rows, channels_of = raw.samples[:, 0].astype(int), replace(raw, samples=raw.samples[:, :0])
+    meaning = describe(path, channels_of, full_scale)
+
+    def read_chunk(start: int, end: int) -> NDArray[np.float64]:
+        samples: NDArray[np.float64] = read_rows(start, end)[rows]
+        to_units(path, samples, meaning.channels, raw.rate, start)
+        return samples
+
+    chunks = Chunks(read_chunk, n, len(raw.samples))
+    read, n_samples, rate = decimated(chunks.read, n, raw.rate)
     return RecordingBlocks(
         rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, read
     )
@@ -205,63 +235,9 @@ def _opened(path: Path) -> Any:
         size = 8 * n * int(sound.channels)
         possible = MIN_SAMPLES <= n <= DENSEST * path.stat().st_size
         possible &= LOWEST_RATE <= sound.samplerate <= HIGHEST_RATE
-        if size >= _LARGE and possible and sound.format != "MP3":
+        if size >= _LARGE and possible:
             return sound
         sound.close()
     except (OSError, soundfile.LibsndfileError):
         pass  # whoever reads it whole says what is wrong
     return None
-
-
-class _File:
-    """Samples of a sound file, chunk by chunk."""
-
-    def __init__(self, path: Path, sound: Any, channels: tuple[Channel, ...]) -> None:
-        self._path, self._sound, self._channels = path, sound, channels
-        self._length = max(1, _CHUNK // (8 * len(channels)))
-        self._position = 0
-        self._chunk = lru_cache(maxsize=2)(self._read_chunk)
-
-    def read(self, first: int, last: int) -> NDArray[np.float64]:
-        last = min(last, int(self._sound.frames))
-        parts = []
-        for number in range(first // self._length, math.ceil(last / self._length)):
-            start = number * self._length
-            parts.append(self._chunk(number)[:, max(0, first - start) : last - start])
-        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
-
-    def _read_chunk(self, number: int) -> NDArray[np.float64]:
-        start = number * self._length
-        wanted = min(self._length, int(self._sound.frames) - start)
-        try:
-            if start != self._position:
-                self._go_to(start)
-            block = self._sound.read(wanted, dtype="float64", always_2d=True)
-        except soundfile.LibsndfileError as error:
-            reason = error.error_string.rstrip(".")
-            raise RecordingError(f"{self._path}: is damaged ({reason})") from error
-        self._position = start + len(block)
-        if len(block) < wanted:
-            raise RecordingError(
-                f"{self._path}: is truncated; its header announces {self._sound.frames} samples, "
-                f"{self._position} can be read"
-            )
-        samples = np.ascontiguousarray(block.T)
-        with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
-            for channel, row in zip(self._channels, samples, strict=True):
-                row *= channel.full_scale
-        check_finite(self._path, samples, float(self._sound.samplerate), self._channels, start)
-        return samples
-
-    def _go_to(self, sample: int) -> None:
-        if self._sound.format in _EXACT:
-            self._sound.seek(sample)
-            return
-        if sample < self._position:
-            self._sound.seek(0)
-            self._position = 0
-        while self._position < sample:
-            passed = len(self._sound.read(min(1 << 16, sample - self._position)))
-            if not passed:
-                return
-            self._position += passed

@@ -34,29 +34,39 @@ if TYPE_CHECKING:
     from models.recording import Channel
     from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = ["MIN_SAMPLES", "READERS", "RawSamples", "find_recordings", "read_raw", "read_recording"]
+__all__ = [
+    "LOGGER",
+    "MIN_SAMPLES",
+    "READERS",
+    "RawSamples",
+    "find_recordings",
+    "read_raw",
+    "read_recording",
+]
 
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
 
 _SOUND = "noise.recordings.formats.sound_file:read_sound_file"
-_LOGGER = "noise.recordings.formats.isolated:read_isolated"
+LOGGER = "noise.recordings.formats.isolated:read_isolated"
+"""Reader of what loggers write."""
+
 _UNIVERSAL = "noise.recordings.formats.universal_file:read_universal_file"
 
 READERS = {
     ".aif": _SOUND,
     ".aiff": _SOUND,
     ".flac": _SOUND,
-    ".h5": _LOGGER,
-    ".hdf5": _LOGGER,
-    ".mdf": _LOGGER,
-    ".mf4": _LOGGER,
+    ".h5": LOGGER,
+    ".hdf5": LOGGER,
+    ".mdf": LOGGER,
+    ".mf4": LOGGER,
     ".mp3": _SOUND,
     ".oga": _SOUND,
     ".ogg": _SOUND,
     ".opus": _SOUND,
     ".rf64": _SOUND,
-    ".tdms": _LOGGER,
+    ".tdms": LOGGER,
     ".uff": _UNIVERSAL,
     ".unv": _UNIVERSAL,
     ".wav": _SOUND,
@@ -200,7 +210,8 @@ def find_recordings(
     ----------
     paths : path-like or iterable of path-like
         A file stands for itself, whatever its ending. In a folder hidden files and folders and
-        unknown endings are passed over, and links to folders are followed.
+        unknown endings are passed over, links to folders are followed, and what is no file is left
+        out with a note.
 
     Returns
     -------
@@ -231,7 +242,7 @@ def find_recordings(
             if path.is_dir():
                 found += [
                     (file, readable(name))
-                    for file, name in files_below(path)
+                    for file, name in files_below(path, tell=True)
                     if file.suffix.lower() in READERS
                 ]
             elif path.exists():

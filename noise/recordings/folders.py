@@ -3,7 +3,8 @@
 What is hidden is left out. A link to a folder is followed as if it were one, after all that is
 there without links: so a recording that can be reached in both ways has its own name, and a link
 that leads back into a folder already searched ends there. A folder that goes away while it is
-searched is one without files.
+searched is one without files. What is no file (a link to nothing, a pipe, a device) is never
+opened, and what nobody may look into is left out; one line says so.
 """
 
 from __future__ import annotations
@@ -12,18 +13,27 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from models.errors import ParameterError
+from models.foreign_file import check_plain_file
+from noise.base.progress import note
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 __all__ = ["files_below", "is_file"]
 
+_NAMED = 3
+"""Of what is left out, so many are named."""
 
-def files_below(folder: Path) -> list[tuple[Path, str]]:
+
+def files_below(folder: Path, *, tell: bool = False) -> list[tuple[Path, str]]:
     """List the files in a folder at any depth.
 
     Parameters
     ----------
     folder : Path
+    tell : bool
+        Whether to say in one line what was left out, and why.
 
     Returns
     -------
@@ -48,12 +58,15 @@ def files_below(folder: Path) -> list[tuple[Path, str]]:
     os.scandir(folder).close()  # what was named must be there; what is below may come and go
     seen: set[tuple[int, int]] = set()
     found: list[Path] = []
+    others: list[Path] = []
     waiting = [folder]
     while waiting:
         links: list[Path] = []
         for top in waiting:
-            found += _walked(top, seen, links)
+            found += _walked(top, seen, links, others)
         waiting = sorted(links)
+    if tell and others:
+        _tell(folder, sorted(others))
     named = ((path, path.relative_to(folder).as_posix()) for path in found)
     return sorted(named, key=lambda entry: entry[1])
 
@@ -72,9 +85,16 @@ def is_file(path: Path) -> bool:
         return False
 
 
-def _walked(top: Path, seen: set[tuple[int, int]], links: list[Path]) -> Iterator[Path]:
-    """Go through the files below `top`, each folder once, collecting links to folders."""
-    for place, folders, names in os.walk(top):
+def _walked(
+    top: Path, seen: set[tuple[int, int]], links: list[Path], others: list[Path]
+) -> Iterator[Path]:
+    """Go through the files below `top`, each folder once; collect links to folders, and others."""
+
+    def closed(error: OSError) -> None:
+        if not isinstance(error, FileNotFoundError):  # it went away
+            others.append(Path(error.filename))
+
+    for place, folders, names in os.walk(top, onerror=closed):
         try:
             status = Path(place).stat()
         except OSError:
@@ -87,6 +107,28 @@ def _walked(top: Path, seen: set[tuple[int, int]], links: list[Path]) -> Iterato
         seen.add(identity)
         here = Path(place)
         folders[:] = [name for name in folders if not name.startswith(".")]
-        links += [here / name for name in folders if (here / name).is_symlink()]
-        files = (here / name for name in names if not name.startswith("."))
-        yield from (path for path in files if path.is_file())
+        links += [here / name for name in folders if os.path.islink(here / name)]  # noqa: PTH114
+        for path in (here / name for name in names if not name.startswith(".")):
+            if is_file(path):
+                yield path
+            else:
+                others.append(path)
+
+
+def _tell(folder: Path, others: list[Path]) -> None:
+    said = [f"{path.relative_to(folder)}: {_why(path)}" for path in others[:_NAMED]]
+    more = len(others) - len(said)
+    note(f"{folder}: left out {'; '.join(said)}{f'; and {more} more' * bool(more)}")
+
+
+def _why(path: Path) -> str:
+    """Tell what something is that is no file to be read, without opening it."""
+    if os.path.islink(path) and not os.path.exists(path):  # noqa: PTH110, PTH114  # never raise
+        return "links to nothing"
+    if os.path.isdir(path):  # noqa: PTH112  # never raises
+        return "cannot be looked into"
+    try:
+        check_plain_file(path, where="")
+    except ParameterError as error:
+        return str(error).removeprefix(": ")
+    return "cannot be read"

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from models.rig import Rig
-    from noise.batch.lines import Lines
+    from noise.batch.lines import Results
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
     from noise.screening.map.mapping import DesignMap
@@ -63,7 +63,7 @@ def screen(
     workers: int = -1,
     scheduler: str | None = None,
     progress: Callable[[str], None] = lambda _: None,
-    kept: Lines | None = None,
+    kept: Results | None = None,
 ) -> Screening:
     """Map bushing designs over their conditions, and rank them.
 
@@ -93,7 +93,7 @@ def screen(
         Address of a Dask cluster that simulates the maps instead.
     progress : callable
         Is told what is being done.
-    kept : Lines, optional
+    kept : Results, optional
         Where to keep what is simulated of the maps, and what of it is there already.
 
     Returns

@@ -6,6 +6,9 @@ import http.client
 import json
 import signal
 import socket
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from urllib.parse import urlsplit
 
 import pytest
@@ -13,6 +16,7 @@ import pytest
 from tests.helpers.labelled_folder import made_row, write_folder
 from tests.helpers.opened_app import PATIENCE, opened_app
 
+SPOKEN = {"capture_output": True, "text": True, "check": False}
 NAMES = ("a.wav", "b.wav", "<img src=x onerror=alert(1)>.wav")
 
 
@@ -161,3 +165,29 @@ def test_it_ends_when_told_by_button_key_or_terminal(tmp_path, end):
         else:
             app.process.send_signal(end)
         assert app.process.wait(PATIENCE) == 0
+
+
+def test_a_view_that_is_loaded_once_it_is_asked_for_answers_all_who_ask():
+    with opened_app() as running, ThreadPoolExecutor(3) as pool:
+        answers = list(pool.map(running.json, ["api/design"] * 3))
+        assert answers[0]["bases"]
+        assert answers == answers[:1] * 3
+        assert running.request("api/design/nothing")[0] == 404
+        assert running.request("api/designs")[0] == 404
+
+
+def test_the_address_is_there_before_the_simulator_is_loaded(tmp_path):
+    loaded = "import sys, noise.app.server, noise.app.opened as o; a = noise.app.server.create_app("
+    loaded += "o.open_paths([]), 't', 1); print(any(m.split('.')[0] == 'sim' for m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", loaded], cwd=tmp_path, **SPOKEN)
+    assert done.stdout == "False\n"
+
+
+def test_a_rig_that_cannot_be_is_refused_before_anything_is_served(tmp_path):
+    rig = tmp_path / "wrong.toml"
+    rig.write_text('base = "granite"\n', encoding="utf-8")
+    command = [sys.executable, "-m", "noise", "open", "--no-browser", str(rig)]
+    done = subprocess.run(command, timeout=PATIENCE, **SPOKEN)
+    assert done.returncode != 0
+    assert done.stdout == ""
+    assert "granite" in done.stderr

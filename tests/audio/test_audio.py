@@ -9,7 +9,7 @@ import soundfile
 from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED, Condition
-from models.errors import ParameterError
+from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.audio.files import write_audio
 from noise.audio.gain import common_full_scale, least_full_scale
@@ -84,7 +84,7 @@ def test_the_shortest_recordings_can_be_heard(n):
 
 def test_a_recording_without_sound_is_refused():
     torque = Recording(np.ones((1, 480)), 48e3, (Channel("torque"),), name="run07.wav")
-    with pytest.raises(ParameterError, match=r"run07\.wav.*no pressure channel.*torque"):
+    with pytest.raises(RecordingError, match=r"run07\.wav.*no pressure channel.*torque"):
         audible(torque)
 
 

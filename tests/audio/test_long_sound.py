@@ -152,7 +152,7 @@ def test_render_in_blocks_writes_the_same_file(tmp_path, monkeypatch, more):
     path = str(write_recording(tmp_path / "run.wav", run))
     assert main(["render", path, *more, "--out", str(tmp_path / "whole.wav")]) == 0
     monkeypatch.setattr("noise.recordings.blocks._LARGE", 0)
-    monkeypatch.setattr("noise.recordings.blocks._CHUNK", 100_000)
+    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 100_000)
     assert main(["render", path, *more, "--out", str(tmp_path / "blocks.wav")]) == 0
     whole, blocks = ((tmp_path / name).read_bytes() for name in ("whole.wav", "blocks.wav"))
     assert whole == blocks

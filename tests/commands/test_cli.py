@@ -93,7 +93,7 @@ def failing(error):
 @pytest.mark.parametrize(
     ("error", "code", "said"),
     [
-        (RecordingError("run07.wav: is\nempty"), 2, "bushing-noise: error: run07.wav: is empty"),
+        (RecordingError("run07.wav: is\nempty"), 1, "bushing-noise: refused: run07.wav: is empty"),
         (MemoryError(), 2, "bushing-noise: error: this needs more memory than there is"),
         (KeyboardInterrupt(), 130, "bushing-noise: interrupted"),
         (ZeroDivisionError("x"), 2, "bushing-noise: error: unexpected, please report: ZeroDiv"),

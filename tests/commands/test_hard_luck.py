@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
 from noise.cli import main
+from tests.helpers.batch_work import make_recordings
 
 ROOT = Path(__file__).parents[2]
 
@@ -40,6 +43,62 @@ def test_an_interrupt_while_a_command_is_loaded_is_one_line(tmp_path, at):
     )  # fmt: skip
     assert done.stderr == "bushing-noise: interrupted\n"
     assert done.returncode == 130
+
+
+TWICE = """
+import atexit, os, signal, sys
+
+def interrupted(*_):
+    raise KeyboardInterrupt
+
+from noise import cli
+if os.environ["AT"] == "again":
+    cli.main = interrupted
+else:
+    cli.main = lambda: 0
+    atexit.register(os.kill, os.getpid(), signal.SIGINT)
+from noise.__main__ import run
+run()
+"""
+
+
+@pytest.mark.parametrize("at", ["again", "the end"])
+def test_a_second_interrupt_and_one_at_the_end_are_quiet(tmp_path, at):
+    script = tmp_path / "bushing-noise"
+    script.write_text(TWICE)
+    done = subprocess.run(
+        [sys.executable, script],
+        capture_output=True, text=True, env={**os.environ, "AT": at, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert done.stderr in ("", "bushing-noise: interrupted\n")
+    assert done.returncode == 130
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="finds processes as Linux lists them")
+def test_an_interrupt_while_helping_processes_are_loaded_is_not_for_them(tmp_path):
+    make_recordings(tmp_path / "runs", 4, 1, 0.2)
+    command = ["label", str(tmp_path / "runs"), "--workers", "2", "--out", str(tmp_path / "a.csv")]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "noise", *command],
+        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    told = Counter()
+    while process.poll() is None:
+        for helper in _processes_of(process.pid):
+            os.kill(helper, signal.SIGINT)
+            told[helper] += 1
+        time.sleep(0.02)
+    assert len(told) == 3  # two that work, and what cleans up after them: none is replaced
+    assert "Traceback" not in process.stderr.read()
+    assert process.returncode == 1  # one is no recording
+
+
+def _processes_of(pid):
+    try:
+        return [int(one) for one in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except OSError:  # it has ended
+        return []
 
 
 @pytest.mark.parametrize("command", ["screen", "label", "features"])

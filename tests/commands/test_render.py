@@ -25,8 +25,8 @@ def run07(tmp_path):
     return write_recording(tmp_path / "run07", recording)
 
 
-def refusal(capsys, *arguments):
-    assert main(["render", *map(str, arguments)]) == 2
+def refusal(capsys, *arguments, code=2):
+    assert main(["render", *map(str, arguments)]) == code
     out, err = capsys.readouterr()
     assert out == ""
     return err.splitlines()[-1].removeprefix("bushing-noise: error: ")
@@ -102,7 +102,16 @@ def test_a_plain_sound_file_stays_without_calibration_unless_it_is_given(tmp_pat
 def test_a_recording_without_sound_is_refused(tmp_path, capsys):
     torque = Recording(np.ones((1, 480)), RATE, (Channel("torque"),))
     path = write_recording(tmp_path / "torque", torque)
-    assert "no pressure channel" in refusal(capsys, path, "--out", tmp_path / "s.wav")
+    assert "no pressure channel" in refusal(capsys, path, "--out", tmp_path / "s.wav", code=1)
+
+
+def test_a_recording_sampled_too_slowly_to_be_heard_is_refused_alone_and_in_a_set(tmp_path, capsys):
+    slow, heard = tmp_path / "slow.wav", tmp_path / "heard.wav"
+    soundfile.write(slow, np.sin(np.arange(300.0)), 39)
+    soundfile.write(heard, np.sin(np.arange(4800.0)), 48000)
+    assert "sampled at 39 Hz" in refusal(capsys, slow, "--out", tmp_path / "s.wav", code=1)
+    assert main(["render", str(slow), str(heard), "--out", str(tmp_path / "set")]) == 1
+    assert (tmp_path / "set" / "heard.wav").exists()
 
 
 @pytest.mark.parametrize("name", ["run07", "run07.wav", "../{folder}/run07.wav"])

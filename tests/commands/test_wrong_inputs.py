@@ -151,3 +151,46 @@ def test_of_a_set_each_thing_is_said_once_and_of_which_sound(tmp_path, capsys):
     assert "note: interference-0.5: " in beyond
     (held,) = [line for line in told if "nothing ever slips" in line]
     assert "note: change-critical_torque-x9999: " in held
+
+
+@pytest.mark.parametrize(
+    ("given", "cause"),
+    [
+        (("--support-stiffness", "1e300"), "belongs to no beam; possible is 0.001 to 1e+12"),
+        (("--support-stiffness", "1e-300"), "belongs to no beam; possible is 0.001 to 1e+12"),
+        (("--change", "wall_mm=1e-300"), "sleeve: wall = 1e-303 must lie in"),
+        (("--change", "wall_mm=1e300"), "sleeve: wall = 1e+297 must lie in"),
+        (("--change", "length_mm=1e-300"), "sleeve: length = 1e-303 must lie in"),
+        (("--change", "youngs_modulus_MPa=1e300"), "sleeve: youngs_modulus = 1e+306 must lie in"),
+        (("--material", ""), "--material: "),
+    ],
+)
+def test_what_cannot_be_is_refused_before_it_overflows(tmp_path, capsys, given, cause):
+    call = ("simulate", "--speed", "5", "--seconds", "0.02", "--out", tmp_path / "run")
+    assert cause in refusal(capsys, *call, *given)
+
+
+@pytest.mark.parametrize(
+    ("given", "cause"),
+    [
+        (("--band", "1e-300..1"), "expected a band that begins at 1 Hz"),
+        (("--band", "100..100.0001"), "at least 1% wide"),
+        (("--pascal-per-full-scale", "1e300"), "at most 1e+09"),
+    ],
+)
+def test_a_band_and_a_gain_that_nothing_can_be_heard_with_are_refused(capsys, given, cause):
+    assert cause in refusal(capsys, "render", "run07.wav", "--out", "heard.wav", *given)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("label", ""),
+        ("frf", ""),
+        ("review", ""),
+        ("simulate", "--out", ""),
+        ("render", "", "--out", "x.wav"),
+    ],
+)
+def test_a_path_of_no_characters_is_not_the_current_folder(given, capsys):
+    assert "is '', expected a path" in refusal(capsys, *given)

@@ -138,5 +138,5 @@ def test_levels_do_not_depend_on_how_much_is_read_at_once(squeal, tmp_path, monk
     path = write_recording(tmp_path / "run", recorded(sound))
     whole = label(path)
     monkeypatch.setattr("noise.recordings.blocks._LARGE", 0)
-    monkeypatch.setattr("noise.recordings.blocks._CHUNK", 8 * RATE // 3)
+    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 8 * RATE // 3)
     assert label(path) == whole

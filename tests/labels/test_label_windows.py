@@ -125,7 +125,7 @@ def test_windows_and_levels_reach_to_the_end(seconds):
 
 def test_from_a_file_in_blocks_comes_the_same_as_from_memory(tmp_path, monkeypatch):
     monkeypatch.setattr(blocks_module, "_LARGE", 0)
-    monkeypatch.setattr(blocks_module, "_CHUNK", 8 * 50_000)
+    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 8 * 50_000)
     rng = np.random.default_rng(1)
     samples = (0.1 * noise(23.3, 22_050) * rng.uniform(0.5, 1.0)).astype(np.float32)
     soundfile.write(tmp_path / "long.wav", samples, 22_050, subtype="FLOAT")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 import soundfile
@@ -14,6 +16,8 @@ from noise.labels.labelling import label_rows
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording, write_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
+from noise.recordings.formats import isolated
+from tests.helpers.logger_files import WRITERS, Wave
 
 RATE = 8000
 
@@ -21,14 +25,14 @@ RATE = 8000
 @pytest.fixture(autouse=True)
 def small_is_large(monkeypatch):
     monkeypatch.setattr("noise.recordings.blocks._LARGE", 1)
-    monkeypatch.setattr("noise.recordings.blocks._CHUNK", 5000)
+    monkeypatch.setattr("noise.recordings.chunks._CHUNK", 5000)
 
 
 def noise(channels, seconds, seed=0):
     return np.random.default_rng(seed).uniform(-0.5, 0.5, (channels, round(seconds * RATE)))
 
 
-@pytest.mark.parametrize("ending", ["wav", "flac", "ogg", "aiff"])
+@pytest.mark.parametrize("ending", ["wav", "flac", "ogg", "aiff", "mp3"])
 def test_parts_are_those_of_the_whole_in_any_order(tmp_path, ending):
     path = tmp_path / f"run.{ending}"
     soundfile.write(path, noise(2, 1.0).T, RATE)
@@ -114,10 +118,23 @@ def test_a_flac_that_breaks_off_is_refused(tmp_path):
         label_recording(blocks, load_classifier())
 
 
-def test_short_recordings_and_mp3_are_read_whole(tmp_path, monkeypatch):
-    soundfile.write(tmp_path / "run.mp3", noise(1, 1.0).T, RATE)
-    with open_blocks(tmp_path / "run.mp3") as blocks:
-        assert blocks is None
+@pytest.mark.parametrize(("rate", "channels"), [(48_000, 1), (22_050, 1), (44_100, 2)])
+def test_mp3_does_not_click_where_it_is_read_in_parts(tmp_path, rate, channels):
+    path = tmp_path / "run.mp3"
+    time = np.arange(6 * rate) / rate
+    sound = np.where(time % 1.0 < 0.5, np.sin(2 * np.pi * 380.0 * time), 0.0)
+    sound = np.stack([0.5 * sound] * channels, axis=1) + 0.2 * noise(channels, time.size / RATE).T
+    soundfile.write(path, sound, rate, bitrate_mode="VARIABLE", compression_level=0.5)
+    with soundfile.SoundFile(path) as file:
+        at_once = file.read(always_2d=True).T
+    np.testing.assert_allclose(read_recording(path).samples, at_once, atol=1e-6)
+    with open_blocks(path) as blocks:
+        for _ in range(2):  # from the beginning again
+            pieces = [piece.samples for piece in blocks.pieces(0, blocks.n_samples, 1777)]
+            np.testing.assert_allclose(np.concatenate(pieces, axis=1), at_once, atol=1e-6)
+
+
+def test_short_recordings_are_read_whole(tmp_path, monkeypatch):
     monkeypatch.setattr("noise.recordings.blocks._LARGE", 1 << 20)
     soundfile.write(tmp_path / "run.wav", noise(1, 1.0).T, RATE)
     with open_blocks(tmp_path / "run.wav") as blocks:
@@ -128,3 +145,54 @@ def test_a_recording_in_memory_is_not_copied():
     recording = Recording(noise(1, 1.0), float(RATE), (Channel("pressure"),))
     part = RecordingBlocks.of(recording).cut(10, 20)
     assert np.shares_memory(part.samples, recording.samples)
+
+
+@pytest.mark.parametrize("ending", WRITERS)
+def test_parts_of_a_loggers_file_are_those_of_the_whole(tmp_path, ending):
+    x = noise(2, 1.0)
+    waves = [Wave("Arm", "N mm", 1e3 * x[0]), Wave("Oil", "degC", x[1]), Wave("mic", "Pa", x[1])]
+    path = WRITERS[ending](tmp_path / f"run{ending}", waves)
+    whole = read_recording(path)
+    with open_blocks(path) as blocks:
+        assert blocks is not None
+        assert (blocks.channels, blocks.rate) == (whole.channels, whole.rate)
+        assert (blocks.condition, blocks.calibrated) == (whole.condition, whole.calibrated)
+        assert blocks.n_samples == whole.samples.shape[1]
+        for first, last in [(0, 10), (300, 2000), (7000, 8000), (5, 320), (0, 8000)]:
+            np.testing.assert_array_equal(blocks.read(first, last), whole.samples[:, first:last])
+
+
+@pytest.mark.parametrize("ending", WRITERS)
+def test_of_a_loggers_file_the_sidecar_names_what_it_likes(tmp_path, ending):
+    x = noise(2, 1.0)
+    waves = [Wave("A", "degC", x[0]), Wave("mic", "Pa", x[1])]
+    path = WRITERS[ending](tmp_path / f"run{ending}", waves)
+    named = {"channels": [{"name": "torque"}, {"name": "pressure"}]}
+    path.with_suffix(".json").write_text(json.dumps(named))
+    whole = read_recording(path)
+    with open_blocks(path) as blocks:
+        assert [channel.kind for channel in blocks.channels] == ["torque", "pressure"]
+        np.testing.assert_array_equal(blocks.read(100, 900), whole.samples[:, 100:900])
+
+
+def test_a_loggers_file_that_is_damaged_or_no_recording_is_refused_alike(tmp_path):
+    path = WRITERS[".h5"](tmp_path / "run.h5", [Wave("oil", "degC", noise(1, 1.0)[0])])
+    bad = tmp_path / "bad.h5"
+    bad.write_bytes(b"no file of that sort")
+    for one in (path, bad):
+        with pytest.raises(RecordingError) as whole:
+            read_recording(one)
+        with pytest.raises(RecordingError) as parts, open_blocks(one):
+            pass
+        assert str(parts.value) == str(whole.value)
+
+
+def test_no_process_is_left_of_a_loggers_file_that_was_read_in_parts(tmp_path, monkeypatch):
+    started = []
+    start = isolated._started
+    monkeypatch.setattr(isolated, "_started", lambda: started.append(start()) or started[-1])
+    path = WRITERS[".h5"](tmp_path / "run.h5", [Wave("mic", "Pa", noise(1, 1.0)[0])])
+    with open_blocks(path) as blocks:
+        blocks.read(0, 100)
+    assert len(started) == 1
+    assert started[0].poll() is not None

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from models.rig_files.rig_file import load_material_rig
-from noise.batch.lines import open_lines
 from noise.screening.design.design import Design, Use
 from noise.screening.map.batches import keeping
 from noise.screening.map.grid import grid_of
 from noise.screening.map.mapping import map_design
+from tests.helpers.kept import staying_results
 
 USE = Use(interference=(0.254e-3, 0.3e-3, 0.381e-3), support_stiffness=(2214.0,))
 
@@ -36,7 +36,7 @@ class Judge:
 def mapped(judge, folder, change=1.0):
     """The map of a design, which is read anew as each call does."""
     rig = load_material_rig("fluorocarbon").changed(damping=f"x{change:g}")
-    with open_lines(folder / "screen", "same") as lines:
+    with staying_results(folder / "screen") as lines:
         return map_design(rig, grid_of(Design("a", rig), USE), keeping(judge, lines), design="a")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from noise.batch.lines import journal_path, open_lines
+from noise.batch.lines import journal_path
 from noise.classifier import LABELS, load_classifier
 from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
@@ -16,6 +16,7 @@ from noise.training.classifier.fit import learn, train
 from noise.training.classifier.own_samples import N_FOLDS, OwnSample, parts
 from noise.training.classifier.real_sounds import load_real_sounds
 from noise.training.classifier.surroundings import may_sound
+from tests.helpers.kept import staying_results
 
 
 def columns(classifier, sample):
@@ -81,7 +82,7 @@ def drawn(folder, lasts):
                 raise KeyboardInterrupt
             yield sample
 
-    with open_lines(folder / "mine.npz", "same") as lines:
+    with staying_results(folder / "mine.npz") as lines:
         try:
             train(seed=0, n_training=6, n_test=1, lines=lines, progress=progress)
         except KeyboardInterrupt:

@@ -48,6 +48,11 @@ class Base:
 def bases_of(opened: Opened) -> dict[str, Base]:
     """Return all bases by what requests call them: rig files by number first, then materials.
 
+    Raises
+    ------
+    BushingNoiseError
+        A rig file cannot be read.
+
     Examples
     --------
     >>> from noise.app.opened import open_paths
@@ -55,6 +60,8 @@ def bases_of(opened: Opened) -> dict[str, Base]:
     'fluorocarbon'
     """
     found = {f"rig {i}": Base(path.name, path) for i, path in enumerate(opened.rigs)}
+    for named in found.values():
+        _ = named.rig  # what is wrong with it is told where it was named
     names = sorted(material_names(), key=lambda name: (name != "fluorocarbon", name.lower()))
     return found | {name: Base(name) for name in names}
 

@@ -8,19 +8,24 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from contextlib import suppress
+from importlib import import_module
 from multiprocessing import get_context
 from threading import Condition, Thread
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from models.errors import BushingNoiseError
+from noise.batch.deaf import deaf_to_interrupts
 from noise.batch.work import one_thread
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from multiprocessing.connection import Connection
 
 __all__ = ["Beside"]
+
+_REST = 0.5
+"""Longest rest after an answer, as long as it took: half a processor is left to the sound [s]."""
 
 _Question = TypeVar("_Question")
 _Answer = TypeVar("_Answer")
@@ -31,13 +36,13 @@ class Beside(Generic[_Question, _Answer]):
 
     Parameters
     ----------
-    answer : callable
-        From question to answer; found by its name in its module.
+    answer : str
+        ``module:function`` from question to answer: only the process imports it, once it is nice.
     nice : int
         By how much everything else goes first, as of the command ``nice``.
     """
 
-    def __init__(self, answer: Callable[[_Question], _Answer], nice: int = 0) -> None:
+    def __init__(self, answer: str, nice: int = 0) -> None:
         self._answer, self._nice = answer, nice
         self._changed = Condition()
         self._wanted: tuple[_Question] | None = None
@@ -101,7 +106,8 @@ class Beside(Generic[_Question, _Answer]):
                 link, theirs = context.Pipe()
                 arguments = (theirs, self._answer, self._nice)
                 process = context.Process(target=_serve, args=arguments, daemon=True)
-                process.start()
+                with deaf_to_interrupts():
+                    process.start()
                 theirs.close()
             try:
                 link.send(question)
@@ -116,15 +122,21 @@ class Beside(Generic[_Question, _Answer]):
             process.kill()
 
 
-def _serve(link: Connection, answer: Callable[[_Question], _Answer], nice: int) -> None:
+def _serve(link: Connection, answer: str, nice: int) -> None:
     with suppress(ValueError):  # a key in the terminal is for the server
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     with suppress(AttributeError, OSError):
         os.nice(nice)
+    with suppress(AttributeError, OSError):  # on Linux: nothing that waits for it is woken late
+        os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+    module, _, name = answer.partition(":")
+    answered = getattr(import_module(module), name)
     with one_thread(), suppress(EOFError, OSError):
         while True:
             question = link.recv()
+            began = time.perf_counter()
             try:
-                link.send((answer(question), ""))
+                link.send((answered(question), ""))
             except BushingNoiseError as error:
                 link.send((None, str(error)))
+            time.sleep(min(_REST, time.perf_counter() - began))

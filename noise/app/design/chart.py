@@ -7,12 +7,10 @@ a process beside the sound.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.errors import ParameterError
 from noise.base.label_names import NAMED
 from noise.screening.design.design import Design as Screened, Use
 from noise.screening.map.batches import batch_evaluator
@@ -26,77 +24,14 @@ from noise.screening.parts.variation import UsePoint
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from models.rig import Rig
-    from sim.live import Setting
+    from noise.app.design.questions import ChartAsked, HelpAsked
 
-__all__ = ["ChartAsked", "HelpAsked", "chart_of", "helps_of"]
+__all__ = ["chart_of", "helps_of"]
 
 _SPEEDS, _FITS = 16, 7
 _SIMULATIONS = 60
-_LEAST, _MOST = 0.05, 200.0
-"""Speeds at which a noise is looked for [rad/s]."""
-
 _FASTEST = 13.0
 """Of a chart of a bushing that states none [rad/s]."""
-
-
-@dataclass(frozen=True)
-class ChartAsked:
-    """What a chart is of; speed and interference are its axes.
-
-    Parameters
-    ----------
-    rig : Rig
-    support_stiffness : float
-        [Nm/rad]
-    temperature : float
-        [degree Celsius]
-    """
-
-    rig: Rig
-    support_stiffness: float
-    temperature: float
-
-    @classmethod
-    def of(cls, setting: Setting) -> ChartAsked:
-        """Return what is asked of a setting."""
-        return cls(setting.rig, setting.support_stiffness, setting.temperature)
-
-
-@dataclass(frozen=True)
-class HelpAsked:
-    """What a change is to end the noise of: one condition.
-
-    Parameters
-    ----------
-    chart : ChartAsked
-    interference : float
-        [m]
-    speed : float
-        [rad/s]
-    """
-
-    chart: ChartAsked
-    interference: float
-    speed: float
-
-    @classmethod
-    def of(cls, setting: Setting, said: object) -> HelpAsked:
-        """Return what is asked of a setting, at the speed that a request may state with it.
-
-        Raises
-        ------
-        ParameterError
-            That is no speed.
-        """
-        stated = said.get("speed") if isinstance(said, dict) else None
-        if stated is None:
-            speed = float(np.abs(setting.shaft.speed(np.zeros(1)))[0])
-        elif isinstance(stated, int | float) and abs(stated) <= _MOST:
-            speed = abs(float(stated))
-        else:
-            raise ParameterError(f"speed {str(stated)[:20]}: must be a number up to {_MOST:g}")
-        return cls(ChartAsked.of(setting), setting.interference, max(speed, _LEAST))
 
 
 def chart_of(asked: ChartAsked) -> dict[str, object]:
@@ -105,6 +40,7 @@ def chart_of(asked: ChartAsked) -> dict[str, object]:
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
+    >>> from noise.app.design.questions import ChartAsked
     >>> found = chart_of(ChartAsked(load_material_rig("PDMS"), 2214.0, 23.0))
     >>> found["interference_mm"][0], found["speed_rad_s"][-1], found["labels"][0][0]
     (0.254, 17.0, 'none')
@@ -135,6 +71,7 @@ def helps_of(asked: HelpAsked) -> dict[str, object]:
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
+    >>> from noise.app.design.questions import ChartAsked, HelpAsked
     >>> asked = HelpAsked(ChartAsked(load_material_rig("PDMS"), 2214.0, 23.0), 0.279e-3, 5.0)
     >>> helps_of(asked)
     {'noise': 'none', 'speed_rad_s': 5.0, 'changes': []}

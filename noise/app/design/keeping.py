@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.app.design.design import design_of
+from noise.app.design.player import RATE
 from noise.app.design.saving import name_of
-from noise.app.design.sound import RATE
 from noise.app.labels.commands import Command
 from noise.base.atomic import atomic
 

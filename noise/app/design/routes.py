@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from starlette.responses import JSONResponse, Response
+from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from models.errors import ParameterError
 from noise.app.design.bases import base_of, bases_of
 from noise.app.design.beside import Beside
-from noise.app.design.chart import ChartAsked, HelpAsked, chart_of, helps_of
 from noise.app.design.design import base_controls, design_of
 from noise.app.design.keeping import Keeping
+from noise.app.design.player import BLOCK, RATE, TORQUE_STEP
+from noise.app.design.questions import ChartAsked, HelpAsked
 from noise.app.design.saving import save_rig
-from noise.app.design.sound import BLOCK, RATE, TORQUE_STEP, LiveSounds
+from noise.app.design.sound import LiveSounds
 from noise.app.requests import body
 from sim.live import LOOKAHEAD
 
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["routes"]
 
-_NICE = 5
+_CHARTS = "noise.app.design.chart"
+_NICE = 15
 """Whoever listens goes first."""
 
 
@@ -34,13 +36,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     bases = bases_of(opened)
     sounds = LiveSounds(bases)
-    charts: Beside[ChartAsked, dict[str, object]] = Beside(chart_of, _NICE)
-    helps: Beside[HelpAsked, dict[str, object]] = Beside(helps_of, _NICE)
+    charts: Beside[ChartAsked, dict[str, object]] = Beside(f"{_CHARTS}:chart_of", _NICE)
+    helps: Beside[HelpAsked, dict[str, object]] = Beside(f"{_CHARTS}:helps_of", _NICE)
     keeping = Keeping(bases, opened.folder)
     for one in (sounds, charts, helps, keeping):
         opened.leaving.callback(one.stop)
 
     def listed(_: Request) -> Response:
+        sounds.get_ready()
         named = [{"id": key, "name": base.name} for key, base in bases.items()]
         steps = {"rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
         return JSONResponse({"bases": named, "lookahead_s": LOOKAHEAD, **steps})
@@ -49,8 +52,17 @@ def routes(opened: Opened) -> list[BaseRoute]:
         base = base_of(request.query_params.get("base"), bases)
         return JSONResponse({"controls": [one.as_json() for one in base_controls(base)]})
 
-    def block(_: Request, said: object) -> Response:
-        return Response(sounds.block(said), media_type="application/octet-stream")
+    def sound(_: Request, said: object) -> Response:
+        blocks = sounds.stream(*sounds.started(said))
+        return StreamingResponse(blocks, media_type="application/octet-stream")
+
+    def changed(_: Request, said: object) -> Response:
+        sounds.change(said)
+        return JSONResponse({})
+
+    def paced(_: Request, said: object) -> Response:
+        sounds.pace(said)
+        return JSONResponse({})
 
     def told(_: Request, said: object) -> Response:
         design = design_of(said, bases)
@@ -78,7 +90,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
     return [
         Route("/api/design", listed),
         Route("/api/design/controls", controls),
-        Route("/api/design/block", body(block), methods=["POST"]),
+        Route("/api/design/sound", body(sound), methods=["POST"]),
+        Route("/api/design/change", body(changed), methods=["POST"]),
+        Route("/api/design/pace", body(paced), methods=["POST"]),
         Route("/api/design/facts", body(told), methods=["POST"]),
         Route("/api/design/levels", levels),
         Route("/api/design/chart", body(charted), methods=["POST"]),

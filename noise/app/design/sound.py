@@ -1,108 +1,63 @@
-"""The sound of a design while it is changed: blocks of one run that goes on, by request.
+"""The sound of a design while it is changed: blocks of one run that goes on, as a stream.
 
-A page asks for one block after another, and with any of them may come another design, which is
-heard from that block on. So the page alone decides how far ahead it is. What carries the torque to
-the microphone takes a while to be computed: that is done beside, and takes over when it is known.
+Blocks come as they are due, so that the page has little in reserve and a change is heard soon. They
+are made by a process of their own; what carries the torque to the microphone takes a while to be
+computed and takes over when it is known.
 """
 
 from __future__ import annotations
 
+import asyncio
+import gc
 import math
-import struct
-import time
-from collections import OrderedDict
+from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass, field
-from threading import Condition, Lock
+from multiprocessing import get_context
+from threading import Lock, Thread
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from features.kernels.levels import sound_levels
 from models.errors import ParameterError
-from noise.app.design.beside import Beside
 from noise.app.design.design import Design, design_of
-from sim.live import LiveRun, paths_key, paths_of
+from noise.app.design.player import BLOCK, HEADER, RATE, REFUSED, play
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import AsyncIterator
+    from multiprocessing.connection import Connection
 
-    from models.radiation.impulse_responses import ImpulseResponses
     from noise.app.design.bases import Base
-    from sim.live import Setting
 
-__all__ = ["BLOCK", "RATE", "LiveSounds"]
+__all__ = ["LiveSounds"]
 
-RATE = 48000
-"""Of the sound [Hz]."""
-
-BLOCK = 960
-"""Samples of a block: 20 ms."""
-
-TORQUE_STEP = 4
-"""Of every so many samples of the torque one is sent, to be drawn."""
-
-_METER = 1.0
-"""Of the sound, over which its level is told [s]."""
-
-_NICE = 3
-"""The sound goes on before what carries it is another."""
-
-_PATIENCE = 2.0
-"""For blocks that come before one that was asked for too early [s]."""
-
-_MOST_AT_ONCE = 8
-"""Blocks in one answer."""
+_METER = RATE // BLOCK
+"""Blocks over which the level is told: a second."""
 
 _MOST_RUNS = 4
 """That go on at once: of pages that are open."""
 
-_HEADER = struct.Struct("<4I2f")
+_UNREAD = 5 * _METER
+"""Blocks that nobody has read, after which nobody will."""
 
-
-def block_paths(setting: Setting) -> ImpulseResponses:
-    """Return the impulse responses of a setting at the rate of its blocks."""
-    return paths_of(setting, RATE)
-
-
-class _Paths:
-    """Impulse responses for one run, computed beside; the first at once."""
-
-    def __init__(self, beside: Beside[Setting, ImpulseResponses]) -> None:
-        self._beside = beside
-        self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
-        self._wanted: tuple[Setting, tuple[object, ...]] | None = None
-        self._asked: dict[int, tuple[Setting, tuple[object, ...]]] = {}
-
-    def __call__(self, setting: Setting) -> ImpulseResponses | None:
-        if self._known is None:
-            self._known = paths_key(setting), block_paths(setting)
-        if self._wanted is None or self._wanted[0] is not setting:
-            self._wanted = setting, paths_key(setting)
-        key = self._wanted[1]
-        if key == self._known[0]:
-            return self._known[1]
-        newest = self._beside.newest
-        mine = None if newest is None else self._asked.pop(id(newest[0]), None)
-        if newest is not None and mine is not None and newest[1] is not None:
-            self._known = mine[1], newest[1]
-            return newest[1]
-        if mine is None and not any(asked == key for _, asked in self._asked.values()):
-            self._ask(setting, key)
-        elif not self._beside.busy:  # what another page asked for took its place
-            self._asked.clear()
-        return None
-
-    def _ask(self, setting: Setting, key: tuple[object, ...]) -> None:
-        self._asked[id(setting)] = setting, key
-        self._beside.ask(setting)
+_SOONEST = 2.0
+"""By which blocks may come sooner or later at once [s]."""
 
 
 @dataclass(eq=False)
-class _Run:
-    live: LiveRun
-    sequence: int = 0
-    turn: Condition = field(default_factory=Condition)
-    heard: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+class _Stream:
+    loop: asyncio.AbstractEventLoop
+    queue: asyncio.Queue[bytes | None] = field(default_factory=asyncio.Queue)
+    heard: deque[bytes] = field(default_factory=lambda: deque(maxlen=_METER))
+
+    def put(self, message: bytes) -> None:
+        """Hand on what the player made; an empty message ends the stream."""
+        if message and HEADER.unpack_from(message)[0] != REFUSED:
+            self.heard.append(message[HEADER.size : HEADER.size + 4 * BLOCK])
+        given_up = not message or self.queue.qsize() > _UNREAD
+        with suppress(RuntimeError):  # the loop has ended
+            self.loop.call_soon_threadsafe(self.queue.put_nowait, None if given_up else message)
 
 
 class LiveSounds:
@@ -116,70 +71,104 @@ class LiveSounds:
 
     def __init__(self, bases: dict[str, Base]) -> None:
         self._bases = bases
-        self._runs: OrderedDict[int, _Run] = OrderedDict()
         self._lock = Lock()
-        self._beside: Beside[Setting, ImpulseResponses] = Beside(block_paths, _NICE)
+        self._streams: dict[int, _Stream] = {}
+        self._link: Connection | None = None
+
+    def get_ready(self) -> None:
+        """Start the player, which takes a while, if there is none."""
+        with self._lock:
+            if self._link is not None:
+                return
+            context = get_context("spawn")  # a copy of this process would lack its threads
+            self._link, theirs = context.Pipe()
+            # No daemon, since it has a process beside itself; it ends with the link.
+            process = context.Process(target=play, args=(theirs,))
+            process.start()
+            theirs.close()
+            sound_levels(np.zeros(RATE), RATE)  # compiled now, not while it plays
+            gc.collect()
+            gc.freeze()  # or all that is loaded is walked through while it plays
+            Thread(target=self._read, args=(self._link,), daemon=True).start()
 
     def stop(self) -> None:
-        """End what is computed beside."""
-        self._beside.stop()
+        """End all streams and the player."""
+        with self._lock:
+            link, self._link = self._link, None
+        if link is not None:
+            with suppress(OSError):
+                link.send(None)
 
-    def block(self, said: object) -> bytes:
-        """Return the next block of a run.
+    def started(self, said: object) -> tuple[int, int, Design]:
+        """Return number, serial and design of a run that is to begin or to be changed.
 
         Parameters
         ----------
         said : object
-            ``{"run": number, "sequence": number, "serial": number, "count": 1, "design": {...}}``;
-            the design comes with the first block and where it has changed, `serial` counts changes,
-            and `count` blocks in a row are made where the page is behind.
-
-        Returns
-        -------
-        bytes
-            Of each block sequence, serial, samples of pressure and of torque as unsigned integers;
-            milliseconds that it took and speed of the shaft [rad/s], then pressure [Pa] and torque
-            [Nm] as floating-point numbers; all of 32 bits, little-endian.
+            ``{"run": number, "serial": number, "design": {...}}``; `serial` counts changes.
 
         Raises
         ------
         ParameterError
-            Something of it cannot be; the run goes on as it was with the next request.
+            Something of it cannot be.
         """
-        number, sequence, serial = (_whole(said, key) for key in ("run", "sequence", "serial"))
+        number, serial = (_whole(said, key) for key in ("run", "serial"))
         assert isinstance(said, dict)
-        stated, count = said.get("design"), _whole({"count": 1} | said, "count")
-        if not 1 <= count <= _MOST_AT_ONCE:
-            raise ParameterError(f"sound: count must be from 1 to {_MOST_AT_ONCE}")
-        design = None if stated is None else design_of(stated, self._bases)
-        run = self._run(number, sequence, design)
-        with run.turn:
-            run.turn.wait_for(lambda: sequence <= run.sequence, _PATIENCE)
-            if sequence != run.sequence:
-                raise ParameterError(f"sound: block {sequence} was asked for, not {run.sequence}")
-            made = b"".join(
-                self._next(run, serial, design if i == 0 else None) for i in range(count)
-            )
-            run.turn.notify_all()
-        return made
+        return number, serial, design_of(said.get("design"), self._bases)
 
-    def _next(self, run: _Run, serial: int, design: Design | None) -> bytes:
-        started = time.perf_counter()
-        made = run.live.block(None if design is None else design.setting)
-        pressure = made.pressure.astype("<f4")
-        torque = made.torque[::TORQUE_STEP].astype("<f4")
-        run.heard = np.concatenate([run.heard, made.pressure])[-round(_METER * RATE) :]
-        took = 1e3 * (time.perf_counter() - started)
-        header = _HEADER.pack(run.sequence, serial, pressure.size, torque.size, took, made.speed)
-        run.sequence += 1
-        return header + pressure.tobytes() + torque.tobytes()
+    async def stream(self, number: int, serial: int, design: Design) -> AsyncIterator[bytes]:
+        """Give what `noise.app.design.player.Player.block` makes, until nobody listens."""
+        stream = _Stream(asyncio.get_running_loop())
+        while len(self._streams) >= _MOST_RUNS:
+            self._streams.pop(next(iter(self._streams))).put(b"")
+        self._streams[number] = stream
+        try:
+            self.get_ready()
+            self._tell("start", number, serial, design.setting)
+            while (message := await stream.queue.get()) is not None:
+                yield message
+        finally:
+            self._tell("stop", number)
+            if self._streams.get(number) is stream:
+                del self._streams[number]
+
+    def change(self, said: object) -> None:
+        """Let another design be heard from the next block on; `said` is as of `started`.
+
+        Raises
+        ------
+        ParameterError
+            Something of it cannot be; the run goes on as it was.
+        """
+        number, serial, design = self.started(said)
+        self._known(number)
+        self._tell("change", number, serial, design.setting)
+
+    def pace(self, said: object) -> None:
+        """Let the blocks that follow come sooner, or later: ``{"run": number, "sooner": seconds}``.
+
+        Raises
+        ------
+        ParameterError
+            Something of it cannot be.
+        """
+        number = _whole(said, "run")
+        seconds = said.get("sooner") if isinstance(said, dict) else None
+        if isinstance(seconds, bool) or not isinstance(seconds, int | float):
+            raise ParameterError("sound: sooner must be a number")
+        if not abs(seconds) <= _SOONEST:
+            raise ParameterError(f"sound: sooner must be up to {_SOONEST:g} s")
+        self._known(number)
+        self._tell("sooner", number, float(seconds))
 
     def levels(self, number: int) -> dict[str, float | None]:
         """Return levels of the last second of a run, as the tables have them [dB re 20 uPa]."""
-        run = self._runs.get(number)
-        if run is None or run.heard.size < RATE // 4:
+        stream = self._streams.get(number)
+        heard = b"".join(stream.heard.copy()) if stream is not None else b""
+        pressure = np.frombuffer(heard, "<f4").astype(np.float64)
+        if pressure.size < RATE // 4:
             return {"level_db": None, "level_dba": None, "l_afmax_dba": None}
-        found = sound_levels(run.heard, RATE)
+        found = sound_levels(pressure, RATE)
         told = {
             "level_db": found.level, "level_dba": found.level_a, "l_afmax_dba": found.level_af_max,
         }  # fmt: skip
@@ -187,18 +176,27 @@ class LiveSounds:
             name: round(value, 1) if math.isfinite(value) else None for name, value in told.items()
         }
 
-    def _run(self, number: int, sequence: int, design: Design | None) -> _Run:
+    def _known(self, number: int) -> None:
+        if number not in self._streams:
+            raise ParameterError("sound: there is no such run; begin another one")
+
+    def _tell(self, what: str, number: int, *rest: object) -> None:
+        with self._lock, suppress(OSError):  # the player is gone, which ends the streams
+            if self._link is not None:
+                self._link.send((what, number, *rest))
+
+    def _read(self, link: Connection) -> None:
+        with suppress(EOFError, OSError):
+            while True:
+                message = link.recv_bytes()
+                stream = self._streams.get(int.from_bytes(message[:4], "little"))
+                if stream is not None:
+                    stream.put(message[4:])
         with self._lock:
-            run = self._runs.get(number)
-            if run is None:
-                if design is None or sequence != 0:
-                    raise ParameterError("sound: there is no such run; begin another one")
-                live = LiveRun(design.setting, rate=RATE, n=BLOCK, paths=_Paths(self._beside))
-                run = self._runs[number] = _Run(live)
-            self._runs.move_to_end(number)
-            while len(self._runs) > _MOST_RUNS:
-                self._runs.popitem(last=False)
-            return run
+            if self._link is link:
+                self._link = None
+        for stream in list(self._streams.values()):
+            stream.put(b"")
 
 
 def _whole(said: object, key: str) -> int:

@@ -5,7 +5,8 @@ that a damaged length asks for, or die. They do so in a process that is killed w
 long and may not have more memory than a file of that size can need; whatever becomes of it, here it
 is one recording refused. The process lives on from file to file, since it costs a second to start,
 and ends with the one that asks it. Samples come over in blocks, so that reading takes the memory of
-the result and no more.
+the result and no more; or, of a long file, part by part as they are asked for, from a process that
+has the file open and is its own.
 """
 
 from __future__ import annotations
@@ -29,11 +30,13 @@ import numpy as np
 from models.errors import RecordingError, not_installed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
 
     from noise.recordings.files import RawSamples
 
-__all__ = ["read_isolated", "serve"]
+__all__ = ["open_isolated", "read_isolated", "serve"]
 
 _PATIENCE = 15.0
 """How long a file may take, beside its size [s]."""
@@ -84,18 +87,9 @@ def read_isolated(path: Path) -> RawSamples:
         The file is damaged, holds no channels, these do not go together, or reading it took longer
         or more memory than it may; or its library is not installed.
     """
-    of = _FORMATS[path.suffix.lower()]
-    if find_spec(of.library) is None:
-        message = not_installed(f"{path}: {of.name} files need", of.library, of.extra)
-        raise RecordingError(message)
-    path.open("rb").close()  # a file that may not be read is not damaged
-    size = path.stat().st_size
+    of, size = _format(path)
     with _lock, _process(path, of, _PATIENCE + size / _SLOWEST) as process:
-        folder = os.curdir if path.is_absolute() else str(Path.cwd())
-        pickle.dump((folder, path, of, size), process.stdin)
-        process.stdin.flush()
-        raw: RawSamples
-        raw, n_samples = _answer(process)
+        raw, n_samples = _asked(process, path, of, size, in_parts=False)
         samples = np.empty((len(raw.samples), n_samples))
         for row in samples:
             position = 0
@@ -107,11 +101,69 @@ def read_isolated(path: Path) -> RawSamples:
 
 
 @contextmanager
+def open_isolated(
+    path: Path,
+) -> Iterator[tuple[RawSamples, int, Callable[[int, int], NDArray[np.float64]]]]:
+    """Open a logger's file; give what `read_isolated` does without samples, and what reads them.
+
+    They are read from first and last sample, shape (n_channels, n), in SI. Both raise as
+    `read_isolated` does.
+    """
+    of, size = _format(path)
+    process = _started()
+    seconds = _PATIENCE + size / _SLOWEST
+
+    def read(first: int, last: int) -> NDArray[np.float64]:
+        with _watched(process, path, of, seconds):
+            _ask(process, (first, last))
+            return np.asarray(_answer(process)).reshape(n_rows, last - first)
+
+    try:
+        with _watched(process, path, of, seconds):
+            raw, n_samples = _asked(process, path, of, size, in_parts=True)
+        n_rows = len(raw.samples)
+        yield raw, n_samples, read
+    finally:
+        _end(process)
+
+
+def _format(path: Path) -> tuple[_Format, int]:
+    """Return what reads a file, and its size [byte]."""
+    of = _FORMATS[path.suffix.lower()]
+    if find_spec(of.library) is None:
+        message = not_installed(f"{path}: {of.name} files need", of.library, of.extra)
+        raise RecordingError(message)
+    path.open("rb").close()  # a file that may not be read is not damaged
+    return of, path.stat().st_size
+
+
+def _asked(
+    process: Any, path: Path, of: _Format, size: int, *, in_parts: bool
+) -> tuple[RawSamples, int]:
+    folder = os.curdir if path.is_absolute() else str(Path.cwd())
+    _ask(process, (folder, path, of, size, in_parts))
+    answer: tuple[RawSamples, int] = _answer(process)
+    return answer
+
+
+def _ask(process: Any, question: object) -> None:
+    pickle.dump(question, process.stdin)
+    process.stdin.flush()
+
+
+@contextmanager
 def _process(path: Path, of: _Format, seconds: float) -> Iterator[Any]:
     """Give the process that reads, for so long; one that did not answer is replaced."""
     process = _processes.get(os.getpid())
     if process is None or process.poll() is not None:
         process = _processes[os.getpid()] = _started()
+    with _watched(process, path, of, seconds):
+        yield process
+
+
+@contextmanager
+def _watched(process: Any, path: Path, of: _Format, seconds: float) -> Iterator[None]:
+    """End a process that does not answer for so long, and say why there is no answer."""
     late = threading.Event()
 
     def end() -> None:
@@ -121,7 +173,7 @@ def _process(path: Path, of: _Format, seconds: float) -> Iterator[Any]:
     timer = threading.Timer(seconds, end)
     timer.start()
     try:
-        yield process
+        yield
     except RecordingError:
         raise
     except (EOFError, OSError, pickle.UnpicklingError) as error:
@@ -176,20 +228,20 @@ def serve() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # meant for the process that asks
     while True:
         try:
-            folder, path, of, size = pickle.load(sys.stdin.buffer)
+            folder, path, of, size, in_parts = pickle.load(sys.stdin.buffer)
         except EOFError:
             return
         os.chdir(folder)
-        if hasattr(signal, "alarm"):  # should nobody be there any more to kill it
+        if hasattr(signal, "alarm") and not in_parts:  # should nobody be there any more to kill it
             signal.alarm(int(_PATIENCE + size / _SLOWEST) + 10)
-        for answer in _answers(path, of, _ALLOWANCE + 4 * size):
+        for answer in _answers(path, of, _ALLOWANCE + 4 * size, in_parts=in_parts):
             pickle.dump(answer, answers, protocol=5)
             answers.flush()
         if hasattr(signal, "alarm"):
             signal.alarm(0)
 
 
-def _answers(path: Path, of: _Format, memory: int) -> Iterator[Any]:
+def _answers(path: Path, of: _Format, memory: int, *, in_parts: bool) -> Iterator[Any]:
     """Give what the channels are and how long, then their samples; or a text why not."""
     from noise.recordings.formats.logged import describe_channels, sample_blocks
 
@@ -202,7 +254,15 @@ def _answers(path: Path, of: _Format, memory: int) -> Iterator[Any]:
         with reader(path) as (channels, properties):
             raw, rows = describe_channels(path, channels, properties)
             yield raw, rows[0][0].n_samples
-            yield from sample_blocks(path, rows)
+            if not in_parts:
+                yield from sample_blocks(path, rows)
+                return
+            while True:  # until there is nobody left to ask
+                yield np.concatenate(
+                    list(sample_blocks(path, rows, *pickle.load(sys.stdin.buffer)))
+                )
+    except EOFError:
+        return
     except RecordingError as error:
         yield str(error)
     except MemoryError:

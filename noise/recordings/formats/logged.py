@@ -135,9 +135,17 @@ def describe_channels(
 
 
 def sample_blocks(
-    path: Path, rows: Sequence[tuple[LoggedChannel, float]]
+    path: Path, rows: Sequence[tuple[LoggedChannel, float]], first: int = 0, last: int | None = None
 ) -> Iterator[NDArray[np.float64]]:
     """Read the rows of `describe_channels` one after the other, each in blocks, in SI.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    rows : sequence of (LoggedChannel, float)
+    first, last : int
+        Samples from which and up to which; by default all.
 
     Yields
     ------
@@ -150,8 +158,9 @@ def sample_blocks(
         A channel ends before its file says.
     """
     for channel, factor in rows:
-        for start in range(0, channel.n_samples, _BLOCK):
-            stop = min(channel.n_samples, start + _BLOCK)
+        end = channel.n_samples if last is None else min(last, channel.n_samples)
+        for start in range(first, end, _BLOCK):
+            stop = min(end, start + _BLOCK)
             block = np.array(channel.read(start, stop), dtype=np.float64)
             if block.shape != (stop - start,):
                 raise RecordingError(

@@ -3,7 +3,7 @@
 The sound library stops quietly where a file breaks off. A measurement cut short is not the
 measurement, so the samples announced are counted against the samples found. Samples are copied
 block by block into the one array that is returned, so that reading takes the memory of the result
-and no more; but for MP3, which the library does not join without a click between two blocks.
+and no more.
 
 Two things the library passes over stand in the list of chunks of a RIFF file: where the samples end
 that its header announces, and the description (``bext`` chunk of a broadcast WAV file, EBU Tech
@@ -109,11 +109,15 @@ def open_sound(path: Path) -> Any:
 
 
 class _Quiet(soundfile.SoundFile):  # type: ignore[misc]  # the library has no types
-    """A sound file whose library prints what it thinks of it (mpg123): that goes nowhere."""
+    """MP3, whose library (mpg123) prints what it thinks of a file: that goes nowhere."""
 
     def __init__(self, file: str | bytes | Path) -> None:
         with _silence():
             super().__init__(file)
+
+    def seekable(self) -> bool:
+        """Say no: else the place is set anew after each block, and MP3 clicks there."""
+        return False
 
     def read(self, *given: Any, **named: Any) -> Any:
         """Read samples."""
@@ -150,14 +154,13 @@ def _samples(path: Path, sound: Any) -> NDArray[np.float64]:
             f"{path}: its header announces {announced} samples, more than a file of this size holds"
         )
     samples = np.empty((int(sound.channels), announced))
-    size = announced if sound.format == "MP3" else _BLOCK
     read = 0
     while len(samples) == 1 and read < announced:  # without a copy
-        found = len(sound.read(out=samples[0, read : read + size]))
+        found = len(sound.read(out=samples[0, read : read + _BLOCK]))
         if not found:
             break
         read += found
-    while len(block := sound.read(size, dtype="float64", always_2d=True)):
+    while len(block := sound.read(_BLOCK, dtype="float64", always_2d=True)):
         samples[:, read : read + len(block)] = block.T
         read += len(block)
     if read < announced:

@@ -9,6 +9,7 @@ what the file says, or contradicts it.
 
 from __future__ import annotations
 
+import math
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -114,12 +115,27 @@ def _channel(path: Path, channel: Any, times: Any) -> LoggedChannel | None:
 
 
 def _in_order(channel: Any) -> Callable[[int, int], NDArray[np.generic]]:
-    """Give samples as they come: the library reads a chunk again for each part of it asked for."""
-    chunks = (np.asarray(chunk[:]) for chunk in channel.data_chunks())
+    """Give samples as they come: the library reads a chunk again for each part of it asked for.
+
+    Whoever goes back begins with the first chunk again.
+    """
+    chunks: Iterator[NDArray[np.generic]] = iter(())
     rest: NDArray[np.generic] = np.empty(0)
+    position = math.inf
 
     def read(start: int, stop: int) -> NDArray[np.generic]:
-        nonlocal rest
+        nonlocal chunks, rest, position
+        if start < position:
+            chunks = (np.asarray(chunk[:]) for chunk in channel.data_chunks())
+            rest, position = np.empty(0), 0
+        while position + rest.size < start:
+            position += rest.size
+            following = next(chunks, None)
+            if following is None:
+                return np.empty(0)
+            rest = following
+        rest = rest[start - int(position) :]
+        position = stop
         parts, missing = [], stop - start
         while missing > 0:
             if rest.size == 0:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Rig
-    from noise.batch.lines import Lines
+    from noise.batch.lines import Results
 
 __all__ = ["LABELS", "Batch", "Evaluator", "batch_evaluator", "keeping"]
 
@@ -135,13 +135,13 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
         yield on_cluster
 
 
-def keeping(evaluate: Evaluator, lines: Lines) -> Evaluator:
+def keeping(evaluate: Evaluator, lines: Results) -> Evaluator:
     """Give an evaluator that keeps what it finds, and does not do again what was kept.
 
     Parameters
     ----------
     evaluate : callable
-    lines : Lines
+    lines : Results
 
     Returns
     -------

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from noise.batch.lines import Lines
+    from noise.batch.lines import Results
     from noise.classifier.model import Classifier
     from noise.training.classifier.described_samples import Sample
 
@@ -64,7 +64,7 @@ def train(
     added: Sequence[OwnSample] = (),
     surroundings: str = "any",
     keep: Path | None = None,
-    lines: Lines | None = None,
+    lines: Results | None = None,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
@@ -83,7 +83,7 @@ def train(
     keep : Path, optional
         File that keeps the simulated samples (`noise.training.classifier.kept_samples`): they are
         taken from it where it holds those of the same call by the same program.
-    lines : Lines, optional
+    lines : Results, optional
         Where to keep each sample as it is simulated, of this call alone, and what of it is there
         already.
     progress : callable, optional
@@ -144,7 +144,7 @@ def _drawn(
     total: int,
     surroundings: str,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None,
-    lines: Lines | None,
+    lines: Results | None,
 ) -> list[Sample]:
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
     seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import operator
 import time
 from dataclasses import replace
 
@@ -13,9 +12,10 @@ import pytest
 from models.errors import ParameterError
 from noise.app.design.bases import bases_of
 from noise.app.design.beside import Beside
-from noise.app.design.chart import ChartAsked, HelpAsked, chart_of, helps_of
+from noise.app.design.chart import helps_of
 from noise.app.design.design import design_of
 from noise.app.design.keeping import Keeping
+from noise.app.design.questions import ChartAsked, HelpAsked
 from noise.app.opened import open_paths
 from noise.recordings import read_recording
 
@@ -36,7 +36,7 @@ def setting(values, base="fluorocarbon"):
 
 
 def test_only_the_newest_question_is_answered_and_each_once():
-    beside = Beside(operator.neg)
+    beside = Beside("operator:neg")
     try:
         assert beside.answer_to(1) is None
         for question in range(2, 50):
@@ -49,7 +49,7 @@ def test_only_the_newest_question_is_answered_and_each_once():
 
 
 def test_what_cannot_be_answered_is_told_and_the_next_question_is_answered():
-    beside = Beside(chart_of)
+    beside = Beside("noise.app.design.chart:chart_of")
     wrong = ChartAsked(setting({}).rig, -5.0, 23.0)
     try:
         answer, error = waited(lambda: beside.answer_to(wrong))

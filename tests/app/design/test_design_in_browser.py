@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.rig_files.rig_file import load_rig
-from noise.app.design.sound import RATE
+from noise.app.design.player import RATE
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
 from tests.helpers.browser import TAP, chromium
@@ -25,12 +25,12 @@ SLACK = 200
 class DesignPage:
     """The view, shown."""
 
-    def __init__(self, browser, app, width=1280):
+    def __init__(self, browser, app, width=1280, tap=TAP):
         self.complaints = []
         self.page = browser.new_page(viewport={"width": width, "height": 900})
         self.page.on("console", self._told)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.add_init_script(TAP)
+        self.page.add_init_script(tap)
         self.page.goto(f"{app.address}#design")
         self.until(f"Boolean({DESIGN}?.ready)")
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-import struct
+import json
+import math
 import time
+import urllib.request
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,43 +14,53 @@ import pytest
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig
 from noise.app.design.bases import bases_of
-from noise.app.design.sound import BLOCK, RATE, LiveSounds
+from noise.app.design.design import design_of
+from noise.app.design.player import BLOCK, HEADER, RATE, REFUSED, Player
+from noise.app.design.sound import LiveSounds
 from noise.app.opened import open_paths
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks
-from tests.helpers.opened_app import opened_app
+from tests.helpers.opened_app import PATIENCE, opened_app
 
 BASES = bases_of(open_paths([]))
 PLAIN = {"base": "fluorocarbon", "values": {}}
 
 
 @pytest.fixture
-def sounds():
-    made = LiveSounds(BASES)
+def player():
+    made = Player()
     yield made
-    made.stop()
+    made.beside.stop()
+
+
+def setting(design):
+    return design_of(design, BASES).setting
 
 
 def read(block):
-    sequence, serial, n, m, _, speed = struct.unpack("<4I2f", block[:24])
-    numbers = np.frombuffer(block[24:], "<f4")
+    sequence, serial, n, m, _, speed = HEADER.unpack(block[: HEADER.size])
+    numbers = np.frombuffer(block[HEADER.size :], "<f4")
     assert numbers.size == n + m
     return {"sequence": sequence, "serial": serial, "pressure": numbers[:n], "speed": speed}
 
 
-def heard(sounds, designs, run=1, first=0):
+def heard(player, designs, run=1, first=0):
     """Blocks in a row; a design that is None stays as it is."""
     blocks = []
     for i, design in enumerate(designs, first):
-        said = {"run": run, "sequence": i, "serial": i}
-        block = read(sounds.block(said | ({"design": design} if design else {})))
-        assert (block["sequence"], block["serial"]) == (i, i)
+        if i == 0:
+            player.start(run, 0, setting(design))
+        elif design is not None:
+            player.change(run, i, setting(design))
+        block = read(player.block(run))
+        assert block["sequence"] == i
+        assert design is None or block["serial"] == i
         blocks.append(block["pressure"])
     return np.concatenate(blocks)
 
 
-def test_blocks_joined_are_the_recording_that_simulate_makes(sounds):
-    pressure = heard(sounds, [PLAIN, *[None] * 24])
+def test_blocks_joined_are_the_recording_that_simulate_makes(player):
+    pressure = heard(player, [PLAIN, *[None] * 24])
     whole = simulate_blocks(
         load_material_rig("fluorocarbon"), 5.0, seconds=0.5, acquisition=Acquisition(rate=RATE)
     )
@@ -56,44 +69,53 @@ def test_blocks_joined_are_the_recording_that_simulate_makes(sounds):
     np.testing.assert_allclose(pressure[:n], expected[:n], atol=1e-5 * np.abs(expected).max())
 
 
-def test_another_support_is_heard_once_its_response_is_known(sounds):
+def test_another_support_is_heard_once_its_response_is_known(player):
     stiff = {"base": "PDMS", "values": {"support": 3745.0}}
-    first = heard(sounds, [{"base": "PDMS", "values": {}}, None, stiff])
+    first = heard(player, [{"base": "PDMS", "values": {}}, None, stiff])
     assert np.isfinite(first).all()
     end = time.monotonic() + 60.0
     i = 3
-    while sounds._beside.newest is None and time.monotonic() < end:
-        heard(sounds, [None], first=i)
+    while player.beside.newest is None and time.monotonic() < end:
+        heard(player, [None], first=i)
         i += 1
         time.sleep(0.05)
-    run = sounds._runs[1].live
-    heard(sounds, [None, None], first=i)
+    run = player._runs[1].live
+    heard(player, [None, None], first=i)
     np.testing.assert_array_equal(
-        run._found.torque_to_pressure, sounds._beside.newest[1].torque_to_pressure
+        run._found.torque_to_pressure, player.beside.newest[1].torque_to_pressure
     )
 
 
-def test_several_blocks_at_once_are_those_that_come_one_by_one(sounds):
-    one_by_one = heard(sounds, [PLAIN, *[None] * 3])
-    said = {"run": 9, "sequence": 0, "serial": 0, "count": 4, "design": PLAIN}
-    answer = sounds.block(said)
-    size = len(answer) // 4
-    blocks = [read(answer[i * size : (i + 1) * size]) for i in range(4)]
-    assert [block["sequence"] for block in blocks] == [0, 1, 2, 3]
-    together = np.concatenate([block["pressure"] for block in blocks])
-    np.testing.assert_array_equal(together, one_by_one)
-    with pytest.raises(ParameterError, match="count"):
-        sounds.block({**said, "sequence": 4, "count": 99})
+def test_a_change_that_cannot_be_is_told_and_the_run_goes_on_as_it_was(player):
+    heard(player, [PLAIN, None])
+    too_tight = replace(setting(PLAIN), interference=0.5)
+    player.change(1, 2, too_tight)
+    answer = player.block(1)
+    refused, serial, n, *_ = HEADER.unpack(answer[: HEADER.size])
+    assert (refused, serial) == (REFUSED, 2)
+    why = answer[HEADER.size : HEADER.size + n].decode()
+    assert "interference" in why
+    assert "\n" not in why
+    block = read(answer[HEADER.size + n :])["pressure"]
+    goes_on = heard(player, [None] * 2, first=3)
+    untouched = heard(player, [PLAIN, *[None] * 4], run=3)
+    np.testing.assert_array_equal(np.concatenate([block, goes_on]), untouched[2 * BLOCK :])
 
 
-def test_a_design_that_cannot_be_changes_nothing(sounds):
-    heard(sounds, [PLAIN, None])
-    broken = {"base": "fluorocarbon", "values": {"change.critical_torque": 0.1}}
-    with pytest.raises(ParameterError, match="kinetic_torque"):
-        sounds.block({"run": 1, "sequence": 2, "serial": 2, "design": broken})
-    goes_on = heard(sounds, [None] * 3, first=2)
-    untouched = heard(sounds, [PLAIN, *[None] * 4], run=3)
-    np.testing.assert_array_equal(goes_on, untouched[2 * BLOCK :])
+def test_blocks_are_due_one_after_the_other_and_sooner_where_somebody_asks(player):
+    assert player.due(0.0) is None
+    player.start(7, 0, setting(PLAIN))
+    assert player.due(5.0) == (0.0, 7)
+    player.block(7)
+    assert player.due(6.0) == (0.0, 7)
+    player.block(7)
+    assert player.due(6.0) == (pytest.approx(BLOCK / RATE), 7)
+    player.sooner(7, 0.5 * BLOCK / RATE)
+    assert player.due(6.0) == (pytest.approx(0.5 * BLOCK / RATE), 7)
+    assert player.due(60.0) == (0.0, 7)  # who is that late has no more to catch up with
+    assert player.due(60.0 + BLOCK / RATE) == (0.0, 7)
+    player.stop(7)
+    assert player.due(60.0) is None
 
 
 @pytest.mark.parametrize(
@@ -101,39 +123,76 @@ def test_a_design_that_cannot_be_changes_nothing(sounds):
     [
         None,
         {},
-        {"run": 1, "sequence": 0, "serial": 0},
-        {"run": -1, "sequence": 0, "serial": 0, "design": PLAIN},
-        {"run": 1, "sequence": 5, "serial": 0, "design": PLAIN},
-        {"run": 1, "sequence": 0, "serial": 0, "design": {"base": "../x"}},
-        {"run": 1, "sequence": 0, "serial": 0, "design": []},
+        {"run": 1, "serial": 0},
+        {"run": -1, "serial": 0, "design": PLAIN},
+        {"run": 1, "serial": 1.5, "design": PLAIN},
+        {"run": 1, "serial": 0, "design": {"base": "../x"}},
+        {"run": 1, "serial": 0, "design": []},
+        {"run": 1, "serial": 0, "design": PLAIN},  # there is no such run
     ],
 )
-def test_requests_that_cannot_be_are_refused_in_a_line(sounds, said):
+def test_changes_that_cannot_be_are_refused_in_a_line(said):
     with pytest.raises(ParameterError) as caught:
-        sounds.block(said)
+        LiveSounds(BASES).change(said)
     assert "\n" not in str(caught.value)
 
 
-def test_levels_are_those_of_the_meter(sounds):
+@pytest.mark.parametrize("sooner", [None, "1", True, math.nan, math.inf, 9.0])
+def test_paces_that_cannot_be_are_refused_in_a_line(sooner):
+    with pytest.raises(ParameterError, match="sooner"):
+        LiveSounds(BASES).pace({"run": 1, "sooner": sooner})
+
+
+def streamed(app, number, n, design=PLAIN):
+    """Blocks of a stream as they come; it is left after so many."""
+    said = json.dumps({"run": number, "serial": 0, "design": design}).encode()
+    url = f"{app.base}/api/design/sound?token={app.token}"
+    with urllib.request.urlopen(urllib.request.Request(url, said), timeout=PATIENCE) as answer:
+        for _ in range(n):
+            header = answer.read(HEADER.size)
+            sizes = HEADER.unpack(header)[2:4]
+            yield read(header + answer.read(4 * sum(sizes)))
+
+
+def test_a_stream_is_the_recording_that_simulate_makes_and_comes_as_it_is_played():
     from features.kernels.levels import sound_levels
 
-    assert sounds.levels(1)["level_dba"] is None
-    pressure = heard(sounds, [PLAIN, *[None] * 49]).astype(float)
-    found = sound_levels(pressure, RATE)
-    assert sounds.levels(1)["level_dba"] == pytest.approx(found.level_a, abs=0.06)
-    assert sounds.levels(1)["l_afmax_dba"] == pytest.approx(found.level_af_max, abs=0.06)
+    with opened_app() as app:
+        times, blocks = [], []
+        for block in streamed(app, 1, 75):
+            times.append(time.monotonic())
+            blocks.append(block)
+            if len(blocks) == 60:
+                levels = app.json("api/design/levels?run=1")
+        assert [block["sequence"] for block in blocks] == list(range(75))
+        assert times[-1] - times[1] > 0.9 * 73 * BLOCK / RATE
+        pressure = np.concatenate([block["pressure"] for block in blocks])
+        made = Player()
+        made.beside.stop()
+        np.testing.assert_array_equal(pressure, heard(made, [PLAIN, *[None] * 74]))
+        found = sound_levels(pressure[-RATE:].astype(float), RATE)
+        assert levels["level_dba"] == pytest.approx(found.level_a, abs=1.0)
+        assert levels["l_afmax_dba"] == pytest.approx(found.level_af_max, abs=1.0)
+        assert app.json("api/design/levels?run=2")["level_dba"] is None
+
+
+def test_a_stream_that_cannot_go_on_ends_and_another_one_begins():
+    with opened_app() as app:
+        status, answer = app.request("api/design/sound", {"run": 1, "serial": 0, "design": {}})
+        assert status == 400
+        assert b"base" in answer
+        assert len(list(streamed(app, 2, 3))) == 3
+        for number in range(3, 9):  # more than go on at once; each is left
+            assert len(list(streamed(app, number, 2))) == 2
 
 
 def test_without_the_token_or_from_another_site_no_sound_comes():
-    said = {"run": 1, "sequence": 0, "serial": 0, "design": PLAIN}
+    said = {"run": 1, "serial": 0, "design": PLAIN}
     with opened_app() as app:
-        for path in ("block", "facts", "rig"):
+        for path in ("sound", "change", "pace", "facts", "rig"):
             for wrong in (
                 {"token": "wrong"}, {"Origin": "http://evil.example"}, {"Host": "evil.example"},
             ):  # fmt: skip
                 status, answer = app.request(f"api/design/{path}", said, **wrong)
                 assert status == 403, (path, wrong)
                 assert answer.startswith(b"refused")
-        status, answer = app.request("api/design/block", said)
-        assert status == 200
-        assert len(answer) > 4 * BLOCK

@@ -1,74 +1,91 @@
-// Beside the page: fetches blocks of sound as the audio thread asks for them, with the design where it has changed.
+// Beside the page: reads the stream of blocks and hands them to the audio thread; tells the program what has changed.
 const HEADER = 24, HEADROOM = 1.12; // bytes; peaks between two samples are higher
 const STEPS = [1, 2, 5, 10];
+const REFUSED = 0xFFFFFFFF; // in place of a sequence: a reason follows
 
-const AT_ONCE = 2, MOST = 8; // requests on their way; blocks in one of them, where the machine is busy
-
-let address = "", run = 0, design = null, serial = 0, sent = -1, port = null, fullScale = 0.1, next = 0;
-let onTheWay = 0, begun = false;
-const wanted = []; // sequences, in a row
-const early = new Map(); // blocks that came before those before them
+let address = "", run = 0, port = null, fullScale = 0.1, waiting = null, telling = false;
 
 self.onmessage = ({ data }) => {
-  if (data.start) ({ address, run, fullScale } = data.start);
-  if (data.design) ({ design, serial } = data.design);
   if (data.fullScale) fullScale = data.fullScale;
-  if (data.port) {
+  if (data.start) {
+    ({ address, run, fullScale } = data.start);
     port = data.port;
-    port.onmessage = ({ data: sequence }) => { wanted.push(sequence); more(); };
+    port.onmessage = ({ data: sooner }) => { post("pace", { run, sooner }).catch(() => {}); };
+    listen(data.design);
+  } else if (data.design) {
+    waiting = data.design;
+    if (!telling) tell();
   }
 };
 
-// Several requests are on their way at once, the first alone; the server answers them in their order.
-function more() {
-  while (wanted.length && onTheWay < (begun ? AT_ONCE : 1)) {
-    const some = wanted.splice(0, begun ? MOST : 1);
-    onTheWay++;
-    fetched(some[0], some.length).then(() => { begun = true; onTheWay--; more(); });
+const post = (what, said) => fetch(address + what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(said) });
+
+const refused = (reason, serial) => self.postMessage({ refused: reason, serial });
+
+// Changes go out one after the other; of those that wait meanwhile the newest counts.
+async function tell() {
+  telling = true;
+  while (waiting) {
+    const mine = waiting;
+    waiting = null;
+    const answer = await post("change", { run, ...mine }).catch(() => null); // the stream ends then as well
+    if (answer && !answer.ok) refused(await reason(answer), mine.serial);
+  }
+  telling = false;
+}
+
+async function reason(answer) {
+  const said = await answer.text();
+  try { return JSON.parse(said).error; } catch { return said; }
+}
+
+async function listen(design) {
+  try {
+    const answer = await post("sound", { run, ...design });
+    if (!answer.ok) {
+      refused(await reason(answer), design.serial);
+      self.postMessage({ ended: "" });
+      return;
+    }
+    const reader = answer.body.getReader();
+    let rest = new Uint8Array(0);
+    for (let more; !(more = await reader.read()).done;) {
+      rest = joined(rest, more.value);
+      for (let size; (size = sizeOf(rest)) && rest.length >= size; rest = rest.slice(size)) pass(rest.slice(0, size).buffer);
+    }
+    self.postMessage({ ended: "" }); // it was refused
+  } catch {
+    self.postMessage({ ended: "The program does not answer any more; start it again by `bushing-noise open`." });
   }
 }
 
-async function fetched(sequence, count) {
-  for (let tries = 0; tries < 3; tries++) {
-    const mine = serial, body = { run, sequence, count, serial: mine };
-    if (mine !== sent) body.design = design;
-    sent = mine;
-    let answer;
-    try {
-      answer = await fetch(address, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
-    } catch {
-      self.postMessage({ ended: "The program does not answer any more; start it again by `bushing-noise open`." });
-      return;
-    }
-    if (answer.ok) {
-      early.set(sequence, { bytes: await answer.arrayBuffer(), count });
-      for (let found; (found = early.get(next)); next += found.count) {
-        early.delete(next);
-        for (let at = 0; at < found.bytes.byteLength;) at = pass(found.bytes, at);
-      }
-      return;
-    }
-    const said = await answer.text();
-    let reason = said;
-    try { reason = JSON.parse(said).error; } catch { /* plain text */ }
-    self.postMessage({ refused: reason, serial: mine });
-    if (sequence === 0 || !body.design) break; // there is no design to go on with
-  }
-  self.postMessage({ ended: "" });
+function joined(first, second) {
+  const both = new Uint8Array(first.length + second.length);
+  both.set(first);
+  both.set(second, first.length);
+  return both;
 }
 
-// Hand a block on, and return where the next one begins.
-function pass(bytes, at) {
-  const [sequence, of, n, m] = new Uint32Array(bytes, at, 4), [took, speed] = new Float32Array(bytes, at + 16, 2);
-  const end = at + HEADER + 4 * (n + m);
-  const pressure = new Float32Array(bytes, at + HEADER, n).slice(), torque = new Float32Array(bytes, at + HEADER + 4 * n, m).slice();
+// Bytes of the message that begins there, 0 while that is not known.
+function sizeOf(bytes) {
+  if (bytes.length < HEADER) return 0;
+  const [sequence, , n, m] = new Uint32Array(bytes.slice(0, HEADER).buffer, 0, 4);
+  return HEADER + (sequence === REFUSED ? n : 4 * (n + m));
+}
+
+function pass(bytes) {
+  const [sequence, serial, n, m] = new Uint32Array(bytes, 0, 4), [took, speed] = new Float32Array(bytes, 16, 2);
+  if (sequence === REFUSED) {
+    refused(new TextDecoder().decode(new Uint8Array(bytes, HEADER, n)), serial);
+    return;
+  }
+  const pressure = new Float32Array(bytes, HEADER, n).slice(), torque = new Float32Array(bytes, HEADER + 4 * n, m).slice();
   let peak = 0;
   for (const one of pressure) peak = Math.max(peak, Math.abs(one));
   if (HEADROOM * peak > fullScale) {
     const ten = 10 ** Math.floor(Math.log10(HEADROOM * peak));
     fullScale = Number(STEPS.map((one) => one * ten).find((one) => one >= HEADROOM * peak * 0.9999).toPrecision(1));
   }
-  self.postMessage({ block: { sequence, serial: of, pressure, torque, took, speed, peak, fullScale } });
-  port?.postMessage({ sequence, serial: of, pressure, gain: 1 / fullScale }, [pressure.buffer]);
-  return end;
+  self.postMessage({ block: { sequence, serial, pressure, torque, took, speed, peak, fullScale } });
+  port.postMessage({ sequence, serial, pressure, gain: 1 / fullScale }, [pressure.buffer]);
 }

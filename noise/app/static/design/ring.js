@@ -1,26 +1,29 @@
-// In the audio thread: plays blocks of pressure one after the other at one gain, asks for more in time, counts what is missing.
-const MOST = 10; // blocks that are asked for at most, where the machine is busy
-const CALM = 5; // without a gap, after which one block less will do [s]
+// In the audio thread: plays blocks of pressure one after the other at one gain, keeps a small reserve, counts what is missing.
+const FIRST = 0.12; // to be in reserve before it begins, when there is most to do besides [s]
+const LOW = 0.006, AIM = 0.014, HIGH = 0.02; // reserve as a block comes, below and above which blocks are to come sooner and later [s]
+const CALM = 2; // without less in reserve, before blocks are to come later [s]
+const PATIENCE = 0.25; // until what was asked for shows [s]
+const FULL = 0.5; // in reserve, where nobody listens [s]
 const RAMP = 240; // samples in which a gain is another
 
 class Ring extends AudioWorkletProcessor {
-  constructor({ processorOptions: { block, ahead } }) {
+  constructor({ processorOptions: { block } }) {
     super();
     this.block = block;
-    this.ahead = ahead; // blocks that are to be there, or on their way
     this.blocks = [];
     this.at = 0; // sample of the first block
     this.next = 0; // sequence that comes next
-    this.asked = 0;
     this.gain = 0;
     this.aim = 0;
+    this.begins = Infinity; // time at which it plays
     this.playing = false;
     this.stopped = false;
     this.missing = 0;
     this.doubled = 0;
     this.serial = -1;
-    this.least = ahead;
-    this.calm = 0; // samples since the last gap
+    this.least = Infinity; // in reserve, since the pace was looked at
+    this.calm = 0; // times at which the pace is looked at anew
+    this.asked = 0;
     this.port.onmessage = ({ data }) => this.told(data);
   }
 
@@ -28,17 +31,15 @@ class Ring extends AudioWorkletProcessor {
     if (data.feed) {
       this.feed = data.feed;
       this.feed.onmessage = ({ data: block }) => this.take(block);
-      this.ask();
     }
     if (data.aim !== undefined) this.aim = data.aim;
     if (data.stop) this.stopped = true;
   }
 
-  ask() {
-    while (this.feed && !this.stopped && this.asked - this.next + this.blocks.length < this.ahead) this.feed.postMessage(this.asked++);
-  }
+  get reserve() { return (this.blocks.length * this.block - this.at) / sampleRate; }
 
   take(block) {
+    const reserve = this.reserve;
     if (block.sequence < this.next) this.doubled += block.pressure.length;
     else {
       this.missing += (block.sequence - this.next) * this.block;
@@ -46,22 +47,43 @@ class Ring extends AudioWorkletProcessor {
       this.blocks.push(block);
       this.aim = block.gain;
     }
-    if (!this.playing && this.blocks.length >= this.ahead) {
-      this.playing = true;
-      this.gain = this.aim;
+    if (this.playing) this.look(reserve);
+    else if (this.begins === Infinity) this.begins = currentTime + FIRST;
+  }
+
+  // Ask for another pace where there is too little in reserve, or for long too much.
+  look(reserve) {
+    this.least = Math.min(this.least, reserve);
+    if (currentTime < this.asked + PATIENCE && reserve < FULL) return;
+    if (reserve < LOW || reserve > FULL) this.ask(AIM - reserve);
+    else if (currentTime > this.calm) {
+      if (this.least > HIGH) this.ask(AIM - this.least);
+      this.afresh();
     }
-    this.ask();
+  }
+
+  ask(sooner) {
+    this.asked = currentTime;
+    this.feed.postMessage(sooner);
+    this.afresh();
+  }
+
+  afresh() {
+    this.least = Infinity;
+    this.calm = currentTime + CALM;
   }
 
   process(_, [[output]]) {
     let first = 0;
+    if (!this.playing && currentTime >= this.begins) {
+      this.playing = true;
+      this.gain = this.aim;
+      this.afresh();
+    }
     while (this.playing && first < output.length) {
       const block = this.blocks[0];
       if (!block) {
         this.missing += output.length - first;
-        if (this.calm > 0) this.ahead = Math.min(MOST, this.ahead + 1);
-        this.calm = 0;
-        this.ask();
         this.port.postMessage({ missing: this.missing, doubled: this.doubled, frame: currentFrame + first });
         break;
       }
@@ -76,15 +98,9 @@ class Ring extends AudioWorkletProcessor {
       }
       first += n;
       this.at += n;
-      this.calm += n;
-      if (this.calm > CALM * sampleRate) {
-        this.ahead = Math.max(this.least, this.ahead - 1);
-        this.calm = 1;
-      }
       if (this.at === block.pressure.length) {
         this.at = 0;
         this.blocks.shift();
-        this.ask();
       }
     }
     return !this.stopped;

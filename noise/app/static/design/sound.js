@@ -1,4 +1,4 @@
-// The sound of the design: a worker fetches its blocks, the audio thread plays them; what is missing and how late it is are counted.
+// The sound of the design: a worker reads its blocks, the audio thread plays them; what is missing and how late it is are counted.
 const QUIETEST = 0.1; // nothing is amplified beyond this full scale [Pa]
 const LATENCIES = 5000; // that are kept
 
@@ -33,7 +33,7 @@ export class Sound extends EventTarget {
     if (this.node || this.starting) return;
     this.starting = true;
     try {
-      this.context ??= new AudioContext({ sampleRate: this.rate, latencyHint: "interactive" });
+      this.context ??= new AudioContext({ sampleRate: this.rate, latencyHint: 0.003 });
       if (this.context.state === "suspended") this.context.resume();
       this.added ??= this.context.audioWorklet.addModule(new URL("./ring.js", import.meta.url));
       await this.added;
@@ -42,12 +42,12 @@ export class Sound extends EventTarget {
     this.worker = new Worker(new URL("./feed.js", import.meta.url));
     this.worker.onmessage = ({ data }) => this.#fed(data);
     this.node = new AudioWorkletNode(this.context, "ring", {
-      numberOfInputs: 0, outputChannelCount: [1], processorOptions: { block: this.block, ahead: 3 },
+      numberOfInputs: 0, outputChannelCount: [1], processorOptions: { block: this.block },
     });
     this.node.port.onmessage = ({ data }) => this.#played(data);
     const { port1, port2 } = new MessageChannel();
     this.waiting = [];
-    const address = new URL("api/design/block", document.baseURI).href;
+    const address = new URL("api/design/", document.baseURI).href;
     this.worker.postMessage({ start: { address, run: this.run, fullScale: this.fullScale }, design: { design: this.design, serial: this.serial }, port: port1 }, [port1]);
     this.node.port.postMessage({ feed: port2 }, [port2]);
     this.node.connect(this.context.destination);

@@ -1,0 +1,66 @@
+"""Impulse responses for a run that is heard, computed in a process beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from noise.app.design.beside import Beside
+from sim.live import paths_key, paths_of
+
+if TYPE_CHECKING:
+    from models.radiation.impulse_responses import ImpulseResponses
+    from sim.live import Setting
+
+    ResponsesBeside = Beside[Setting, ImpulseResponses]
+
+__all__ = ["RATE", "PathsBeside", "block_paths", "responses_beside"]
+
+RATE = 48000
+"""Of the sound [Hz]."""
+
+_NICE = 10
+"""The sound goes on before what carries it is another."""
+
+
+def block_paths(setting: Setting) -> ImpulseResponses:
+    """Return the impulse responses of a setting at the rate of its blocks."""
+    return paths_of(setting, RATE)
+
+
+def responses_beside() -> ResponsesBeside:
+    """Return a process that computes impulse responses."""
+    return Beside(f"{__name__}:block_paths", _NICE)
+
+
+class PathsBeside:
+    """Impulse responses for one run, computed beside; the first at once."""
+
+    def __init__(self, beside: ResponsesBeside) -> None:
+        self._beside = beside
+        self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
+        self._wanted: tuple[Setting, tuple[object, ...]] | None = None
+        self._asked: dict[int, tuple[Setting, tuple[object, ...]]] = {}
+
+    def __call__(self, setting: Setting) -> ImpulseResponses | None:
+        """Return those of a setting, None while they are not known."""
+        if self._known is None:
+            self._known = paths_key(setting), paths_of(setting, RATE)
+        if self._wanted is None or self._wanted[0] is not setting:
+            self._wanted = setting, paths_key(setting)
+        key = self._wanted[1]
+        if key == self._known[0]:
+            return self._known[1]
+        newest = self._beside.newest
+        mine = None if newest is None else self._asked.pop(id(newest[0]), None)
+        if newest is not None and mine is not None and newest[1] is not None:
+            self._known = mine[1], newest[1]
+            return newest[1]
+        if mine is None and not any(asked == key for _, asked in self._asked.values()):
+            self._ask(setting, key)
+        elif not self._beside.busy:  # what another page asked for took its place
+            self._asked.clear()
+        return None
+
+    def _ask(self, setting: Setting, key: tuple[object, ...]) -> None:
+        self._asked[id(setting)] = setting, key
+        self._beside.ask(setting)

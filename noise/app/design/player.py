@@ -1,0 +1,188 @@
+"""The process that plays designs: it makes the blocks of each run as they are due.
+
+It does nothing else, so nothing that the program does besides keeps the sound waiting. A change is
+heard in the block that is made next.
+"""
+
+from __future__ import annotations
+
+import gc
+import signal
+import struct
+import time
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError
+from models.rig_files.rig_file import load_material_rig
+from noise.app.design.pace import Pace
+from noise.app.design.paths_beside import RATE, PathsBeside, responses_beside
+from noise.batch.work import one_thread
+from sim.live import LiveRun, Setting
+from sim.shaft import ConstantSpeed
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+__all__ = ["BLOCK", "HEADER", "RATE", "REFUSED", "TORQUE_STEP", "Player", "play"]
+
+BLOCK = 960
+"""Samples of a block: 10 ms."""
+
+TORQUE_STEP = 4
+"""Of every so many samples of the torque one is sent, to be drawn."""
+
+HEADER = struct.Struct("<4I2f")
+"""Of a block."""
+
+REFUSED = 0xFFFFFFFF
+"""In place of a sequence: why the change of that serial could not be, as UTF-8 of n bytes."""
+
+
+@dataclass(eq=False)
+class _Run:
+    live: LiveRun
+    serial: int
+    change: tuple[int, Setting] | None = None
+    sequence: int = 0
+    pace: Pace = field(default_factory=lambda: Pace(BLOCK / RATE))
+
+
+class Player:
+    """Runs that go on, by number."""
+
+    def __init__(self) -> None:
+        self._runs: dict[int, _Run] = {}
+        self.beside = responses_beside()
+
+    def start(self, number: int, serial: int, setting: Setting) -> None:
+        """Begin a run.
+
+        Raises
+        ------
+        ParameterError
+            The setting cannot be used.
+        """
+        live = LiveRun(setting, rate=RATE, n=BLOCK, paths=PathsBeside(self.beside))
+        self._runs[number] = _Run(live, serial)
+
+    def stop(self, number: int) -> None:
+        """End a run, if there is one of that number."""
+        self._runs.pop(number, None)
+
+    def change(self, number: int, serial: int, setting: Setting) -> None:
+        """Let another setting be heard from the next block on."""
+        if run := self._runs.get(number):
+            run.change = serial, setting
+
+    def sooner(self, number: int, seconds: float) -> None:
+        """Let the blocks that follow come sooner by so much [s]."""
+        if run := self._runs.get(number):
+            run.pace.sooner(seconds)
+
+    def due(self, now: float) -> tuple[float, int] | None:
+        """Return in how long which run's block is due [s], None without runs."""
+        waits = ((run.pace.early(run.sequence, now), n) for n, run in self._runs.items())
+        return min(waits, default=None)
+
+    def block(self, number: int) -> bytes:
+        """Return the next block of a run.
+
+        Returns
+        -------
+        bytes
+            Sequence, serial, samples of pressure and of torque as unsigned integers; milliseconds
+            that it took and speed of the shaft [rad/s], then pressure [Pa] and torque [Nm] as
+            floating-point numbers; all of 32 bits, little-endian. Where the change that was to be
+            heard could not be, `REFUSED` and why comes before it.
+
+        Raises
+        ------
+        ParameterError
+            The run cannot go on.
+        """
+        run = self._runs[number]
+        started = time.perf_counter()
+        why = b""
+        change, run.change = run.change, None
+        if change is None:
+            made = run.live.block()
+        else:
+            run.serial, setting = change
+            try:
+                made = run.live.block(setting)
+            except ParameterError as error:
+                why = refusal(run.serial, error)
+                made = run.live.block()
+        pressure = made.pressure.astype("<f4")
+        torque = made.torque[::TORQUE_STEP].astype("<f4")
+        took = 1e3 * (time.perf_counter() - started)
+        sizes = pressure.size, torque.size
+        header = HEADER.pack(run.sequence, run.serial, *sizes, took, made.speed)
+        run.sequence += 1
+        return why + header + pressure.tobytes() + torque.tobytes()
+
+
+def refusal(serial: int, error: ParameterError) -> bytes:
+    """Return the message that a change could not be."""
+    why = " ".join(str(error).split()).encode()
+    return HEADER.pack(REFUSED, serial, len(why), 0, 0.0, 0.0) + why
+
+
+def warmed() -> Player:
+    """Return a player that has compiled what it will use."""
+    player = Player()
+    setting = Setting(load_material_rig("fluorocarbon"), ConstantSpeed(5.0), 0.3e-3, 2214.0)
+    player.beside.ask(setting)
+    player.start(0, 0, setting)
+    player.block(0)
+    player.change(0, 1, replace(setting, shaft=ConstantSpeed(6.0), interference=0.31e-3))
+    player.block(0)
+    player.stop(0)
+    gc.collect()
+    gc.freeze()  # or all that is loaded is walked through while it plays
+    return player
+
+
+def play(link: Connection) -> None:
+    """Play what is asked for until None is, or the other end is closed.
+
+    Parameters
+    ----------
+    link : Connection
+        Gives ``(what, number, ...)``: a method of `Player` and its arguments; takes the number of a
+        run in four bytes, little-endian, and a message of it after that: none is left where there
+        is only the number.
+    """
+    with suppress(ValueError):  # a key in the terminal is for the server
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with one_thread(), suppress(EOFError, OSError):
+        player = warmed()
+        try:
+            while True:
+                due = player.due(time.perf_counter())
+                if link.poll(None if due is None else due[0]):
+                    told = link.recv()
+                    if told is None:
+                        return
+                    what, number, *rest = told
+                else:
+                    what, number, rest = "", due[1] if due else 0, []
+                _do(player, link, what, number, rest)
+        finally:
+            player.beside.stop()
+
+
+def _do(player: Player, link: Connection, what: str, number: int, rest: list[object]) -> None:
+    name = number.to_bytes(4, "little")
+    try:
+        if what:
+            getattr(player, what)(number, *rest)
+        else:
+            link.send_bytes(name + player.block(number))
+    except ParameterError as error:
+        player.stop(number)
+        serial = rest[0] if rest and isinstance(rest[0], int) else 0
+        link.send_bytes(name + refusal(serial, error))
+        link.send_bytes(name)
