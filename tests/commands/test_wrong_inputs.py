@@ -183,14 +183,7 @@ def test_a_band_and_a_gain_that_nothing_can_be_heard_with_are_refused(capsys, gi
 
 
 @pytest.mark.parametrize(
-    "given",
-    [
-        ("label", ""),
-        ("frf", ""),
-        ("review", ""),
-        ("simulate", "--out", ""),
-        ("render", "", "--out", "x.wav"),
-    ],
+    "given", [("label", ""), ("frf", ""), ("review", ""), ("simulate", "--out", "")]
 )
 def test_a_path_of_no_characters_is_not_the_current_folder(given, capsys):
     assert "is '', expected a path" in refusal(capsys, *given)
