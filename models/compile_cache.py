@@ -8,6 +8,7 @@ could have prepared is not used: nothing is kept then, and every start compiles 
 
 It is set up when the first of our packages is imported, since compiled functions ask for their
 folder where they are defined. A folder that the user names (``NUMBA_CACHE_DIR``) comes first.
+matplotlib, which keeps a list of fonts, is in the same plight, and is given the same folder.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["ensure_compile_cache"]
 
 _VARIABLE = "NUMBA_CACHE_DIR"
+_MATPLOTLIB = "MPLCONFIGDIR"
 _PACKAGES = ("models", "sim", "features", "noise")
 
 
@@ -47,6 +49,7 @@ def ensure_compile_cache() -> None:
         _keep_nothing()
         return
     os.environ[_VARIABLE] = str(own)
+    os.environ.setdefault(_MATPLOTLIB, str(own))  # it would make one anew each time, and say so
     if "numba" in sys.modules:  # it has read the variable
         sys.modules["numba"].config.CACHE_DIR = str(own)
 

@@ -5,7 +5,8 @@ is the same, byte for byte, as that of one process that nobody disturbed.
 """
 
 from noise.batch.identity import file_digest, file_identity
-from noise.batch.journal import Journal, JournalReader, journal_path, open_journal
+from noise.batch.journal import Journal, JournalReader, open_journal
+from noise.batch.lines import journal_path
 from noise.batch.work import Done, Job, Work, find_jobs, perform_all
 
 __all__ = [

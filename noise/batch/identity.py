@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from noise.batch.work import Work
 
-__all__ = ["file_digest", "file_identity", "program_identity", "work_identity"]
+__all__ = ["call_identity", "file_digest", "file_identity", "program_identity", "work_identity"]
 
 _PACKAGES = ("models", "sim", "features", "noise")
 _LIBRARIES = ("librosa", "numba", "numpy", "scikit-learn", "scipy", "soundfile")
@@ -86,5 +86,9 @@ def _sources(root: Path) -> Iterator[Path]:
 
 def work_identity(work: Work) -> str:
     """Digest of all that decides a row beside its recording."""
-    said = [program_identity(), work.doing, list(work.columns), dict(work.identity())]
-    return hashlib.sha256(json.dumps(said).encode()).hexdigest()
+    return call_identity(work.doing, list(work.columns), dict(work.identity()))
+
+
+def call_identity(*said: object) -> str:
+    """Digest of the program, and of what decides a result beside it, as JSON can hold it."""
+    return hashlib.sha256(json.dumps([program_identity(), *said]).encode()).hexdigest()

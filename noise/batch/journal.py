@@ -1,12 +1,9 @@
 """The journal of a table: what has been done so far, on disk after each recording.
 
-It lies hidden beside the table and outlives it. A line is one recording with its rows, and is on
-the disk before the next is begun; so a process may be killed at any moment, and what it leaves
-behind is whole lines and at most one torn one, which is cut off. Many rows of one recording are
-several lines, which count together or not at all. Each line ends with its checksum,
-so that what a failing disk or a crash of the system garbled is no result. A line counts as long as
-the recording is the same file as then, and the same program does the same work; otherwise the
-recording is done again, and the later line stands.
+It is kept as `noise.batch.lines` keeps results, and outlives the table. A line is one recording
+with its rows; many rows of one recording are several lines, which count together or not at all. It
+counts as long as the recording is the same file as then, and the same program does the same work;
+otherwise the recording is done again, and the later line stands.
 
 Refused recordings are not in it. They cost little, and what was at fault may have been put right
 since without the file changing: a share that was away, a library that was not installed.
@@ -14,38 +11,33 @@ since without the file changing: a share that was away, a library that was not i
 
 from __future__ import annotations
 
-import json
 import os
-import zlib
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from models.errors import ParameterError
 from noise.batch.identity import file_identity, work_identity
+from noise.batch.lines import header_of, journal_path, open_lines, parsed
 from noise.batch.rows import StoredRows, part_count, parts_of
 from noise.batch.work import Done
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from io import FileIO
     from pathlib import Path
 
+    from noise.batch.lines import Lines
     from noise.batch.rows import Cell
     from noise.batch.work import Job, Work
 
     Entries = dict[str, tuple[list[int], Done]]
 
-__all__ = ["Journal", "JournalReader", "journal_path", "open_journal"]
-
-_FORMAT = 2
+__all__ = ["Journal", "JournalReader", "open_journal"]
 
 
 class Journal:
     """What is done of a table; see `open_journal`."""
 
-    def __init__(self, path: Path, file: FileIO, entries: Entries) -> None:
-        self._path = path
-        self._file = file
+    def __init__(self, lines: Lines, entries: Entries) -> None:
+        self._lines = lines
         self._entries = entries
 
     def find(self, job: Job) -> Done | None:
@@ -60,13 +52,14 @@ class Journal:
         """Keep what came of a recording; `identity` is the file's from before it was read."""
         if identity is None or done.error is not None:
             return
-        entry = [_key(job), identity, done.calibrated]
         n_parts = part_count(done.rows)
-        with _writing(self._path):
-            for number, part in enumerate(parts_of(done.rows), start=1):
-                place = [] if n_parts == 1 else [number, n_parts]
-                _write(self._file, _line([*entry, part, *place]))
-            os.fsync(self._file.fileno())
+        self._lines.add(
+            *(
+                [_key(job), identity, done.calibrated, part]
+                + ([] if n_parts == 1 else [number, n_parts])
+                for number, part in enumerate(parts_of(done.rows), start=1)
+            )
+        )
 
 
 class JournalReader:
@@ -81,7 +74,7 @@ class JournalReader:
 
     def __init__(self, table: Path, work: Work) -> None:
         self._path = journal_path(table)
-        self._header = _header(work)
+        self._header = header_of(work_identity(work))
         self._n_columns = len(work.columns)
         self._begin()
 
@@ -106,20 +99,8 @@ class JournalReader:
         self._read = max(self._read, len(self._header)) + len(whole)
         found: Entries = {}
         for line in whole.splitlines():
-            found.update(self._reading.entries(line))
+            found.update(self._reading.entries(parsed(line)))
         return _known(found, jobs)
-
-
-def journal_path(table: Path) -> Path:
-    """Where the journal of a table lies.
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> journal_path(Path("runs") / "labels.csv").name
-    '.labels.csv.journal'
-    """
-    return table.with_name(f".{table.name}.journal")
 
 
 @contextmanager
@@ -156,35 +137,14 @@ def open_journal(table: Path, work: Work, *, fresh: bool = False) -> Iterator[Jo
     ...         journal.find(job) == done
     True
     """
-    path = journal_path(table)
-    header = _header(work)
-    with _writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        file = path.open("a+b", buffering=0)
-    with file:
-        _claim(file, table)
-        entries, end = ({}, 0) if fresh else _read(path, header, len(work.columns))
-        if not end:
-            with _writing(path):
-                file.truncate(0)
-                _write(file, header)
-        else:  # what follows the last line break was torn off when the process was killed
-            file.truncate(end)
-        yield Journal(path, file, entries)
+    entries: Entries = {}
+    reading = _Reading(len(work.columns))
 
+    def take(found: list[Any]) -> None:
+        entries.update(reading.entries(found))
 
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise ParameterError(f"{path}: cannot be written ({error.strerror or error})") from None
-
-
-def _write(file: FileIO, data: bytes) -> None:
-    """Write all of it: of what a disk has no more room for, the system takes a part."""
-    while data:
-        data = data[file.write(data) :]
+    with open_lines(table, work_identity(work), take=take, fresh=fresh) as lines:
+        yield Journal(lines, entries)
 
 
 def _find(entries: Entries, job: Job) -> Done | None:
@@ -197,29 +157,6 @@ def _known(entries: Entries, jobs: Sequence[Job]) -> dict[int, Done]:
     return {index: done for index, done in found.items() if done is not None}
 
 
-def _header(work: Work) -> bytes:
-    return json.dumps([_FORMAT, work_identity(work)]).encode() + b"\n"
-
-
-def _line(entry: list[object]) -> bytes:
-    content = json.dumps(entry).encode()
-    return b"%s %08x\n" % (content, zlib.crc32(content))
-
-
-def _read(path: Path, header: bytes, n_columns: int) -> tuple[Entries, int]:
-    """Return what is in a journal, and how far it is whole: nowhere if it is of other work."""
-    with path.open("rb") as lines:
-        if lines.readline() != header:
-            return {}, 0
-        end, entries, reading = len(header), {}, _Reading(n_columns)
-        for line in lines:
-            if not line.endswith(b"\n"):
-                break
-            end += len(line)
-            entries.update(reading.entries(line))
-        return entries, end
-
-
 class _Reading:
     """Recordings from the lines of a journal, as they come."""
 
@@ -228,13 +165,10 @@ class _Reading:
         self._begun: tuple[list[object], StoredRows] = ([], StoredRows())
         self._number = 0
 
-    def entries(self, line: bytes) -> Entries:
+    def entries(self, line: list[Any]) -> Entries:
         """Return the recording that a line completes, by its key."""
-        entry, _, checksum = line.rstrip(b"\n").rpartition(b" ")
-        if checksum != b"%08x" % zlib.crc32(entry):  # damaged: the recording is done again
-            return {}
         try:
-            key, identity, calibrated, rows, *place = json.loads(entry)
+            key, identity, calibrated, rows, *place = line
             if not (
                 {len(row) for row in rows} <= {self._n_columns} and calibrated in (True, False)
             ):
@@ -242,7 +176,7 @@ class _Reading:
             if not place:
                 return {key: (identity, Done(rows, calibrated))}
             return self._part([key, identity, calibrated], rows, *place)
-        except (ValueError, TypeError, RecursionError):  # no line of ours
+        except (ValueError, TypeError):  # no line of ours
             return {}
 
     def _part(self, of: list[Any], rows: list[list[Cell]], number: int, n_parts: int) -> Entries:
@@ -259,17 +193,3 @@ class _Reading:
 
 def _key(job: Job) -> str:
     return f"{job.name}\n{job.path.absolute()}"
-
-
-def _claim(file: FileIO, table: Path) -> None:
-    """Keep other processes from the journal, as far as the system knows of locks."""
-    try:
-        import fcntl
-    except ImportError:
-        return
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise ParameterError(f"{table}: is being written by another process; wait for it") from None
-    except OSError:  # a file system without locks
-        return

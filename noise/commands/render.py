@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from argparse import ArgumentTypeError
-from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.base.atomic import check_target
@@ -15,11 +14,10 @@ from noise.commands.condition_options import add_condition
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
-    from collections.abc import Iterator
 
-    from noise.audio.filters import SoundFilter
-    from noise.audio.long_sound import Heard
     from noise.audio.rendering import Survey
+    from noise.batch.lines import Results
+    from noise.commands.render_plans import Plan
     from noise.commands.render_sources import Source
 
 __all__ = ["configure", "run"]
@@ -163,28 +161,10 @@ def _band(text: str) -> tuple[float, float]:
     return low, high
 
 
-class _Plan(NamedTuple):
-    """One file to be: what it is called, and the runs that are heard in it, through a filter."""
-
-    name: str
-    target: Path
-    runs: tuple[tuple[Source, int], ...]
-    through: SoundFilter
-
-    @contextmanager
-    def takes(self) -> Iterator[list[Heard]]:
-        """Open the recordings; they are read when they are listened to."""
-        with ExitStack() as stack:
-            whole = [source.heard(number, stack) for source, number in self.runs]
-            if self.through:
-                from noise.audio.filters import filtered
-
-                whole = [filtered(one, self.through) for one in whole]
-            yield whole
-
-
 def run(options: Namespace) -> int:
     """Write the sounds."""
+    from noise.batch.lines import kept_results
+    from noise.commands.render_plans import measuring_identity
     from noise.commands.render_sources import sources_of
 
     if options.sound_quality:
@@ -200,7 +180,9 @@ def run(options: Namespace) -> int:
     check_target(options.out)
     plans = _plans(options, sources, folder)
     _keep_inputs(options.out, sources, plans)
-    return _rendered(options, plans, folder)
+    table = None if folder is None else folder / "levels.csv"
+    with kept_results(table, measuring_identity(options)) as kept:
+        return _rendered(options, plans, folder, kept)
 
 
 def _folder(options: Namespace, sources: list[Source]) -> Path | None:
@@ -218,25 +200,24 @@ def _folder(options: Namespace, sources: list[Source]) -> Path | None:
     return named
 
 
-def _plans(options: Namespace, sources: list[Source], folder: Path | None) -> list[_Plan]:
+def _plans(options: Namespace, sources: list[Source], folder: Path | None) -> list[Plan]:
     from noise.audio.files import audio_path
     from noise.audio.filters import SoundFilter
+    from noise.commands.render_plans import Plan
 
     through = SoundFilter(options.band, tuple(options.notch or ()))
     numbers = range(options.repeats)
     if folder is not None:
         return [
-            _Plan(
-                one.name, audio_path(folder / one.name), tuple((one, n) for n in numbers), through
-            )
+            Plan(one.name, audio_path(folder / one.name), tuple((one, n) for n in numbers), through)
             for one in sources
         ]
     target = audio_path(options.out)
     runs = tuple((source, number) for number in numbers for source in sources)
-    return [_Plan(target.stem if options.ab else sources[0].name, target, runs, through)]
+    return [Plan(target.stem if options.ab else sources[0].name, target, runs, through)]
 
 
-def _keep_inputs(out: Path, sources: list[Source], plans: list[_Plan]) -> None:
+def _keep_inputs(out: Path, sources: list[Source], plans: list[Plan]) -> None:
     """Refuse to write over a recording or its sidecar."""
     from noise.commands.render_sources import RecordedSource
 
@@ -252,8 +233,10 @@ def _keep_inputs(out: Path, sources: list[Source], plans: list[_Plan]) -> None:
             raise ParameterError(f"--out {out} would overwrite the recording or its sidecar")
 
 
-def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> int:
-    from noise.audio.rendering import COLUMNS, render, survey
+def _rendered(
+    options: Namespace, plans: list[Plan], folder: Path | None, kept: Results | None
+) -> int:
+    from noise.audio.rendering import COLUMNS, render
     from noise.base.tables import write_table
     from noise.commands.render_gain import faint_notes, full_scales
 
@@ -263,14 +246,12 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
     shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
     for plan in track(plans, "measuring", unit="sound"):
         try:
-            with plan.takes() as takes:
-                surveys[plan.name] = survey(
-                    takes,
-                    **shape,
-                    quality=options.sound_quality,
-                    loudness=options.match_loudness,
-                )
-                notes = [take.about.notes for take in takes]
+            surveys[plan.name], notes = plan.surveyed(
+                kept,
+                **shape,
+                quality=options.sound_quality,
+                loudness=options.match_loudness,
+            )
         except BushingNoiseError as error:
             if folder is None and not isinstance(error, RecordingError):
                 raise
@@ -325,7 +306,7 @@ def _rendered(options: Namespace, plans: list[_Plan], folder: Path | None) -> in
     return 1 if refused else 0
 
 
-def _tell(plan: _Plan, survey: Survey, full_scale: float, summary: str, *, alone: bool) -> None:
+def _tell(plan: Plan, survey: Survey, full_scale: float, summary: str, *, alone: bool) -> None:
     if survey.calibrated:
         say(f"{plan.name}: full scale is {full_scale:.4g} Pa; in the file {summary}")
     else:
@@ -337,7 +318,7 @@ def _tell(plan: _Plan, survey: Survey, full_scale: float, summary: str, *, alone
             say(f"{lead}: {line}")
 
 
-def _notes(options: Namespace, plans: list[_Plan], surveys: dict[str, Survey]) -> None:
+def _notes(options: Namespace, plans: list[Plan], surveys: dict[str, Survey]) -> None:
     """Say what the user should know of."""
     from noise.commands.render_sources import SimulatedSource
 

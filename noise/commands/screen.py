@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
 
     from noise.base.progress import Steps
+    from noise.batch.lines import Results
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
 
@@ -139,6 +140,8 @@ def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
         opt.check_folder(options.out, file="map.csv")
+    from noise.batch.identity import call_identity
+    from noise.batch.lines import kept_results
     from noise.screening.design.environments import environment
 
     given = _given(options)
@@ -147,23 +150,31 @@ def run(options: Namespace) -> int:
         environment(name)  # refused before everything is loaded
     of_each = 2 if options.tolerances is False else 3  # map, grade, parts
     number = 1 + of_each * len(options.designs) * len(environments)
-    with steps("screening", number) as tell:
-        found = _screened(options, given, environments, tell)
-    from noise.screening.tables.summary import summary_lines
+    table = None if options.out is None else options.out / "map.csv"
+    with kept_results(table, call_identity("screening")) as kept:
+        with steps("screening", number) as tell:
+            found = _screened(options, given, environments, tell, kept)
+        from noise.screening.tables.summary import summary_lines
 
-    for name, reason in (*found.refused, *found.failed):
-        say(f"{name}: {reason}")
-    for line in summary_lines(found):
-        print(line)
-    if options.out is not None:
-        with steps("writing", 2) as tell:
-            written = _write(options, found, tell)
-        for path in written:
-            print(path)
+        for name, reason in (*found.refused, *found.failed):
+            say(f"{name}: {reason}")
+        for line in summary_lines(found):
+            print(line)
+        if options.out is not None:
+            with steps("writing", 2) as tell:
+                written = _write(options, found, tell)
+            for path in written:
+                print(path)
     return 1 if found.refused or found.failed else 0
 
 
-def _screened(options: Namespace, given: Use, environments: list[str], tell: Steps) -> Screening:
+def _screened(
+    options: Namespace,
+    given: Use,
+    environments: list[str],
+    tell: Steps,
+    kept: Results | None,
+) -> Screening:
     tell("preparing")
     import numpy as np
 
@@ -182,6 +193,7 @@ def _screened(options: Namespace, given: Use, environments: list[str], tell: Ste
         workers=options.workers,
         scheduler=options.scheduler,
         progress=tell,
+        kept=kept,
     )
 
 

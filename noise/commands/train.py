@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from noise.base.progress import Steps
+    from noise.batch.lines import Results
     from noise.classifier import Classifier
     from noise.training.classifier.own_samples import OwnSample
 
@@ -94,6 +95,9 @@ def configure(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Train, save, and tell the score."""
+    from noise.batch.identity import call_identity
+    from noise.batch.lines import kept_results
+
     _check_model(options.out, "--out", "a classifier")
     if options.keep is not None:
         _check_model(options.keep, "--keep", "what was simulated")
@@ -108,8 +112,10 @@ def run(options: Namespace) -> int:
         tell("preparing")
         added, refused = _own(options.add or ())
         tell("simulating what to learn from")
-        classifier = _trained(options, added, tell)
-        classifier.save(options.out)
+        decisive = (options.seed, options.samples, options.surroundings)
+        with kept_results(options.out, call_identity("training", *decisive)) as lines:
+            classifier = _trained(options, added, tell, lines)
+            classifier.save(options.out)
         if options.inference is not None:
             from noise.training.inference.fit import train_inference
 
@@ -125,7 +131,9 @@ def run(options: Namespace) -> int:
     return int(refused)
 
 
-def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Classifier:
+def _trained(
+    options: Namespace, added: Sequence[OwnSample], tell: Steps, lines: Results | None
+) -> Classifier:
     from noise.training.classifier.fit import N_TEST, N_TRAINING, train
 
     n = options.samples
@@ -136,6 +144,7 @@ def _trained(options: Namespace, added: Sequence[OwnSample], tell: Steps) -> Cla
         added=added,
         surroundings=options.surroundings,
         keep=options.keep,
+        lines=lines,
         progress=_simulating,
         growing=partial(_growing, tell),
     )

@@ -20,7 +20,7 @@ from models.errors import BushingNoiseError, ParameterError
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.design.environments import DRY, environment, in_environment
-from noise.screening.map.batches import batch_evaluator
+from noise.screening.map.batches import batch_evaluator, keeping
 from noise.screening.map.grid import shared_grid, shared_motions
 from noise.screening.map.mapping import map_design
 from noise.screening.map.provenance import fits_remark
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from models.rig import Rig
+    from noise.batch.lines import Results
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
     from noise.screening.map.mapping import DesignMap
@@ -62,6 +63,7 @@ def screen(
     workers: int = -1,
     scheduler: str | None = None,
     progress: Callable[[str], None] = lambda _: None,
+    kept: Results | None = None,
 ) -> Screening:
     """Map bushing designs over their conditions, and rank them.
 
@@ -91,6 +93,8 @@ def screen(
         Address of a Dask cluster that simulates the maps instead.
     progress : callable
         Is told what is being done.
+    kept : Results, optional
+        Where to keep what is simulated of the maps, and what of it is there already.
 
     Returns
     -------
@@ -130,6 +134,8 @@ def screen(
     screened: dict[str, Design] = {}
     remarks: dict[str, list[str]] = {}
     with batch_evaluator(workers=workers, scheduler=scheduler) as evaluate:
+        if kept is not None:
+            evaluate = keeping(evaluate, kept)
         for design in loaded.values():
             try:
                 remarks[design.name] = _remarks(design, grids, given)

@@ -150,6 +150,63 @@ def goes_on_where_it_was(command, tmp_path, shares, n=12, n_broken=2, seconds=0.
         assert contents(folder) == contents(undisturbed)
 
 
+def held(process, journal, size=0):
+    """Wait for a journal as `grown` does; give it a second name, which outlives the call."""
+    grown(process, journal, size)
+    second = journal.with_name("held.journal")
+    if not second.exists():
+        os.link(journal, second)
+    return second
+
+
+def simulates_and_measures_nothing_again(call, target, given, tmp_path, shares):
+    """Of what a call keeps until it is done."""
+    undisturbed = Path(shutil.copytree(given, tmp_path / "undisturbed"))
+    journal = journal_path(Path(target))
+    process = start(call, undisturbed)
+    whole = held(process, undisturbed / journal)
+    process.communicate()
+    assert process.returncode == 0
+    assert len(lines_of(whole)) > 3
+    for share in shares:
+        folder = Path(shutil.copytree(given, tmp_path / f"at{share}"))
+        process = start(call, folder)
+        kept = held(process, folder / journal, share * whole.stat().st_size)
+        process.kill()
+        process.communicate()
+        before = lines_of(kept)
+        last = start(call, folder)
+        last.communicate()
+        assert last.returncode == 0
+        assert lines_of(kept)[: len(before)] == before
+        assert len(lines_of(kept)) == len(lines_of(whole))  # each once
+        assert contents(folder) == contents(undisturbed)
+        assert not (folder / journal).exists()
+
+
+def test_a_set_of_sounds_goes_on_where_half_of_it_was_measured(tmp_path):
+    make_recordings(tmp_path / "given" / "runs", 12, 1, 1.0)
+    (tmp_path / "given" / "runs" / "day1" / "shift1" / "run0001.flac").unlink()
+    call = ["render", "runs", "--out", "set"]
+    simulates_and_measures_nothing_again(
+        call, "set/levels.csv", tmp_path / "given", tmp_path, [0.5]
+    )
+
+
+KEEPING = {
+    "render": (CALLS["render"], "set/levels.csv"),
+    "screen": (["screen", "fluorocarbon", "PDMS", "--simulations", "200", "--no-tolerances",
+                "--sounds", "1", "--out", "screen"], "screen/map.csv"),
+    "train": (["train", "--samples", "20", "--out", "mine.npz"], "mine.npz"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("command", KEEPING)
+@pytest.mark.slow
+def test_what_is_kept_until_it_is_done_is_not_done_again(command, bench, tmp_path):
+    simulates_and_measures_nothing_again(*KEEPING[command], bench, tmp_path, SHARES)
+
+
 def test_labels_go_on_where_half_of_the_journal_was(tmp_path):
     goes_on_where_it_was("label", tmp_path, [0.5])
 

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import sysconfig
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -20,13 +21,13 @@ pytestmark = [
 ]
 
 ROOT = Path(__file__).parents[2]
-NOBODY = 65534
+AS_NOBODY = ("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups")
 
 WITHOUT_NETWORK = """
 import fcntl, os, socket, struct, sys
 with socket.socket() as any:  # what remains is this machine itself
     fcntl.ioctl(any, 0x8914, struct.pack("16sh14x", b"lo", 1))
-os.execv(sys.argv[1], sys.argv[1:])
+os.execvp(sys.argv[1], sys.argv[1:])
 """
 
 MAP = ("--speed", "1,5", "--interference", "0.279", "--support-stiffness", "2214", "--sounds", "1")
@@ -48,14 +49,18 @@ CALLS = {
 
 
 @pytest.fixture(scope="module")
-def installed(tmp_path_factory):
+def place():
+    """A folder that others may pass through: pytest keeps its own to one user, again and again."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o755)
+        yield Path(folder)
+
+
+@pytest.fixture(scope="module")
+def installed(place):
     """The command of an installation from a wheel, none of whose files may be written."""
-    place = tmp_path_factory.mktemp("shared")
-    for folder in (place, *place.parents):
-        if not folder.stat().st_mode & 0o001:
-            folder.chmod(0o755)  # others pass through it
     venv = place / "venv"
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", venv], check=True)
+    subprocess.run([_shared_python(), "-m", "venv", "--without-pip", venv], check=True)
     python = venv / "bin" / "python"
     done = subprocess.run(
         [sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--no-deps", ROOT],
@@ -77,30 +82,42 @@ def installed(tmp_path_factory):
 @pytest.fixture(scope="module")
 def without_rights(installed):
     """What to put before a command: another user where there can be one, no network."""
-    python = installed.with_name("python")
     if os.geteuid() != 0 or not shutil.which("setpriv"):
         return []  # the user has no rights to lose, and the network stays
     before = []
     alone = ["unshare", "--net", "--", sys.executable, "-c", WITHOUT_NETWORK]
     if subprocess.run([*alone, "/bin/true"], capture_output=True, check=False).returncode == 0:
         before = alone
-    setpriv = shutil.which("setpriv")
-    nobody = [setpriv, f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
-    asked = [*nobody, python, "-c", "import sys, noise; print(sys.prefix)"]
-    found = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip()
-    if found == str(installed.parents[1]):
-        return [*before, *nobody]
-    return [*before, setpriv, "--bounding-set=-all", "--inh-caps=-all"]  # its Python is root's own
+    if _others_can(installed.with_name("python"), "import numpy, noise"):
+        return [*before, *AS_NOBODY]
+    return [*before, "setpriv", "--bounding-set=-all", "--inh-caps=-all"]  # its Python is root's
+
+
+def _shared_python():
+    """The Python of the tests, or one of its version, that others can start as well."""
+    version = f"python{sys.version_info[0]}.{sys.version_info[1]}"
+    there = [sys.executable, shutil.which(version, path=os.defpath)]
+    return next((one for one in there if one and _others_can(one, "import venv")), sys.executable)
+
+
+def _others_can(python, statement):
+    # Through a shell, since setpriv itself starts a program with the rights that it gives away.
+    asked = [*AS_NOBODY, "/bin/sh", "-c", '"$0" -c "$1"', python, statement]
+    try:
+        return subprocess.run(asked, capture_output=True, check=False).returncode == 0
+    except OSError:  # there is no setpriv
+        return False
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    place = tmp_path_factory.mktemp("work")
-    place.chmod(0o777)
-    (place / "rig.toml").write_text('base = "fluorocarbon"\n')
-    (place / "temporary").mkdir()
-    (place / "temporary").chmod(0o777)
-    return place
+def folder(place):
+    work = place / "work"
+    work.mkdir()
+    work.chmod(0o777)
+    (work / "rig.toml").write_text('base = "fluorocarbon"\n')
+    (work / "temporary").mkdir()
+    (work / "temporary").chmod(0o1777)  # as /tmp is
+    return work
 
 
 def test_each_command_runs_and_writes_nothing_there(installed, without_rights, folder):
@@ -120,4 +137,5 @@ def test_each_command_runs_and_writes_nothing_there(installed, without_rights, f
         _, told = process.communicate()
         assert process.returncode in ends, f"{command}: {told}"
         assert "Traceback" not in told
+        assert "Matplotlib" not in told  # which would tell of its folder in three lines
     assert set(installed.parents[1].rglob("*")) == before

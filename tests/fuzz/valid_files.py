@@ -14,7 +14,8 @@ import soundfile
 from models.transfer_functions.uff import TIME_RESPONSE, UffFunction, write_uff_functions
 from noise.base.tables import write_table
 from noise.batch.identity import file_identity
-from noise.batch.journal import journal_path, open_journal
+from noise.batch.journal import open_journal
+from noise.batch.lines import journal_path
 from noise.batch.work import Done, Job
 from noise.labels.audacity import label_track
 from noise.labels.labelling import COLUMNS, Labelling

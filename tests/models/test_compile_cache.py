@@ -21,7 +21,9 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
     """The user's folder among the temporary files, where nothing else can be written."""
-    monkeypatch.delenv(VARIABLE, raising=False)
+    for name in (VARIABLE, "MPLCONFIGDIR"):
+        monkeypatch.setenv(name, "")  # or else what is set here would stay
+        monkeypatch.delenv(name)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     writable = compile_cache._writable
     monkeypatch.setattr(
@@ -54,6 +56,7 @@ def test_the_user_gets_a_folder_that_nobody_else_may_look_into(place, capsys):
     for _ in range(2):  # the second finds it
         ensure_compile_cache()
         assert os.environ[VARIABLE] == numba.config.CACHE_DIR == str(place)
+        assert os.environ["MPLCONFIGDIR"] == str(place)
         assert place.stat().st_mode & 0o777 == 0o700
     assert capsys.readouterr().err == ""
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
-from joblib import Parallel, delayed
+from joblib import Parallel, delayed, hash as digest
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.batch.cluster import cluster
@@ -27,8 +27,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.rig import Rig
+    from noise.batch.lines import Results
 
-__all__ = ["LABELS", "Batch", "Evaluator", "batch_evaluator"]
+__all__ = ["LABELS", "Batch", "Evaluator", "batch_evaluator", "keeping"]
 
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
@@ -132,6 +133,31 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
             return _joined(batch, pieces, values)
 
         yield on_cluster
+
+
+def keeping(evaluate: Evaluator, lines: Results) -> Evaluator:
+    """Give an evaluator that keeps what it finds, and does not do again what was kept.
+
+    Parameters
+    ----------
+    evaluate : callable
+    lines : Results
+
+    Returns
+    -------
+    callable
+        From a `Batch` to an array of shape (n, 4), as `evaluate`.
+    """
+
+    def kept(batch: Batch) -> NDArray[np.float64]:
+        key = digest(tuple(getattr(batch, one.name) for one in fields(batch)))
+        if key in lines.found:
+            return np.array(lines.found[key], dtype=np.float64)
+        rows = evaluate(batch)
+        lines.add(key, *rows.tolist())
+        return rows
+
+    return kept
 
 
 def _pieces(batch: Batch, size: int) -> list[NDArray[np.int64]]:

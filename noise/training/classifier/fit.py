@@ -22,7 +22,7 @@ from noise.labels.segmentation import clearest
 from noise.labels.windows import FEATURE_NAMES
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
 from noise.training.classifier.described_samples import draw_sample
-from noise.training.classifier.kept_samples import load_samples, save_samples
+from noise.training.classifier.kept_samples import as_line, load_samples, of_line, save_samples
 from noise.training.classifier.masked_rows import (
     KINDS,
     SUBSETS,
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
+    from noise.batch.lines import Results
     from noise.classifier.model import Classifier
     from noise.training.classifier.described_samples import Sample
 
@@ -63,6 +64,7 @@ def train(
     added: Sequence[OwnSample] = (),
     surroundings: str = "any",
     keep: Path | None = None,
+    lines: Results | None = None,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
     growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
@@ -81,6 +83,9 @@ def train(
     keep : Path, optional
         File that keeps the simulated samples (`noise.training.classifier.kept_samples`): they are
         taken from it where it holds those of the same call by the same program.
+    lines : Results, optional
+        Where to keep each sample as it is simulated, of this call alone, and what of it is there
+        already.
     progress : callable, optional
         ``progress(samples, total)`` passes the samples on and shows how far it is.
     growing : callable, optional
@@ -107,7 +112,7 @@ def train(
     call = (seed, n_training, n_test, surroundings)
     samples = None if keep is None else load_samples(keep, call)
     if samples is None:
-        samples = _drawn(seed, n_made_up, total, surroundings, progress)
+        samples = _drawn(seed, n_made_up, total, surroundings, progress, lines)
         if keep is not None:
             save_samples(keep, call, samples)
     real = load_real_sounds()
@@ -139,14 +144,21 @@ def _drawn(
     total: int,
     surroundings: str,
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None,
+    lines: Results | None,
 ) -> list[Sample]:
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
     seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
+    known = {} if lines is None else {int(key): of_line(line) for key, line in lines.found.items()}
+    left = [i for i in range(total) if i not in known]
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw_sample)(child, bushings=i >= n_made_up, surroundings=surroundings)
-        for i, child in enumerate(seeds)
+        delayed(draw_sample)(seeds[i], bushings=i >= n_made_up, surroundings=surroundings)
+        for i in left
     )
-    return list(progress(drawn, total) if progress else drawn)
+    for i, sample in zip(left, progress(drawn, len(left)) if progress else drawn, strict=True):
+        known[i] = sample
+        if lines is not None:
+            lines.add(str(i), *as_line(sample))
+    return [known[i] for i in range(total)]
 
 
 def learn(

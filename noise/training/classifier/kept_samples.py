@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,7 +18,25 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-__all__ = ["load_samples", "save_samples"]
+__all__ = ["as_line", "load_samples", "of_line", "save_samples"]
+
+
+def as_line(sample: Sample) -> list[object]:
+    """Return a sample as JSON can hold it.
+
+    Examples
+    --------
+    >>> one = Sample(np.full((2, 3), np.float32(0.1)), "creak", False, "bushing")
+    >>> bool(np.all(of_line(as_line(one)).features == one.features))
+    True
+    """
+    return [sample.features.tolist(), sample.label, sample.ambiguous, sample.name]
+
+
+def of_line(line: Sequence[Any]) -> Sample:
+    """Return the sample of a line."""
+    features, *said = line
+    return Sample(np.array(features, dtype=np.float32), *said)
 
 
 def save_samples(path: Path, call: Sequence[object], samples: Sequence[Sample]) -> None:

@@ -1,0 +1,61 @@
+"""A screen that was killed, called again: what was simulated of its maps is not simulated again."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from models.rig_files.rig_file import load_material_rig
+from noise.screening.design.design import Design, Use
+from noise.screening.map.batches import keeping
+from noise.screening.map.grid import grid_of
+from noise.screening.map.mapping import map_design
+from tests.helpers.kept import staying_results
+
+USE = Use(interference=(0.254e-3, 0.3e-3, 0.381e-3), support_stiffness=(2214.0,))
+
+
+class Judge:
+    """Tells the noise by the speed and the damping, in no time; dies after some batches."""
+
+    def __init__(self, lasts=10**6):
+        self.left = lasts
+        self.n_points = 0
+
+    def __call__(self, batch):
+        if not self.left:
+            raise KeyboardInterrupt
+        self.left -= 1
+        self.n_points += batch.speed.size
+        loud = batch.speed < 5.0 + sum(batch.rig.fit(0.3e-3).damping.values())
+        rows = np.where(loud, 2.0, 0.0)[:, None] * np.ones(4)
+        rows[:, 2:] = np.where(loud, batch.speed / 3.0, np.nan)[:, None]
+        return rows
+
+
+def mapped(judge, folder, change=1.0):
+    """The map of a design, which is read anew as each call does."""
+    rig = load_material_rig("fluorocarbon").changed(damping=f"x{change:g}")
+    with staying_results(folder / "screen") as lines:
+        return map_design(rig, grid_of(Design("a", rig), USE), keeping(judge, lines), design="a")
+
+
+@pytest.mark.parametrize("batches", [0, 1, 2])
+def test_after_a_kill_only_the_rest_is_simulated_and_the_map_is_the_same(tmp_path, batches):
+    undisturbed, first, second = Judge(), Judge(batches), Judge()
+    whole = mapped(undisturbed, tmp_path / "undisturbed")
+    assert undisturbed.left < 10**6 - batches
+    with pytest.raises(KeyboardInterrupt):
+        mapped(first, tmp_path)
+    found = mapped(second, tmp_path)
+    assert first.n_points + second.n_points == undisturbed.n_points
+    for name in ("regime", "label", "level", "level_max", "how"):
+        assert getattr(found, name).tobytes() == getattr(whole, name).tobytes()
+
+
+def test_of_a_design_that_was_changed_since_all_is_simulated(tmp_path):
+    undisturbed, other = Judge(), Judge()
+    mapped(undisturbed, tmp_path / "undisturbed", change=1.5)
+    mapped(Judge(), tmp_path)
+    mapped(other, tmp_path, change=1.5)
+    assert other.n_points == undisturbed.n_points
