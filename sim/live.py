@@ -12,23 +12,18 @@ all. Effects that need a run as a whole are left out, those of drive and sensors
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.radiation.rig_response import first_mode_damping, impulse_responses
 from sim.acquisition import Acquisition, digitise
-from sim.chain import changed_chain
 from sim.live_filter import LiveConvolution, crossing
-from sim.long_run import whole_run_effects
+from sim.live_setting import KnownPaths, Setting, paths_of, plan_of, streams
 from sim.motion import Motion, MotionSolver, steps_beyond
 from sim.motion_limits import blaming_the_unusual
 from sim.pipeline import pulse_force
-from sim.run import plan_run
 from sim.streams import AnalogueFilter, Decimation
-from sim.temperature import at_temperature
 from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
@@ -37,14 +32,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from models.radiation.impulse_responses import ImpulseResponses
-    from models.rig import Rig
     from sim.effects.effect import Effect
     from sim.pipeline import Plan
     from sim.shaft import ShaftMotion
 
     PathsOf = Callable[["Setting"], ImpulseResponses | None]
 
-__all__ = ["LOOKAHEAD", "LiveBlock", "LiveRun", "Setting", "paths_key", "paths_of"]
+__all__ = ["LOOKAHEAD", "LiveBlock", "LiveRun"]
 
 LOOKAHEAD = 0.005
 """By which the sound lags behind the motion [s]."""
@@ -57,35 +51,6 @@ _LONGEST_RESPONSE = 3.0
 
 _HORIZON = 60.0
 """Within which the fastest speed of a motion is looked for [s]."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """What can be changed while it runs.
-
-    Parameters
-    ----------
-    rig : Rig
-    shaft : ShaftMotion
-        Of a kind that can be compared. Its clock goes on where only its numbers change, and starts
-        anew where it is of another kind.
-    interference : float
-        [m]
-    support_stiffness : float
-        [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
-    temperature : float
-        [degree Celsius]
-    """
-
-    rig: Rig
-    shaft: ShaftMotion
-    interference: float
-    support_stiffness: float
-    temperature: float = 23.0
-
-    def moves_as(self, other: Setting) -> bool:
-        """Whether nothing but the motion of the shaft differs."""
-        return replace(self, shaft=other.shaft) == other
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,52 +70,6 @@ class LiveBlock:
     pressure: NDArray[np.float64]
     torque: NDArray[np.float64]
     speed: float
-
-
-def paths_of(
-    setting: Setting, rate: float, *, library: Mapping[str, Effect] | None = None, seed: int = 0
-) -> ImpulseResponses:
-    """Impulse responses at a rate [Hz], as the effects of the rig change them.
-
-    Parameters
-    ----------
-    setting : Setting
-    rate : float
-        Of the computation [Hz].
-    library, seed
-        As of `LiveRun`.
-    """
-    plan = _plan(setting, rate, library, n=2)
-    paths = impulse_responses(plan.rig, plan.interference, plan.support_stiffness, plan.rate)
-    return changed_chain(paths, plan.effects, _streams(seed)[1].spawn(1)[0])
-
-
-def paths_key(setting: Setting) -> tuple[object, ...]:
-    """All that the impulse responses depend on: two settings of one key share them.
-
-    Examples
-    --------
-    >>> from models.rig_files.rig_file import load_material_rig
-    >>> from sim.shaft import ConstantSpeed
-    >>> one = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
-    >>> looser = replace(one, rig=one.rig.changed(kinetic_torque="x0.5"), shaft=ConstantSpeed(1.0))
-    >>> damped = replace(one, rig=one.rig.changed(damping="x2"))
-    >>> paths_key(one) == paths_key(looser), paths_key(one) == paths_key(damped)
-    (True, False)
-    """
-    rig = at_temperature(setting.rig, setting.temperature)
-    support = setting.support_stiffness
-    fixed = math.isinf(support)
-    return (
-        rig.beams,
-        rig.plate,
-        rig.microphone,
-        rig.clamp_inertia,
-        rig.measured,
-        support,
-        0.0 if fixed else first_mode_damping(rig, setting.interference, support),
-        rig.effects,
-    )
 
 
 class LiveRun:
@@ -203,9 +122,9 @@ class LiveRun:
         factor = SIMULATION.decimation(rate)
         self._rate, self._n, self._block = factor * rate, n, factor * n
         self._output_rate, self._library, self._seed = rate, library, seed
-        self._paths = paths or _KnownPaths(rate, library, seed)
+        self._paths = paths or KnownPaths(rate, library, seed)
         self._setting = setting
-        self._plan = _plan(setting, rate, library, n)
+        self._plan = plan_of(setting, rate, library, n)
         self._solver = self._solver_of(self._plan, float(setting.shaft.speed(np.zeros(1))[0]))
         self._time = 0  # of the shaft's clock, in samples of the computation
         self._lookahead = round(LOOKAHEAD * self._rate)
@@ -224,7 +143,7 @@ class LiveRun:
         self._filter = AnalogueFilter(corner, self._rate, n_settling)
         self._decimations = [Decimation(factor, n_settling) for _ in range(2)]
         self._acquisition = acquisition
-        self._noise = _streams(seed)[0].spawn(4)[2]  # torque, acceleration, pressure, angle
+        self._noise = streams(seed)[0].spawn(4)[2]  # torque, acceleration, pressure, angle
         self._ready = np.zeros((2, 0))
 
     @property
@@ -289,7 +208,7 @@ class LiveRun:
         """Motion of a block in which a setting takes over."""
         before, n, beyond = self._setting, self._block, steps_beyond(self._rate)
         restarted = type(setting.shaft) is not type(before.shaft)
-        plan = _plan(setting, self._output_rate, self._library, self._n)
+        plan = plan_of(setting, self._output_rate, self._library, self._n)
         coming = np.concatenate([crossing(n), np.ones(beyond)])
         old = self._drive(before.shaft, n + beyond)
         new = self._drive(setting.shaft, n + beyond, 0 if restarted else self._time)
@@ -313,47 +232,9 @@ class LiveRun:
         with blaming_the_unusual(plan.rig):
             return MotionSolver(
                 plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
-                _streams(self._seed)[1], start_speed=start_speed,
+                streams(self._seed)[1], start_speed=start_speed,
                 top_speed=float(np.abs(speeds).max()), tolerance=None,
             )  # fmt: skip
-
-
-class _KnownPaths:
-    """Impulse responses of the last setting that was asked for, computed at once."""
-
-    def __init__(self, rate: float, library: Mapping[str, Effect] | None, seed: int) -> None:
-        self._rate, self._library, self._seed = rate, library, seed
-        self._asked: Setting | None = None
-        self._key: tuple[object, ...] = ()
-        self._found: ImpulseResponses | None = None
-
-    def __call__(self, setting: Setting) -> ImpulseResponses:
-        key = self._key if setting is self._asked else paths_key(setting)
-        if self._found is None or key != self._key:
-            self._found = paths_of(setting, self._rate, library=self._library, seed=self._seed)
-        self._asked, self._key = setting, key
-        return self._found
-
-
-def _plan(setting: Setting, rate: float, library: Mapping[str, Effect] | None, n: int) -> Plan:
-    plan = plan_run(
-        setting.rig,
-        setting.shaft,
-        interference=setting.interference,
-        support_stiffness=setting.support_stiffness,
-        temperature=setting.temperature,
-        seconds=max(n, 2) / rate,
-        rate=rate,
-        settling=None,
-        library=library,
-    )
-    left_out = whole_run_effects(plan.effects)
-    return replace(plan, effects=[e for e in plan.effects if e.effect.name not in left_out])
-
-
-def _streams(seed: int) -> list[np.random.Generator]:
-    """Streams of the sensors' noise and of effects that scatter, as `sim.run.simulate` has them."""
-    return np.random.default_rng(seed).spawn(2)
 
 
 def _to_pressure(paths: ImpulseResponses) -> list[NDArray[np.float64]]:

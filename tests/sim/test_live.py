@@ -14,7 +14,8 @@ from models.rig_files.rig_file import load_material_rig
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.friction import LAWS
-from sim.live import LiveRun, Setting
+from sim.live import LiveRun
+from sim.live_setting import Setting
 from sim.long_run import simulate_blocks
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 

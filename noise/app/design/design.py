@@ -21,7 +21,7 @@ from noise.app.design.motions import motion_of, motion_options
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.map.provenance import fits_remark
 from sim.effects import EFFECTS
-from sim.live import Setting
+from sim.live_setting import Setting
 from sim.temperature import at_temperature
 
 if TYPE_CHECKING:

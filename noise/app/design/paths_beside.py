@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from noise.app.design.beside import Beside
-from sim.live import paths_key, paths_of
+from sim.live_setting import paths_key, paths_of
 
 if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
-    from sim.live import Setting
+    from sim.live_setting import Setting
 
     ResponsesBeside = Beside[Setting, ImpulseResponses]
 

@@ -19,7 +19,8 @@ from models.rig_files.rig_file import load_material_rig
 from noise.app.design.pace import Pace
 from noise.app.design.paths_beside import RATE, PathsBeside, responses_beside
 from noise.batch.work import one_thread
-from sim.live import LiveRun, Setting
+from sim.live import LiveRun
+from sim.live_setting import Setting
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from models.errors import ParameterError
 
 if TYPE_CHECKING:
     from models.rig import Rig
-    from sim.live import Setting
+    from sim.live_setting import Setting
 
 __all__ = ["ChartAsked", "HelpAsked"]
 
