@@ -13,7 +13,8 @@ from noise.base import parquet as parquet_module
 from noise.base.tables import read_table, write_table
 from noise.batch import Job, open_journal, rows as rows_module
 from noise.batch.identity import file_identity
-from noise.batch.journal import JournalReader, journal_path
+from noise.batch.journal import JournalReader
+from noise.batch.lines import journal_path
 from noise.batch.rows import StoredRows, stored
 from noise.batch.work import perform_all
 
