@@ -18,7 +18,7 @@ from noise.base.label_names import LABELS
 from noise.labels.frequencies import TELLING
 from noise.labels.kept_frames import KeptFrames
 from noise.labels.levels import CELL_RATE, sound_levels
-from noise.labels.windows import FEATURE_NAMES, FRAMES_A_HOP, Pages
+from noise.labels.windows import FRAMES_A_HOP, Pages, columns_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -80,7 +80,7 @@ def classified(blocks: RecordingBlocks, classifier: Classifier) -> Classified:
     -------
     Classified
     """
-    asked = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
+    asked = columns_of(classifier)
     probabilities, telling, levels, frames = [], [], [], KeptFrames()
     pages = Pages(blocks)
     for page in pages:

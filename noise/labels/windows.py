@@ -29,11 +29,12 @@ if TYPE_CHECKING:
 
     from features.windows.blocks import Block
     from features.windows.table import WindowTable
+    from noise.classifier.model import Classifier
     from noise.recordings.blocks import RecordingBlocks
 
 __all__ = [
-    "FEATURE_NAMES", "FRAMES_A_HOP", "Described", "Page", "Pages", "can_be_described", "describe",
-    "tracks",
+    "FEATURE_NAMES", "FRAMES_A_HOP", "Described", "Page", "Pages", "can_be_described", "columns_of",
+    "describe", "tracks",
 ]  # fmt: skip
 
 FEATURE_NAMES = (
@@ -54,6 +55,27 @@ _BLOCKS_A_PAGE = 3
 
 FRAMES_A_HOP = round(HOP * FRAME_RATE)
 """From the first frame of a window to that of the next."""
+
+
+def columns_of(classifier: Classifier) -> list[int]:
+    """Return the places of a classifier's features among `FEATURE_NAMES`.
+
+    Raises
+    ------
+    ParameterError
+        It asks for features that do not exist.
+
+    Examples
+    --------
+    >>> from noise.classifier.model import load_classifier
+    >>> len(columns_of(load_classifier())) <= len(FEATURE_NAMES)
+    True
+    """
+    if unknown := [name for name in classifier.feature_names if name not in FEATURE_NAMES]:
+        raise ParameterError(
+            f"classifier: feature {str(unknown[0])[:60]!r} does not exist; train it anew"
+        )
+    return [FEATURE_NAMES.index(name) for name in classifier.feature_names]
 
 
 @dataclass(frozen=True, eq=False)

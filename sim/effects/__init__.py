@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from sim.effects.declared import what_is_wrong
 from sim.effects.effect import Effect
 from sim.registry import Library
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["EFFECTS", "Effect", "load_effects"]
 
-EFFECTS: Library[Effect] = Library(__name__, __path__, "EFFECT", besides=("effect",))
+EFFECTS: Library[Effect] = Library(__name__, __path__, "EFFECT", besides=("declared", "effect"))
 """Every shipped effect by name."""
 
 
@@ -36,7 +37,8 @@ def load_effects(path: str | Path) -> Mapping[str, Effect]:
     Raises
     ------
     ParameterError
-        The file cannot be run, defines no effect, or one with the name of a shipped one.
+        The file cannot be run, defines no effect, one that is declared in other types than
+        `Effect` has, or one with the name of a shipped one.
     """
     path = Path(path)
     spec = spec_from_file_location(f"_effects_of_{path.stem}", path)
@@ -50,11 +52,13 @@ def load_effects(path: str | Path) -> Mapping[str, Effect]:
         raise ParameterError(
             f"effects {path}: cannot be run: {type(error).__name__}: {error}"
         ) from error
-    found = {value.name: value for value in vars(module).values() if isinstance(value, Effect)}
+    found = {str(one.name): one for one in vars(module).values() if isinstance(one, Effect)}
     own = {name: value for name, value in found.items() if value is not EFFECTS.get(name)}
     if not own:
         raise ParameterError(f"effects {path}: defines no Effect; see the README for an example")
-    for name in own:
+    for name, effect in own.items():
+        if wrong := what_is_wrong(effect):
+            raise ParameterError(f"effects {path}: effect {str(name)[:40]!r}: {wrong}")
         if name in EFFECTS:
             raise ParameterError(f"effects {path}: {name!r} is a shipped effect; choose a new name")
     return ChainMap(own, EFFECTS)  # type: ignore[arg-type]  # nothing writes to it

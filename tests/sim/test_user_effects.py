@@ -207,3 +207,23 @@ def test_the_help_names_the_effects_and_loads_nothing_that_computes():
     assert said.stdout.splitlines()[-1] == "[]"
     assert "speed_fluctuation" in said.stdout
     assert "clipping" in said.stdout
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "cause"),
+    [
+        ('("constant",), OFFSET', '("constant",), 5', "parameters = 5 is no mapping"),
+        ('("constant",)', "5", "forms = 5 is no tuple of texts"),
+        ('strength="offset"', "strength=[]", "strength = [] is no text"),
+        ("0.5,", "[0.5],", "parameter offset: default = [0.5] is no number"),
+        ('"zero_offset"', "7", "name = 7 is no text"),
+        ("Stage.MEASUREMENT", "None", "stage = None is no Stage"),
+        ("sensors=sensors", "sensors=1", "sensors = 1 is no function"),
+    ],
+)
+def test_what_is_declared_in_other_types_is_told(effects_file, capsys, right, wrong, cause):
+    assert right in OFFSET
+    path = effects_file(OFFSET.replace(right, wrong))
+    assert main(["simulate", *CONDITION, "--effects", path, "--out", "run"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert cause in line

@@ -17,7 +17,7 @@ from features.windows.table import HOP
 from noise.base.label_names import LABELS
 from noise.classifier.model import Classifier, at_sensitivity, has_more_than_sound
 from noise.labels.segmentation import NOISES, clearest, named as labels_named
-from noise.labels.windows import FEATURE_NAMES
+from noise.labels.windows import FEATURE_NAMES, columns_of
 from noise.training.classifier.described_samples import Sample
 from noise.training.classifier.masked_rows import (
     KINDS,
@@ -138,7 +138,7 @@ def with_trees_of(
     seed : int
     """
     x, y, weight, _ = masked_rows(sounds)
-    columns = [FEATURE_NAMES.index(name) for name in classifier.feature_names]
+    columns = columns_of(classifier)
     trees = _trees(x[:, columns], y, weight, seed)
     return Classifier(
         classifier.feature_names, trees, classifier.calibrations, {}, classifier.thresholds

@@ -19,7 +19,7 @@ from joblib import Parallel, delayed
 from models.errors import ParameterError
 from noise.base.label_names import LABELS
 from noise.labels.segmentation import clearest
-from noise.labels.windows import FEATURE_NAMES
+from noise.labels.windows import columns_of
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
 from noise.training.classifier.described_samples import draw_sample
 from noise.training.classifier.kept_samples import as_line, load_samples, of_line, save_samples
@@ -200,7 +200,7 @@ def learn(
         next(fits, None)
         without = with_trees_of(classifier, known, seed)
         before = [
-            named(without.predict_proba(mask(s.features, KINDS)[:, _columns(without)]), without)
+            named(without.predict_proba(mask(s.features, KINDS)[:, columns_of(without)]), without)
             for s in added
         ]
         after = [named(p, classifier) for p in left_out.alone[-len(added) :]]
@@ -210,14 +210,10 @@ def learn(
         scored = masked(test, kinds)
         if scored:
             x, group = windows_of(scored)
-            p = clearest(classifier.predict_proba(x[:, _columns(classifier)]), group)
+            p = clearest(classifier.predict_proba(x[:, columns_of(classifier)]), group)
             said[name] = scores(p, columns_of_labels(scored), LABELS.index("unknown"))
     return replace(classifier, card=said)
 
 
 def _counts(sounds: Iterable[Sample | OwnSample]) -> dict[str, int]:
     return dict(sorted(Counter(sound.label for sound in sounds).items()))
-
-
-def _columns(classifier: Classifier) -> list[int]:
-    return [FEATURE_NAMES.index(name) for name in classifier.feature_names]
