@@ -67,8 +67,8 @@ def level_course(track: Track) -> dict[str, object]:
         first = max(0, int(part[0]) - round(_BEFORE * track.rate))
         last = min(track.n, int(part[-1]) + round(_AFTER * track.rate))
         weighted = a_weighted(track.read(first, last), track.rate)
-        fast = fast_levels(weighted, track.rate, reference=track.reference)[: part[-1] - first]
-        levels += np.maximum.reduceat(fast, part[:-1] - first).tolist()
+        fast = fast_levels(weighted, track.rate, part - first, reference=track.reference)
+        levels += fast.tolist()
     return {
         "cell_s": cell,
         "unit": _weighted(track),

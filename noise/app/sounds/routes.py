@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from threading import Lock
 from typing import TYPE_CHECKING
 
 from starlette.responses import JSONResponse, Response
@@ -70,6 +71,15 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def told(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
         return of_track(lambda track, query: JSONResponse(answer(track, query)))
 
+    one_at_a_time = Lock()  # or what is seen of the next recording waits for them all
+
+    def measured(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
+        def in_turn(track: Track, query: Query) -> Facts:
+            with one_at_a_time:
+                return answer(track, query)
+
+        return told(in_turn)
+
     def numbers(
         answer: Callable[[Track, Query], tuple[Facts, NDArray[np.generic]]],
     ) -> Callable[[Request], Response]:
@@ -82,9 +92,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route(f"{at}/outline", numbers(outline)),
         Route(f"{at}/spectrogram", numbers(spectrogram)),
         Route(f"{at}/line", told(line)),
-        Route(f"{at}/levels", told(lambda track, _: level_course(track))),
-        Route(f"{at}/bands", told(bands)),
-        Route(f"{at}/loudness", told(equal)),
+        Route(f"{at}/levels", measured(lambda track, _: level_course(track))),
+        Route(f"{at}/bands", measured(bands)),
+        Route(f"{at}/loudness", measured(equal)),
     ]
 
 

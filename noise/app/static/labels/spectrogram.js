@@ -44,7 +44,7 @@ export class Spectrogram {
 
   #picture(found) {
     const canvas = Object.assign(document.createElement("canvas"), { width: found.width, height: found.height });
-    const picture = { ...found, canvas };
+    const picture = { ...found, canvas, window: this.window };
     this.#colour(picture);
     return picture;
   }
@@ -64,11 +64,23 @@ export class Spectrogram {
     if (!this.whole) return;
     this.timer = setTimeout(async () => {
       const { start, end } = this.timeline, turn = ++this.turn;
+      if (this.#has(start, end)) {
+        this.fine = null;
+        this.draw();
+        return;
+      }
       const found = await this.#part(start, end);
       if (turn !== this.turn) return;
       this.fine = this.#picture(found);
       this.draw();
     }, FINER);
+  }
+
+  // Whether the picture of the whole is what is asked for.
+  #has(start, end) {
+    const { whole } = this, fine = window.devicePixelRatio || 1;
+    return start === whole.start && end === whole.end && this.window === whole.window
+      && whole.width >= Math.min(2400, Math.round(this.plot.clientWidth * fine));
   }
 
   setRange(range) {
