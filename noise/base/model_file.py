@@ -16,7 +16,7 @@ import numpy as np
 
 from models.errors import ParameterError
 from models.foreign_arrays import read_arrays
-from models.foreign_file import parse_json, reading
+from models.foreign_file import ExcessError, parse_json, reading
 from noise.base.atomic import atomic
 
 if TYPE_CHECKING:
@@ -51,6 +51,10 @@ class ModelKind(NamedTuple):
     version: int
     made_by: str
     shipped: tuple[str, str]
+
+
+_LONGEST_HEADER = 16 << 20
+"""As an array of characters; those that are shipped have a hundredth of it [byte]."""
 
 
 def save_model(path: str | Path, kind: ModelKind, header: Header, arrays: Arrays) -> None:
@@ -119,7 +123,10 @@ def _read(path: Path, kind: ModelKind, build: Callable[[Header, Arrays], _Model]
     refused = f"{kind.name} {path}"
     with reading(path, f"file that `{kind.made_by}` wrote", where=refused):
         arrays = read_arrays(path)
-        header = parse_json(str(arrays.pop("header")))
+        said = arrays.pop("header")
+        if said.nbytes > _LONGEST_HEADER:
+            raise ExcessError(f"holds a header of {said.nbytes / 1e6:.3g} MB")
+        header = parse_json(str(said))
         other = header.get("kind", kind.name)
         if other != kind.name:
             raise ParameterError(f"{refused}: is a {other}, expected a {kind.name}")

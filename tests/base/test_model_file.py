@@ -146,3 +146,8 @@ def test_scores_do_not_depend_on_how_many_rows_there_are():
     trees = classifier.trees
     x = np.random.default_rng(0).normal(size=(3000, len(classifier.feature_names)))
     assert np.array_equal(trees.scores(x)[2990:], trees.scores(x[2990:]))
+
+
+def test_a_header_of_many_megabytes_is_refused_before_it_is_parsed(path):
+    np.savez_compressed(path, header=np.array("[" * (5 << 20)), value=np.arange(3.0))
+    assert "holds a header of 21 MB" in refusal(path)
