@@ -67,7 +67,15 @@ class Acoustic:
         ]
 
     def add(self, transform: Transform, x: NDArray[np.float64]) -> None:
-        """Take a block: its transform, and its useful part in the working band."""
+        """Take a block.
+
+        Parameters
+        ----------
+        transform : Transform
+            Of all of it.
+        x : ndarray, shape (n,)
+            Its useful part in the working band [unit of the channel].
+        """
         low, high = self._band
         for power in self._segments.add(x):
             described, self._bands = describe_segments(

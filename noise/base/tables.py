@@ -187,7 +187,7 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     RecordingError
         It cannot be read, or is no table.
     ParameterError
-        The library that reads the format is not installed.
+        There is no such file, or the library that reads the format is not installed.
 
     Examples
     --------
@@ -199,6 +199,8 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     (['file', 'label'], [{'file': 'run07.wav', 'label': 'creak'}])
     """
     check_table_path(path)
+    if not path.exists():
+        raise ParameterError(f"{path}: there is no such file")
     ending = path.suffix.lower()
     with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
         if ending == ".parquet":

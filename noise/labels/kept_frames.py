@@ -49,6 +49,7 @@ class KeptFrames:
         first : int
             At most the number of rows.
         rows : ndarray of float32, shape (n, n_columns)
+            As `features.windows.table.WindowTable` has them [unit of each column].
 
         Raises
         ------

@@ -161,7 +161,7 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     RecordingError
         It cannot be read, or is no label table.
     ParameterError
-        The library that reads the format is not installed.
+        There is no such file, or the library that reads the format is not installed.
 
     Examples
     --------

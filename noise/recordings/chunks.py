@@ -118,7 +118,25 @@ def to_units(
     rate: float,
     start: int,
 ) -> None:
-    """Bring samples to the units of their channels, in place; they begin with sample `start`."""
+    """Bring samples to the units of their channels, in place.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    samples : ndarray, shape (n_channels, n)
+        Fractions of full scale before, in the unit of each channel afterwards.
+    channels : tuple of Channel
+    rate : float
+        Sampling rate [Hz].
+    start : int
+        Number of the first sample in its file.
+
+    Raises
+    ------
+    RecordingError
+        A sample is not finite.
+    """
     with np.errstate(over="ignore", invalid="ignore"):  # found and refused below
         for channel, row in zip(channels, samples, strict=True):
             row *= channel.full_scale

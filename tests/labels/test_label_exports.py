@@ -80,14 +80,17 @@ def test_a_table_from_before_there_were_all_columns_still_reads(tmp_path):
         ("t.jsonl", b"[1]\n", "row 1 lacks file"),
         ("t.jsonl", b"{", "is damaged"),
         ("t.parquet", b"PAR1", "is damaged"),
-        ("nowhere.csv", None, "there is no such file"),
     ],
 )
 def test_what_is_no_label_table_is_refused_with_the_reason(tmp_path, name, content, said):
-    if content is not None:
-        (tmp_path / name).write_bytes(content)
+    (tmp_path / name).write_bytes(content)
     with pytest.raises(RecordingError, match=said):
         read_label_table(tmp_path / name)
+
+
+def test_a_table_that_is_not_there_makes_the_call_wrong(tmp_path):
+    with pytest.raises(ParameterError, match="there is no such file"):
+        read_label_table(tmp_path / "nowhere.csv")
 
 
 def test_each_recording_has_a_label_track(tmp_path):

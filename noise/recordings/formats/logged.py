@@ -144,6 +144,7 @@ def sample_blocks(
     path : Path
         For messages.
     rows : sequence of (LoggedChannel, float)
+        Each with its factor [SI unit over the unit in the file].
     first, last : int
         Samples from which and up to which; by default all.
 

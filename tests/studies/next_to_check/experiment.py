@@ -15,9 +15,10 @@ from noise.app.labels.describing import mean_features
 from noise.app.labels.next_check import NextCheck
 from noise.base.label_names import LABELS
 from noise.batch import Job
-from noise.labels import segments
+from noise.labels import classified, segments
 from noise.labels.label_display import naming_row
 from noise.labels.labelling import segment_cells
+from noise.labels.windows import Described, Page
 from noise.training.classifier import cross_fitting
 from noise.training.classifier.described_samples import draw_sample
 from noise.training.classifier.masked_rows import mask
@@ -85,10 +86,21 @@ def learned(samples, known, corrected, start=None):
     return cross_fitting.grown(sounds, 0, repeat(None))[0]
 
 
+class OnePage:
+    """A recording that was described before, as its pages would have it."""
+
+    def __init__(self, described: Described) -> None:
+        self._described = described
+        self.cells = described.cells
+
+    def __iter__(self):
+        yield Page(0, self._described.features, self._described.level, self._described.frames)
+
+
 def labels_of(clips, classifier):
     """Return the rows of each recording, as `label` would write them."""
     described = {id(clip.blocks): clip.described for clip in clips}
-    before, segments.describe = segments.describe, lambda blocks: described[id(blocks)]
+    before, classified.Pages = classified.Pages, lambda blocks: OnePage(described[id(blocks)])
     try:
         return [
             [
@@ -98,7 +110,7 @@ def labels_of(clips, classifier):
             for clip in clips
         ]
     finally:
-        segments.describe = before
+        classified.Pages = before
 
 
 def errors(clips, rows) -> dict[str, float]:
