@@ -302,11 +302,14 @@ def _inferred(
 
 
 def _is_of_a_rig(blocks: RecordingBlocks) -> bool:
-    """Whether anything says so: another channel than sound, a calibration, a condition."""
+    """Whether anything says so: another channel than sound, or a condition.
+
+    A calibration says how loud a sound is, not what made it.
+    """
     at = blocks.condition
     stated = (at.material, at.speed, at.interference, at.support_stiffness)
     others = any(channel.kind != "pressure" for channel in blocks.channels)
-    return blocks.calibrated or others or any(value is not None for value in stated)
+    return others or any(value is not None for value in stated)
 
 
 def _in_unit(column: str, value: float | None) -> float | None:

@@ -40,13 +40,14 @@ window.heard = [];
 const connect = AudioNode.prototype.connect;
 AudioNode.prototype.connect = function (target, ...rest) {
   if (target instanceof AudioDestinationNode && !(this instanceof ScriptProcessorNode)) {
-    if (!window.tap) {
-      window.tap = this.context.createScriptProcessor(1024, 1, 1);
-      window.tap.onaudioprocess = (event) =>
+    const { context } = this;
+    if (!context.tap) {
+      context.tap = context.createScriptProcessor(1024, 1, 1);
+      context.tap.onaudioprocess = (event) =>
         window.heard.push(...event.inputBuffer.getChannelData(0));
-      connect.call(window.tap, target);
+      connect.call(context.tap, target);
     }
-    connect.call(this, window.tap);
+    connect.call(this, context.tap);
   }
   return connect.call(this, target, ...rest);
 };

@@ -1,23 +1,50 @@
-// The page that the views stand in: tabs, requests, what is told. A view is mounted when it is first shown.
+// The page that the views stand in: tabs, requests, what is told. A view is mounted when it is first shown,
+// and only the one that is shown is in the page: whoever votes in a jury finds no name in another.
 import { api, told } from "./api.js";
 
 const tabs = [...document.querySelectorAll("[role=tab]")];
 const mounted = {};
+const away = {}; // by view: its nodes, and how far they are scrolled
+let shown = null;
+
+const panelOf = (view) => document.getElementById(`view-${view}`);
+
+function putAway(view) {
+  const panel = panelOf(view);
+  if (!panel.hasChildNodes()) return;
+  const scrolled = [...panel.querySelectorAll("*")].filter((node) => node.scrollTop).map((node) => [node, node.scrollTop]);
+  away[view] = { nodes: [...panel.childNodes], scrolled };
+  panel.replaceChildren();
+}
+
+function bringBack(view) {
+  if (!away[view]) return;
+  const { nodes, scrolled } = away[view];
+  delete away[view];
+  panelOf(view).replaceChildren(...nodes);
+  for (const [node, top] of scrolled) node.scrollTop = top;
+}
 
 async function show(name) {
+  if (shown !== null && shown !== name) putAway(shown);
+  shown = name;
   for (const tab of tabs) {
     const chosen = tab.dataset.view === name;
     tab.setAttribute("aria-selected", chosen);
     tab.tabIndex = chosen ? 0 : -1;
-    document.getElementById(`view-${tab.dataset.view}`).hidden = !chosen;
+    panelOf(tab.dataset.view).hidden = !chosen;
   }
+  bringBack(name);
   history.replaceState(null, "", `${location.pathname}${location.search}#${name}`);
-  const panel = document.getElementById(`view-${name}`);
   if (!mounted[name]) {
-    mounted[name] = import(`./${name}/view.js`).then((view) => view.mount(panel));
+    mounted[name] = import(`./${name}/view.js`).then((view) => view.mount(panelOf(name)));
     mounted[name].catch((error) => told(`this view does not start: ${error.message}`));
   }
   const view = await mounted[name];
+  if (shown !== name) { // another one was chosen meanwhile
+    putAway(name);
+    return view;
+  }
   document.dispatchEvent(new CustomEvent("view-shown", { detail: name }));
   return view;
 }

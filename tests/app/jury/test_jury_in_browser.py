@@ -157,6 +157,38 @@ def test_while_votes_are_given_no_name_is_in_the_page_or_asked_for(browser, fold
         jury.close()
 
 
+def test_what_was_looked_at_before_is_neither_in_the_page_nor_asked_for_nor_heard(browser, folder):
+    with opened_app(folder) as app:
+        jury = JuryPage(browser, app)
+        page = jury.page
+        page.locator("#tab-labels").click()
+        page.locator(".recording-list .row").first.click()
+        page.locator(".recording .about h2").filter(has_text="onerror").wait_for()
+        page.get_by_role("button", name="Keep as B").click()
+        page.locator(".recording .play").click()
+        page.locator(".recording .play").filter(has_text="Pause").wait_for()
+        page.locator("#tab-jury").click()
+        jury.begin()
+        told = []
+        page.on("response", lambda answer: told.append(answer))
+        page.wait_for_timeout(6000)  # the list asks for labels that are to come every 5 s
+        jury.vote("1")
+        jury.turn(2)
+        for name in (*(name.removesuffix(".wav") for name in NAMES), "onerror", ".wav"):
+            assert name not in page.content()
+            for answer in told:
+                assert name.encode() not in answer.body()
+        jury.turn(2)
+        page.evaluate("window.heard.length = 0")
+        page.wait_for_function("() => window.heard.length > 9600")
+        assert not any(page.evaluate("window.heard"))
+        page.locator("#tab-labels").click()
+        page.locator(".recording .about h2").filter(has_text="onerror").wait_for()
+        page.keyboard.press("1")
+        page.locator(".recording-list .row").first.filter(has_text="corrected").wait_for()
+        jury.close()
+
+
 def test_nothing_is_voted_that_was_not_heard_and_the_last_vote_is_undone(browser, folder):
     with opened_app(folder) as app:
         jury = JuryPage(browser, app).begin()

@@ -37,7 +37,7 @@ export function helpDialog() {
 export function listen(element, actions) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-    if (element.closest("[hidden]") || document.querySelector("dialog[open]")) return;
+    if (!element.isConnected || element.closest("[hidden]") || document.querySelector("dialog[open]")) return;
     const { target } = event;
     if (target.matches("input, select, textarea, [contenteditable]")) return;
     const at = target.closest("button, summary, [role=tab], [role=listbox]");

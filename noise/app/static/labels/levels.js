@@ -63,11 +63,12 @@ export class LevelCourse {
       pen.lineTo(this.timeline.share((at + each / 2) * cell) * width, y(most));
     }
     pen.stroke();
+    const what = `${this.found.unit}, Fast`;
     pen.fillStyle = "#ffffffe0";
-    pen.fillRect(4, height - 15, 62, 13);
+    pen.fillRect(4, height - 15, pen.measureText(what).width + 4, 13);
     pen.fillStyle = SOFT;
     pen.textBaseline = "middle";
-    pen.fillText("dB(A), Fast", 6, height - 8);
+    pen.fillText(what, 6, height - 8);
   }
 }
 

@@ -40,6 +40,12 @@ export function made(tag, properties = {}, ...children) {
   return node;
 }
 
+// Act where a node is in the page, else once it is: of a view that is not shown nothing is asked for.
+export function onceShown(node, act) {
+  if (node.isConnected) act();
+  else document.addEventListener("view-shown", () => onceShown(node, act), { once: true });
+}
+
 class RecordingList {
   constructor(element, onOpen) {
     this.onOpen = onOpen;
@@ -140,7 +146,7 @@ class RecordingList {
     this.#tell(counts, state);
     this.draw();
     // Somebody may label on the command line, too.
-    if (state.running || state.done < state.total) this.timer = setTimeout(() => this.load(), state.running ? POLL : 5 * POLL);
+    if (state.running || state.done < state.total) this.timer = setTimeout(() => onceShown(this.box, () => this.load()), state.running ? POLL : 5 * POLL);
   }
 
   async #fetch(number) {

@@ -5,7 +5,7 @@ import { joined, relabelled, split } from "./edits.js";
 import { build, LABELS } from "./frame.js";
 import { listen } from "./keys.js";
 import { Bands, LevelCourse } from "./levels.js";
-import { made, openNext, refresh } from "./list.js";
+import { made, onceShown, openNext, refresh } from "./list.js";
 import { Outline } from "./outline.js";
 import { Player } from "./player.js";
 import { follow } from "./pointer.js";
@@ -76,7 +76,7 @@ export class RecordingPage {
     clearTimeout(this.timer);
     await this.corrections.open(id, this.sound.duration_s);
     if (id !== this.id || this.corrections.rows.length) return;
-    this.timer = setTimeout(() => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }, POLL);
+    this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
   }
 
   #slot() {

@@ -15,5 +15,6 @@ export function mount(panel) {
   };
   const recording = new RecordingPage(page, open);
   mountList(list, { onOpen: open });
+  document.addEventListener("view-shown", ({ detail }) => { if (detail !== "labels" && recording.player.playing) recording.player.stop(); });
   return { recording };
 }
