@@ -7,7 +7,8 @@ from torque to sound. Nothing jumps, so nothing clicks.
 
 The sound lags behind the motion by `LOOKAHEAD`, in which a slip shows how far the torque falls: an
 effect that makes a force of the motion sees so much of what is to come, where a whole run shows it
-all. Effects that need a run as a whole are left out, those of drive and sensors.
+all. Effects of drive and sensors that need a run as a whole are left out; those that act here have
+other random numbers than in a recording.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.acquisition import Acquisition, digitise
+from sim.live_effects import drive_piece, sensors_piece
 from sim.live_filter import LiveConvolution, crossing
 from sim.live_setting import KnownPaths, Setting, paths_of, plan_of, streams
 from sim.motion import Motion, MotionSolver, steps_beyond
@@ -27,12 +29,13 @@ from sim.streams import AnalogueFilter, Decimation
 from sim.timing import SIMULATION
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from models.radiation.impulse_responses import ImpulseResponses
-    from sim.effects.effect import Effect
+    from sim.effects.effect import ActiveEffect, Effect, Signals
+    from sim.live_effects import Memories
     from sim.pipeline import Plan
     from sim.shaft import ShaftMotion
 
@@ -49,8 +52,8 @@ _SEEN = 0.2
 _LONGEST_RESPONSE = 3.0
 """From torque to sound [s]."""
 
-_HORIZON = 60.0
-"""Within which the fastest speed of a motion is looked for [s]."""
+_HORIZON, _STEPS = 60.0, 4000
+"""Within which, and in how many steps, the fastest speed of a motion is looked for [s], [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +129,9 @@ class LiveRun:
         self._setting = setting
         self._plan = plan_of(setting, rate, library, n)
         self._solver = self._solver_of(self._plan, float(setting.shaft.speed(np.zeros(1))[0]))
+        self._driving: Memories = {}  # what effects of the drive keep, and those of the sensors
+        self._sensing: Memories = {}
+        self._sensed_by = self._plan.effects
         self._time = 0  # of the shaft's clock, in samples of the computation
         self._lookahead = round(LOOKAHEAD * self._rate)
         self._seen = round(_SEEN * self._rate)
@@ -183,13 +189,23 @@ class LiveRun:
         torque = self._held.torque[start:stop]
         pressure = self._convolution([torque - self._first_torque, force])
         self._emitted = stop
+        sensed = self._sensed({"torque": torque, "pressure": pressure})
+        signals = self._filter(sensed["pressure"]), sensed["torque"]
         rows = [
-            decimate(signal)
-            for decimate, signal in zip(
-                self._decimations, (self._filter(pressure), torque), strict=True
-            )
+            decimate(signal) for decimate, signal in zip(self._decimations, signals, strict=True)
         ]
         self._ready = np.hstack([self._ready, np.stack(rows)])
+
+    def _sensed(self, signals: Signals) -> Signals:
+        """Signals of a block as effects on sensors change them; effects that differ cross over."""
+        effects, before = self._plan.effects, self._sensed_by
+        made, kept = sensors_piece(signals, self._rate, effects, self._sensing, self._seed)
+        if before != effects:
+            old, _ = sensors_piece(signals, self._rate, before, self._sensing, self._seed)
+            coming = crossing(self._block)
+            made = {name: old[name] + coming * (made[name] - old[name]) for name in made}
+        self._sensed_by, self._sensing = effects, kept
+        return made
 
     def _force(self, start: int, stop: int) -> NDArray[np.float64]:
         """Force of the effects over samples of what is held [N]."""
@@ -198,10 +214,12 @@ class LiveRun:
         return pulse_force(_ended(self._held), self._plan.effects)[start:stop]
 
     def _advance(self, n: int) -> Motion:
-        drive = self._drive(self._setting.shaft, n + steps_beyond(self._rate))
+        even = self._drive(self._setting.shaft, n + steps_beyond(self._rate))
+        drive, driving = self._uneven(even, n, self._plan.effects)
         with blaming_the_unusual(self._plan.rig):
             motion = self._solver.advance(drive, n)
         self._time += n
+        self._driving = driving
         return motion
 
     def _changed(self, setting: Setting) -> Motion:
@@ -212,7 +230,11 @@ class LiveRun:
         coming = np.concatenate([crossing(n), np.ones(beyond)])
         old = self._drive(before.shaft, n + beyond)
         new = self._drive(setting.shaft, n + beyond, 0 if restarted else self._time)
-        drive = old + coming * (new - old)
+        even = old + coming * (new - old)
+        drive, driving = self._uneven(even, n, plan.effects)
+        if plan.effects != self._plan.effects:
+            uneven, _ = self._uneven(even, n, self._plan.effects)
+            drive = uneven + coming * (drive - uneven)
         solver = self._solver_of(plan, float(drive[0]))
         solver.go_on_from(self._solver, float(drive[0]))
         with blaming_the_unusual(plan.rig):
@@ -220,6 +242,7 @@ class LiveRun:
         if not setting.moves_as(before):
             motion = _crossed(self._solver.advance(drive, n), motion)
         self._setting, self._plan, self._solver = setting, plan, solver
+        self._driving = driving
         self._time = n if restarted else self._time + n
         return motion
 
@@ -227,8 +250,15 @@ class LiveRun:
         first = self._time if first is None else first
         return shaft.speed(np.arange(first, first + n, dtype=np.float64) * (1.0 / self._rate))
 
+    def _uneven(
+        self, even: NDArray[np.float64], n: int, effects: Sequence[ActiveEffect]
+    ) -> tuple[NDArray[np.float64], Memories]:
+        return drive_piece(even, n, self._rate, effects, self._driving, self._seed)
+
     def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
-        speeds = plan.shaft.speed(np.linspace(0.0, _HORIZON, 4001))
+        even = plan.shaft.speed(np.linspace(0.0, _HORIZON, _STEPS + 1))
+        steps = _STEPS / _HORIZON
+        speeds, _ = drive_piece(even, even.size, steps, plan.effects, {}, self._seed)
         with blaming_the_unusual(plan.rig):
             return MotionSolver(
                 plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,

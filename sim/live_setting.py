@@ -10,7 +10,6 @@ import numpy as np
 
 from models.radiation.rig_response import first_mode_damping, impulse_responses
 from sim.chain import changed_chain
-from sim.long_run import whole_run_effects
 from sim.run import plan_run
 from sim.temperature import at_temperature
 
@@ -120,7 +119,7 @@ class KnownPaths:
 
 
 def plan_of(setting: Setting, rate: float, library: Mapping[str, Effect] | None, n: int) -> Plan:
-    """Plan the run of a setting over `n` samples at a rate [Hz], without effects of whole runs."""
+    """Plan the run of a setting over `n` samples at a rate [Hz], of effects those that go on."""
     plan = plan_run(
         setting.rig,
         setting.shaft,
@@ -132,8 +131,7 @@ def plan_of(setting: Setting, rate: float, library: Mapping[str, Effect] | None,
         settling=None,
         library=library,
     )
-    left_out = whole_run_effects(plan.effects)
-    return replace(plan, effects=[e for e in plan.effects if e.effect.name not in left_out])
+    return replace(plan, effects=[active for active in plan.effects if active.effect.goes_on])
 
 
 def streams(seed: int) -> list[np.random.Generator]:

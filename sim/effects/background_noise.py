@@ -33,12 +33,15 @@ from sim.parameters import Parameter
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sim.effects.effect import Signals, Values
+    from sim.effects.effect import Memory, Signals, Values
 
 __all__ = ["EFFECT"]
 
 _LOWEST, _HIGHEST = 20.0, 20e3
 """Band that levels are those of [Hz]."""
+
+_STRETCH = 0.3
+"""Length of noise that is made at once, at least, of a run that goes on [s]."""
 
 _EXPONENTS = {"white": 0.0, "pink": 1.0, "brown": 2.0}
 
@@ -53,14 +56,44 @@ def _sensors(
     return noisy
 
 
+def _piece(signals: Signals, rate: float, form: str, values: Values, memory: Memory) -> Signals:
+    noisy = {}
+    for name, signal in signals.items():
+        level = values["amount"] * channel_level(name, values)
+        noisy[name] = signal + level * _next_noise(signal.size, rate, form, name, memory)
+    return noisy
+
+
+def _next_noise(n: int, rate: float, form: str, name: str, memory: Memory) -> NDArray[np.float64]:
+    """Return what follows of a channel's noise.
+
+    Stretches that know nothing of each other overlap by half; the squares of their weights add up
+    to one, so that the level is the same everywhere.
+    """
+    half = next_fast_len(round(0.5 * _STRETCH * rate), real=True)
+    angle = 0.5 * np.pi * (np.arange(half) + 0.5) / half
+    key = f"{name} {form}"
+    fading, ready = memory.get(key, (None, np.empty(0)))
+    while ready.size < n:
+        made = _noise(2 * half, rate, _EXPONENTS[form], memory["rng"])
+        if fading is not None:
+            ready = np.append(ready, fading * np.cos(angle) + made[:half] * np.sin(angle))
+        fading = made[half:]
+    memory[key] = fading, ready[n:]
+    return np.asarray(ready[:n])
+
+
 def _noise(n: int, rate: float, exponent: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Noise with the expected rms 1 in the band of levels."""
     length = next_fast_len(n, real=True)
     frequency = rfftfreq(length, 1.0 / rate)
     gain = np.maximum(frequency, _LOWEST) ** (-0.5 * exponent)
-    # Mean square of white noise: each line but the first and the last stands for two.
-    counted = (frequency >= _LOWEST) & (frequency <= _HIGHEST)
-    power = 2.0 * float(np.sum(gain[counted] ** 2)) / length
+    # Mean square of white noise: each line but the first and the last stands for two, and for what
+    # is nearer to it than to the next, of which part may be out of the band.
+    width = rate / length
+    counted = np.clip((frequency - _LOWEST) / width + 0.5, 0.0, 1.0)
+    counted *= np.clip((_HIGHEST - frequency) / width + 0.5, 0.0, 1.0)
+    power = 2.0 * float(np.sum(counted * gain**2)) / length
     noise = irfft(gain * rfft(rng.standard_normal(length)), length)[:n]
     return np.asarray(noise / np.sqrt(power))
 
@@ -78,4 +111,5 @@ EFFECT = Effect(
     },
     strength="amount",
     sensors=_sensors,
+    sensors_piece=_piece,
 )

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 __all__ = ["what_is_wrong"]
 
-_FUNCTIONS = ("drive", "contact", "pack", "force", "chain", "sensors")
+_FUNCTIONS = (
+    "drive", "contact", "pack", "force", "chain", "sensors", "drive_piece", "sensors_piece",
+)  # fmt: skip
 
 
 def what_is_wrong(effect: Effect) -> str:

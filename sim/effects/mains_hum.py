@@ -17,7 +17,8 @@ counts lines and picks up none, so the angle has none by default; a potentiomete
 
 >>> values = {"amount": 1.0, "frequency": 50.0, "pressure_level": 94.0, "acceleration": 0.1,
 ...           "torque": 0.05, "angle": 1e-3}
->>> hum = _sensors({"pressure": np.zeros(96_000)}, 96e3, "sine", values, np.random.default_rng(0))
+>>> hum = _sensors({"pressure": np.zeros(96_000)}, 96e3, "sine", values,
+...                {"rng": np.random.default_rng(0)})
 >>> round(float(hum["pressure"].std()), 2)
 1.0
 """
@@ -30,13 +31,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.channels import channel_level
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, whole_run
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sim.effects.effect import Signals, Values
+    from sim.effects.effect import Memory, Signals, Values
 
 __all__ = ["EFFECT"]
 
@@ -46,14 +47,15 @@ _CONDUCTION = 0.2
 """Share of each half-wave in which a rectifier conducts."""
 
 
-def _sensors(
-    signals: Signals, rate: float, form: str, values: Values, rng: np.random.Generator
-) -> Signals:
+def _sensors(signals: Signals, rate: float, form: str, values: Values, memory: Memory) -> Signals:
     humming = {}
     for name, signal in signals.items():
         level = values["amount"] * channel_level(name, values)
-        turns = values["frequency"] / rate * np.arange(signal.size, dtype=float)
-        turns += rng.uniform()
+        if name not in memory:
+            memory[name] = memory["rng"].uniform()
+        step = values["frequency"] / rate
+        turns = step * np.arange(signal.size, dtype=float) + memory[name]
+        memory[name] = (memory[name] + step * signal.size) % 1.0
         humming[name] = signal + level * _hum(form, turns)
     return humming
 
@@ -87,5 +89,6 @@ EFFECT = Effect(
         "angle": Parameter(0.0, "rad", 0.0, 1.0, "rms; none of an encoder"),
     },
     strength="amount",
-    sensors=_sensors,
+    sensors=whole_run(_sensors),
+    sensors_piece=_sensors,
 )

@@ -19,7 +19,7 @@ not known; all is assumed.
 
 >>> even = np.full(90_000, 5.0)
 >>> uneven = _drive(even, 90e3, "sine", {"depth": 0.1, "order": 1.0, "frequency": 10.0,
-...                 "bandwidth": 10.0}, np.random.default_rng(0))
+...                 "bandwidth": 10.0}, {"rng": np.random.default_rng(0)})
 >>> round(float(uneven.min()), 3), round(float(uneven.max()), 3)
 (4.5, 5.5)
 """
@@ -32,13 +32,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.signal import lfilter
 
-from sim.effects.effect import Effect, Stage
+from sim.effects.effect import Effect, Stage, whole_run
 from sim.parameters import Parameter
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sim.effects.effect import Values
+    from sim.effects.effect import Memory, Values
 
 __all__ = ["EFFECT"]
 
@@ -50,38 +50,51 @@ def _drive(
     rate: float,
     form: str,
     values: Values,
-    rng: np.random.Generator,
+    memory: Memory,
 ) -> NDArray[np.float64]:
     if form == "random":
-        course = _random(speed.size, values["bandwidth"] / rate, rng)
+        course = _random(speed.size, values["bandwidth"] / rate, memory)
     else:
-        phase = _phase(speed, rate, values)
-        course = _harmonics(phase, _HARMONICS if form == "harmonics" else 1, rng)
+        phase = _phase(speed, rate, values, memory)
+        course = _harmonics(phase, _HARMONICS if form == "harmonics" else 1, memory)
     return speed * (1.0 + values["depth"] * course)
 
 
-def _phase(speed: NDArray[np.float64], rate: float, values: Values) -> NDArray[np.float64]:
-    if values["frequency"] > 0.0:
-        return np.arange(speed.size, dtype=float) * (2.0 * math.pi * values["frequency"] / rate)
-    return values["order"] / rate * np.cumsum(speed)
-
-
-def _harmonics(
-    phase: NDArray[np.float64], count: int, rng: np.random.Generator
+def _phase(
+    speed: NDArray[np.float64], rate: float, values: Values, memory: Memory
 ) -> NDArray[np.float64]:
+    before = memory.get("phase", 0.0)
+    if values["frequency"] > 0.0:
+        step = 2.0 * math.pi * values["frequency"] / rate
+        phase = before + np.arange(speed.size, dtype=float) * step
+        memory["phase"] = before + speed.size * step
+    else:
+        phase = before + values["order"] / rate * np.cumsum(speed)
+        memory["phase"] = float(phase[-1])
+    return np.asarray(phase)
+
+
+def _harmonics(phase: NDArray[np.float64], count: int, memory: Memory) -> NDArray[np.float64]:
     """Sum of harmonics with the rms of a sine of amplitude one."""
+    starts = memory.setdefault("starts", [])
+    while len(starts) < count:
+        starts.append(memory["rng"].uniform(0.0, 2.0 * math.pi))
     course = np.zeros_like(phase)
-    for h in range(1, count + 1):
-        course += np.sin(h * phase + rng.uniform(0.0, 2.0 * math.pi)) / h
+    for h, start in zip(range(1, count + 1), starts, strict=False):
+        course += np.sin(h * phase + start) / h
     return course / math.sqrt(sum(h**-2 for h in range(1, count + 1)))
 
 
-def _random(n: int, bandwidth: float, rng: np.random.Generator) -> NDArray[np.float64]:
+def _random(n: int, bandwidth: float, memory: Memory) -> NDArray[np.float64]:
     """Ornstein-Uhlenbeck process with the rms of a sine of amplitude one."""
-    decay = math.exp(-2.0 * math.pi * bandwidth)
+    rng, decay = memory["rng"], math.exp(-2.0 * math.pi * bandwidth)
     kicks = rng.standard_normal(n) * math.sqrt(1.0 - decay**2)
-    kicks[0] = rng.standard_normal()
-    return np.asarray(lfilter([math.sqrt(0.5)], [1.0, -decay], kicks))
+    if "last" not in memory:
+        kicks[0] = rng.standard_normal()
+    before = decay * memory.get("last", 0.0)
+    course, _ = lfilter([math.sqrt(0.5)], [1.0, -decay], kicks, zi=[before])
+    memory["last"] = float(course[-1])
+    return np.asarray(course)
 
 
 EFFECT = Effect(
@@ -97,6 +110,7 @@ EFFECT = Effect(
         "bandwidth": Parameter(10.0, "Hz", 0.05, 500.0, "3 dB corner of the random form"),
     },
     strength="depth",
-    drive=_drive,
+    drive=whole_run(_drive),
+    drive_piece=_drive,
     irregular=True,
 )

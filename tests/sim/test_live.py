@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from features.kernels.levels import sound_levels
 from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
@@ -17,6 +18,7 @@ from sim.friction import LAWS
 from sim.live import LiveRun
 from sim.live_setting import Setting
 from sim.long_run import simulate_blocks
+from sim.run import simulate
 from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 
 RATE = 48e3
@@ -105,6 +107,81 @@ def test_one_law_takes_over_from_another(law):
     heard = np.concatenate([sound(run, 5), sound(run, 15, other), sound(run, 15, of)])
     assert np.isfinite(heard).all()
     assert np.std(heard[-4800:]) == pytest.approx(np.std(sound(LiveRun(of), 5)), rel=0.6)
+
+
+def with_effect(of, name, **parameters):
+    return replace(of, rig=replace(of.rig, effects=(LawSpec(name, parameters),)))
+
+
+@pytest.mark.parametrize("form", EFFECTS["speed_fluctuation"].forms)
+@pytest.mark.parametrize("frequency", [0.0, 7.0])
+def test_a_shaft_fluctuates_piece_by_piece_as_it_does_over_the_whole(form, frequency):
+    active = EFFECTS["speed_fluctuation"].active({"form": form, "frequency": frequency})
+    effect, even, memory = active.effect, np.linspace(1.0, 6.0, 2000), {"rng": None}
+    whole = effect.drive(even, 1e3, form, active.values, np.random.default_rng(3))
+    memory["rng"] = np.random.default_rng(3)
+    pieces = [
+        effect.drive_piece(piece, 1e3, form, active.values, memory)
+        for piece in np.split(even, [500, 501, 1200])
+    ]
+    if form == "random":  # of other numbers, but without a jump
+        assert np.abs(np.diff(np.concatenate(pieces) / even)).max() < 0.02
+    else:
+        np.testing.assert_allclose(np.concatenate(pieces), whole, rtol=1e-12)
+
+
+def test_a_shaft_that_does_not_turn_evenly_is_heard_so():
+    of = with_effect(setting("PDMS"), "speed_fluctuation", depth=0.1, frequency=10.0)
+    run = LiveRun(of)
+    speed = np.array([run.block().speed for _ in range(50)])  # a second
+    lines = 2.0 * np.abs(np.fft.rfft(speed - 5.0)) / speed.size
+    assert lines[10] == pytest.approx(0.5, rel=1e-3)
+    assert np.delete(lines, 10).max() < 1e-3
+
+
+@pytest.mark.parametrize("form", EFFECTS["background_noise"].forms)
+def test_the_background_is_that_of_a_recording_and_has_no_seams(form):
+    of = with_effect(setting("PDMS"), "background_noise", form=form, pressure_level=70.0)
+    heard = sound(LiveRun(of), 500)
+    acquisition = Acquisition(rate=RATE)
+    recorded = simulate(of.rig, of.shaft, seconds=10.0, acquisition=acquisition).recording
+    live, whole = (sound_levels(one, RATE) for one in (heard, recorded["pressure"]))
+    assert live.level_a == pytest.approx(whole.level_a, abs=0.4)
+    bands = [band for band in live.third_octaves if 100.0 <= float(band) <= 16e3]
+    differences = [live.third_octaves[band] - whole.third_octaves[band] for band in bands]
+    assert np.abs(differences).max() < 0.8
+    if form == "white":
+        spread = heard[4800:].reshape(-1, 4800).std(axis=1)
+        assert spread.max() < 1.08 * spread.min()
+        assert abs(np.corrcoef(heard[:-14400], heard[14400:])[0, 1]) < 0.01
+
+
+def test_the_hum_is_one_line_whatever_the_blocks():
+    of = with_effect(setting("PDMS"), "mains_hum", form="sine", frequency=55.0, pressure_level=80.0)
+    heard = sound(LiveRun(of), 220)[-4 * int(RATE) :]
+    lines = np.abs(np.fft.rfft(heard)) / heard.size * 2**0.5
+    assert 20.0 * np.log10(lines[220] / 2e-5) == pytest.approx(80.0, abs=0.05)
+    assert np.delete(lines, 220).max() < 1e-3 * lines[220]
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [
+        ("mains_hum", {"pressure_level": 60.0}, {"pressure_level": 90.0}),
+        ("mains_hum", {"frequency": 50.0}, {"frequency": 60.0}),
+        ("mains_hum", {"form": "sine"}, {"form": "harmonics"}),
+        ("speed_fluctuation", {"depth": 0.01}, {"depth": 0.2}),
+        ("speed_fluctuation", {"form": "sine"}, {"form": "random"}),
+    ],
+)
+def test_no_change_of_drive_or_sensors_clicks(name, before, after):
+    of, silent = setting("PDMS"), setting("PDMS")
+    run = LiveRun(of)
+    changes = [with_effect(of, name, **before), with_effect(of, name, **after), silent]
+    heard = [sound(run, 11), *(sound(run, 10, change) for change in changes)]
+    between = np.hanning(heard[1].size)  # or a sound that ends louder than it began would click
+    loudest = highest(between * sound(LiveRun(changes[1]), 11))
+    assert max(highest(between * one) for one in heard[1:]) <= max(1.3 * loudest, QUIET)
 
 
 def test_effects_come_and_go_and_those_of_whole_runs_are_left_out():

@@ -1,7 +1,8 @@
 """What can be changed about a design, with plausible bounds: one list that page and server share.
 
 Laws and effects come from their registries with the parameters that they declare, so that a new one
-appears by itself. Effects that act on a run as a whole cannot be heard while it goes on.
+appears by itself. Effects that act on a run as a whole are not heard while it goes on, but in what
+is saved.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.plausible import BOUNDS
 from sim.effects import EFFECTS
+from sim.effects.effect import Stage
 from sim.friction import LAWS, friction_law
 from sim.parameters import resolve
 
@@ -20,10 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from models.rig import Rig
-    from sim.effects.effect import Effect
     from sim.parameters import Parameter
 
-__all__ = ["MOTIONS", "Control", "controls_of", "live_effects", "read_values"]
+__all__ = ["MOTIONS", "Control", "controls_of", "read_values"]
 
 MOTIONS = {"constant": "constant speed", "run_up": "run-up", "swing": "swing"}
 """How the shaft turns."""
@@ -129,15 +130,6 @@ def controls_of(rig: Rig) -> list[Control]:
     return [*_motion(rig), *_condition(rig), *_bushing(rig), *_law(rig), *_effects(rig)]
 
 
-def live_effects() -> dict[str, Effect]:
-    """Return the effects that can be heard while a run goes on, by name."""
-    return {
-        name: effect
-        for name, effect in EFFECTS.items()
-        if effect.drive is None and effect.sensors is None
-    }
-
-
 def read_values(controls: list[Control], said: object) -> dict[str, float | bool | str]:
     """Return the values of all controls: those that a request says, else those of the base.
 
@@ -235,11 +227,13 @@ def _law(rig: Rig) -> Iterator[Control]:
 
 
 def _effects(rig: Rig) -> Iterator[Control]:
-    group, own = "Effects", {spec.name: spec for spec in rig.effects}
-    for name, effect in live_effects().items():
-        on = name in own
+    own = {spec.name: spec for spec in rig.effects}
+    stages = list(Stage)
+    for name, effect in sorted(EFFECTS.items(), key=lambda one: stages.index(one[1].stage)):
+        on, group = name in own, f"Effects of the {effect.stage.value}"
         active = effect.active(own[name].parameters if on else {})
-        yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on)
+        heard = "" if effect.goes_on else "not heard here, but in what is saved"
+        yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on, heard)
         only = (f"effect.{name}", True)
         if len(effect.forms) > 1:
             forms = {form: form.replace("_", " ") for form in effect.forms}

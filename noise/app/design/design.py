@@ -16,7 +16,7 @@ from models.rig_files.change import changed_rig
 from models.rig_files.rig_parts import parse_spec
 from models.rig_files.rig_text import changed_rig_text
 from noise.app.design.bases import Base, base_of
-from noise.app.design.controls import Control, controls_of, live_effects, read_values
+from noise.app.design.controls import Control, controls_of, read_values
 from noise.app.design.motions import motion_of, motion_options
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.map.provenance import fits_remark
@@ -115,7 +115,9 @@ class Design:
         found.append(fits_remark(setting.rig, [setting.interference]))
         found.append(temperature_remark(setting.rig, setting.temperature))
         found += effect_remarks(setting.rig, EFFECTS)
-        left_out = [e.name for e in setting.rig.effects if e.name not in live_effects()]
+        left_out = [
+            e.name for e in setting.rig.effects if e.name in EFFECTS and not EFFECTS[e.name].goes_on
+        ]
         if left_out:
             found.append(
                 f"effect {', '.join(left_out)}: acts on a run as a whole, so it is not heard "
@@ -181,12 +183,10 @@ def _friction(values: Values, own: Values) -> tuple[LawSpec | None, dict[str, st
 
 def _effects(rig: Rig, values: Values, own: Values) -> tuple[LawSpec, ...]:
     """Return those of the base as they have become, then those that are new."""
-    known = live_effects()
     stated = {spec.name: spec for spec in rig.effects}
-    names = list(dict.fromkeys([*stated, *known]))
     found = []
-    for name in names:
-        if name not in known:
+    for name in dict.fromkeys([*stated, *EFFECTS]):
+        if name not in EFFECTS:  # which is told where it is used
             found.append(stated[name])
             continue
         if not values[f"effect.{name}"]:

@@ -9,11 +9,12 @@ import pytest
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_rig
 from noise.app.design.bases import bases_of
-from noise.app.design.controls import controls_of, live_effects
+from noise.app.design.controls import controls_of
 from noise.app.design.design import design_of
 from noise.app.design.saving import save_rig
 from noise.app.opened import open_paths
 from noise.commands.condition_options import add_condition
+from sim.effects import EFFECTS
 from sim.friction import LAWS
 from sim.live import LiveRun
 
@@ -77,7 +78,7 @@ def test_laws_and_effects_of_the_registries_can_all_be_changed():
     assert set(controls["law"].choices) == set(LAWS)
     for name, law in LAWS.items():
         assert all(f"law.{name}.{key}" in controls for key in law.parameters)
-    for name, effect in live_effects().items():
+    for name, effect in EFFECTS.items():
         assert all(f"effect.{name}.{key}" in controls for key in effect.parameters)
 
 
