@@ -89,22 +89,24 @@ def unbaffled_power(
     known = np.stack([along @ modes.products.weighted(one) @ across for one in velocity.T], axis=2)
     real_s, real_v, real_weight = _disc(k, sides)
     nodes, weights = _axis(k, min(sides))
-    k_z = np.sqrt(np.maximum(nodes[:, None] ** 2 + nodes**2 - k**2, 0.0))
+    k_z = np.add.outer(nodes**2, nodes**2 - k**2)  # a million: in place
+    np.sqrt(np.maximum(k_z, 0.0, out=k_z), out=k_z)
     power = np.zeros(known.shape[2])
     with single_thread():
-        for px in (0, 1):
-            x_real, x = (_pairs(q, sides[0], counts[0], px) for q in (real_s, nodes))
-            for py in (0, 1):
-                y_real, y = (_pairs(q, sides[1], counts[1], py) for q in (real_v, nodes))
+        of_x, of_y = (
+            [(_pairs(real, side, n, p), _pairs(nodes, side, n, p)) for p in (0, 1)]
+            for real, side, n in zip((real_s, real_v), sides, counts, strict=True)
+        )
+        lines = k_z @ (weights[:, None] * np.hstack([y for _, y in of_y]))
+        for px, (x_real, x) in enumerate(of_x):
+            reactive = np.hsplit((weights[:, None] * x).T @ lines, [of_y[0][1].shape[1]])
+            for py, (y_real, _) in enumerate(of_y):
                 right = known[px::2, py::2].reshape(-1, known.shape[2])
-                resistive = np.einsum(
-                    "sab,stcd,st->acbd", x_real, y_real, real_weight, optimize=True
-                )
-                n = right.shape[0]
-                lines = k_z @ (weights[:, None] * y.reshape(nodes.size, -1))
-                reactive = (weights[:, None] * x.reshape(nodes.size, -1)).T @ lines
-                reactive = reactive.reshape(*x.shape[1:], *y.shape[1:]).transpose(0, 2, 1, 3)
-                matrix = (resistive - 1j * reactive).reshape(n, n) / np.pi**2
+                resistive = np.einsum("sp,stq,st->pq", x_real, y_real, real_weight, optimize=True)
+                rows, columns = (_all_pairs(n, p) for n, p in zip(counts, (px, py), strict=True))
+                upper = (resistive - 1j * reactive[py]) / np.pi**2
+                matrix = upper[rows[:, None, :, None], columns[None, :, None, :]]
+                matrix = matrix.reshape(len(right), len(right))
                 jump = solve(matrix, right, assume_a="sym")
                 power += np.sum((right.conj() * jump).real, axis=0)
     return np.asarray(AIR_DENSITY * 2 * np.pi * frequency * power)
@@ -120,7 +122,7 @@ def _projected(basis: Basis, side: float, count: int) -> NDArray[np.float64]:
 def _pairs(
     wavenumber: NDArray[np.float64], side: float, count: int, parity: int
 ) -> NDArray[np.float64]:
-    """Products of the transforms of two of the jump's functions, shape (..., n, n).
+    """Products of the transforms of two of the jump's functions, each two once.
 
     The transform of sqrt(1 - x^2) U_n(x) is pi (n + 1) J_{n+1}(k) / k, signs by (-1)^(n // 2).
     """
@@ -128,7 +130,17 @@ def _pairs(
     argument = np.maximum(wavenumber, 1e-9)[..., None] * (side / 2)
     signs = (-1.0) ** (n // 2)
     transforms = signs * np.pi * (n + 1) * jv(n + 1, argument) / argument * (side / 2)
-    return np.asarray(transforms[..., :, None] * transforms[..., None, :])
+    one, other = np.triu_indices(n.size)
+    return np.asarray(transforms[..., one] * transforms[..., other])
+
+
+def _all_pairs(count: int, parity: int) -> NDArray[np.intp]:
+    """Where the product of any two functions stands in `_pairs`, shape (n, n)."""
+    n = len(range(parity, count, 2))
+    one, other = np.triu_indices(n)
+    places = np.empty((n, n), dtype=np.intp)
+    places[one, other] = places[other, one] = np.arange(one.size)
+    return places
 
 
 def _disc(

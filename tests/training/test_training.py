@@ -23,32 +23,34 @@ def columns(classifier, sample):
     return sample.features[:, [FEATURE_NAMES.index(name) for name in classifier.feature_names]]
 
 
-SAMPLES = [draw_sample(seed) for seed in np.random.SeedSequence(6).spawn(48)]
+@pytest.fixture(scope="module")
+def samples():
+    return [draw_sample(seed) for seed in np.random.SeedSequence(6).spawn(48)]
 
 
 @pytest.fixture(scope="module")
-def small():
-    return learn(SAMPLES, 28, seed=3)
+def small(samples):
+    return learn(samples, 28, seed=3)
 
 
-def test_the_same_seed_gives_the_same_bytes_of_predictions(small):
-    again = learn(SAMPLES, 28, seed=3)
-    features = columns(small, SAMPLES[0])
+def test_the_same_seed_gives_the_same_bytes_of_predictions(small, samples):
+    again = learn(samples, 28, seed=3)
+    features = columns(small, samples[0])
     assert small.predict_proba(features).tobytes() == again.predict_proba(features).tobytes()
     assert small.card == again.card
 
 
-def test_a_sample_is_the_same_again_whoever_draws_it():
+def test_a_sample_is_the_same_again_whoever_draws_it(samples):
     (seed,) = np.random.SeedSequence(6).spawn(1)
     again = draw_sample(seed)
-    assert again.features.tobytes() == SAMPLES[0].features.tobytes()
-    assert again.label == SAMPLES[0].label
+    assert again.features.tobytes() == samples[0].features.tobytes()
+    assert again.label == samples[0].label
 
 
-def test_no_bushing_is_simulated_for_what_is_made_up():
+def test_no_bushing_is_simulated_for_what_is_made_up(samples):
     drawn = [draw_sample(s, bushings=False) for s in np.random.SeedSequence(7).spawn(12)]
     assert not any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in drawn)
-    assert any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in SAMPLES)
+    assert any(has_more_than_sound(s.features, FEATURE_NAMES).any() for s in samples)
 
 
 def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
@@ -57,10 +59,10 @@ def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
     assert small.card["three_channels"]["n"] < small.card["pressure"]["n"]
 
 
-def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored():
-    clear_ones = [replace(s, ambiguous=False) for s in SAMPLES]
+def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored(samples):
+    clear_ones = [replace(s, ambiguous=False) for s in samples]
     clear = learn(clear_ones, 34, seed=0).card
-    unclear = [replace(s, ambiguous=i in (0, 36, 44)) for i, s in enumerate(SAMPLES)]
+    unclear = [replace(s, ambiguous=i in (0, 36, 44)) for i, s in enumerate(samples)]
     fewer = learn(unclear, 34, seed=0).card
     assert sum(fewer["samples"].values()) == sum(clear["samples"].values()) - 1
     assert fewer["pressure"]["n"] == clear["pressure"]["n"] - 2
@@ -99,8 +101,8 @@ def test_after_a_kill_only_the_rest_of_the_samples_is_drawn(tmp_path):
     assert kept == journal_path(tmp_path / "undisturbed" / "mine.npz").read_bytes()
 
 
-def test_every_label_occurs_among_the_samples():
-    assert {sample.label for sample in SAMPLES} == set(LABELS)
+def test_every_label_occurs_among_the_samples(samples):
+    assert {sample.label for sample in samples} == set(LABELS)
 
 
 def test_designs_differ_and_can_be_drawn_again():
@@ -109,11 +111,11 @@ def test_designs_differ_and_can_be_drawn_again():
     assert first != other
 
 
-def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after():
+def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after(samples):
     labels = [label for label in LABELS if label != "squawk"]
     own = [
         OwnSample(sample.features[:, ::-1].copy(), "squawk", f"{i}.wav")
-        for i, sample in enumerate(s for s in SAMPLES if s.label in labels)
+        for i, sample in enumerate(s for s in samples if s.label in labels)
     ]
     begun = []
 
@@ -122,7 +124,7 @@ def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after()
             begun.append((fit, total))
             yield fit
 
-    said = learn(SAMPLES, 34, seed=3, added=own, growing=growing).card["own"]
+    said = learn(samples, 34, seed=3, added=own, growing=growing).card["own"]
     assert begun == [(fit, N_FOLDS + 2) for fit in range(N_FOLDS + 2)]
     squawk = said["labels"]["squawk"]
     assert said["files"] == squawk["files"] == len(own)
