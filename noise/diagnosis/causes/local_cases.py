@@ -17,6 +17,7 @@ import numpy as np
 
 from models.condition import known_condition
 from models.errors import ParameterError
+from noise.batch.orphans import ending_with_this
 from noise.diagnosis.cases.draw import active_effect, draw_offsets, unknown_effect
 from noise.diagnosis.cases.rigs import OFFSETS, with_offsets
 from noise.diagnosis.cases.structures import draw_structure
@@ -218,7 +219,7 @@ def _simulated_by(
 
     try:
         parts = Parallel(n_jobs=workers)(
-            delayed(_simulated)(bench, posterior, jobs[i::workers], EFFECTS, seed)
+            delayed(ending_with_this(_simulated))(bench, posterior, jobs[i::workers], EFFECTS, seed)
             for i in range(workers)
         )
     except BrokenProcessPool:

@@ -18,6 +18,7 @@ from joblib import Parallel, delayed
 
 from models.errors import ParameterError
 from noise.base.label_names import LABELS
+from noise.batch.orphans import ending_with_this
 from noise.labels.segmentation import clearest
 from noise.labels.windows import columns_of
 from noise.training.classifier.cross_fitting import grown, left_out_scores, named, with_trees_of
@@ -150,9 +151,9 @@ def _drawn(
     seeds += np.random.SeedSequence(seed).spawn(total - n_made_up)
     known = {} if lines is None else {int(key): of_line(line) for key, line in lines.found.items()}
     left = [i for i in range(total) if i not in known]
+    draw = ending_with_this(draw_sample)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
-        delayed(draw_sample)(seeds[i], bushings=i >= n_made_up, surroundings=surroundings)
-        for i in left
+        delayed(draw)(seeds[i], bushings=i >= n_made_up, surroundings=surroundings) for i in left
     )
     for i, sample in zip(left, progress(drawn, len(left)) if progress else drawn, strict=True):
         known[i] = sample
