@@ -89,20 +89,22 @@ def check_target(path: Path, option: str = "--out") -> None:
     Raises
     ------
     ParameterError
-        The nearest folder above `path` that exists is none, or may not be written to; or `path` is
-        a pipe or a device.
+        The nearest folder above `path`, or above what it links to, is none or may not be written
+        to; or `path` is a pipe, a device or a link in a circle.
 
     Examples
     --------
     >>> check_target(Path("new") / "folder" / "table.csv")
     """
     _refuse_device(path, f"{option} {path}")
+    place = _behind_links(path, option)
     try:
-        above = next(parent for parent in path.absolute().parents if parent.exists())
+        above = next(one for one in place.absolute().parents if one.exists() or one.is_symlink())
     except OSError as error:
         raise ParameterError(f"{option} {path}: cannot be written ({error.strerror})") from None
     if not above.is_dir():
-        raise ParameterError(f"{option} {path}: {above} is a file, not a folder")
+        kind = "is a file, not a folder" if above.exists() else "links to nothing"
+        raise ParameterError(f"{option} {path}: {above} {kind}")
     from tempfile import TemporaryFile
 
     try:
@@ -118,14 +120,15 @@ def _refuse_device(place: Path, said: object) -> None:
             raise ParameterError(f"{said}: is a pipe or a device; name a file to write")
 
 
-def _behind_links(target: Path) -> Path:
+def _behind_links(target: Path, option: str = "") -> Path:
     """Return the file that a link leads to, which need not be there yet."""
     if not target.is_symlink():
         return target
     try:
         return target.resolve()
     except (OSError, RuntimeError):
-        raise ParameterError(f"{target}: is a link that leads nowhere") from None
+        said = f"{option} {target}".lstrip()
+        raise ParameterError(f"{said}: is a link that leads nowhere") from None
 
 
 @cache

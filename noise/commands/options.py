@@ -110,10 +110,12 @@ def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None
     Raises
     ------
     ParameterError
-        It is a file, or cannot be written to.
+        It is a file or a link to nothing, or cannot be written to.
     """
     if folder.exists() and not folder.is_dir():
         raise ParameterError(f"{option} {folder}: is a file; name a folder")
+    if folder.is_symlink() and not folder.exists():
+        raise ParameterError(f"{option} {folder}: links to nothing; name a folder")
     check_target(folder / file, option)
 
 

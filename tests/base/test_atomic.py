@@ -10,6 +10,7 @@ import pytest
 
 from models.errors import ParameterError
 from noise.base.atomic import atomic, check_target
+from noise.commands.options import check_folder
 from noise.recordings import find_recordings
 
 if TYPE_CHECKING:
@@ -143,5 +144,17 @@ def test_a_link_in_a_circle_and_a_pipe_are_no_files_to_write(tmp_path):
     for name, reason in (("a.csv", "leads nowhere"), ("b.csv", "is a pipe or a device")):
         with pytest.raises(ParameterError, match=reason), atomic(tmp_path / name) as path:
             path.write_text("new")
-    with pytest.raises(ParameterError, match=r"^--out .*b.csv: is a pipe or a device"):
-        check_target(tmp_path / "b.csv")
+        with pytest.raises(ParameterError, match=f"^--out .*{name}: .*{reason}"):
+            check_target(tmp_path / name)
+
+
+def test_a_link_is_refused_before_the_work_where_nothing_can_be_written_behind_it(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    (tmp_path / "a.csv").symlink_to(tmp_path / "file" / "a.csv")
+    with pytest.raises(ParameterError, match="file is a file, not a folder"):
+        check_target(tmp_path / "a.csv")
+    (tmp_path / "folder").symlink_to(tmp_path / "gone")
+    for refuses in (lambda: check_target(tmp_path / "folder" / "a.csv"),
+                    lambda: check_folder(tmp_path / "folder")):  # fmt: skip
+        with pytest.raises(ParameterError, match=r"folder.*links to nothing"):
+            refuses()
