@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 
 from models.drawing import BLUE, GREEN, VERMILION
+from noise.base.readable import readable
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -28,13 +29,17 @@ WIDTH = 12.0
 def new_figure(height: float, title: str) -> Figure:
     """Return an empty figure of the common width, `height` inches high, with its title.
 
+    The title may be the name of a file, which can hold anything: no formula is made of it.
+
     Examples
     --------
     >>> new_figure(4.0, "5 rad/s").get_size_inches().tolist()
     [12.0, 4.0]
     """
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    figure.suptitle(title, fontsize=13.0, fontweight="bold", color="#222222")
+    figure.suptitle(
+        readable(title), fontsize=13.0, fontweight="bold", color="#222222", parse_math=False
+    )
     return figure
 
 

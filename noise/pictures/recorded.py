@@ -87,11 +87,15 @@ def plot_recording(
     >>> [axes.get_xlabel() for axes in plot_recording(run.recording).axes if axes.get_xlabel()]
     ['Time [s]', 'Speed of the shaft, magnitude [rad/s]']
     """
-    sound = recording.first("pressure")
+    shows_lines = 0.5 * recording.rate > LOWEST
+    sound = recording.first("pressure") if shows_lines else None
     kinds = [channel.kind for channel in recording.channels]
     others = [row for row, kind in enumerate(kinds) if kind in ("torque", "acceleration", "force")]
     if sound is None and not others:
-        raise ParameterError(f"{recording.name}: has no sound, torque or acceleration to be drawn")
+        reason = "has no sound, torque or acceleration to be drawn"
+        if not shows_lines:
+            reason = f"a sampling rate of {recording.rate:g} Hz shows no sound"
+        raise ParameterError(f"{recording.name}: {reason}")
     speed, orders = recorded_speed(recording), recorded_orders(recording)
     duration = n_samples_of(recording) / recording.rate
     heights = [3.0, 1.8] if sound is not None else [2.2]

@@ -68,6 +68,7 @@ def _sounds() -> dict[str, Call]:
     commands = {
         "features": ("features", "GIVEN"),
         "label": ("label", "GIVEN", "--out", "out.csv"),
+        "drawn": ("features", "GIVEN", "--plot", "plots"),
         "render": ("render", "GIVEN", "--out", "out.wav"),
         "review": ("review", ".", "--out", "out.html"),
         "identify": ("identify", "GIVEN"),
@@ -75,7 +76,7 @@ def _sounds() -> dict[str, Call]:
         "calibrator": ("features", "run.wav", "--calibrator", "GIVEN", "--level", "94"),
         "diagnose": ("diagnose", "GIVEN", "--rig", "rig.toml", "--quick", "--out", "out"),
     }
-    shares = {"features": 3.0, "label": 2.0}
+    shares = {"features": 3.0, "label": 2.0, "drawn": 0.2}
     known = {"run.wav": "float.wav", "rig.toml": "rig.toml"}
     return {
         name: Call(

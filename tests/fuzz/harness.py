@@ -17,6 +17,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tests.fuzz.judged import MOST_MEMORY
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from multiprocessing.connection import Connection
@@ -93,6 +95,10 @@ def try_inputs(inputs: Sequence[tuple[int, int] | Input]) -> Iterator[Tally]:
                 begun = time.perf_counter()
                 call, outcome = worker.ask(one)
                 took = time.perf_counter() - begun
+                if not isinstance(outcome, str) and outcome.memory > MOST_MEMORY:
+                    worker.end()  # what it needs shows in a process that has done nothing before
+                    tally.findings += worker.begin()
+                    call, outcome = worker.ask(one)
                 tally.longest = max(tally.longest, took)
                 tally.seconds[call] = tally.seconds.get(call, 0.0) + took
                 code = -1

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from io import BytesIO
+
 import numpy as np
 import pytest
 
+from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.pictures import recorded
 from noise.pictures.recorded import (
@@ -68,6 +72,24 @@ def test_the_picture_has_the_same_axes(run_up):
         for of in (run_up, RecordingBlocks.of(run_up).part(0, round(5.0 * RATE)))
     ]
     assert labels[0] == labels[1] == ["Time [s]", "Speed of the shaft, magnitude [rad/s]"]
+
+
+def slow(*kinds):
+    samples = np.random.default_rng(1).normal(size=(len(kinds), 1000))
+    return Recording(samples, 100.0, tuple(map(Channel, kinds)), name="slow")
+
+
+def test_sound_sampled_too_slowly_for_a_line_of_its_spectrogram_is_not_drawn():
+    with pytest.raises(ParameterError, match="sampling rate of 100 Hz shows no sound"):
+        plot_recording(slow("pressure"))
+    (axes,) = plot_recording(slow("pressure", "torque")).axes
+    assert axes.get_ylabel() == "Torque\n[Nm]"
+
+
+@pytest.mark.parametrize("name", ["caf\udce9", "\x1b[2J\a", r"$\frac$", "a_{$", "\n"])
+def test_a_recording_of_any_name_is_drawn(run_up, name):
+    figure = plot_recording(replace(run_up, name=name))
+    figure.savefig(BytesIO())
 
 
 def test_one_channel_is_read_as_all_of_them_are(run_up, monkeypatch):

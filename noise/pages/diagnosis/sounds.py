@@ -18,12 +18,14 @@ import soundfile
 
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, reading, refusing
+from models.recording import Channel
 from noise.audio.sound import audible
 from noise.diagnosis.findings import ROLES
 from noise.diagnosis.text.words import number
 from noise.pages.diagnosis.figures import CURVES
 from noise.pages.engine.entry import RATE, Entry
 from noise.pictures.recorded import recorded_levels, recorded_orders
+from noise.recordings.meaning import check_finite
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -108,7 +110,9 @@ def reported_entries(report: Path, diagnosis: Diagnosis) -> list[Entry]:
         with refusing(f"{report}: {name}", "sound", RecordingError):
             flac = io.BytesIO(base64.b64decode(content))
             fractions, _ = soundfile.read(flac, dtype="float32")
-            sound = np.float32(values["data-full-scale"]) * fractions
+            with np.errstate(over="ignore", invalid="ignore"):  # refused in the next line
+                sound = np.float32(values["data-full-scale"]) * fractions
+            check_finite(report, sound[np.newaxis], RATE, (Channel("pressure"),))
         note = "from the report of the diagnosis"
         entries.append(_entry(name, role, sound, diagnosis.labels_and_levels, note))
     return entries
