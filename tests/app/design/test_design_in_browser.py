@@ -161,6 +161,19 @@ def test_a_design_that_cannot_be_is_told_and_the_sound_goes_on(browser, app):
     opened.close()
 
 
+def test_a_full_scale_that_is_stated_stays_as_long_as_nothing_is_louder(browser, app):
+    opened = DesignPage(browser, app)
+    opened.type("full-scale", 20)
+    opened.play()
+    assert opened.sound("fullScale") == 20.0
+    opened.page.locator(".gain").get_by_text("Full scale = 20 Pa (120 dB peak").wait_for()
+    opened.type("full-scale", 0.1)  # too little for a squawk, which is never clipped
+    opened.blocks(30)
+    assert 0.1 < opened.sound("fullScale") < 20.0
+    assert opened.page.locator("#design-full-scale").input_value() == str(opened.sound("fullScale"))
+    opened.close()
+
+
 def test_a_and_b_are_switched_while_it_goes_on(browser, app):
     opened = DesignPage(browser, app)
     opened.play()

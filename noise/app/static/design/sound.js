@@ -63,10 +63,10 @@ export class Sound extends EventTarget {
     this.#tell("change");
   }
 
-  // The gain follows the loudest so far; from now on it does anew.
-  fit() {
-    this.fullScale = QUIETEST;
-    this.worker?.postMessage({ fullScale: QUIETEST });
+  // The gain follows the loudest so far; from now on it does anew, from a full scale [Pa] on.
+  fit(fullScale = QUIETEST) {
+    this.fullScale = fullScale;
+    this.worker?.postMessage({ fullScale });
     this.#tell("change");
   }
 

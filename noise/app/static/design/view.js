@@ -25,13 +25,14 @@ export async function mount(panel) {
   const start = made("div", { className: "row choice" }, made("label", { htmlFor: "design-base", textContent: "Base" }), base);
   const rows = made("div", { className: "controls" });
   const level = made("p", { className: "level" }), gain = made("p", { className: "gain" });
+  const scale = made("input", { id: "design-full-scale", type: "number", min: 0.1, max: 1000, step: "any", title: "of your loudspeaker, where that is known: then it is as loud as it would be" });
   const fit = made("button", { type: "button", textContent: "Fit the gain anew" });
   const torque = made("canvas", { className: "torque", role: "img", ariaLabel: "Torque of the last fifth of a second" });
   const spectrum = made("canvas", { className: "spectrum", role: "img", ariaLabel: "Spectrum of the sound pressure" });
   const remarks = made("ul", { className: "remarks", ariaLabel: "To be known" });
   left.append(tools, start, rows);
   right.append(
-    made("section", { className: "heard" }, made("h2", { textContent: "What is heard" }), level, made("div", { className: "tools" }, gain, fit), remarks),
+    made("section", { className: "heard" }, made("h2", { textContent: "What is heard" }), level, made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit), remarks),
     made("section", {}, made("h2", { textContent: "Torque" }), torque),
     made("section", {}, made("h2", { textContent: "Spectrum" }), spectrum),
   );
@@ -100,6 +101,11 @@ export async function mount(panel) {
   });
   reset.addEventListener("click", () => { controls.put({}); changed(); });
   fit.addEventListener("click", () => sound.fit());
+  scale.addEventListener("change", () => {
+    const asked = Number(scale.value);
+    if (asked >= 0.1 && asked <= 1000) sound.fit(asked);
+    else scale.value = sound.fullScale;
+  });
   play.addEventListener("click", () => {
     if (sound.playing) {
       sound.stop();
@@ -112,6 +118,7 @@ export async function mount(panel) {
   sound.addEventListener("change", () => {
     if (!sound.playing) design.speed = undefined;
     play.textContent = sound.playing ? "Stop sound" : "Play";
+    scale.value = sound.fullScale;
     gain.textContent = `Full scale = ${sound.fullScale} Pa (${(20 * Math.log10(sound.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`;
   });
   sound.addEventListener("refused", ({ detail }) => told(detail));
