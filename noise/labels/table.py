@@ -195,7 +195,8 @@ def _checked(row: object, where: str) -> dict[str, object]:
     if not isinstance(row, dict) or any(column not in row for column in _NEEDED):
         raise RecordingError(f"{where} lacks {' or '.join(_NEEDED)}, so this is no label table")
     checked = {column: _value(row, column, where) for column in COLUMNS}
-    check_name(checked["file"], "file", where)
+    for column in ("file", "channel"):  # of which files are written, and lines in them
+        check_name(checked[column], column, where)
     if checked["label"] not in (*LABELS, None):
         known = ", ".join(LABELS)
         raise RecordingError(f"{where} has label {checked['label']!r}, expected {known}")
