@@ -21,6 +21,7 @@ from tests.studies.next_to_check.experiment import (
     labels_of,
     learned,
     rounds,
+    said,
     simulated,
     sound_alone,
 )
@@ -71,21 +72,31 @@ def _study(options: argparse.Namespace) -> None:
     found = []
     for seed in range(options.partitions):
         pool, held = halves(folder, seed)
-        before = errors(held, [rows[clip] for clip in held])
+        before = _errors(held, pool, [], rows)
         chosen = [by_next_to_check(pool, [rows[clip] for clip in pool], CORRECTIONS)]
         chosen += [at_random(pool, 100 * seed + i, CORRECTIONS) for i in range(options.random)]
         after = [
-            errors(held, labels_of(held, learned(samples, known, corrected, kept)))
+            _errors(held, pool, corrected, dict(zip(folder, labels_of(folder, again), strict=True)))
             for corrected in chosen
+            for again in [learned(samples, known, corrected, kept)]
         ]
         noises = [sum(clip.label != "unknown" for clip in corrected) for corrected in chosen]
         found.append((before, *after))
         names = ["before", "next to check", *["random"] * options.random]
-        for name, number, said in zip(names, ["", *noises], found[-1], strict=True):
-            _print(f"{seed} {name} {number}", said)
+        for name, number, of_one in zip(names, ["", *noises], found[-1], strict=True):
+            _print(f"{seed} {name} {number}", of_one)
     for name in found[0][0]:
         table = np.array([[one[name] for one in row] for row in found])
         _print_fall(name, table)
+
+
+def _errors(held, pool, corrected, rows) -> dict[str, float]:
+    """Return errors of what is held out, and of the folder, where what was corrected is right."""
+    there = [said(clip, rows[clip]) if clip in corrected else rows[clip] for clip in pool]
+    of_folder = errors(pool, there)
+    return errors(held, [rows[clip] for clip in held]) | {
+        f"folder {name}": of_folder[name] for name in ("all", "mean")
+    }
 
 
 def _clips(folder: str, work: Path):
@@ -95,8 +106,8 @@ def _clips(folder: str, work: Path):
     return clips if folder == "real" else [*clips, *variants(clips, _VARIANTS, work)]
 
 
-def _print(what: str, said: dict[str, float]) -> None:
-    sys.stdout.write(f"{what}: {', '.join(f'{k} {v:.4f}' for k, v in said.items())}\n")
+def _print(what: str, found: dict[str, float]) -> None:
+    sys.stdout.write(f"{what}: {', '.join(f'{k} {v:.4f}' for k, v in found.items())}\n")
     sys.stdout.flush()
 
 

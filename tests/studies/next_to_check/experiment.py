@@ -31,6 +31,7 @@ __all__ = [
     "labels_of",
     "learned",
     "rounds",
+    "said",
     "simulated",
     "sound_alone",
 ]
@@ -156,14 +157,22 @@ def _mean_features(path, channel, start, end):
     return mean_features(Path(path), channel, start, end)
 
 
+def said(clip, rows):
+    """Return a recording's rows as a person leaves them who says what it is."""
+    return [
+        row
+        | {"label_source": "human"}
+        | ({} if clip.right(str(row["label"])) else {"label": clip.label})
+        for row in rows
+    ]
+
+
 def by_next_to_check(clips, rows, n: int):
     """Return the recordings that "Next to check" asks for, one after the other."""
     jobs = [Job(i, clip.path, clip.path.name) for i, clip in enumerate(clips)]
     check, rows, found, last = NextCheck(jobs, _AllDescribed()), list(rows), [], None
     while len(found) < n and (last := check.next(rows, last)["id"]) is not None:
-        rows[last] = [
-            row | {"label": clips[last].label, "label_source": "human"} for row in rows[last]
-        ]
+        rows[last] = said(clips[last], rows[last])
         found.append(clips[last])
     return found
 
