@@ -64,7 +64,10 @@ def create_app(
         Called when somebody asks it to stop.
     """
     environment = Environment(loader=PackageLoader("noise.app", "static"), autoescape=True)
-    page = environment.get_template("page.html.j2").render(views=VIEWS, looks=LABEL_LOOKS)
+    first = "design" if opened.rigs and not opened.jobs else "labels"
+    page = environment.get_template("page.html.j2").render(
+        views=VIEWS, looks=LABEL_LOOKS, first=first
+    )
 
     async def shown(_: Request) -> Response:
         return HTMLResponse(page)

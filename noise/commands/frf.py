@@ -140,7 +140,8 @@ def run(options: Namespace) -> int:
             low=low, high=high, coherence=transfer.coherence,
         )  # fmt: skip
         modes = _trusted(modes, transfer, options.coherence)
-        say(f"{counted(modes.frequency.size, 'mode')} from {low:.5g} to {high:.5g} Hz")
+        count = counted(modes.frequency.size, "mode")
+        say(f"{count}, sought from {low:.5g} to {high:.5g} Hz")
     _write(options, transfer, modes)
     return 1 if refused else 0
 

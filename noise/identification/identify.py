@@ -164,7 +164,7 @@ def _notes(choice: Choice) -> tuple[str, ...]:
         )
     rivals = [s.law for s in choice.scores if s.missed <= _RIVALS * best.missed and s != chosen]
     if rivals:
-        notes.append(f"these recordings hardly tell {', '.join([chosen.law, *rivals])} apart")
+        notes.append(f"these recordings hardly tell {' and '.join([chosen.law, *rivals])} apart")
     if overall(chosen) > _FAR or chosen.missed > _MISSED:
         notes.append(
             f"the best law leaves {overall(chosen):.1f} floors and misses "

@@ -52,7 +52,8 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
     Returns
     -------
     float or None
-        [Hz], of the torque where there is one; ``None`` for ``none``, or where nothing is found.
+        [Hz], of the torque where most windows have one; ``None`` for ``none``, or where nothing is
+        found.
 
     Examples
     --------
@@ -65,9 +66,10 @@ def segment_frequency(features: NDArray[np.float32], label: str) -> float | None
     if label == "none":
         return None
     slips = label in ("creak", "squawk")
-    torque = _median(features, "torque_fundamental" if slips else "torque_line_frequency")
-    if torque is not None:
-        return torque
+    torque = "torque_fundamental" if slips else "torque_line_frequency"
+    known = np.isfinite(features[:, _COLUMN[torque]])
+    if 2 * known.sum() > len(known):  # one window in many tells of chance, not of the segment
+        return _median(features, torque)
     for kind in ("pressure", "acceleration"):
         found = None
         if label == "creak":

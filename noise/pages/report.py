@@ -178,7 +178,7 @@ def _entry(entry: ReportEntry, clip: Clip | None) -> Entry:
     row: dict[str, object] = {
         "label": segment.label, "channel": segment.channel, "start_s": segment.start,
         "end_s": segment.end, "frequency_hz": segment.frequency, "level_db": segment.level,
-        "level_dbfs": segment.level_dbfs,
+        "level_dba": segment.level_a, "level_dbfs": segment.level_dbfs,
     }  # fmt: skip
     if recording.condition.speed is None and recording.calibrated and "speed" in recording:
         speed = recording["speed"]

@@ -200,3 +200,26 @@ def test_what_was_learned_is_told_beside_what_was_known_before(page):
     row.wait_for()
     assert row.inner_text().split() == ["squeal", "*", "12", "25", "%", "75", "%", "3", "1"]
     assert "grown without its file" in page.locator(".training figcaption").inner_text()
+
+
+def test_of_a_long_path_the_file_is_seen_and_on_a_narrow_screen_nothing_lies_over_the_recording(
+    browser, tmp_path
+):
+    long = f"{'a-folder-with-a-long-name/' * 3}run07.wav"
+    (tmp_path / long).parent.mkdir(parents=True)
+    folder = write_folder(tmp_path, [long], many_rows([long], np.random.default_rng(0)))
+    with opened_app(folder) as app:
+        page = browser.new_page(viewport={"width": 390, "height": 844})
+        page.goto(app.address)
+        page.click(ROW)
+        page.wait_for_selector(".recording .strip")
+        name = page.query_selector(f"{ROW} b").bounding_box()
+        file = page.query_selector(f"{ROW} b bdi:last-child").bounding_box()
+        assert file["x"] + file["width"] <= name["x"] + name["width"] + 1.0
+        assert file["width"] > 60.0
+        page.click(".training summary")
+        page.wait_for_timeout(200)
+        above = page.query_selector(".training").bounding_box()
+        below = page.query_selector(".recording").bounding_box()
+        assert above["y"] + above["height"] <= below["y"]
+        page.close()

@@ -27,8 +27,10 @@ def recording(condition=None, *, calibrated=True, **channels):
     return Recording(samples, RATE, names, condition or Condition(), calibrated)
 
 
-def segment(label="squeal", *, channel="all", frequency=1046.0, level=91.0, dbfs=-3.0):
-    return Segment(channel, 0.0, 1.0, label, SHARES, frequency, level, dbfs)
+def segment(
+    label="squeal", *, channel="all", frequency=1046.0, level=91.0, dbfs=-3.0, weighted=None
+):
+    return Segment(channel, 0.0, 1.0, label, SHARES, frequency, level, dbfs, weighted)
 
 
 def sound(signal, *, rate=RATE, form="WAV", subtype="FLOAT"):
@@ -118,12 +120,12 @@ def test_without_a_summary_the_labels_are_counted(write):
 
 
 def test_conditions_level_and_frequency_are_in_the_units_of_the_page(write):
-    page = write(ReportEntry("Squeal", RIG, segment()))
+    page = write(ReportEntry("Squeal", RIG, segment(weighted=91.2)))
     cells = page.text("td")
-    assert cells[:6] == ["10", "0.279", "3745", "fluorocarbon", "91.0", "1046"]
+    assert cells[:6] == ["10", "0.279", "3745", "fluorocarbon", "91.2", "1046"]
     shown = page.text("dd")
     assert shown[:5] == ["10 rad/s", "0.279 mm", "3745 Nm/rad", "fluorocarbon", "23 °C"]
-    assert shown[5:] == ["91.0 dB re 20 µPa", "1046 Hz"]
+    assert shown[5:] == ["91.2 dB(A) re 20 µPa", "1046 Hz"]
 
 
 def test_what_is_not_known_is_said_to_be(write):

@@ -66,4 +66,4 @@ document.getElementById("stop").addEventListener("click", async () => {
 });
 
 const asked = location.hash.slice(1);
-show(tabs.some((tab) => tab.dataset.view === asked) ? asked : tabs[0].dataset.view);
+show(tabs.some((tab) => tab.dataset.view === asked) ? asked : document.body.dataset.first);

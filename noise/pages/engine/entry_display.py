@@ -207,7 +207,7 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
     """
     row, condition = entry.row or {}, entry.condition
     fit, temperature = condition.interference, condition.temperature
-    hertz, level, dbfs = row.get("frequency_hz"), row.get("level_db"), row.get("level_dbfs")
+    hertz = row.get("frequency_hz")
     material = str(row.get("material") or condition.material or "")
     if not material and assumes_material(row):
         material = ASSUMED
@@ -222,7 +222,9 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
         "material": Fact(material) if material else None,
         "temperature": None if temperature is None else _number(temperature, ".3g", "°C"),
         "frequency": _number(hertz, ".0f" if _at_least(hertz, 100.0) else ".1f", "Hz"),
-        "level": _number(level, ".1f", "dB") or _number(dbfs, ".1f", "dBFS"),
+        "level": _number(row.get("level_dba"), ".1f", "dB(A)")
+        or _number(row.get("level_db"), ".1f", "dB")
+        or _number(row.get("level_dbfs"), ".1f", "dBFS"),
     }
     return {name: fact for name, fact in facts.items() if fact is not None}
 

@@ -155,7 +155,7 @@ def parts_lines(one: Statistics) -> list[str]:
     if stands is None:
         return lines
     assumed = " (tolerances assumed)" if stands.assumed else ""
-    lines.append(f"parts{assumed}: {probability_words(stands)}")
+    lines.append(f"a part{assumed} at a speed of its use: {probability_words(stands)}")
     lines.append(f"matters most: {sensitivity_words(stands)}")
     return lines
 

@@ -222,7 +222,9 @@ class RecordingList {
     node.shown = shown;
     const [mark, name, labels, numbers] = node.children;
     mark.className = shown?.label ?? "";
-    name.textContent = shown ? shown.name : "...";
+    // What tells files apart is at the end of a path: its folders are cut first.
+    const file = shown ? shown.name.lastIndexOf("/") + 1 : 0;
+    name.replaceChildren(...(shown ? [shown.name.slice(0, file), shown.name.slice(file)] : ["..."]).filter(Boolean).map((textContent) => made("bdi", { textContent })));
     name.title = shown ? shown.name : "";
     labels.textContent = shown ? title(shown) : "";
     numbers.textContent = shown ? figures(shown) : "";

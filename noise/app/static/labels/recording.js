@@ -47,6 +47,7 @@ export class RecordingPage {
     const { parts } = this;
     this.id = id;
     parts.saved.textContent = "";
+    for (const read of [parts.readout, parts.levelRead]) read.textContent = ""; // it was of another recording
     const channel = null;
     // All at once: what each needs of the others comes with it.
     const seen = this.spectrogram.load(id, channel);
