@@ -88,14 +88,15 @@ def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis, set[st
     tell("preparing")
     from models.rig_files.rig_file import load_rig
     from noise.base.user_effects import effect_library
-    from noise.diagnosis.case import read_case
-    from noise.diagnosis.diagnose import case_remarks, diagnose_case
     from noise.diagnosis.improved_file import check_base
 
-    library = effect_library(options.effects)
     rig = opt.changed(load_rig(options.rig), options.change)
     if options.out is not None:
         check_base(options.rig, options.out)
+    library = effect_library(options.effects)
+    from noise.diagnosis.case import read_case  # takes seconds, and what is refused is by now
+    from noise.diagnosis.diagnose import case_remarks, diagnose_case
+
     case = read_case(options.data, rig)
     for name, reason in case.refused:
         say(f"{name}: {reason}")

@@ -12,7 +12,9 @@ from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
+    from collections.abc import Callable
 
+    from models.rig import Rig
     from noise.base.progress import Steps
     from noise.batch.lines import Results
     from noise.screening.design.design import Swinging, Use
@@ -143,11 +145,13 @@ def run(options: Namespace) -> int:
     from noise.batch.identity import call_identity
     from noise.batch.lines import kept_results
     from noise.screening.design.environments import environment
+    from noise.screening.design.loading import load_designs
 
     given = _given(options)
     environments = [name for name in options.environment.split(",") if name.strip()]
     for name in environments:
-        environment(name)  # refused before everything is loaded
+        environment(name)
+    load_designs(options.designs, _change(options))  # refused before everything is imported
     of_each = 2 if options.tolerances is False else 3  # map, grade, parts
     number = 1 + of_each * len(options.designs) * len(environments)
     table = None if options.out is None else options.out / "map.csv"
@@ -188,13 +192,17 @@ def _screened(
         loudness=options.loudness,
         tolerances=options.tolerances,
         rng=np.random.default_rng(options.seed or 0),
-        change=(lambda rig: opt.changed(rig, options.change)) if options.change else None,
+        change=_change(options),
         simulations=None if math.isinf(simulations) else int(simulations),
         workers=options.workers,
         scheduler=options.scheduler,
         progress=tell,
         kept=kept,
     )
+
+
+def _change(options: Namespace) -> Callable[[Rig], Rig] | None:
+    return (lambda rig: opt.changed(rig, options.change)) if options.change else None
 
 
 def _given(options: Namespace) -> Use:

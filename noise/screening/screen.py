@@ -11,15 +11,14 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.design.environments import DRY, environment, in_environment
+from noise.screening.design.loading import load_designs
 from noise.screening.map.batches import batch_evaluator, keeping
 from noise.screening.map.grid import shared_grid, shared_motions
 from noise.screening.map.mapping import map_design
@@ -34,9 +33,11 @@ from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
 
     from models.rig import Rig
     from noise.batch.lines import Results
+    from noise.screening.design.design import Design, Swinging, Use
     from noise.screening.map.batches import Evaluator
     from noise.screening.map.grid import Grid
     from noise.screening.map.mapping import DesignMap
@@ -121,9 +122,7 @@ def screen(
         from features.sound_quality import check_available
 
         check_available()
-    loaded, refused, files = _loaded(designs, change)
-    if not loaded:
-        raise ParameterError(refused[0][1])
+    loaded, refused, files = load_designs(designs, change)
     motions = shared_motions(list(loaded.values()), given)
     grids = {
         (name, swinging): shared_grid(list(loaded.values()), given, where=name, swinging=swinging)
@@ -190,36 +189,6 @@ def screen(
         seconds=mapped - started,
         statistics_seconds=time.perf_counter() - mapped,
     )
-
-
-def _loaded(
-    designs: Sequence[str | Path | Design], change: Callable[[Rig], Rig] | None
-) -> tuple[dict[str, Design], list[tuple[str, str]], list[tuple[str, Path]]]:
-    """Read designs; return them by name, those refused and why, and the files they come from."""
-    loaded: dict[str, Design] = {}
-    refused: list[tuple[str, str]] = []
-    files: list[tuple[str, Path]] = []
-    for one in designs:
-        try:
-            design = one if isinstance(one, Design) else load_design(one)
-            if change is not None:
-                design = replace(design, rig=change(design.rig))
-        except BushingNoiseError as error:
-            refused.append((one.name if isinstance(one, Design) else str(one), str(error)))
-            continue
-        design = _with_name_of_its_own(design, set(loaded))
-        loaded[design.name] = design
-        if change is None and not isinstance(one, Design) and Path(one).is_file():
-            files.append((design.name, Path(one)))
-    return loaded, refused, files
-
-
-def _with_name_of_its_own(design: Design, taken: set[str]) -> Design:
-    """Two designs of one name are told apart by a number."""
-    name, number = design.name, 2
-    while name in taken:
-        name, number = f"{design.name} ({number})", number + 1
-    return replace(design, name=name)
 
 
 def _remarks(

@@ -38,6 +38,26 @@ def test_help_loads_nothing_that_computes():
     assert all(f"bushing-noise {name} " in done.stdout for name in COMMANDS)
 
 
+@pytest.mark.parametrize(
+    "call",
+    [
+        ["screen", "no.toml"],
+        ["screen", "PDMS", "--speed", "5..x"],
+        ["simulate", "--speed", "5", "--rig", "no.toml"],
+        ["diagnose", ".", "--rig", "no.toml"],
+    ],
+)
+def test_what_is_refused_is_refused_before_the_simulator_is_loaded(call, tmp_path):
+    program = (
+        "import sys; from noise.cli import main\n"
+        f"print(main({call}), [name for name in {HEAVY[1:]} if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.stdout == "2 []\n", done.stderr
+
+
 def test_the_package_runs_as_a_module_and_tells_the_installed_version():
     done = subprocess.run(
         [sys.executable, "-m", "noise", "--version"], capture_output=True, text=True
