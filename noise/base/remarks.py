@@ -73,8 +73,8 @@ def _speed_remark(rig: Rig, asked: Sequence[float]) -> str:
     if fastest <= rig.fastest_fitted * (1.0 + 1e-9):
         return ""
     return (
-        f"speed {fastest:g} rad/s is beyond {rig.fastest_fitted:g}, the fastest that the numbers "
-        f"of {rig.material} were fitted at"
+        f"speed {fastest:g} rad/s is beyond {rig.fastest_fitted:.4g}, the fastest that the "
+        f"numbers of {rig.material} were fitted at"
     )
 
 

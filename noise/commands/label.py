@@ -114,6 +114,7 @@ def run(options: Namespace) -> int:
     def export(rows: Iterable[dict[str, object]]) -> list[Path]:
         rows = list(rows)
         _note_assumed(rows)
+        _note_speeds(rows)
         written = _export(options, rows)
         if options.plot is not None:
             written += draw_recordings(options.plot, jobs, rows, full_scale=work.full_scale)
@@ -159,6 +160,19 @@ def _note_assumed(rows: list[dict[str, object]]) -> None:
             f"conditions of {counted(number, 'recording')} are inferred {ASSUMED}: no material is "
             "logged"
         )
+
+
+def _note_speeds(rows: list[dict[str, object]]) -> None:
+    """Name the recordings whose channel tells another speed than was logged."""
+    from noise.labels.segment_speed import OF_CHANNEL
+
+    names = {str(row["file"]): str(row["note"]) for row in rows if OF_CHANNEL in str(row["note"])}
+    if names:
+        name, remark = next(iter(names.items()))
+        others = (
+            f"; so it is in {len(names) - 1} more, see the column note" if len(names) > 1 else ""
+        )
+        note(f"{name}: {remark}{others}")
 
 
 def _check_exports(options: Namespace) -> None:

@@ -116,7 +116,7 @@ def identify_rig(
     fitted = fitted_evidence(model)
     rest = [one for one in model.evidence if one not in fitted]
     numbers = with_evidence(bushing_numbers(seen, choice.fit), rest)
-    rig = replace(rig, fastest_fitted=max(one.measured.condition.speed for one in seen))
+    rig = replace(rig, fastest_fitted=max(one.measured.written_speed for one in seen))
     rig = replace(rig, temperature=_dependence(beforehand.rig, seen, material))
     assumed, not_found = _assumed(beforehand, seen)
     return Identification(

@@ -15,6 +15,7 @@ from noise.diagnosis.bench.conditions import speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.static_test import static_test
 from noise.recordings import find_recordings, read_recording
+from noise.recordings.logged_speed import as_logged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -57,12 +58,15 @@ class Measured:
         Of the cell, positive along the rotation [Nm].
     shaft_speed : ndarray, shape (n,)
         Positive [rad/s].
+    logged_speed : float, optional
+        As it was set [rad/s].
     """
 
     name: str
     recording: Recording
     torque: NDArray[np.float64]
     shaft_speed: NDArray[np.float64]
+    logged_speed: float | None = None
 
     @property
     def condition(self) -> KnownCondition:
@@ -70,6 +74,11 @@ class Measured:
         condition = self.recording.condition
         assert isinstance(condition, KnownCondition)  # `measured` made it so
         return condition
+
+    @property
+    def written_speed(self) -> float:
+        """Speed as files give it: as it was logged, where the shaft turned so [rad/s]."""
+        return as_logged(self.condition.speed, self.logged_speed)
 
     @property
     def rate(self) -> float:
@@ -210,7 +219,7 @@ def measured(recording: Recording, name: str) -> Measured:
     known = KnownCondition(
         float(np.mean(speed)), c.interference, c.support_stiffness, c.material, c.temperature
     )
-    return Measured(name, replace(recording, condition=known), torque, speed)
+    return Measured(name, replace(recording, condition=known), torque, speed, c.speed)
 
 
 def shaft_speed(angle: NDArray[np.float64], rate: float) -> NDArray[np.float64]:

@@ -304,7 +304,7 @@ def _recording(one: Seen) -> dict[str, Any]:
     c = one.measured.condition
     return {
         "file": one.measured.name,
-        "speed_rad_s": _rounded(c.speed),
+        "speed_rad_s": one.measured.written_speed,
         "interference_mm": _rounded(1e3 * c.interference),
         "support_stiffness_Nm_rad": _support(c.support_stiffness),
         "elastomer_stiffness_Nm_rad": _rounded(one.values["elastomer_stiffness"]),

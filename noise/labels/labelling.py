@@ -13,23 +13,19 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from noise.base.label_names import LABELS, NAMED
 from noise.batch.identity import file_digest
 from noise.classifier import load_classifier
 from noise.labels.label_display import ASSUMED, assumes_material
 from noise.labels.loudness import with_loudness
+from noise.labels.segment_speed import segment_speed, speed_remark
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
 from noise.recordings.sidecar import find_sidecar, read_sidecar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
-
-    from numpy.typing import NDArray
 
     from models.condition import Condition
     from models.recording import Recording
@@ -47,17 +43,8 @@ __all__ = [
     "segment_cells",
 ]
 
-_SPEED_BLOCK = 0.02
-"""Length over which the angle is averaged before its slope is taken [s]."""
-
-_BLOCKS_AT_ONCE = 500
-"""How many of them are read together."""
-
-_AS_STATED = 0.005
-"""A measured speed that is off by no more is the one that was stated [-]."""
-
 _DIGITS = 4
-"""Of a measured speed, of which an angle tells no more."""
+"""Of what is inferred, which is known to far fewer."""
 
 _CONDITIONS = {
     "speed_rad_s": "speed",
@@ -215,6 +202,7 @@ def label_rows(
 
     Examples
     --------
+    >>> import numpy as np
     >>> from models.recording import Channel, Recording
     >>> from noise.labels.segments import Segment
     >>> turning = Recording(np.array([[0.0, 1.0, 2.0, 3.0]]), 2.0, (Channel("angle"),))
@@ -256,7 +244,8 @@ def segment_cells(segment: Segment) -> dict[str, object]:
 def _row(
     name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
 ) -> dict[str, object]:
-    condition = replace(blocks.condition, speed=_segment_speed(blocks, segment))
+    speed = segment_speed(blocks, segment.start, segment.end)
+    condition = replace(blocks.condition, speed=speed)
     row: dict[str, object] = {
         **dict.fromkeys(COLUMNS),
         "file": name,
@@ -273,12 +262,13 @@ def _row(
         row[f"{column}_source"] = "missing" if value is None else "logged"
         if value is None and field in inferred:
             interval = inferred[field]
-            row[column] = _in_unit(column, interval.value)
-            row[f"{column}_low"] = _in_unit(column, interval.low)
-            row[f"{column}_high"] = _in_unit(column, interval.high)
+            row[column] = _inferred_in_unit(column, interval.value)
+            row[f"{column}_low"] = _inferred_in_unit(column, interval.low)
+            row[f"{column}_high"] = _inferred_in_unit(column, interval.high)
             row[f"{column}_source"] = "inferred"
-    if assumes_material(row):
-        row["note"] = f"conditions inferred {ASSUMED}"
+    assumed = f"conditions inferred {ASSUMED}" if assumes_material(row) else ""
+    remarks = [text for text in (speed_remark(blocks, speed), assumed) if text]
+    row["note"] = "; ".join(remarks) or None
     return row
 
 
@@ -318,54 +308,10 @@ def _in_unit(column: str, value: float | None) -> float | None:
     return _rounded(1e3 * value if millimetres and value is not None else value, 6)
 
 
-def _segment_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
-    """Mean speed of the shaft over a segment [rad/s]: from its channels, else as set.
-
-    Its magnitude where the shaft swings to and fro, whose mean speed is nothing. What was set
-    stands as it was written where the channels agree with it.
-    """
-    stated, measured = blocks.condition.speed, _measured_speed(blocks, segment)
-    if measured is None:
-        return stated
-    if stated is not None and abs(abs(measured) - abs(stated)) <= _AS_STATED * abs(stated):
-        return math.copysign(stated, measured)
-    return float(f"{measured:.{_DIGITS}g}")
-
-
-def _measured_speed(blocks: RecordingBlocks, segment: Segment) -> float | None:
-    """Mean speed from the channels [rad/s], None where none tells it."""
-    first = round(segment.start * blocks.rate)
-    last = min(round(segment.end * blocks.rate), blocks.n_samples)
-    block = max(1, round(_SPEED_BLOCK * blocks.rate))
-    pieces = blocks.pieces(first, last, _BLOCKS_AT_ONCE * block)
-    speed, angle = blocks.first("speed"), blocks.first("angle")
-    if not blocks.calibrated:
-        return None
-    if speed is not None:
-        return _mean_speed(piece.samples[speed] for piece in pieces)
-    if angle is None or last - first <= block:
-        return None
-    if last - first < 3 * block:
-        time = np.arange(last - first) / blocks.rate
-        return float(np.polyfit(time, blocks.read(first, last)[angle], 1)[0])
-    # Means of blocks first: the difference of single samples would be that of their noise.
-    means = [_block_means(piece.samples[angle], block) for piece in pieces]
-    return _mean_speed([np.diff(np.concatenate(means)) * blocks.rate / block])
-
-
-def _block_means(signal: NDArray[np.float64], block: int) -> NDArray[np.float64]:
-    whole = signal[: signal.size // block * block].reshape(-1, block)
-    return np.asarray(whole.mean(axis=1))
-
-
-def _mean_speed(pieces: Iterable[NDArray[np.float64]]) -> float:
-    n, total, travelled = 0, 0.0, 0.0
-    for speed in pieces:
-        n += speed.size
-        total += float(np.sum(speed))
-        travelled += float(np.sum(np.abs(speed)))
-    mean, magnitude = total / n, travelled / n
-    return mean if abs(mean) > 0.9 * magnitude else magnitude
+def _inferred_in_unit(column: str, value: float) -> float | None:
+    """Return it with as many digits as it is known to: 3745, not 3744.9998."""
+    found = _in_unit(column, value)
+    return None if found is None else float(f"{found:.{_DIGITS}g}")
 
 
 def _rounded(value: float | None, digits: int) -> float | None:

@@ -49,6 +49,14 @@ def test_it_writes_a_rig_file_that_loads(answered):
     assert rig.fits[0].critical_torque >= rig.fits[0].kinetic_torque > 0.0
 
 
+def test_speeds_are_written_as_they_were_logged(folder, answered):
+    sidecars = [json.loads(path.read_text()) for path in folder.glob("*.json")]
+    logged = {sidecar["conditions"].get("speed_rad_s") for sidecar in sidecars}
+    assert load_rig(answered[1] / "rig.toml").fastest_fitted in logged
+    found = json.loads((answered[1] / "identification.json").read_text())
+    assert {one["speed_rad_s"] for one in found["recordings"]} <= logged
+
+
 def test_numbers_have_intervals_that_hold_them(answered):
     found = json.loads((answered[1] / "identification.json").read_text())
     assert found["numbers"]

@@ -144,6 +144,7 @@ def test_what_is_not_logged_has_a_value_between_its_bounds_or_is_missing(creak):
         )
         if source == "inferred":
             assert low <= value <= high
+            assert [low, value, high] == [float(f"{one:.4g}") for one in (low, value, high)]
         else:
             assert (value, low, high, source) == (None, None, None, "missing")
 

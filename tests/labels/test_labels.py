@@ -142,6 +142,8 @@ def test_a_speed_is_written_as_it_was_logged_where_the_angle_agrees(stated, give
     (row,) = label_rows("run.wav", recording, [segment])
     assert row["speed_rad_s"] == given
     assert row["speed_rad_s_source"] == "logged"
+    told = "speed 3 rad/s is that of the channel angle; 3.1 was logged"
+    assert row["note"] == (told if stated == 3.1 else None)
 
 
 def test_a_refused_file_has_a_row_with_the_reason():

@@ -18,6 +18,7 @@ from models.errors import ParameterError
 from noise.diagnosis.preparation.measured_speed import measured_speed
 from noise.diagnosis.unstated.sidecar import sidecar_request
 from noise.diagnosis.unstated.sticking import Sticking, sticking
+from noise.recordings.logged_speed import as_logged
 from sim.bushing import lumped_bushing
 
 if TYPE_CHECKING:
@@ -142,10 +143,11 @@ def _by_angle(recording: Recording, _: Rig, at: Condition) -> _Told:
     if at.speed or row is None:
         return at, []
     angle = recording.samples[row]
-    speed = measured_speed(angle[angle.size // 2 :], recording.rate)  # a start lies before
+    measured = measured_speed(angle[angle.size // 2 :], recording.rate)  # a start lies before
+    speed = as_logged(measured, None)
     if not speed:
         return at, []
-    return replace(at, speed=speed), [f"speed taken as {speed:.4g} rad/s: the angle's"]
+    return replace(at, speed=speed), [f"speed taken as {speed:g} rad/s: the angle's"]
 
 
 def _by_mean_torque(recording: Recording, rig: Rig, at: Condition) -> _Told:

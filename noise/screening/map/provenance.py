@@ -72,7 +72,7 @@ def point_notes(rig: Rig, grid: Grid) -> NDArray[np.object_]:
         [_support_note(rig, fit, support) for fit in grid.interference]
         for support in grid.support_stiffness
     ]
-    fast = f"faster than {rig.fastest_fitted:g} rad/s, the fastest that was fitted"
+    fast = f"faster than {rig.fastest_fitted:.4g} rad/s, the fastest that was fitted"
     of_speed = [fast if v > rig.fastest_fitted * (1.0 + 1e-9) else "" for v in grid.speed]
     notes = np.empty(grid.shape, dtype=object)
     for at in np.ndindex(grid.shape):
