@@ -131,15 +131,19 @@ def screen(
     }
     maps: list[DesignMap] = []
     screened: dict[str, Design] = {}
-    remarks: dict[str, list[str]] = {}
+    remarks: dict[tuple[str, str], list[str]] = {}
     with batch_evaluator(workers=workers, scheduler=scheduler) as evaluate:
         if kept is not None:
             evaluate = keeping(evaluate, kept)
         for design in loaded.values():
             try:
-                remarks[design.name] = _remarks(design, grids, given)
-                for text in remarks[design.name]:
+                told = {
+                    (design.name, where): _remarks(design, where, grids, given)
+                    for where in dict.fromkeys(where for where, _ in grids)
+                }
+                for text in dict.fromkeys(text for texts in told.values() for text in texts):
                     progress(f"{design.name}: {text}")
+                remarks |= told
                 found: list[DesignMap] = []
                 for (where, swinging), grid in grids.items():
                     progress(f"mapping {design.name}, {where}")
@@ -192,14 +196,18 @@ def screen(
 
 
 def _remarks(
-    design: Design, grids: Mapping[tuple[str, Swinging | None], Grid], given: Use | None
+    design: Design,
+    where: str,
+    grids: Mapping[tuple[str, Swinging | None], Grid],
+    given: Use | None,
 ) -> list[str]:
-    """Say what to know of a design's numbers, most of all where they are not its own."""
-    rig, grid = design.rig, next(iter(grids.values()))
-    temperature = sorted({value for each in grids.values() for value in each.temperature})
+    """Say what to know of a design's numbers in an environment, most of all those not its own."""
+    here = [grid for (name, _), grid in grids.items() if name == where]
+    rig, grid = design.rig, here[0]
+    temperature = sorted({value for each in here for value in each.temperature})
     found = use_remarks(
         rig,
-        speed=[max(each.use[1] for each in grids.values())],
+        speed=[max(each.use[1] for each in here)],
         interference=grid.interference,
         support_stiffness=grid.support_stiffness,
         temperature=temperature,
@@ -207,8 +215,7 @@ def _remarks(
     found.append(fits_remark(rig, grid.interference))
     if rig.temperature or (given is not None and given.temperature) or len(temperature) > 1:
         found.append(temperature_remark(rig, *temperature))
-    for where in dict.fromkeys(where for where, _ in grids):
-        found += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
+    found += effect_remarks(in_environment(rig, environment(where)), EFFECTS)
     return list(dict.fromkeys(filter(None, found)))
 
 

@@ -68,6 +68,13 @@ def test_notes_name_implausible_values_and_what_cannot_act():
     assert rows[0]["note"] == found.maps[0].note.item()
 
 
+def test_a_note_on_temperature_stands_with_the_environment_that_has_it():
+    use = Use(speed=(5.0,), interference=(0.279e-3,), support_stiffness=(2214.0,))
+    found = screen(["fluorocarbon"], use, environments=["dry", "hot"])
+    noted = {one.environment: "temperature 80" in "; ".join(one.notes) for one in found.standings}
+    assert noted == {"dry": False, "hot": True}
+
+
 def test_levels_are_those_of_a_meter(found):
     """L_AFmax of a steady noise is a little above its L_Aeq; both are told of the same points."""
     heard = next(one for one in found.maps if one.design == "fluorocarbon")

@@ -124,7 +124,7 @@ def standings(
     statistics: Sequence[Statistics],
     never_slipping: Sequence[str] | None = None,
     hints: Sequence[str] | None = None,
-    remarks: Mapping[str, Sequence[str]] | None = None,
+    remarks: Mapping[tuple[str, str], Sequence[str]] | None = None,
 ) -> tuple[Standing, ...]:
     """Tell how mapped designs do, the quietest first.
 
@@ -138,8 +138,8 @@ def standings(
         Of each map why the contact never slips, empty where it does; by default all slip.
     hints : sequence of str, optional
         Of each map what would help, where no advice is told; by default nothing.
-    remarks : mapping of str to sequence of str, optional
-        What to know of the numbers of a design, by its name.
+    remarks : mapping of (str, str) to sequence of str, optional
+        What to know of the numbers of a design in an environment, by both names.
 
     Returns
     -------
@@ -165,7 +165,7 @@ def standings(
                 never_slips=why,
                 words=plain_words(mapped, one.margin_v_crit2, why),
                 hint="" if why else advised[where] or hint,
-                notes=(*(remarks or {}).get(mapped.design, ()), *filter(None, [why])),
+                notes=(*(remarks or {}).get(where, ()), *filter(None, [why])),
             )
         )
     held = {one.design for one in found if one.never_slips and one.motion == "steady"}
