@@ -177,7 +177,12 @@ def test_the_order_of_files_does_not_count(plain, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "kinds", [("pressure",), ("torque", "acceleration", "pressure"), ("torque",)]
+    "kinds",
+    [
+        ("torque", "acceleration", "pressure"),
+        pytest.param(("pressure",), marks=pytest.mark.slow),
+        pytest.param(("torque",), marks=pytest.mark.slow),
+    ],
 )
 def test_fewer_signals_are_answered_to_the_end(tmp_path, capsys, kinds):
     ill = _recordings(
@@ -277,6 +282,7 @@ def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path,
         diagnose(data, rig, effects=tmp_path / "nowhere.py")
 
 
+@pytest.mark.slow
 def test_an_effect_of_the_users_own_that_is_not_the_cause_is_listed_behind(
     alarmed, tmp_path, capsys
 ):

@@ -42,6 +42,7 @@ def test_the_same_seed_gives_the_same_case_and_only_a_cause_makes_a_gap(kind):
     assert (one.answer["gap"] == 1.0) == (kind == "none")
 
 
+@pytest.mark.slow
 def test_own_cases_are_scored_beside_others(tmp_path, capsys):
     from tests.blind.__main__ import main as blind
 

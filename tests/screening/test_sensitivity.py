@@ -50,6 +50,7 @@ def test_indices_are_those_of_the_closed_form(form, distributions, exact):
     np.testing.assert_allclose([one.total.value for one in found], exact[1], atol=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("form", "distributions", "exact"), FORMS)
 def test_intervals_hold_the_closed_form_as_often_as_they_state(form, distributions, exact):
     repeats = 40

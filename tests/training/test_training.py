@@ -33,6 +33,7 @@ def small(samples):
     return learn(samples, 28, seed=3)
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_of_predictions(small, samples):
     again = learn(samples, 28, seed=3)
     features = columns(small, samples[0])
@@ -59,13 +60,13 @@ def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
     assert small.card["three_channels"]["n"] < small.card["pressure"]["n"]
 
 
-def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored(samples):
-    clear_ones = [replace(s, ambiguous=False) for s in samples]
-    clear = learn(clear_ones, 34, seed=0).card
-    unclear = [replace(s, ambiguous=i in (0, 36, 44)) for i, s in enumerate(samples)]
-    fewer = learn(unclear, 34, seed=0).card
-    assert sum(fewer["samples"].values()) == sum(clear["samples"].values()) - 1
-    assert fewer["pressure"]["n"] == clear["pressure"]["n"] - 2
+def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored(small, samples):
+    clear = [i for i, sample in enumerate(samples) if not sample.ambiguous]
+    doubted = {clear[0], *clear[-2:]}  # one of those that are learned, two of those scored
+    unclear = [replace(s, ambiguous=s.ambiguous or i in doubted) for i, s in enumerate(samples)]
+    fewer = learn(unclear, 28, seed=3).card
+    assert sum(fewer["samples"].values()) == sum(small.card["samples"].values()) - 1
+    assert fewer["pressure"]["n"] == small.card["pressure"]["n"] - 2
 
 
 def test_too_few_samples_to_know_every_label_are_refused():
