@@ -83,6 +83,19 @@ class Design:
             friction=self.friction,
         )  # fmt: skip
 
+    @property
+    def words(self) -> str:
+        """What differs from the base, as the rig file has it, and the motion that is heard."""
+        own = [str(spec) for spec in self.base.rig.effects]
+        effects = [str(spec) for spec in self.rig.effects]
+        changed = [f"{key} {_amount(value)}" for key, value in self.changes.items()]
+        changed += [] if self.friction is None else [f"law {self.friction}"]
+        changed += [f"effect {spec}" for spec in effects if spec not in own]
+        named = {spec.name for spec in self.rig.effects}
+        changed += [f"no {spec.name}" for spec in self.base.rig.effects if spec.name not in named]
+        of_base = f"with {', '.join(changed)}" if changed else "unchanged"
+        return f"{self.base.name} {of_base} ({self.options})"
+
     def facts(self) -> dict[str, str]:
         """Return what the bushing's quantities have become, with their units, by short name."""
         setting = self.setting
@@ -124,6 +137,10 @@ class Design:
                 "here, but in what is saved"
             )
         return [text for text in found if text]
+
+
+def _amount(value: str | float) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 @lru_cache(maxsize=16)

@@ -94,7 +94,10 @@ class Keeping:
                 )  # fmt: skip
             recordings = str(target / "recordings")
             if wanted == page:
-                steps.append(["review", recordings, "--out", str(page)])
+                told = "; ".join(f"{slot}: {design.words}" for slot, design in designs.items())
+                steps.append(
+                    ["review", recordings, "--title", f"{name}. {told}", "--out", str(page)]
+                )
             else:
                 steps.append(["render", recordings, "--out", str(target / "sounds")])
             self._steps, self._total, self._done = steps, len(steps), 0

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import html
 import json
 import math
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -113,6 +115,9 @@ def test_both_designs_are_kept_as_sounds_at_one_gain_and_as_a_page(tmp_path):
         keeping.start(said)
     page = kept(keeping, {**said, "page": True, "replace": True})
     assert page == str(tmp_path / "both.html")
+    text = html.unescape(Path(page).read_text(encoding="utf-8"))
+    assert "A: fluorocarbon unchanged (--speed 5" in text
+    assert "B: fluorocarbon with damping x2 (--oscillate 15,2" in text
     keeping.stop()
 
 

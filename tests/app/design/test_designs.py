@@ -118,6 +118,20 @@ def test_conditions_outside_what_was_measured_are_said_to_be():
     assert design({}).remarks() == []
 
 
+def test_a_design_says_what_differs_from_its_base():
+    changed = {
+        "change.damping": 2.0,
+        "effect.slip_pulse": True,
+        "effect.slip_pulse.amplitude": 120.0,
+        "effect.critical_torque_scatter": False,
+    }
+    words = design(changed).words
+    for part in ("damping x2", "effect slip_pulse:", "amplitude=120", "no critical_torque_scatter"):
+        assert part in words
+    law = design({"law": "coulomb"}).words
+    assert law.startswith("fluorocarbon with law coulomb")
+
+
 def test_the_condition_is_told_as_options_that_the_command_reads():
     from argparse import ArgumentParser
 
