@@ -202,6 +202,21 @@ def test_a_rig_file_is_saved_by_keys(browser, app, tmp_path):
     opened.close()
 
 
+def test_fields_show_all_digits_of_what_is_small(browser, app):
+    opened = DesignPage(browser, app)
+    opened.page.get_by_text("Friction law", exact=True).click()
+    key = "law-contact_with_memory-ageing_time"
+    opened.type(key, 0.00007535)
+    field = opened.page.locator(f"#design-{key}")
+    assert field.input_value() == "7.535e-5"
+    assert field.evaluate("(one) => one.scrollWidth <= one.clientWidth")
+    every = "[...document.querySelectorAll('#view-design .row input[type=number]')]"
+    values = opened.page.evaluate(f"{every}.map((one) => one.value)")
+    assert values
+    assert not [value for value in values if value.lstrip("-").startswith("0.000")]
+    opened.close()
+
+
 @pytest.mark.parametrize("width", [390, 1280])
 def test_it_fits_and_everybody_can_use_it(browser, app, width):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")

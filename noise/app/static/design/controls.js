@@ -66,8 +66,8 @@ export class Controls extends EventTarget {
       });
       entry.put = (value) => {
         slider.value = Math.round(TICKS * shareOf(one, value));
-        slider.setAttribute("aria-valuetext", `${value} ${one.unit}`);
-        field.value = value;
+        slider.setAttribute("aria-valuetext", `${written(value)} ${one.unit}`);
+        field.value = written(value);
       };
       row.append(label, slider, field, unit);
       if (one.key.startsWith("change.")) row.append(entry.fact = made("span", { className: "fact" }));
@@ -117,6 +117,9 @@ const shareOf = ({ low, high, log }, value) => {
   const share = log ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
   return Math.min(1, Math.max(0, share || 0));
 };
+
+// All digits that a rig file has, with an exponent where zeros would push them out of the field.
+const written = (value) => (value && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e7) ? Number(value.toPrecision(6)).toExponential() : String(value));
 
 // As many digits as a step of the slider has.
 function rounded(value, { low, high, log }) {
