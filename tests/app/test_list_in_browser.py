@@ -132,6 +132,20 @@ def test_it_fits_the_window_and_an_accessibility_checker_finds_nothing(page):
         assert [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]] == []
 
 
+def test_what_is_checked_next_comes_into_view(page):
+    page.get_by_role("combobox").select_option(label="level, loudest first")
+    places = set()
+    for n in range(1, 4):
+        page.get_by_role("button", name="Next to check").click()
+        page.wait_for_function(
+            "(n) => opens.length === n && list.row(list.at)?.id === opens.at(-1)", arg=n
+        )
+        places.add(page.evaluate("list.at"))
+        row, rows = page.locator(CHOSEN).bounding_box(), page.locator(".rows").bounding_box()
+        assert rows["y"] <= row["y"] <= rows["y"] + rows["height"] - row["height"]
+    assert max(places) > 30
+
+
 @pytest.mark.slow
 def test_thousands_are_there_within_a_second_and_scroll_at_fifty_frames_a_second(browser, tmp_path):
     with opened_app(written(tmp_path, 5000)) as app:

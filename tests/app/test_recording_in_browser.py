@@ -41,9 +41,9 @@ def write_sounds(folder):
 class OpenPage:
     """The app in a browser, with one recording open."""
 
-    def __init__(self, browser, app, width=1280):
+    def __init__(self, browser, app, width=1280, height=900):
         self.complaints = []
-        self.page = browser.new_page(viewport={"width": width, "height": 900})
+        self.page = browser.new_page(viewport={"width": width, "height": height})
         self.page.on("console", self._told)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
@@ -229,6 +229,15 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
         "() => document.querySelector('.saved').textContent.startsWith('saved')"
     )
     assert [row[0] for row in in_table(folder)] == pytest.approx([0.0, 0.53, 1.7], abs=0.004)
+    opened.page.mouse.move(*opened.at(1.7, lane="div.strip"))
+    opened.page.mouse.down()
+    opened.page.mouse.move(*opened.at(1.6, lane="div.strip"), steps=4)
+    opened.page.mouse.up()
+    opened.page.wait_for_function(
+        "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') < 1.65"
+        " && document.querySelector('.saved').textContent.startsWith('saved')"
+    )
+    assert in_table(folder)[2][0] == pytest.approx(1.6, abs=0.004)
     for _ in range(10):
         if in_table(folder) == before:
             break
@@ -237,6 +246,38 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
         opened.page.wait_for_timeout(100)
     assert in_table(folder) == before
     opened.close()
+
+
+def test_what_is_checked_next_is_opened_at_the_segment_in_doubt(browser, app):
+    opened = OpenPage(browser, app, height=400)
+    for name in (ODD, HALF, TONE):
+        opened.page.get_by_role("button", name="Next to check").first.click()
+        opened.page.get_by_role("heading", name=name).wait_for()
+    chosen = opened.page.locator(".strip [aria-pressed=true]").filter(has_text="squeal")
+    chosen.wait_for()
+    assert chosen.get_attribute("aria-label").startswith("squeal, 0.50 to 1.50 s")
+    assert opened.page.locator(".clock").text_content() == "0.50 s"
+    box = chosen.bounding_box()
+    assert 0.0 <= box["y"] <= 400 - box["height"]
+    opened.close()
+
+
+def test_what_is_not_calibrated_is_not_said_to_be_as_in_the_file_at_equal_loudness(
+    browser, tmp_path
+):
+    tone = 0.1 * np.sin(2 * np.pi * 1000 * np.arange(2 * RATE) / RATE)
+    plain = Recording(tone[None], RATE, (Channel("pressure"),), calibrated=False)
+    write_recording(tmp_path / TONE, plain)
+    write_table(tmp_path / "labels.csv", COLUMNS, [made_row(TONE, "none", 0.0, 2.0, p_none=0.97)])
+    with opened_app(tmp_path) as app:
+        opened = OpenPage(browser, app).open(TONE)
+        gains = opened.page.locator(".gains")
+        assert gains.text_content() == "not calibrated: played as it is in the file"
+        for name in ("Equal loudness", "Play"):
+            opened.page.get_by_role("button", name=name, exact=True).click()
+        gains.filter(has_text="Equal loudness, -23 LUFS").wait_for()
+        assert "played as it is" not in gains.text_content()
+        opened.close()
 
 
 def tone_of(samples):

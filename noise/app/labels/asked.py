@@ -49,6 +49,8 @@ class Asked:
     descending : bool
     first, count : int
         Which of them are wanted [-].
+    place : int or None
+        Number of a recording whose place among them is asked.
     """
 
     label: str = ""
@@ -57,6 +59,7 @@ class Asked:
     descending: bool = False
     first: int = 0
     count: int = 200
+    place: int | None = None
 
     def answer(self, shown: Sequence[Shown]) -> dict[str, object]:
         """Return the recordings asked for, how many there are, and how many by label."""
@@ -72,6 +75,7 @@ class Asked:
                 **{name: counts[name] for name in (*LABELS, UNLABELLED, CORRECTED, REFUSED)},
             },
             "rows": found[self.first : self.first + self.count],
+            "place": next((at for at, one in enumerate(found) if one["id"] == self.place), None),
         }
 
 
@@ -102,6 +106,7 @@ def read_asked(query: Mapping[str, str]) -> Asked:
         order == "desc",
         whole_number(query, "first", 0, 1 << 31),
         whole_number(query, "count", 200, _MOST),
+        whole_number(query, "place", 0, 1 << 31) if query.get("place") else None,
     )
 
 

@@ -26,9 +26,9 @@ export async function refresh(id) {
 
 // Open the recording that is best checked next; where there is none, say so.
 export async function openNext(after) {
-  const { id } = await api(`next${after === undefined || after === null ? "" : `?after=${after}`}`);
+  const { id, ...segment } = await api(`next${after === undefined || after === null ? "" : `?after=${after}`}`);
   if (id === null) told("Nothing is left to check.");
-  else { list.marked = id; list.draw(); list.onOpen(id); }
+  else { list.marked = id; list.onOpen(id, segment); await list.reveal(id); }
   return id;
 }
 
@@ -122,6 +122,20 @@ class RecordingList {
     const [sort, order] = this.order.value.split(" ");
     const said = { label: this.label, text: this.find.value, sort: sort ?? "", order: order ?? "asc", first, count: PAGE };
     return `recordings?${new URLSearchParams(said)}`;
+  }
+
+  // Bring a recording into view, where it is among those that are shown.
+  async reveal(id) {
+    const { place } = await api(`${this.#query(0)}&place=${id}`);
+    if (place !== null) this.#goTo(place);
+    this.draw();
+  }
+
+  #goTo(at) {
+    this.at = at;
+    const top = at * ROW;
+    if (top < this.box.scrollTop) this.box.scrollTop = top;
+    else if (top + ROW > this.box.scrollTop + this.box.clientHeight) this.box.scrollTop = top + ROW - this.box.clientHeight;
   }
 
   #inView() {
@@ -245,10 +259,7 @@ class RecordingList {
     const step = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page, Home: -this.total, End: this.total }[event.key];
     if (event.key === "Enter" && this.total) this.#open(this.at);
     else if (step && !event.ctrlKey && !event.metaKey && !event.altKey) {
-      this.at = Math.min(Math.max(0, this.at + step), Math.max(0, this.total - 1));
-      const top = this.at * ROW;
-      if (top < this.box.scrollTop) this.box.scrollTop = top;
-      else if (top + ROW > this.box.scrollTop + this.box.clientHeight) this.box.scrollTop = top + ROW - this.box.clientHeight;
+      this.#goTo(Math.min(Math.max(0, this.at + step), Math.max(0, this.total - 1)));
       this.draw();
     } else return;
     event.preventDefault();

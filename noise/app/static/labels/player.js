@@ -205,14 +205,15 @@ export class Player extends EventTarget {
     const { a, b } = this.slots, said = [];
     const heard = [a, b].filter(Boolean);
     if (!heard.length) return "";
-    if (this.equal && heard.every((sound) => sound.equal)) {
+    const equal = (sound) => this.equal && sound.equal;
+    if (heard.every(equal)) {
       const decibel = (slot) => `${(20 * Math.log10(this.factor(slot) * (this.slots[slot].calibrated ? this.fullScale : 1))).toFixed(1)} dB`;
-      said.push(`Equal loudness, ${this.target.toFixed(0)} LUFS: A ${decibel("a")}${b ? `, B ${decibel("b")}` : ""} beside the one gain`);
+      said.push(`Equal loudness, ${this.target.toFixed(0)} LUFS: A ${decibel("a")}${b ? `, B ${decibel("b")}` : ""} beside ${heard.every((sound) => sound.calibrated) ? "the one gain" : "what the files hold"}`);
     } else if (heard.some((sound) => sound.calibrated) && this.fullScale !== null) {
       said.push(`Calibrated sounds share one gain: full scale = ${this.fullScale} Pa (${(20 * Math.log10(this.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`);
     }
-    if (heard.some((sound) => sound.kind === "pressure" && !sound.calibrated)) said.push("not calibrated: played as it is in the file");
-    if (heard.some((sound) => sound.kind !== "pressure")) said.push("no sound pressure: played at a gain of its own");
+    if (heard.some((sound) => sound.kind === "pressure" && !sound.calibrated && !equal(sound))) said.push("not calibrated: played as it is in the file");
+    if (heard.some((sound) => sound.kind !== "pressure" && !equal(sound))) said.push("no sound pressure: played at a gain of its own");
     if (this.band) said.push(`heard from ${this.band.low.toFixed(0)} to ${this.band.high.toFixed(0)} Hz`);
     return said.join("; ");
   }

@@ -15,7 +15,7 @@ import { about } from "./sounds.js";
 import { Spectrogram } from "./spectrogram.js";
 import { drawTimes, Timeline } from "./timeline.js";
 
-const ZOOM = 1.6, PAN = 0.3;
+const ZOOM = 1.6, PAN = 0.3, NARROW = 0.05; // the share of a recording below which a segment is zoomed to
 const POLL = 1500; // while labels are awaited [ms]
 
 export class RecordingPage {
@@ -43,14 +43,13 @@ export class RecordingPage {
     this.#keys();
   }
 
-  async open(id) {
+  // Of the segments the first is chosen, or one that is named.
+  async open(id, segment = null) {
     const { parts } = this;
     this.id = id;
-    parts.saved.textContent = "";
-    for (const read of [parts.readout, parts.levelRead]) read.textContent = ""; // it was of another recording
-    const channel = null;
+    for (const said of [parts.saved, parts.readout, parts.levelRead]) said.textContent = ""; // it was of another recording
     // All at once: what each needs of the others comes with it.
-    const seen = this.spectrogram.load(id, channel);
+    const seen = this.spectrogram.load(id, null);
     const sound = await about(id);
     if (id !== this.id) return;
     this.sound = sound;
@@ -68,6 +67,7 @@ export class RecordingPage {
     this.segments.at = 0;
     await Promise.all([seen, this.outline.load(id, this.channel), this.#labels(id)]);
     if (id !== this.id) return;
+    if (segment) this.#reveal(segment);
     await this.levels.load(id, this.channel);
     this.#chosen();
   }
@@ -78,6 +78,14 @@ export class RecordingPage {
     await this.corrections.open(id, this.sound.duration_s);
     if (id !== this.id || this.corrections.rows.length) return;
     this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
+  }
+
+  #reveal({ channel, start_s: start }) {
+    this.segments.chooseStart(channel, start);
+    const { chosen } = this.segments;
+    if (chosen && chosen.end_s - chosen.start_s < NARROW * this.timeline.duration) this.fit();
+    this.seek(start);
+    this.parts.lanes.scrollIntoView({ block: "nearest" });
   }
 
   #slot() {

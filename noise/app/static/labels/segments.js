@@ -24,6 +24,11 @@ export class Segments {
     this.onChosen(this.chosen);
   }
 
+  chooseStart(track, start) {
+    if (this.corrections.tracks.includes(track)) this.corrections.show(track);
+    this.choose(this.corrections.shown.findIndex((row) => row.start_s === start));
+  }
+
   chooseAt(time) {
     const at = this.corrections.shown.findIndex((row) => row.start_s <= time && time < row.end_s);
     if (at >= 0) this.choose(at);

@@ -8,10 +8,10 @@ export function mount(panel) {
   const page = made("article", { className: "recording", hidden: true });
   const empty = made("p", { className: "empty", textContent: "Open a recording of the list." });
   panel.replaceChildren(made("div", { className: "labels-view" }, list, made("div", { className: "page" }, empty, page)));
-  const open = async (id) => {
+  const open = async (id, segment) => {
     page.hidden = false;
     empty.hidden = true;
-    recording.open(id);
+    recording.open(id, segment);
   };
   const recording = new RecordingPage(page, open);
   mountList(list, { onOpen: open });
