@@ -86,7 +86,7 @@ def test_a_review_tells_the_levels_of_the_label_table(recorded, labelled, tmp_pa
     page = tmp_path / "review.html"
     assert main(["review", str(recorded), "--out", str(page)]) == 0
     text = html.unescape(page.read_text(encoding="utf-8"))
-    assert f"<span>{labelled['level_db']:.1f} dB</span>" in text
+    assert f"<span>{labelled['level_dba']:.1f} dB(A)</span>" in text
     assert MOST_ON_A_PAGE.findall(text) == [f"{labelled['l_afmax_dba']:.1f}"]
 
 
