@@ -10,11 +10,15 @@ from noise.commands import options as opt
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
+    from collections.abc import Mapping
+    from contextlib import AbstractContextManager
 
     from noise.base.progress import Steps
+    from noise.batch.lines import Results
     from noise.diagnosis.case import Case
     from noise.diagnosis.improvement import Improvement
     from noise.diagnosis.outcome import Diagnosis
+    from sim.effects.effect import Effect
 
 __all__ = ["configure", "run"]
 
@@ -66,10 +70,12 @@ def run(options: Namespace) -> int:
     if options.out is not None:
         opt.check_folder(options.out, file="report.html")
     with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as tell:
-        case, diagnosis, told = _diagnosed(options, tell)
-        if options.out is not None:
-            tell("writing the report")
-            written = _write(options, diagnosis)
+        case, library, told = _read(options, tell)
+        with _keeping(options, case) as kept:
+            diagnosis = _diagnosed(options, case, library, tell, kept)
+            if options.out is not None:
+                tell("writing the report")
+                written = _write(options, diagnosis)
     if options.out is None:
         import json
 
@@ -83,8 +89,8 @@ def run(options: Namespace) -> int:
     return 1 if case.refused else 0
 
 
-def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis, set[str]]:
-    """Diagnose; return what was told of it beforehand, too."""
+def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], set[str]]:
+    """Read rig file, effects and recordings; return what was told of them, too."""
     tell("preparing")
     from models.rig_files.rig_file import load_rig
     from noise.base.user_effects import effect_library
@@ -95,7 +101,7 @@ def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis, set[st
         check_base(options.rig, options.out)
     library = effect_library(options.effects)
     from noise.diagnosis.case import read_case  # takes seconds, and what is refused is by now
-    from noise.diagnosis.diagnose import case_remarks, diagnose_case
+    from noise.diagnosis.diagnose import case_remarks
 
     case = read_case(options.data, rig)
     for name, reason in case.refused:
@@ -103,11 +109,34 @@ def _diagnosed(options: Namespace, tell: Steps) -> tuple[Case, Diagnosis, set[st
     remarks = case_remarks(case, library)
     for text in remarks:
         note(text)
-    diagnosis = diagnose_case(
-        case, quick=options.quick, library=library, seed=options.seed or 0, progress=tell
-    )
     left_out = {f"{name} was left out: {reason}" for name, reason in case.refused}
-    return case, diagnosis, {*remarks, *left_out}
+    return case, library, {*remarks, *left_out}
+
+
+def _keeping(options: Namespace, case: Case) -> AbstractContextManager[Results | None]:
+    """Keep what is simulated, except by a user's code: nothing tells whether that has changed."""
+    from joblib import hash as digest
+
+    from noise.batch.identity import call_identity
+    from noise.batch.lines import kept_results
+
+    target = None if options.out is None or options.effects else options.out / "report.html"
+    of_case = digest((case.rig, case.recordings))
+    return kept_results(target, call_identity("diagnosing", of_case, options.seed))
+
+
+def _diagnosed(
+    options: Namespace,
+    case: Case,
+    library: Mapping[str, Effect],
+    tell: Steps,
+    kept: Results | None,
+) -> Diagnosis:
+    from noise.diagnosis.diagnose import diagnose_case
+
+    return diagnose_case(
+        case, quick=options.quick, library=library, seed=options.seed or 0, progress=tell, kept=kept
+    )
 
 
 def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:

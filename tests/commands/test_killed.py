@@ -28,6 +28,11 @@ BENCH = [
     ["simulate", "--speed", str(n), "--seconds", "0.5", "--seed", str(n), "--out", f"bench/{n}"]
     for n in (1, 2, 3)
 ]
+MORE = ["--effect", "velocity_weakening:share=0.4", "--effect", "partial_slip:share=0.9"]
+BENCH += [
+    ["simulate", "--speed", str(n), "--seconds", "0.5", *MORE, "--out", f"more/{n}"]
+    for n in (1, 2, 4)
+]
 MAP = ("--speed", "1,5", "--interference", "0.279", "--support-stiffness", "2214")
 CALLS = {
     "render": ["render", "bench", "--out", "set"],
@@ -108,8 +113,10 @@ def test_a_command_killed_anywhere_comes_out_as_if_it_had_not_been(command, benc
 
 
 def start(call, folder):
+    # Each folder has a cache of its own, where no other diagnosis has kept the cases of a rig.
+    of_its_own = {"HOME": f"{folder}.home", "XDG_CACHE_HOME": f"{folder}.home/.cache"}
     return subprocess.Popen(
-        [sys.executable, "-m", "noise", *call], cwd=folder, env=ENVIRONMENT,
+        [sys.executable, "-m", "noise", *call], cwd=folder, env=ENVIRONMENT | of_its_own,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
 
@@ -207,6 +214,12 @@ KEEPING = {
 @pytest.mark.slow
 def test_what_is_kept_until_it_is_done_is_not_done_again(command, bench, tmp_path):
     simulates_and_measures_nothing_again(*KEEPING[command], bench, tmp_path, SHARES)
+
+
+@pytest.mark.slow
+def test_a_diagnosis_killed_half_way_simulates_nothing_again(bench, tmp_path):
+    call = ["diagnose", "more", "--rig", "rig.toml", "--out", "diagnosis"]
+    simulates_and_measures_nothing_again(call, "diagnosis/report.html", bench, tmp_path, [0.5])
 
 
 def test_labels_go_on_where_half_of_the_journal_was(tmp_path):

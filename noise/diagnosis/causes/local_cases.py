@@ -33,7 +33,7 @@ from sim.effects.effect import activated
 from sim.timing import LEARNING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -41,9 +41,12 @@ if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from models.recording import Recording
     from models.rig import Rig
+    from noise.batch.lines import Results
     from noise.diagnosis.case import Case
     from noise.diagnosis.causes.posterior import Posterior
     from sim.effects.effect import ActiveEffect, Effect
+
+    Job = tuple[frozenset[str], int]
 
 __all__ = ["LONGEST", "MOST", "Bench", "LocalCase", "Run", "bench_of", "local_cases"]
 
@@ -73,6 +76,10 @@ assumed."""
 
 _SEVERAL = 16
 """Cases from which a second process is worth its start."""
+
+_AT_ONCE = 4
+"""Cases that a process makes before it hands them over: what a rig's ways take to compute is spread
+over them, and what is lost when it is killed is no more."""
 
 
 @dataclass(frozen=True)
@@ -160,11 +167,12 @@ def bench_of(
 def local_cases(
     bench: Bench,
     posterior: Posterior,
-    wanted: Sequence[tuple[frozenset[str], int]],
+    wanted: Sequence[Job],
     *,
     library: Mapping[str, Effect] = EFFECTS,
     workers: int = 1,
     seed: int = 0,
+    kept: Results | None = None,
 ) -> list[LocalCase]:
     """Simulate cases of a rig, or take those that an earlier diagnosis of it has kept.
 
@@ -180,6 +188,9 @@ def local_cases(
     workers : int
         Processes.
     seed : int
+    kept : Results, optional
+        Where to keep each case as it is made, and what of them is there already, in a call with the
+        same bench, posterior and seed.
 
     Returns
     -------
@@ -190,63 +201,85 @@ def local_cases(
     shipped = all(EFFECTS.get(spec.name) is library.get(spec.name) for spec in bench.rig.effects)
     cache = LocalCache.of((bench.rig, bench.runs, WEAKEST, seed), posterior) if shipped else None
     known = cache.read() if cache is not None else {}
-    missing = [job for job in wanted if job not in known]
-    plain = [job for job in missing if all(EFFECTS.get(c) is library.get(c) for c in job[0])]
-    own = [job for job in missing if job not in plain]
+    n_cached = len(known)
+    plain = [job for job in wanted if all(EFFECTS.get(c) is library.get(c) for c in job[0])]
+    if kept is not None and shipped:
+        there = {job: kept.found[_key(job)] for job in plain if _key(job) in kept.found}
+        known |= {job: np.array(odds, dtype=np.float64) for job, odds in there.items()}
     # A user's code may not be known to another process; it may be slow as well.
-    of_users = _simulated(bench, posterior, own, library, seed)
-    if workers > 1 and len(plain) >= _SEVERAL and shipped:
-        made = _simulated_by(workers, bench, posterior, plain, seed)
+    own = [job for job in wanted if job not in plain]
+    of_users = dict(_simulated(bench, posterior, own, library, seed))
+    missing = [job for job in plain if job not in known]
+    if workers > 1 and len(missing) >= _SEVERAL and shipped:
+        made = _simulated_by(workers, bench, posterior, missing, seed)
     else:
-        made = _simulated(bench, posterior, plain, library, seed)
-    if cache is not None and made:
-        cache.write(known | made)
-    made |= of_users | known
-    return [LocalCase(job[0], made[job]) for job in wanted if job in made and made[job].size]
+        made = _simulated(bench, posterior, missing, library, seed)
+    for job, odds in made:
+        known[job] = odds
+        if kept is not None and shipped:
+            kept.add(_key(job), *odds.tolist())
+    if cache is not None and len(known) > n_cached:
+        cache.write(known)
+    known |= of_users
+    return [LocalCase(job[0], known[job]) for job in wanted if job in known and known[job].size]
+
+
+def _key(job: Job) -> str:
+    hypothesis, number = job
+    return f"case {number} of {'+'.join(sorted(hypothesis))}"
 
 
 def _simulated_by(
-    workers: int,
-    bench: Bench,
-    posterior: Posterior,
-    jobs: Sequence[tuple[frozenset[str], int]],
-    seed: int,
-) -> dict[tuple[frozenset[str], int], NDArray[np.float64]]:
+    workers: int, bench: Bench, posterior: Posterior, jobs: Sequence[Job], seed: int
+) -> Iterator[tuple[Job, NDArray[np.float64]]]:
     """Divide cases between processes; where these are ended, this one makes them."""
     from concurrent.futures.process import BrokenProcessPool
 
     from joblib import Parallel, delayed
 
+    left = dict.fromkeys(jobs)
+    make = delayed(ending_with_this(_listed))
     try:
-        parts = Parallel(n_jobs=workers)(
-            delayed(ending_with_this(_simulated))(bench, posterior, jobs[i::workers], EFFECTS, seed)
-            for i in range(workers)
-        )
+        for part in Parallel(n_jobs=workers, return_as="generator")(
+            make(bench, posterior, jobs[i : i + _AT_ONCE], EFFECTS, seed)
+            for i in range(0, len(jobs), _AT_ONCE)
+        ):
+            for job, odds in part:
+                del left[job]
+                yield job, odds
     except BrokenProcessPool:
-        return _simulated(bench, posterior, jobs, EFFECTS, seed)
-    return {job: odds for part in parts for job, odds in part.items()}
+        yield from _simulated(bench, posterior, list(left), EFFECTS, seed)
+
+
+def _listed(
+    bench: Bench,
+    posterior: Posterior,
+    jobs: Sequence[Job],
+    library: Mapping[str, Effect],
+    seed: int,
+) -> list[tuple[Job, NDArray[np.float64]]]:
+    return list(_simulated(bench, posterior, jobs, library, seed))
 
 
 def _simulated(
     bench: Bench,
     posterior: Posterior,
-    jobs: Sequence[tuple[frozenset[str], int]],
+    jobs: Sequence[Job],
     library: Mapping[str, Effect],
     seed: int,
-) -> dict[tuple[frozenset[str], int], NDArray[np.float64]]:
-    """Log-odds of each case; empty ones of what cannot be simulated."""
+) -> Iterator[tuple[Job, NDArray[np.float64]]]:
+    """Log-odds of each case, as soon as they are there; empty ones of what cannot be simulated."""
     paths = _Paths(bench.rig, library)
-    found: dict[tuple[frozenset[str], int], NDArray[np.float64]] = {}
-    for hypothesis, number in jobs:
+    for job in jobs:
+        hypothesis, number = job
         key = zlib.crc32("+".join(sorted(hypothesis)).encode())
         rng = np.random.default_rng([seed, key, number])
         try:
             table = _table(bench, hypothesis, paths, library, rng)
         except ParameterError:
-            found[hypothesis, number] = np.zeros(0)
+            yield job, np.zeros(0)
         else:
-            found[hypothesis, number] = posterior.log_odds(table)
-    return found
+            yield job, posterior.log_odds(table)
 
 
 class _Paths:
