@@ -20,7 +20,7 @@ from starlette.staticfiles import StaticFiles
 
 from models.errors import BushingNoiseError
 from noise.app.gate import Gate
-from noise.app.routes_later import RoutesLater
+from noise.app.lazy_routes import LazyRoutes
 from noise.base.label_looks import LABEL_LOOKS
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def create_app(
         Route("/api/stop", stopped, methods=["POST"]),
         Mount("/static", StaticFiles(directory=_STATIC)),
         *(route for name in (*_SHARED, *VIEWS) if name not in later for route in routes_of(name)),
-        *(RoutesLater(prefix, partial(routes_of, name)) for name, prefix in later.items()),
+        *(LazyRoutes(prefix, partial(routes_of, name)) for name, prefix in later.items()),
     ]
     app = Starlette(routes=routes, exception_handlers={BushingNoiseError: _told})
     return Gate(app, token, port)

@@ -16,7 +16,7 @@ from features.long.levels import long_sound_levels
 from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.long_sound import Heard
+from noise.audio.long_sound import AudibleSound
 
 if TYPE_CHECKING:
     from features.kernels.levels import SoundLevels
@@ -124,12 +124,12 @@ class Assessment:
         return lines
 
 
-def assess(recording: Recording | Heard, *, quality: bool = False) -> Assessment:
+def assess(recording: Recording | AudibleSound, *, quality: bool = False) -> Assessment:
     """Measure the sound of a recording's first pressure channel.
 
     Parameters
     ----------
-    recording : Recording or Heard
+    recording : Recording or AudibleSound
     quality : bool
         Whether loudness, sharpness, roughness and tonality are told as well.
 
@@ -153,7 +153,7 @@ def assess(recording: Recording | Heard, *, quality: bool = False) -> Assessment
     >>> of.row(full_scale=2.0)["level_db"], of.row(full_scale=2.0)["level_dbfs"]
     (93.98, -6.02)
     """
-    take = Heard.of(recording)
+    take = AudibleSound.of(recording)
     sound, calibrated = take.sound, take.about.calibrated
     levels = long_sound_levels(
         sound.read,

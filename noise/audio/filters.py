@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from noise.audio.long_sound import CHUNK, Heard, LongSound, in_chunks
+from noise.audio.long_sound import CHUNK, AudibleSound, LongSound, in_chunks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -137,18 +137,18 @@ class SoundFilter:
         return LongSound(rate, n, in_chunks(make, n, max(CHUNK, 2 * margin)))
 
 
-def filtered(recording: Recording | Heard, through: SoundFilter) -> Heard:
+def filtered(recording: Recording | AudibleSound, through: SoundFilter) -> AudibleSound:
     """Return a recording whose sound goes through a filter, with a note that says so.
 
     Parameters
     ----------
-    recording : Recording or Heard
+    recording : Recording or AudibleSound
         Its first pressure channel is what is heard.
     through : SoundFilter
 
     Returns
     -------
-    Heard
+    AudibleSound
         The note has the level that the filter leaves over that of the
         whole sound [dB].
 
@@ -165,7 +165,7 @@ def filtered(recording: Recording | Heard, through: SoundFilter) -> Heard:
     >>> filtered(both, SoundFilter((500.0, 2000.0))).about.notes
     ('filtered: 500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound',)
     """
-    take = Heard.of(recording)
+    take = AudibleSound.of(recording)
     try:
         kept = through.through(take.sound)
     except ParameterError as error:
@@ -175,4 +175,4 @@ def filtered(recording: Recording | Heard, through: SoundFilter) -> Heard:
     if before > 0.0 and after > 0.0:
         change = f"{20.0 * math.log10(before / after):.1f} dB below the whole sound"
     notes = (*take.about.notes, f"filtered: {through.words}; {change}")
-    return Heard(kept, replace(take.about, notes=notes))
+    return AudibleSound(kept, replace(take.about, notes=notes))

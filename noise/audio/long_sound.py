@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from features.long.parts import Parts, Read
 
-__all__ = ["CHUNK", "Heard", "LongSound", "in_chunks"]
+__all__ = ["CHUNK", "AudibleSound", "LongSound", "in_chunks"]
 
 CHUNK = 1 << 19
 """Samples that are computed at once."""
@@ -184,7 +184,7 @@ class LongSound:
 
 
 @dataclass(frozen=True, eq=False)
-class Heard:
+class AudibleSound:
     """What is heard of a recording: its first channel of sound pressure.
 
     Parameters
@@ -199,7 +199,7 @@ class Heard:
     about: Recording
 
     @classmethod
-    def of(cls, recording: Recording | Parts | Heard) -> Heard:
+    def of(cls, recording: Recording | Parts | AudibleSound) -> AudibleSound:
         """Return what is heard of a recording.
 
         Raises
@@ -207,7 +207,7 @@ class Heard:
         RecordingError
             There is no pressure channel, or nothing to be heard.
         """
-        if isinstance(recording, Heard):
+        if isinstance(recording, AudibleSound):
             return recording
         about = Recording(
             np.empty((len(recording.channels), 0)), recording.rate, recording.channels,

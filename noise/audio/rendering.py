@@ -22,7 +22,7 @@ from noise.audio.gain import (
     matched_full_scale,
     true_peak,
 )
-from noise.audio.long_sound import Heard
+from noise.audio.long_sound import AudibleSound
 from noise.audio.loudness import LOUDNESS_BLOCK, LoudnessBlocks
 from noise.audio.sequence import GAP, Part, back_to_back
 from noise.audio.sound import FADE
@@ -95,7 +95,7 @@ class Rendered:
 
 
 def survey(
-    recordings: Sequence[Recording | Heard],
+    recordings: Sequence[Recording | AudibleSound],
     *,
     rate: int = 48000,
     gap: float = GAP,
@@ -107,7 +107,7 @@ def survey(
 
     Parameters
     ----------
-    recordings : sequence of Recording or Heard
+    recordings : sequence of Recording or AudibleSound
     rate, gap, fade
         As for `noise.audio.sequence.back_to_back`.
     quality : bool
@@ -128,7 +128,7 @@ def survey(
     >>> of.calibrated, round(of.true_peak, 3)
     (True, 1.0)
     """
-    takes = [Heard.of(recording) for recording in recordings]
+    takes = [AudibleSound.of(recording) for recording in recordings]
     joined = back_to_back(takes, rate, gap=gap, fade=fade)
     sound = joined.sound
     peak = true_peak(sound, rate)
@@ -154,7 +154,7 @@ def survey(
 
 def render(
     path: Path,
-    recordings: Sequence[Recording | Heard],
+    recordings: Sequence[Recording | AudibleSound],
     of: Survey,
     full_scale: FullScale,
     *,
@@ -170,7 +170,7 @@ def render(
     Parameters
     ----------
     path : Path
-    recordings : sequence of Recording or Heard
+    recordings : sequence of Recording or AudibleSound
     of : Survey
         Of these recordings.
     full_scale : FullScale
@@ -201,7 +201,7 @@ def render(
     ...     render(target, runs, of, FullScale(2.0, "calibrated")).summary
     'true peak -6.0 dBTP, loudness -9.0 LUFS'
     """
-    takes = [Heard.of(recording) for recording in recordings]
+    takes = [AudibleSound.of(recording) for recording in recordings]
     joined = back_to_back(takes, rate, gap=gap, fade=fade)
     value = full_scale.value
     if full_scale.target is not None and of.blocks is not None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from models.condition import Condition
 from models.errors import ParameterError
-from noise.audio.long_sound import Heard, LongSound
+from noise.audio.long_sound import AudibleSound, LongSound
 from noise.audio.sound import FADE
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class JoinedSound:
 
 
 def back_to_back(
-    recordings: Sequence[Recording | Heard],
+    recordings: Sequence[Recording | AudibleSound],
     rate: int = 48000,
     *,
     gap: float = GAP,
@@ -67,7 +67,7 @@ def back_to_back(
 
     Parameters
     ----------
-    recordings : sequence of Recording or Heard
+    recordings : sequence of Recording or AudibleSound
         One or more; their names become those of the parts.
     rate : int
         Sampling rate of the result [Hz].
@@ -93,7 +93,7 @@ def back_to_back(
     >>> pair.sound.n_samples, [(part.name, part.start) for part in pair.parts]
     (144, [('A', 0.0), ('B', 0.002)])
     """
-    takes = [Heard.of(recording) for recording in recordings]
+    takes = [AudibleSound.of(recording) for recording in recordings]
     check_same_calibration([take.about for take in takes])
     sounds = [take.sound.playable(rate, fade=fade) for take in takes]
     lengths = np.array([sound.n_samples for sound in sounds])

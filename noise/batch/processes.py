@@ -13,7 +13,7 @@ from collections import deque
 from multiprocessing import connection, get_context
 from typing import TYPE_CHECKING
 
-from noise.batch.deaf import deaf_to_interrupts
+from noise.batch.interrupts import interrupts_blocked
 from noise.batch.rows import parts_of, stored
 from noise.batch.work import Done, one_thread, perform, refusal
 
@@ -87,7 +87,7 @@ class _Worker:
         self.job: Job | None = None
         self.began = False
         self._process = context.Process(target=_serve, args=(theirs, work), daemon=True)
-        with deaf_to_interrupts():
+        with interrupts_blocked():
             self._process.start()
         theirs.close()
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from noise.audio.filters import SoundFilter
-    from noise.audio.long_sound import Heard
+    from noise.audio.long_sound import AudibleSound
     from noise.audio.rendering import Survey
     from noise.batch.lines import Results
     from noise.commands.render_sources import Source
@@ -36,7 +36,7 @@ class Plan(NamedTuple):
     through: SoundFilter
 
     @contextmanager
-    def takes(self) -> Iterator[list[Heard]]:
+    def takes(self) -> Iterator[list[AudibleSound]]:
         """Open the recordings; they are read when they are listened to."""
         with ExitStack() as stack:
             whole = [source.heard(number, stack) for source, number in self.runs]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from contextlib import ExitStack
 
     from models.recording import Recording
-    from noise.audio.long_sound import Heard
+    from noise.audio.long_sound import AudibleSound
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = ["RecordedSource", "SimulatedSource", "Source", "sources_of"]
@@ -42,15 +42,15 @@ class RecordedSource:
     path: Path
     full_scale: PascalPerFullScale | None
 
-    def heard(self, number: int, stack: ExitStack) -> Heard:
+    def heard(self, number: int, stack: ExitStack) -> AudibleSound:
         """Open it, until `stack` is closed; the same whatever `number`."""
         del number
-        from noise.audio.long_sound import Heard
+        from noise.audio.long_sound import AudibleSound
         from noise.recordings import read_recording
         from noise.recordings.blocks import open_blocks
 
         opened = stack.enter_context(open_blocks(self.path, full_scale=self.full_scale))
-        return Heard.of(opened or read_recording(self.path, full_scale=self.full_scale))
+        return AudibleSound.of(opened or read_recording(self.path, full_scale=self.full_scale))
 
 
 @dataclass(frozen=True)
@@ -63,12 +63,12 @@ class SimulatedSource:
     notes: tuple[str, ...] = ()
     done: dict[int, Recording] = field(default_factory=dict)
 
-    def heard(self, number: int, stack: ExitStack) -> Heard:
+    def heard(self, number: int, stack: ExitStack) -> AudibleSound:
         """Return the run of this number; nothing is left for `stack` to close."""
         del stack
-        from noise.audio.long_sound import Heard
+        from noise.audio.long_sound import AudibleSound
 
-        return Heard.of(self.recording(number))
+        return AudibleSound.of(self.recording(number))
 
     def recording(self, number: int) -> Recording:
         """Simulate the run of this number, each with random numbers of its own."""

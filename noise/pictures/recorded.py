@@ -18,7 +18,7 @@ from features.long.parts import in_pieces, n_samples_of, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.long_sound import Heard, LongSound
+from noise.audio.long_sound import AudibleSound, LongSound
 from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure
 from noise.pictures.clip_levels import HIGHEST, LOWEST, RATE, clip_levels
@@ -209,7 +209,7 @@ def recorded_levels(
     >>> round(float(level.max()), 1)
     91.0
     """
-    return _levels(Heard.of(recording).sound, _reference(recording))
+    return _levels(AudibleSound.of(recording).sound, _reference(recording))
 
 
 def recorded_speed(recording: Recording | Parts) -> tuple[NDArray[np.float64], float] | None:

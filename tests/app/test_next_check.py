@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from models.recording import Channel, Recording
-from noise.app.labels.describing import Describing, mean_features
 from noise.app.labels.next_check import NextCheck
+from noise.app.labels.segment_features import SegmentFeatures, mean_features
 from noise.batch import Job
 from noise.labels.windows import FEATURE_NAMES
 from noise.recordings import write_recording
@@ -73,7 +73,7 @@ def sounds(tmp_path):
 
 
 def test_sounds_that_are_alike_are_not_asked_one_after_the_other(sounds):
-    describing = Describing()
+    describing = SegmentFeatures()
     recordings = [one(p, 1.0 - p, end=1.0) for p in (0.5, 0.51, 0.52, 0.53)]
     wanted = [(str(job.path.absolute()), "all", 0.0, 1.0) for job in sounds]
     try:

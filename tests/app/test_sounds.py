@@ -13,10 +13,10 @@ from features.kernels.levels import sound_levels
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.app.opened import open_paths
-from noise.app.sounds.heard import bands, equal, level_course, wav
-from noise.app.sounds.kept import KeptSounds
+from noise.app.sounds.playback import bands, equal, level_course, wav
 from noise.app.sounds.routes import routes
-from noise.app.sounds.seen import line, outline, spectrogram
+from noise.app.sounds.sound_cache import SoundCache
+from noise.app.sounds.spectrogram import line, outline, spectrogram
 from noise.recordings.writing import write_recording
 
 RATE = 48000
@@ -34,7 +34,7 @@ def sounds(tmp_path_factory):
     write_recording(folder / "a.wav", Recording(samples, RATE, channels, calibrated=True))
     soundfile.write(folder / "b.wav", 0.5 * tone(0.3), RATE, subtype="FLOAT")
     (folder / "c.wav").write_bytes(b"no sound")
-    return KeptSounds(open_paths([folder]))
+    return SoundCache(open_paths([folder]))
 
 
 def test_by_default_the_sound_pressure_is_heard_in_pascals(sounds):
@@ -91,7 +91,7 @@ def test_levels_are_those_of_the_meter_of_all_tables(sounds):
 def test_the_meter_does_not_notice_where_it_is_read_in_pieces(sounds, monkeypatch):
     track = sounds.track(0)
     whole = level_course(track)["levels"]
-    monkeypatch.setattr("noise.app.sounds.heard._PIECE", 0.5)
+    monkeypatch.setattr("noise.app.sounds.playback._PIECE", 0.5)
     np.testing.assert_allclose(level_course(track)["levels"], whole, atol=0.02)
 
 
@@ -133,7 +133,7 @@ def test_what_is_no_recording_is_refused_each_time(sounds):
 def test_a_file_that_has_changed_is_read_again(tmp_path):
     file = tmp_path / "a.wav"
     soundfile.write(file, tone(0.5), RATE, subtype="FLOAT")
-    sounds = KeptSounds(open_paths([file]))
+    sounds = SoundCache(open_paths([file]))
     assert sounds.track(0).n == RATE // 2
     soundfile.write(file, tone(0.7), RATE, subtype="FLOAT")
     assert sounds.track(0).n == round(0.7 * RATE)

@@ -13,8 +13,8 @@ from features.registry import recording_features
 from models.recording import Channel, Recording
 from models.rig_files.rig_file import load_material_rig
 from noise.app.opened import open_paths
-from noise.app.sounds.heard import bands, level_course
-from noise.app.sounds.kept import KeptSounds
+from noise.app.sounds.playback import bands, level_course
+from noise.app.sounds.sound_cache import SoundCache
 from noise.cli import main
 from noise.diagnosis.fit.labels_and_levels import labels_and_levels
 from noise.labels.files import label
@@ -91,7 +91,7 @@ def test_a_review_tells_the_levels_of_the_label_table(recorded, labelled, tmp_pa
 
 
 def test_the_app_tells_the_levels_of_the_label_table(recorded, labelled):
-    track = KeptSounds(open_paths([recorded])).track(0)
+    track = SoundCache(open_paths([recorded])).track(0)
     found = bands(track, {})
     assert [found[name] for name in ("level", "level_a", "level_af_max")] == [
         labelled[name] for name in LEVELS
@@ -146,7 +146,7 @@ def test_segments_have_the_levels_of_what_they_hold(tmp_path):
     path = written(tmp_path, "run.wav", np.concatenate([hiss(3.0, 1e-3), loud, hiss(3.0, 1e-3)]))
     rows = label(path)
     assert len(rows) >= 3
-    track = KeptSounds(open_paths([path])).track(0)
+    track = SoundCache(open_paths([path])).track(0)
     for row in rows:
         found = bands(track, {"start": str(row["start_s"]), "end": str(row["end_s"])})
         assert [found[name] for name in ("level", "level_a", "level_af_max")] == [

@@ -24,9 +24,9 @@ from noise.screening.parts.variation import UsePoint
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from noise.app.design.questions import ChartAsked, HelpAsked
+    from noise.app.design.requests import ChartRequest, SuggestionRequest
 
-__all__ = ["chart_of", "helps_of"]
+__all__ = ["chart_of", "suggestions_of"]
 
 _SPEEDS, _FITS = 16, 7
 _SIMULATIONS = 60
@@ -34,14 +34,14 @@ _FASTEST = 13.0
 """Of a chart of a bushing that states none [rad/s]."""
 
 
-def chart_of(asked: ChartAsked) -> dict[str, object]:
+def chart_of(asked: ChartRequest) -> dict[str, object]:
     """Return labels over interference (rows) and speed, with both axes.
 
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
-    >>> from noise.app.design.questions import ChartAsked
-    >>> found = chart_of(ChartAsked(load_material_rig("PDMS"), 2214.0, 23.0))
+    >>> from noise.app.design.requests import ChartRequest
+    >>> found = chart_of(ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0))
     >>> found["interference_mm"][0], found["speed_rad_s"][-1], found["labels"][0][0]
     (0.254, 17.0, 'none')
     """
@@ -65,15 +65,15 @@ def chart_of(asked: ChartAsked) -> dict[str, object]:
     }
 
 
-def helps_of(asked: HelpAsked) -> dict[str, object]:
+def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
     """Return the noise at a condition, and the least change of each quantity that ends it.
 
     Examples
     --------
     >>> from models.rig_files.rig_file import load_material_rig
-    >>> from noise.app.design.questions import ChartAsked, HelpAsked
-    >>> asked = HelpAsked(ChartAsked(load_material_rig("PDMS"), 2214.0, 23.0), 0.279e-3, 5.0)
-    >>> helps_of(asked)
+    >>> from noise.app.design.requests import ChartRequest, SuggestionRequest
+    >>> chart = ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0)
+    >>> suggestions_of(SuggestionRequest(chart, 0.279e-3, 5.0))
     {'noise': 'none', 'speed_rad_s': 5.0, 'changes': []}
     """
     chart = asked.chart

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig
 from noise.app.design.pace import Pace
-from noise.app.design.paths_beside import RATE, PathsBeside, responses_beside
+from noise.app.design.transfer_paths import RATE, LiveTransferPaths, impulse_response_worker
 from noise.batch.work import one_thread
 from sim.live import LiveRun
 from sim.live_setting import Setting
@@ -55,7 +55,7 @@ class Player:
 
     def __init__(self) -> None:
         self._runs: dict[int, _Run] = {}
-        self.beside = responses_beside()
+        self.beside = impulse_response_worker()
 
     def start(self, number: int, serial: int, setting: Setting) -> None:
         """Begin a run.
@@ -65,7 +65,7 @@ class Player:
         ParameterError
             The setting cannot be used.
         """
-        live = LiveRun(setting, rate=RATE, n=BLOCK, paths=PathsBeside(self.beside))
+        live = LiveRun(setting, rate=RATE, n=BLOCK, paths=LiveTransferPaths(self.beside))
         self._runs[number] = _Run(live, serial)
 
     def stop(self, number: int) -> None:

@@ -9,13 +9,13 @@ from starlette.routing import Route
 
 from models.errors import ParameterError
 from noise.app.design.bases import base_of, bases_of
-from noise.app.design.beside import Beside
 from noise.app.design.design import base_controls, design_of
-from noise.app.design.keeping import Keeping
+from noise.app.design.export import DesignExport
 from noise.app.design.player import BLOCK, RATE, TORQUE_STEP
-from noise.app.design.questions import ChartAsked, HelpAsked
-from noise.app.design.saving import save_rig
+from noise.app.design.requests import ChartRequest, SuggestionRequest
+from noise.app.design.rig_saving import save_rig
 from noise.app.design.sound import LiveSounds
+from noise.app.design.worker_process import WorkerProcess
 from noise.app.requests import body
 from sim.live import LOOKAHEAD
 
@@ -36,10 +36,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     bases = bases_of(opened)
     sounds = LiveSounds(bases)
-    charts: Beside[ChartAsked, dict[str, object]] = Beside(f"{_CHARTS}:chart_of", _NICE)
-    helps: Beside[HelpAsked, dict[str, object]] = Beside(f"{_CHARTS}:helps_of", _NICE)
-    keeping = Keeping(bases, opened.folder)
-    for one in (sounds, charts, helps, keeping):
+    charts: WorkerProcess[ChartRequest, dict[str, object]] = WorkerProcess(
+        f"{_CHARTS}:chart_of", _NICE
+    )
+    suggestions: WorkerProcess[SuggestionRequest, dict[str, object]] = WorkerProcess(
+        f"{_CHARTS}:suggestions_of", _NICE
+    )
+    export = DesignExport(bases, opened.folder)
+    for one in (sounds, charts, suggestions, export):
         opened.leaving.callback(one.stop)
 
     def listed(_: Request) -> Response:
@@ -76,13 +80,15 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(sounds.levels(int(said)))
 
     def charted(_: Request, said: object) -> Response:
-        return _waited(charts.answer_to(ChartAsked.of(design_of(said, bases).setting)))
+        return _waited(charts.answer_to(ChartRequest.of(design_of(said, bases).setting)))
 
     def helped(_: Request, said: object) -> Response:
-        return _waited(helps.answer_to(HelpAsked.of(design_of(said, bases).setting, said)))
+        return _waited(
+            suggestions.answer_to(SuggestionRequest.of(design_of(said, bases).setting, said))
+        )
 
     def kept(_: Request, said: object) -> Response:
-        return JSONResponse(keeping.start(said))
+        return JSONResponse(export.start(said))
 
     def saved(_: Request, said: object) -> Response:
         return JSONResponse(save_rig(said, bases, opened.folder))
@@ -99,7 +105,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/design/helps", body(helped), methods=["POST"]),
         Route("/api/design/rig", body(saved), methods=["POST"]),
         Route("/api/design/set", body(kept), methods=["POST"]),
-        Route("/api/design/set", lambda _: JSONResponse(keeping.state()), methods=["GET"]),
+        Route("/api/design/set", lambda _: JSONResponse(export.state()), methods=["GET"]),
     ]
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from noise.app.opened import Opened
-    from noise.app.sounds.kept import KeptSounds
+    from noise.app.sounds.sound_cache import SoundCache
 
 __all__ = ["EQUAL_LOUDNESS", "GAINS", "LONGEST", "ONE_GAIN", "Playing"]
 
@@ -63,11 +63,11 @@ class Playing:
     Parameters
     ----------
     opened : Opened
-    sounds : KeptSounds
+    sounds : SoundCache
         Of what was opened.
     """
 
-    def __init__(self, opened: Opened, sounds: KeptSounds) -> None:
+    def __init__(self, opened: Opened, sounds: SoundCache) -> None:
         self._opened = opened
         self._sounds = sounds
         self._lock = Lock()

@@ -13,14 +13,14 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from models.errors import ParameterError
-from noise.app.jury.asked import MOST, read_beginning, read_design, read_sounds
 from noise.app.jury.order import ordered_pairs
 from noise.app.jury.playing import LONGEST, Playing
 from noise.app.jury.result import result, result_csv
+from noise.app.jury.setup import MOST, read_design, read_setup, read_sounds
 from noise.app.jury.store import Votes
 from noise.app.jury.votes import VOTES
 from noise.app.requests import body
-from noise.app.sounds.kept import KeptSounds
+from noise.app.sounds.sound_cache import SoundCache
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,7 +47,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     folder = opened.folder if opened.table is None else opened.table.absolute().parent
     votes = Votes(folder / _TABLE)
-    playing = Playing(opened, KeptSounds(opened))
+    playing = Playing(opened, SoundCache(opened))
     by_name: dict[str, list[int]] = {}
     for job in opened.jobs:
         by_name.setdefault(job.name, []).append(job.index)
@@ -99,20 +99,20 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return prepared(indices(asked(request).sounds))
 
     def begun(_: Request, said: object) -> Response:
-        beginning = read_beginning(said)
-        names = [opened.job(index).name for index in beginning.sounds]
+        setup = read_setup(said)
+        names = [opened.job(index).name for index in setup.sounds]
         indices(names)
-        playing.gain(beginning.sounds, beginning.played)  # or nobody could begin
+        playing.gain(setup.sounds, setup.played)  # or nobody could begin
 
         def drawn(number: int) -> list[Pair]:
-            return ordered_pairs(beginning.design, np.random.default_rng([opened.seed, number]))
+            return ordered_pairs(setup.design, np.random.default_rng([opened.seed, number]))
 
         jury = votes.begin(
             names,
             drawn,
-            listener=beginning.listener,
-            question=beginning.question,
-            played=beginning.played,
+            listener=setup.listener,
+            question=setup.question,
+            played=setup.played,
             seed=opened.seed,
         )
         return JSONResponse(state(jury))

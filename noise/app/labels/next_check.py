@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.app.labels.describing import Describing, Wanted
+    from noise.app.labels.segment_features import SegmentFeatures, Wanted
     from noise.batch import Job
 
     Row = dict[str, object]
@@ -65,11 +65,11 @@ class NextCheck:
     ----------
     jobs : sequence of Job
         The recordings.
-    describing : Describing, optional
+    describing : SegmentFeatures, optional
         What tells how they sound; by default their labels' probabilities stand for it.
     """
 
-    def __init__(self, jobs: Sequence[Job], describing: Describing | None = None) -> None:
+    def __init__(self, jobs: Sequence[Job], describing: SegmentFeatures | None = None) -> None:
         self._lock = Lock()
         self._jobs = jobs
         self._describing = describing

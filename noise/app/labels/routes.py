@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from starlette.responses import JSONResponse
 from starlette.routing import Route
 
-from noise.app.labels.asked import read_asked, whole_number
-from noise.app.labels.describing import Describing
+from noise.app.labels.corrections import read_corrections
 from noise.app.labels.labelling_run import LabellingRun
+from noise.app.labels.list_query import read_list_query, whole_number
 from noise.app.labels.next_check import NextCheck
-from noise.app.labels.said import read_said
+from noise.app.labels.segment_features import SegmentFeatures
 from noise.app.labels.store import Labels
 from noise.app.labels.summary import plain
 from noise.app.labels.training_run import TrainingRun, own_classifier
@@ -37,7 +37,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
     labels = Labels(opened.jobs, opened.table, Labelling(classifier))
     run = LabellingRun(labels, opened, classifier)
     opened.leaving.callback(run.stop)
-    describing = Describing()
+    describing = SegmentFeatures()
     opened.leaving.callback(describing.stop)
     check = NextCheck(opened.jobs, describing)
     training = TrainingRun(labels, run, opened)
@@ -47,7 +47,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         shown = labels.summaries()
         done = sum(bool(one["labels"] or one["error"]) for one in shown)
         return JSONResponse(
-            {**read_asked(request.query_params).answer(shown), "state": run.state(done)}
+            {**read_list_query(request.query_params).answer(shown), "state": run.state(done)}
         )
 
     def segments(request: Request) -> Response:
@@ -57,7 +57,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def corrected(request: Request, said: object) -> Response:
         job = opened.job(request.path_params["id"])
         rows = said.get("rows") if isinstance(said, dict) else None
-        return JSONResponse(_segments(job.index, labels.correct(job.index, read_said(rows))))
+        return JSONResponse(_segments(job.index, labels.correct(job.index, read_corrections(rows))))
 
     def undone(_: Request, __: object) -> Response:
         index, rows = labels.undo()
@@ -103,4 +103,4 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
 def _nothing(request: Request) -> Response:
     state = {"done": 0, "total": 0, "running": False, "message": "", "classifier": None}
-    return JSONResponse({**read_asked(request.query_params).answer([]), "state": state})
+    return JSONResponse({**read_list_query(request.query_params).answer([]), "state": state})

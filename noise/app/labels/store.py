@@ -10,9 +10,9 @@ from threading import RLock
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
-from noise.app.labels.kept_table import KeptTable
-from noise.app.labels.said import as_rows, news
+from noise.app.labels.corrections import as_rows, news
 from noise.app.labels.summary import summary
+from noise.app.labels.table_cache import TableCache
 from noise.base.lock import locked
 from noise.batch import JournalReader
 from noise.labels.labelling import COLUMNS, Labelling
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from noise.app.labels.said import Said
+    from noise.app.labels.corrections import Correction
     from noise.batch import Done, Job
 
     Row = dict[str, object]
@@ -52,7 +52,7 @@ class Labels:
     def __init__(self, jobs: Sequence[Job], table: Path, work: Labelling) -> None:
         self._lock = RLock()
         self._jobs = jobs
-        self._table = KeptTable(table)
+        self._table = TableCache(table)
         self._rows: list[list[Row]] = [[] for _ in jobs]
         self._others: list[Row] = []
         self._summaries: list[dict[str, object] | None] = [None for _ in jobs]
@@ -113,7 +113,7 @@ class Labels:
             self.refresh()
             return list(self._rows)
 
-    def correct(self, index: int, said: Sequence[Said]) -> list[Row]:
+    def correct(self, index: int, said: Sequence[Correction]) -> list[Row]:
         """Put what a person says in place of a recording's segments, and write the table.
 
         Raises
@@ -179,7 +179,7 @@ class Labels:
         return news
 
 
-def _measured(job: Job, said: Sequence[Said], before: Sequence[Row]) -> list[Row]:
+def _measured(job: Job, said: Sequence[Correction], before: Sequence[Row]) -> list[Row]:
     """Measure a recording's segments where some are new; none where it cannot be."""
     if not news(said, before):
         return []

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from noise.app.sounds.heard import bands, equal, level_course, wav
-from noise.app.sounds.kept import KeptSounds
-from noise.app.sounds.seen import line, outline, spectrogram
+from noise.app.sounds.playback import bands, equal, level_course, wav
+from noise.app.sounds.sound_cache import SoundCache
+from noise.app.sounds.spectrogram import line, outline, spectrogram
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from starlette.routing import BaseRoute
 
     from noise.app.opened import Opened
-    from noise.app.sounds.kept import Track
+    from noise.app.sounds.sound_cache import Track
 
     Query = Mapping[str, str]
     Facts = dict[str, object]
@@ -32,7 +32,7 @@ __all__ = ["routes"]
 
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes that tell of recordings, each by its number."""
-    sounds = KeptSounds(opened)
+    sounds = SoundCache(opened)
 
     def about(request: Request) -> Response:
         index = request.path_params["id"]

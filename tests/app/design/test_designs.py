@@ -11,7 +11,7 @@ from models.rig_files.rig_file import load_rig
 from noise.app.design.bases import bases_of
 from noise.app.design.controls import controls_of
 from noise.app.design.design import design_of
-from noise.app.design.saving import save_rig
+from noise.app.design.rig_saving import save_rig
 from noise.app.opened import open_paths
 from noise.commands.condition_options import add_condition
 from sim.effects import EFFECTS

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from joblib import Parallel, delayed, dump, load
 
-from noise.app.labels.describing import mean_features
 from noise.app.labels.next_check import NextCheck
+from noise.app.labels.segment_features import mean_features
 from noise.base.label_names import LABELS
 from noise.batch import Job
 from noise.labels import classified, segments

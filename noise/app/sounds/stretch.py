@@ -11,7 +11,7 @@ from models.errors import ParameterError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from noise.app.sounds.kept import Track
+    from noise.app.sounds.sound_cache import Track
 
 __all__ = ["Stretch", "number", "read_stretch"]
 

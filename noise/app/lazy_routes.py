@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
     from starlette.types import Receive, Scope, Send
 
-__all__ = ["RoutesLater"]
+__all__ = ["LazyRoutes"]
 
 
-class RoutesLater(BaseRoute):
+class LazyRoutes(BaseRoute):
     """All routes that begin alike.
 
     Parameters

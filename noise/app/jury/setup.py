@@ -12,7 +12,7 @@ from noise.app.jury.playing import GAINS
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["MOST", "Beginning", "read_beginning", "read_design", "read_sounds"]
+__all__ = ["MOST", "JurySetup", "read_design", "read_setup", "read_sounds"]
 
 MOST = 40
 """Sounds that are compared."""
@@ -25,7 +25,7 @@ _MOST_REPEATED = 50
 
 
 @dataclass(frozen=True)
-class Beginning:
+class JurySetup:
     """A jury that is to begin.
 
     Parameters
@@ -44,7 +44,7 @@ class Beginning:
     played: str
 
 
-def read_beginning(said: object) -> Beginning:
+def read_setup(said: object) -> JurySetup:
     """Read how a jury is to begin.
 
     Raises
@@ -54,7 +54,7 @@ def read_beginning(said: object) -> Beginning:
 
     Examples
     --------
-    >>> read_beginning({"sounds": [0, 2], "question": "Which annoys more?"}).design.pairs
+    >>> read_setup({"sounds": [0, 2], "question": "Which annoys more?"}).design.pairs
     1
     """
     sounds = read_sounds(said)
@@ -65,7 +65,7 @@ def read_beginning(said: object) -> Beginning:
     played = asked.get("played", GAINS[0])
     if played not in GAINS:
         raise ParameterError(f"played: must be one of {', '.join(GAINS)}")
-    return Beginning(
+    return JurySetup(
         sounds, read_design({**asked, "sounds": len(sounds)}), listener, question, played
     )
 

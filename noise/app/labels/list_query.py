@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     Shown = dict[str, object]
 
-__all__ = ["Asked", "read_asked", "whole_number"]
+__all__ = ["ListQuery", "read_list_query", "whole_number"]
 
 _ORDERS = {
     "name": "name",
@@ -34,7 +34,7 @@ _MOST = 1000
 
 
 @dataclass(frozen=True)
-class Asked:
+class ListQuery:
     """What is asked of a list.
 
     Parameters
@@ -79,7 +79,7 @@ class Asked:
         }
 
 
-def read_asked(query: Mapping[str, str]) -> Asked:
+def read_list_query(query: Mapping[str, str]) -> ListQuery:
     """Read what a request asks.
 
     Raises
@@ -89,7 +89,7 @@ def read_asked(query: Mapping[str, str]) -> Asked:
 
     Examples
     --------
-    >>> read_asked({"label": "squeal", "sort": "level", "order": "desc"}).descending
+    >>> read_list_query({"label": "squeal", "sort": "level", "order": "desc"}).descending
     True
     """
     label, sort, order = query.get("label", ""), query.get("sort", ""), query.get("order", "asc")
@@ -99,7 +99,7 @@ def read_asked(query: Mapping[str, str]) -> Asked:
         raise ParameterError(f"sort {sort!r}: must be one of {', '.join(_ORDERS)}")
     if order not in ("asc", "desc"):
         raise ParameterError(f"order {order!r}: must be asc or desc")
-    return Asked(
+    return ListQuery(
         label,
         query.get("text", ""),
         sort,

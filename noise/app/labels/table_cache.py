@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     Row = dict[str, object]
 
-__all__ = ["KeptTable"]
+__all__ = ["TableCache"]
 
 
-class KeptTable:
+class TableCache:
     """A label table that several programs may write.
 
     Parameters

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.levels import a_weighted, fast_levels, sound_levels
-from noise.app.sounds.asked import number, read_stretch
+from noise.app.sounds.stretch import number, read_stretch
 from noise.audio.gain import LOUDNESS_BLOCK, loudness
 from noise.audio.sound import playable
 from noise.audio.wav import wav_bytes
@@ -20,7 +20,7 @@ from noise.audio.wav import wav_bytes
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from noise.app.sounds.kept import Track
+    from noise.app.sounds.sound_cache import Track
 
     Query = Mapping[str, str]
 

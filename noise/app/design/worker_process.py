@@ -16,13 +16,13 @@ from threading import Condition, Thread
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from models.errors import BushingNoiseError
-from noise.batch.deaf import deaf_to_interrupts
+from noise.batch.interrupts import interrupts_blocked
 from noise.batch.work import one_thread
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-__all__ = ["Beside"]
+__all__ = ["WorkerProcess"]
 
 _REST = 0.5
 """Longest rest after an answer, as long as it took: half a processor is left to the sound [s]."""
@@ -31,7 +31,7 @@ _Question = TypeVar("_Question")
 _Answer = TypeVar("_Answer")
 
 
-class Beside(Generic[_Question, _Answer]):
+class WorkerProcess(Generic[_Question, _Answer]):
     """A process that answers the newest question.
 
     Parameters
@@ -106,7 +106,7 @@ class Beside(Generic[_Question, _Answer]):
                 link, theirs = context.Pipe()
                 arguments = (theirs, self._answer, self._nice)
                 process = context.Process(target=_serve, args=arguments, daemon=True)
-                with deaf_to_interrupts():
+                with interrupts_blocked():
                     process.start()
                 theirs.close()
             try:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from models.recording import Channel
     from noise.app.opened import Opened
 
-__all__ = ["KeptSounds", "Track"]
+__all__ = ["SoundCache", "Track"]
 
 _KEPT = 6
 """Recordings in memory: two that are compared, and those beside them."""
@@ -101,7 +101,7 @@ class _Reading:
             return self.blocks
 
 
-class KeptSounds:
+class SoundCache:
     """The recordings that were opened, of which the last few are kept.
 
     Parameters

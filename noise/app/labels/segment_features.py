@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     Wanted = tuple[str, str, float, float]
 
-__all__ = ["Describing", "answer_lines", "mean_features"]
+__all__ = ["SegmentFeatures", "answer_lines", "mean_features"]
 
 _LONGEST = 10.0
 """Of a longer segment its middle stands for it [s]."""
@@ -33,7 +33,7 @@ _NICE = 15
 """Whoever listens, and labelling, go first."""
 
 
-class Describing:
+class SegmentFeatures:
     """Mean features of segments, as they become known."""
 
     def __init__(self) -> None:

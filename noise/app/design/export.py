@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.app.design.design import design_of
 from noise.app.design.player import RATE
-from noise.app.design.saving import name_of
+from noise.app.design.rig_saving import name_of
 from noise.app.labels.commands import Command
 from noise.base.atomic import atomic
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
     from noise.app.design.bases import Base
 
-__all__ = ["Keeping"]
+__all__ = ["DesignExport"]
 
 _SLOTS = ("A", "B")
 _LONGEST = 60.0
 """Of each sound [s]."""
 
 
-class Keeping:
+class DesignExport:
     """One set at a time, command by command.
 
     Parameters

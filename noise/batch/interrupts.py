@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["deaf_to_interrupts"]
+__all__ = ["interrupts_blocked"]
 
 
 @contextmanager
-def deaf_to_interrupts() -> Iterator[None]:
+def interrupts_blocked() -> Iterator[None]:
     """Start processes within that never see an interrupt; this one sees it afterwards.
 
     Examples
     --------
-    >>> with deaf_to_interrupts():
+    >>> with interrupts_blocked():
     ...     pass
     """
     if not hasattr(signal, "pthread_sigmask"):  # as on Windows

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from models.rig import Rig
     from sim.live_setting import Setting
 
-__all__ = ["ChartAsked", "HelpAsked"]
+__all__ = ["ChartRequest", "SuggestionRequest"]
 
 _LEAST, _MOST = 0.05, 200.0
 """Speeds at which a noise is looked for [rad/s]."""
 
 
 @dataclass(frozen=True)
-class ChartAsked:
+class ChartRequest:
     """What a chart is of; speed and interference are its axes.
 
     Parameters
@@ -37,30 +37,30 @@ class ChartAsked:
     temperature: float
 
     @classmethod
-    def of(cls, setting: Setting) -> ChartAsked:
+    def of(cls, setting: Setting) -> ChartRequest:
         """Return what is asked of a setting."""
         return cls(setting.rig, setting.support_stiffness, setting.temperature)
 
 
 @dataclass(frozen=True)
-class HelpAsked:
+class SuggestionRequest:
     """What a change is to end the noise of: one condition.
 
     Parameters
     ----------
-    chart : ChartAsked
+    chart : ChartRequest
     interference : float
         [m]
     speed : float
         [rad/s]
     """
 
-    chart: ChartAsked
+    chart: ChartRequest
     interference: float
     speed: float
 
     @classmethod
-    def of(cls, setting: Setting, said: object) -> HelpAsked:
+    def of(cls, setting: Setting, said: object) -> SuggestionRequest:
         """Return what is asked of a setting, at the speed that a request may state with it.
 
         Raises
@@ -75,4 +75,4 @@ class HelpAsked:
             speed = abs(float(stated))
         else:
             raise ParameterError(f"speed {str(stated)[:20]}: must be a number up to {_MOST:g}")
-        return cls(ChartAsked.of(setting), setting.interference, max(speed, _LEAST))
+        return cls(ChartRequest.of(setting), setting.interference, max(speed, _LEAST))

@@ -13,11 +13,11 @@ import pytest
 
 from models.errors import ParameterError
 from noise.app.design.bases import bases_of
-from noise.app.design.beside import Beside
-from noise.app.design.chart import helps_of
+from noise.app.design.chart import suggestions_of
 from noise.app.design.design import design_of
-from noise.app.design.keeping import Keeping
-from noise.app.design.questions import ChartAsked, HelpAsked
+from noise.app.design.export import DesignExport
+from noise.app.design.requests import ChartRequest, SuggestionRequest
+from noise.app.design.worker_process import WorkerProcess
 from noise.app.opened import open_paths
 from noise.recordings import read_recording
 
@@ -38,7 +38,7 @@ def setting(values, base="fluorocarbon"):
 
 
 def test_only_the_newest_question_is_answered_and_each_once():
-    beside = Beside("operator:neg")
+    beside = WorkerProcess("operator:neg")
     try:
         assert beside.answer_to(1) is None
         for question in range(2, 50):
@@ -51,13 +51,13 @@ def test_only_the_newest_question_is_answered_and_each_once():
 
 
 def test_what_cannot_be_answered_is_told_and_the_next_question_is_answered():
-    beside = Beside("noise.app.design.chart:chart_of")
-    wrong = ChartAsked(setting({}).rig, -5.0, 23.0)
+    beside = WorkerProcess("noise.app.design.chart:chart_of")
+    wrong = ChartRequest(setting({}).rig, -5.0, 23.0)
     try:
         answer, error = waited(lambda: beside.answer_to(wrong))
         assert answer is None
         assert "support" in error
-        assert waited(lambda: beside.answer_to(ChartAsked.of(setting({}, "PDMS"))))[0]
+        assert waited(lambda: beside.answer_to(ChartRequest.of(setting({}, "PDMS"))))[0]
     finally:
         beside.stop()
 
@@ -65,29 +65,31 @@ def test_what_cannot_be_answered_is_told_and_the_next_question_is_answered():
 @pytest.mark.slow
 def test_the_change_that_is_suggested_ends_the_noise():
     values = {"speed": 5.0}
-    found = helps_of(HelpAsked.of(setting(values), None))
+    found = suggestions_of(SuggestionRequest.of(setting(values), None))
     assert found["noise"] == "squawk"
     names = [one["name"] for one in found["changes"]]
     assert "damping" in names
     more = found["changes"][names.index("damping")]["factor"]
-    quiet = helps_of(HelpAsked.of(setting({**values, "change.damping": more * 1.02}), None))
+    quiet = suggestions_of(
+        SuggestionRequest.of(setting({**values, "change.damping": more * 1.02}), None)
+    )
     assert quiet["noise"] == "none"
     assert quiet["changes"] == []
 
 
 def test_the_speed_at_which_help_is_asked_for_is_that_which_is_heard():
     run_up = setting({"motion": "run_up"})
-    assert HelpAsked.of(run_up, {"speed": -6.5}).speed == 6.5
-    assert HelpAsked.of(setting({"speed": -3.0}), {}).speed == 3.0
+    assert SuggestionRequest.of(run_up, {"speed": -6.5}).speed == 6.5
+    assert SuggestionRequest.of(setting({"speed": -3.0}), {}).speed == 3.0
     for wrong in ("5", math.nan, 1e9):
         with pytest.raises(ParameterError, match="speed"):
-            HelpAsked.of(run_up, {"speed": wrong})
+            SuggestionRequest.of(run_up, {"speed": wrong})
 
 
 def test_charts_are_the_same_whatever_the_motion():
     one = setting({"motion": "swing", "interference": 0.2})
-    assert ChartAsked.of(one) == ChartAsked.of(setting({}))
-    assert ChartAsked.of(one) != ChartAsked.of(replace(one, temperature=60.0))
+    assert ChartRequest.of(one) == ChartRequest.of(setting({}))
+    assert ChartRequest.of(one) != ChartRequest.of(replace(one, temperature=60.0))
 
 
 def kept(keeping, said):
@@ -99,7 +101,7 @@ def kept(keeping, said):
 
 @pytest.mark.slow
 def test_both_designs_are_kept_as_sounds_at_one_gain_and_as_a_page(tmp_path):
-    keeping = Keeping(BASES, tmp_path)
+    keeping = DesignExport(BASES, tmp_path)
     designs = {
         "A": {"base": "fluorocarbon", "values": {}},
         "B": {"base": "fluorocarbon", "values": {"change.damping": 2.0, "motion": "swing"}},
@@ -134,5 +136,5 @@ def test_both_designs_are_kept_as_sounds_at_one_gain_and_as_a_page(tmp_path):
 def test_sets_that_cannot_be_are_refused_in_a_line(said, told, tmp_path):
     plain = {"name": "x", "designs": {"A": {"base": "PDMS", "values": {}}}}
     with pytest.raises(ParameterError, match=told):
-        Keeping(BASES, tmp_path).start(plain | said)
+        DesignExport(BASES, tmp_path).start(plain | said)
     assert list(tmp_path.iterdir()) == []

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Row = dict[str, object]
 
-__all__ = ["Said", "as_rows", "news", "read_said"]
+__all__ = ["Correction", "as_rows", "news", "read_corrections"]
 
 _MOST = 10_000
 """Segments of one recording that a request may bring."""
@@ -29,7 +29,7 @@ _OF_LABEL = tuple(f"p_{label}" for label in LABELS)
 
 
 @dataclass(frozen=True)
-class Said:
+class Correction:
     """A segment as a person says it is.
 
     Parameters
@@ -51,7 +51,7 @@ class Said:
     confirmed: bool = False
 
 
-def read_said(rows: object) -> list[Said]:
+def read_corrections(rows: object) -> list[Correction]:
     """Check the segments of a request.
 
     Parameters
@@ -66,8 +66,8 @@ def read_said(rows: object) -> list[Said]:
 
     Examples
     --------
-    >>> read_said([{"start_s": 0.0, "end_s": 2.0, "label": "creak", "channel": "all"}])
-    [Said(start=0.0, end=2.0, label='creak', channel='all', confirmed=False)]
+    >>> read_corrections([{"start_s": 0.0, "end_s": 2.0, "label": "creak", "channel": "all"}])
+    [Correction(start=0.0, end=2.0, label='creak', channel='all', confirmed=False)]
     """
     if not isinstance(rows, list) or not 0 < len(rows) <= _MOST:
         raise ParameterError(f"rows: expected a list of 1 to {_MOST} segments")
@@ -81,7 +81,7 @@ def read_said(rows: object) -> list[Said]:
     return said
 
 
-def _one(row: object) -> Said:
+def _one(row: object) -> Correction:
     if not isinstance(row, dict):
         raise ParameterError("rows: a segment is an object of start_s, end_s, label, channel")
     start, end = (_seconds(row, key) for key in ("start_s", "end_s"))
@@ -92,7 +92,7 @@ def _one(row: object) -> Said:
         raise ParameterError(f"label {label!r}: must be one of {', '.join(LABELS)}")
     if channel != "all" and not (channel.isascii() and channel.isdecimal() and int(channel) > 0):
         raise ParameterError(f"channel {channel!r}: must be all, or a track counted from 1")
-    return Said(start, end, str(label), channel, row.get("label_source") == HUMAN)
+    return Correction(start, end, str(label), channel, row.get("label_source") == HUMAN)
 
 
 def _seconds(row: dict[object, object], key: str) -> float:
@@ -102,20 +102,20 @@ def _seconds(row: dict[object, object], key: str) -> float:
     raise ParameterError(f"{key} {str(value)[:40]}: must be a number of seconds")
 
 
-def news(said: Sequence[Said], before: Sequence[Row]) -> list[Said]:
+def news(said: Sequence[Correction], before: Sequence[Row]) -> list[Correction]:
     """Return those segments that no row was before."""
     there = {(*_place(row), row["label"]) for row in before}
     return [one for one in said if (one.channel, one.start, one.end, one.label) not in there]
 
 
 def as_rows(
-    said: Sequence[Said], name: str, before: Sequence[Row], measured: Sequence[Row] = ()
+    said: Sequence[Correction], name: str, before: Sequence[Row], measured: Sequence[Row] = ()
 ) -> list[Row]:
     """Return the rows of a recording after a correction.
 
     Parameters
     ----------
-    said : sequence of Said
+    said : sequence of Correction
     name : str
         Of the recording in the table.
     before : sequence of dict
@@ -132,7 +132,7 @@ def as_rows(
     Examples
     --------
     >>> row = {"channel": "all", "start_s": 0.0, "end_s": 2.0, "label": "none", "level_dba": 50.0}
-    >>> new, = as_rows([Said(0.0, 2.0, "creak")], "run07.wav", [row])
+    >>> new, = as_rows([Correction(0.0, 2.0, "creak")], "run07.wav", [row])
     >>> new["label"], new["level_dba"], new["label_source"]
     ('creak', 50.0, 'human')
     """

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from noise.app.sounds.asked import number, read_stretch
+from noise.app.sounds.stretch import number, read_stretch
 from noise.audio.line_levels import Grid, line_levels, strongest_line
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from noise.app.sounds.kept import Track
+    from noise.app.sounds.sound_cache import Track
 
     Query = Mapping[str, str]
     Facts = dict[str, object]

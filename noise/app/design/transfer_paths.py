@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.app.design.beside import Beside
+from noise.app.design.worker_process import WorkerProcess
 from sim.live_setting import paths_key, paths_of
 
 if TYPE_CHECKING:
     from models.radiation.impulse_responses import ImpulseResponses
     from sim.live_setting import Setting
 
-    ResponsesBeside = Beside[Setting, ImpulseResponses]
+    ImpulseResponseWorker = WorkerProcess[Setting, ImpulseResponses]
 
-__all__ = ["RATE", "PathsBeside", "block_paths", "responses_beside"]
+__all__ = ["RATE", "LiveTransferPaths", "block_impulse_responses", "impulse_response_worker"]
 
 RATE = 48000
 """Of the sound [Hz]."""
@@ -22,20 +22,20 @@ _NICE = 10
 """The sound goes on before what carries it is another."""
 
 
-def block_paths(setting: Setting) -> ImpulseResponses:
+def block_impulse_responses(setting: Setting) -> ImpulseResponses:
     """Return the impulse responses of a setting at the rate of its blocks."""
     return paths_of(setting, RATE)
 
 
-def responses_beside() -> ResponsesBeside:
+def impulse_response_worker() -> ImpulseResponseWorker:
     """Return a process that computes impulse responses."""
-    return Beside(f"{__name__}:block_paths", _NICE)
+    return WorkerProcess(f"{__name__}:block_impulse_responses", _NICE)
 
 
-class PathsBeside:
+class LiveTransferPaths:
     """Impulse responses for one run, computed beside; the first at once."""
 
-    def __init__(self, beside: ResponsesBeside) -> None:
+    def __init__(self, beside: ImpulseResponseWorker) -> None:
         self._beside = beside
         self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
         self._wanted: tuple[Setting, tuple[object, ...]] | None = None
