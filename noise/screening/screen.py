@@ -108,6 +108,7 @@ def screen(
 
     Examples
     --------
+    >>> from noise.screening.design.design import Use
     >>> found = screen(["PDMS"], Use(speed=(1.0, 5.0, 9.0), support_stiffness=(2214.0,)))
     >>> found.standings[0].shares["none"], found.critical[0].margin_v_crit2
     (1.0, inf)
