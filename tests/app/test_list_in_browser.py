@@ -46,6 +46,7 @@ def app(tmp_path_factory):
 def mounted(browser, app, width=1280):
     """Open the page with nothing but the list in it."""
     page = browser.new_page(viewport={"width": width, "height": 800})
+    page.set_default_timeout(120_000)  # labelling begins late where other work goes on
     page.complaints = []
     page.on("console", lambda message: page.complaints.append(message.text))
     page.on("pageerror", lambda error: page.complaints.append(str(error)))
