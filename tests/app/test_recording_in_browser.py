@@ -67,6 +67,14 @@ class OpenPage:
         box = self.page.locator(lane).bounding_box()
         return box["x"] + box["width"] * time / 2.0, box["y"] + share * box["height"]
 
+    def holding(self, requests):
+        """The first of these requests, once it is made; it waits to be continued."""
+        held = []
+        self.page.route(
+            f"**/{requests}", lambda route: route.fallback() if held else held.append(route)
+        )
+        return held
+
     def segments(self):
         return [one.get_attribute("aria-label") for one in self.page.locator(".strip button").all()]
 
@@ -259,6 +267,37 @@ def test_what_is_checked_next_is_opened_at_the_segment_in_doubt(browser, app):
     assert opened.page.locator(".clock").text_content() == "0.50 s"
     box = chosen.bounding_box()
     assert 0.0 <= box["y"] <= 400 - box["height"]
+    opened.close()
+
+
+def test_a_label_that_is_given_before_the_segments_have_come_changes_nothing(browser, app, folder):
+    opened = OpenPage(browser, app)
+    before = in_table(folder)
+    held = opened.holding("segments")
+    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
+    opened.page.get_by_role("heading", name=TONE).wait_for()
+    opened.press("1")
+    opened.page.locator(".saved").filter(has_text="still being read").wait_for()
+    held[0].continue_()
+    opened.page.locator(".strip button").nth(2).wait_for()
+    assert in_table(folder) == before
+    opened.press("1")
+    opened.saved()
+    assert [row[2] for row in in_table(folder)] == ["creak", "squeal", "none"]
+    opened.close()
+
+
+def test_changes_that_wait_are_written_although_another_recording_is_opened(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    held = opened.holding("segments")
+    opened.press("1", "]", "2")  # the second waits for the first
+    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
+    opened.page.get_by_role("heading", name=HALF).wait_for()
+    held[0].continue_()
+    opened.page.locator(".strip button").first.wait_for()
+    opened.page.locator(".saved").filter(has_text="saved").wait_for()
+    assert [row[2] for row in in_table(folder)] == ["creak", "squawk", "none"]
+    assert opened.segments() == ["squeal, 0.00 to 2.00 s"]
     opened.close()
 
 

@@ -9,13 +9,19 @@ export class Corrections extends EventTarget {
     this.rows = [];
     this.track = "all";
     this.writing = null;
-    this.next = null;
+    this.waiting = new Map(); // rows that are written next, of each recording
   }
 
+  // Until rows have come there are none to correct: what is written then would replace what nobody has seen.
   async open(id, duration) {
-    Object.assign(this, { id, duration, rows: [], next: null });
+    const again = id === this.id;
+    Object.assign(this, { id, duration, rows: [], before: null, known: again && this.known });
+    this.#tell();
+    await this.writing;
     const answer = await api(`recordings/${id}/segments`);
-    if (id === this.id) this.#take(answer.rows);
+    if (id !== this.id || this.writing) return;
+    this.known = true;
+    this.#take(answer.rows);
   }
 
   get tracks() { return [...new Set(this.rows.map((row) => row.channel))]; }
@@ -50,33 +56,34 @@ export class Corrections extends EventTarget {
     this.#tell();
   }
 
-  // Write rows of the track. Of several changes during one writing, the last one is written next.
+  // Write rows of the track. Of several changes during one writing, the last one of each recording is written next.
   write(shown) {
+    if (!this.known) return this.tell("not changed: its labels are still being read");
     this.before ??= this.rows;
     this.#put(shown);
-    this.next = this.rows;
+    this.waiting.set(this.id, this.rows);
     this.writing ??= this.#send().finally(() => { this.writing = null; });
     return this.writing;
   }
 
   async #send() {
-    while (this.next) {
-      const { id, next } = this;
-      this.next = null;
+    while (this.waiting.size) {
+      const [id, changed] = this.waiting.entries().next().value;
+      this.waiting.delete(id);
       this.tell("saving ...");
-      const rows = next.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
+      const rows = changed.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
       let answer;
       try {
         answer = await api(`recordings/${id}/segments`, { rows });
       } catch (error) {
-        if (id === this.id && this.before) this.rows = this.before;
-        this.before = this.next = null;
+        this.waiting.delete(id);
+        if (id === this.id && this.before) Object.assign(this, { rows: this.before, before: null });
         this.tell(`not saved: ${error.message}`);
         this.#tell();
-        return;
+        continue;
       }
       this.tell(`saved ${new Date().toTimeString().slice(0, 8)}`);
-      if (id === this.id && !this.next) {
+      if (id === this.id && !this.waiting.has(id)) {
         this.before = null;
         this.#take(answer.rows);
       }

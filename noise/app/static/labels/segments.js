@@ -100,10 +100,11 @@ export class Segments {
       event.preventDefault();
       handle.focus();
       handle.setPointerCapture(event.pointerId);
-      const { border } = handle, rows = this.corrections.shown;
+      const { border } = handle, { id, shown: rows } = this.corrections;
       let changed = null;
       const move = ({ clientX }) => {
         const box = this.overlay.getBoundingClientRect();
+        if (id !== this.corrections.id) return;
         changed = moved(rows, border, this.timeline.time((clientX - box.left) / box.width));
         this.corrections.preview(changed);
       };
@@ -111,7 +112,7 @@ export class Segments {
         handle.removeEventListener("pointermove", move);
         handle.removeEventListener("pointerup", end);
         handle.removeEventListener("pointercancel", end);
-        if (!changed) return;
+        if (!changed || id !== this.corrections.id) return;
         this.corrections.write(last.type === "pointerup" ? changed : rows);
       };
       handle.addEventListener("pointermove", move);
