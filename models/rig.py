@@ -285,7 +285,7 @@ def damping_at(fit: Fit, support_stiffness: float) -> float:
     if x <= points[0][0]:
         return points[0][1]
     for (x0, c0), (x1, c1) in itertools.pairwise(points):
-        if x <= x1:
+        if x < x1:
             return c0 + (c1 - c0) * (x - x0) / (x1 - x0)
     return points[-1][1]
 
