@@ -65,7 +65,7 @@ def kill_while_correcting(processes, folder, rng):
     n_answers, later = int(rng.integers(MOST)), float(rng.uniform(0.0, LATER))
     for thread in others:
         thread.start()
-    while len(answers) < n_answers:
+    while len(answers) < n_answers and others[0].is_alive():
         time.sleep(1e-3)
     time.sleep(later)
     app.process.kill()

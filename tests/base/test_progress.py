@@ -4,30 +4,57 @@ import fcntl
 import io
 import os
 import pty
-import select
+import re
 import struct
 import sys
 import termios
+import threading
 import time
+from contextlib import suppress
 
 import pytest
 
 from noise.base.progress import say, steps, track
 
+PATIENCE = 30.0
+"""Nothing that a test waits for takes longer [s]."""
 
-def on_terminal(monkeypatch, work):
-    """What a terminal of 100 columns shows of some work."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
-    with os.fdopen(theirs, "w", buffering=1) as stream:
-        monkeypatch.setattr(sys, "stderr", stream)
-        work()
-        stream.flush()
-        shown = b""
-        while select.select([ours], [], [], 0.2)[0]:
-            shown += os.read(ours, 1 << 16)
-    os.close(ours)
-    return shown.decode()
+
+class Terminal:
+    """A terminal of 100 columns, which is standard error while something works."""
+
+    def __init__(self, monkeypatch):
+        self._monkeypatch, self._shown = monkeypatch, bytearray()
+
+    def shows(self, work):
+        """All that it shows of some work."""
+        ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 100, 0, 0))
+        reading = threading.Thread(target=self._read, args=(ours,))
+        reading.start()
+        with os.fdopen(theirs, "w", buffering=1) as stream:
+            self._monkeypatch.setattr(sys, "stderr", stream)
+            work()
+        reading.join()
+        os.close(ours)
+        return self._shown.decode()
+
+    def until_times(self, number):
+        """Wait until it has shown so many different times that something takes."""
+        end = time.monotonic() + PATIENCE
+        while len(set(re.findall(rb"\[(\d\d:\d\d)<", self._shown))) < number:
+            assert time.monotonic() < end
+            time.sleep(0.05)
+
+    def _read(self, ours):
+        with suppress(OSError):  # so it ends on Linux
+            while more := os.read(ours, 1 << 16):
+                self._shown += more
+
+
+@pytest.fixture
+def terminal(monkeypatch):
+    return Terminal(monkeypatch)
 
 
 def in_file(monkeypatch):
@@ -43,54 +70,50 @@ def work():
             say(f"{text} goes well")
 
 
-def test_a_terminal_shows_how_many_steps_are_done_and_left_and_keeps_the_lines(monkeypatch):
-    shown = on_terminal(monkeypatch, work)
+def test_a_terminal_shows_how_many_steps_are_done_and_left_and_keeps_the_lines(terminal):
+    shown = terminal.shows(work)
     for done in range(3):
         assert f"{done}/3 " in shown
     assert "screening" in shown
     assert "grading goes well\r\n" in shown
 
 
-def test_the_bar_of_a_long_step_goes_on_showing_how_long_it_takes(monkeypatch):
+def test_the_bar_of_a_long_step_goes_on_showing_how_long_it_takes(terminal):
     def long():
         with steps("screening", 2) as tell:
             tell("mapping")
-            time.sleep(2.2)
+            terminal.until_times(3)
 
-    shown = on_terminal(monkeypatch, long)
-    assert "[00:01<" in shown
-    assert "[00:02<" in shown
+    terminal.shows(long)
 
 
-def test_the_bar_of_items_goes_on_while_one_takes_long(monkeypatch):
+def test_the_bar_of_items_goes_on_while_one_takes_long(terminal):
     def long():
         for _ in track(["drive"], "computing", unit="row group"):
-            time.sleep(2.2)
+            terminal.until_times(3)
 
-    shown = on_terminal(monkeypatch, long)
-    assert "0/1 " in shown
-    assert "[00:02<" in shown
+    assert "0/1 " in terminal.shows(long)
 
 
-def test_more_steps_than_were_expected_are_never_more_than_all(monkeypatch):
+def test_more_steps_than_were_expected_are_never_more_than_all(terminal):
     def fits():
         with steps("diagnosing", 1) as tell:
             for number in range(4):
                 tell(f"fit {number}")
 
-    assert "3/4 " in on_terminal(monkeypatch, fits)
+    assert "3/4 " in terminal.shows(fits)
 
 
-def test_fewer_steps_than_were_expected_and_items_in_a_step_end_well(monkeypatch):
+def test_fewer_steps_than_were_expected_and_items_in_a_step_end_well(terminal):
     def train():
         with steps("training", 9) as tell:
             tell("simulating")
             assert list(track([1, 2], "drawing", unit="sample")) == [1, 2]
 
-    assert "drawing" in on_terminal(monkeypatch, train)
+    assert "drawing" in terminal.shows(train)
 
 
-def test_an_error_ends_the_bar(monkeypatch):
+def test_an_error_ends_the_bar(terminal):
     def fails():
         with steps("screening", 2) as tell:
             tell("mapping")
@@ -101,7 +124,7 @@ def test_an_error_ends_the_bar(monkeypatch):
             fails()
         say("told")
 
-    assert on_terminal(monkeypatch, work).endswith("told\r\n")
+    assert terminal.shows(work).endswith("told\r\n")
 
 
 def test_a_file_gets_the_lines_alone(monkeypatch):

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -86,7 +87,8 @@ def test_an_interrupt_while_helping_processes_are_loaded_is_not_for_them(tmp_pat
     told = Counter()
     while process.poll() is None:
         for helper in _processes_of(process.pid):
-            os.kill(helper, signal.SIGINT)
+            with suppress(ProcessLookupError):  # it has ended
+                os.kill(helper, signal.SIGINT)
             told[helper] += 1
         time.sleep(0.02)
     assert len(told) == 3  # two that work, and what cleans up after them: none is replaced
@@ -114,12 +116,12 @@ def test_more_workers_than_any_machine_starts_are_refused(tmp_path, capsys, comm
      ["--support-stiffness", "-1"], ["--oscillate", "15"], ["--environment", "mars"]],
 )  # fmt: skip
 def test_a_screen_refuses_bad_conditions_before_it_loads_the_simulator(options):
-    started = time.perf_counter()
+    used = os.times()
     done = subprocess.run(
         [sys.executable, "-X", "importtime", "-m", "noise", "screen", "PDMS", *options],
         capture_output=True, text=True, cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
-    assert time.perf_counter() - started < 10.0
+    assert os.times().children_user - used.children_user < 10.0
     assert done.returncode == 2
     loaded = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
     assert not {"numba", "scipy", "sim"} & loaded

@@ -45,7 +45,7 @@ def kill_while_voting(processes, folder, rng):
     n_answers, later = int(rng.integers(1, MOST)), float(rng.uniform(0.0, LATER))
     voting = Thread(target=vote)
     voting.start()
-    while len(answered) < n_answers:
+    while len(answered) < n_answers and voting.is_alive():
         time.sleep(1e-3)
     time.sleep(later)
     app.process.kill()
