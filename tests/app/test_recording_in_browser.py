@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from urllib.parse import parse_qs, urlsplit
+
 import numpy as np
 import pytest
 
@@ -10,7 +13,7 @@ from noise.base.tables import write_table
 from noise.labels.labelling import COLUMNS
 from noise.labels.table import read_label_table
 from noise.recordings.writing import write_recording
-from tests.helpers.browser import TAP, chromium
+from tests.helpers.browser import chromium, new_page, until
 from tests.helpers.labelled_folder import made_row
 from tests.helpers.opened_app import opened_app
 
@@ -41,24 +44,22 @@ def write_sounds(folder):
 class OpenPage:
     """The app in a browser, with one recording open."""
 
-    def __init__(self, browser, app, width=1280, height=900):
+    def __init__(self, browser, app, width=1280, height=900, *, tapped=False):
         self.complaints = []
-        self.page = browser.new_page(viewport={"width": width, "height": height})
-        self.page.on("console", self._told)
+        viewport = {"width": width, "height": height}
+        self.page = new_page(browser, tapped=tapped, viewport=viewport)
+        self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
-        self.page.add_init_script(TAP)
         self.page.goto(app.address)
 
-    def _told(self, message):
-        if "ScriptProcessorNode" not in message.text:  # which is the tap, not the app
-            self.complaints.append(message.text)
-
     def open(self, name):
-        self.page.get_by_role("option").filter(has_text=name).first.click()
+        row = self.page.get_by_role("option").filter(has_text=name).first
+        number = row.get_attribute("data-at")  # as they are found
+        row.click()
         self.page.get_by_role("heading", name=name).wait_for()
-        self.page.locator(".plot[data-drawn]").wait_for()
-        self.page.locator(".course[data-drawn]").wait_for()
+        for lane in ("plot", "course"):
+            self.page.locator(f".{lane}[data-drawn='{number}']").wait_for()
         self.page.locator(".strip .segment").first.wait_for()
         self.page.locator(".recording").get_by_text("strongest third octave").wait_for()
         return self
@@ -68,12 +69,17 @@ class OpenPage:
         return box["x"] + box["width"] * time / 2.0, box["y"] + share * box["height"]
 
     def holding(self, requests):
-        """The first of these requests, once it is made; it waits to be continued."""
+        """Hold the first of these requests until what is returned is called."""
         held = []
         self.page.route(
             f"**/{requests}", lambda route: route.fallback() if held else held.append(route)
         )
-        return held
+
+        def go_on():
+            until(self.page, lambda: held)
+            held[0].continue_()
+
+        return go_on
 
     def segments(self):
         return [one.get_attribute("aria-label") for one in self.page.locator(".strip button").all()]
@@ -83,10 +89,27 @@ class OpenPage:
             self.page.keyboard.press(key)
 
     def saved(self):
-        self.page.locator(".saved").filter(has_text="saved").wait_for()
+        """Wait until all that was changed is written: while some is not, "saving" is said."""
+        self.page.locator(".saved").filter(has_text=re.compile("^saved ")).wait_for()
+
+    def undo(self):
+        self.page.locator(".saved").evaluate("(one) => { one.textContent = ''; }")
+        self.press("u")
+        self.page.locator(".saved").filter(has_text="undone").wait_for()
+
+    def is_playing(self):
+        self.page.locator(".play").filter(has_text="Pause").wait_for()
+
+    def more(self, n=24000):
+        """What has gone to the loudspeaker, once it is so many samples more."""
+        known = self.page.evaluate("heard.length")
+        self.page.wait_for_function("(n) => heard.length >= n", arg=known + n)
+        return np.array(self.page.evaluate("heard"))
 
     def heard(self):
-        return np.array(self.page.evaluate("window.heard"))
+        """What goes to the loudspeaker from now on."""
+        self.page.evaluate("hearAnew()")
+        return self.more()
 
     def close(self):
         assert self.complaints == []
@@ -141,7 +164,8 @@ def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, show
     assert read["lineDb"] == pytest.approx(93.98, abs=0.1)
     assert "dB re 20 µPa" in readout.text_content()
     opened.page.mouse.move(*opened.at(1.0, 0.5, "canvas.course[role=img]"))
-    assert opened.page.locator(".readout.level").text_content() == "94.0 dB(A) re 20 µPa, Fast"
+    level = opened.page.locator(".readout.level")
+    level.filter(has_text=re.compile(r"^94\.0 dB\(A\) re 20 µPa, Fast$")).wait_for()
     levels = opened.page.evaluate(
         """([share]) => {
           const image = document.querySelector(".plot"), pen = image.getContext("2d");
@@ -161,9 +185,16 @@ def test_zoom_by_wheel_keeps_what_is_under_the_pointer(browser, shown):
     x, y = opened.at(1.5)
     border = opened.page.locator(".handle").nth(1)
     opened.page.mouse.move(x, y)
-    for _ in range(3):
-        opened.page.mouse.wheel(0, -400)
-    opened.page.wait_for_function("() => document.querySelector('.handle').hidden")
+    start = 1.5 - 1.5 * np.exp(-0.0015 * 3 * 400)
+
+    def is_of_the_view(request):
+        asked = parse_qs(urlsplit(request.url).query)
+        return float(asked.get("start", ["nan"])[0]) == pytest.approx(start, abs=0.005)
+
+    with opened.page.expect_request(is_of_the_view):
+        for _ in range(3):
+            opened.page.mouse.wheel(0, -400)
+    assert border.is_visible()
     box = border.bounding_box()
     assert box["x"] + box["width"] / 2 == pytest.approx(x, abs=2)
     opened.press("0")
@@ -178,8 +209,8 @@ def test_what_the_classifier_gives_less_than_a_half_is_said(browser, shown):
     opened.open(TONE)
     opened.press("]")
     opened.page.get_by_text("By the classifier.", exact=True).wait_for()
-    told = opened.page.locator("div.chosen:not(.segment)").text_content()
-    assert told == "squeal 0.50\N{EN DASH}1.50 s, 1000 Hz, 94.0 dB(A)"
+    told = opened.page.locator("div.chosen:not(.segment)").filter(has_text="squeal")
+    assert told.text_content() == "squeal 0.50\N{EN DASH}1.50 s, 1000 Hz, 94.0 dB(A)"
     opened.close()
 
 
@@ -224,7 +255,7 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
     opened.page.wait_for_function(
         "() => document.querySelector('.handle').getAttribute('aria-valuenow') === '0.530'"
     )
-    opened.page.locator(".saved").filter(has_text="saved ").wait_for()
+    opened.saved()
     x, y = opened.at(1.5)
     opened.page.mouse.move(x, y)
     opened.page.mouse.down()
@@ -233,9 +264,7 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
     opened.page.wait_for_function(
         "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') > 1.65"
     )
-    opened.page.wait_for_function(
-        "() => document.querySelector('.saved').textContent.startsWith('saved')"
-    )
+    opened.saved()
     assert [row[0] for row in in_table(folder)] == pytest.approx([0.0, 0.53, 1.7], abs=0.004)
     opened.page.mouse.move(*opened.at(1.7, lane="div.strip"))
     opened.page.mouse.down()
@@ -243,15 +272,13 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
     opened.page.mouse.up()
     opened.page.wait_for_function(
         "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') < 1.65"
-        " && document.querySelector('.saved').textContent.startsWith('saved')"
     )
+    opened.saved()
     assert in_table(folder)[2][0] == pytest.approx(1.6, abs=0.004)
     for _ in range(10):
         if in_table(folder) == before:
             break
-        opened.press("u")
-        opened.page.locator(".saved").filter(has_text="undone").wait_for()
-        opened.page.wait_for_timeout(100)
+        opened.undo()
     assert in_table(folder) == before
     opened.close()
 
@@ -273,12 +300,12 @@ def test_what_is_checked_next_is_opened_at_the_segment_in_doubt(browser, app):
 def test_a_label_that_is_given_before_the_segments_have_come_changes_nothing(browser, app, folder):
     opened = OpenPage(browser, app)
     before = in_table(folder)
-    held = opened.holding("segments")
+    go_on = opened.holding("segments")
     opened.page.get_by_role("option").filter(has_text=TONE).first.click()
     opened.page.get_by_role("heading", name=TONE).wait_for()
     opened.press("1")
     opened.page.locator(".saved").filter(has_text="still being read").wait_for()
-    held[0].continue_()
+    go_on()
     opened.page.locator(".strip button").nth(2).wait_for()
     assert in_table(folder) == before
     opened.press("1")
@@ -289,15 +316,27 @@ def test_a_label_that_is_given_before_the_segments_have_come_changes_nothing(bro
 
 def test_changes_that_wait_are_written_although_another_recording_is_opened(browser, app, folder):
     opened = OpenPage(browser, app).open(TONE)
-    held = opened.holding("segments")
+    go_on = opened.holding("segments")
     opened.press("1", "]", "2")  # the second waits for the first
     opened.page.get_by_role("option").filter(has_text=HALF).first.click()
     opened.page.get_by_role("heading", name=HALF).wait_for()
-    held[0].continue_()
+    go_on()
     opened.page.locator(".strip button").first.wait_for()
-    opened.page.locator(".saved").filter(has_text="saved").wait_for()
+    opened.saved()
     assert [row[2] for row in in_table(folder)] == ["creak", "squawk", "none"]
     assert opened.segments() == ["squeal, 0.00 to 2.00 s"]
+    opened.close()
+
+
+def test_third_octaves_of_one_recording_are_not_shown_beside_another(browser, shown):
+    opened = OpenPage(browser, shown).open(HALF)
+    go_on = opened.holding("bands*")
+    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
+    opened.page.get_by_role("heading", name=TONE).wait_for()
+    octaves = opened.page.locator(".recording").get_by_text("strongest third octave")
+    assert octaves.count() == 0
+    go_on()
+    octaves.wait_for()
     opened.close()
 
 
@@ -326,21 +365,16 @@ def tone_of(samples):
 
 
 def test_a_and_b_run_in_step_at_one_gain_and_at_equal_loudness(browser, shown):
-    opened = OpenPage(browser, shown).open(HALF)
+    opened = OpenPage(browser, shown, tapped=True).open(HALF)
     opened.press("b")
     opened.open(TONE)
-    opened.press("[")
-    opened.page.get_by_role("button", name="Loop").click()  # off: all of it
     opened.page.evaluate("document.activeElement.blur()")
-    opened.press("Home")
-    opened.page.evaluate("window.heard.length = 0")
-    opened.press(" ")
-    opened.page.wait_for_function("() => window.heard.length > 24000")
-    change = opened.page.evaluate("window.heard.length")
+    opened.press("[", " ")  # half a second, again and again: whole cycles, so that it goes on
+    opened.is_playing()
+    opened.page.evaluate("hearAnew()")
+    opened.more()
     opened.press("x")
-    opened.page.wait_for_function("(n) => window.heard.length > n + 24000", arg=change)
-    opened.press(" ")
-    heard = opened.heard()
+    heard = opened.more()
     tone = tone_of(heard)
     louder = np.flatnonzero(np.abs(tone) > 0.99 * np.abs(tone).max())[-1]
     loud, quiet = (np.median(np.abs(part)) for part in (tone[:louder], tone[louder + 4 :]))
@@ -352,31 +386,27 @@ def test_a_and_b_run_in_step_at_one_gain_and_at_equal_loudness(browser, shown):
     words = opened.page.locator(".gains").text_content()
     assert "full scale = 2 Pa (100 dB peak re 20 µPa)" in words
     assert np.abs(heard).max() == pytest.approx(np.sqrt(2.0) / 2.0, rel=1e-2)
-    opened.page.get_by_role("button", name="Loop").click()  # on: it lasts
-    opened.page.evaluate("document.activeElement.blur()")
-    opened.press("Home", "e", " ")
+    opened.press("e")
     opened.page.locator(".gains").filter(has_text="Equal loudness, -23 LUFS").wait_for()
-    opened.page.evaluate("window.heard.length = 0")
-    opened.page.wait_for_function("() => window.heard.length > 24000")
-    one = opened.heard()[12000:]
+    one = opened.heard()
     opened.press("x")
-    opened.page.evaluate("window.heard.length = 0")
-    opened.page.wait_for_function("() => window.heard.length > 24000")
-    other = opened.heard()[12000:]
+    other = opened.heard()
     amplitudes = [np.median(np.abs(tone_of(of))) for of in (one, other)]
     assert amplitudes[0] == pytest.approx(amplitudes[1], rel=0.01)
+    opened.page.get_by_role("button", name="Loop").click()  # off: it comes to its end
+    opened.page.locator(".play").filter(has_text="Play").wait_for()
     opened.close()
 
 
 def test_a_band_is_heard_and_nothing_beside_it(browser, shown):
-    opened = OpenPage(browser, shown).open(TONE)
+    opened = OpenPage(browser, shown, tapped=True).open(TONE)
     opened.page.get_by_label("Hear from [Hz]").fill("2000")
     opened.page.get_by_label("Hear up to [Hz]").fill("4000")
     opened.press("Tab")
-    opened.page.evaluate("document.activeElement.blur(); window.heard.length = 0")
+    opened.page.evaluate("document.activeElement.blur()")
     opened.press("]", " ")
-    opened.page.wait_for_function("() => window.heard.length > 30000")
-    filtered = np.abs(opened.heard()[12000:24000]).max()
+    opened.is_playing()
+    filtered = np.abs(opened.heard()[12000:]).max()  # once the filters have settled
     opened.press(" ")
     assert filtered == pytest.approx(np.sqrt(2.0) / 2.0 / 2.0**4, rel=0.2)  # 24 dB an octave
     assert "heard from 2000 to 4000 Hz" in opened.page.locator(".gains").text_content()

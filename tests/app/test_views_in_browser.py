@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.helpers.browser import chromium
+from tests.helpers.browser import chromium, styled
 from tests.helpers.jury_sounds import write_tones
 from tests.helpers.opened_app import opened_app
 
@@ -22,11 +22,12 @@ def test_a_view_looks_the_same_whichever_was_open_before(view, tmp_path):
         page = browser.new_page()
         page.goto(f"{app.address}#{view}")
         page.locator(ROWS[view]).first.wait_for()
+        styled(page)
         alone = page.evaluate(STYLES, ROWS[view])
         page.goto("about:blank")
         page.goto(app.address)
         page.locator(".recording-list .row").first.wait_for()
         page.locator(f"#tab-{view}").click()
         page.locator(ROWS[view]).first.wait_for()
-        page.wait_for_function("() => document.styleSheets.length > 2")
+        styled(page)
         assert page.evaluate(STYLES, ROWS[view]) == alone

@@ -41,7 +41,7 @@ if __name__ == "__main__":
         rig = Path(made) / "mine.toml"
         rig.write_text('base = "fluorocarbon"\n', encoding="utf-8")
         with opened_app(rig) as app:
-            shown = DesignPage(started_browser, app, tap="")
+            shown = DesignPage(started_browser, app)
             shown.play()
             missed = shown.sound("missing")
             _, clock, served, whole = timed(

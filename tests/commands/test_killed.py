@@ -132,7 +132,7 @@ def lines_of(journal):
     return journal.read_bytes().rpartition(b"\n")[0].splitlines()
 
 
-def goes_on_where_it_was(command, tmp_path, shares, n=12, n_broken=2, seconds=0.2):
+def goes_on_where_it_was(command, tmp_path, shares, n=36, n_broken=2, seconds=0.2):
     undisturbed = tmp_path / "undisturbed"
     make_recordings(undisturbed / "runs", n, n_broken, seconds)
     call = [command, "runs", "--out", "table.csv"]
@@ -240,7 +240,7 @@ def workers_of(process):
     ]
 
 
-@pytest.mark.parametrize("n", [12, pytest.param(120, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("n", [36, pytest.param(120, marks=pytest.mark.slow)])
 @pytest.mark.skipif(sys.platform != "linux", reason="tells no children of a process")
 def test_one_of_two_workers_is_killed_and_the_table_is_the_same(tmp_path, n):
     make_recordings(tmp_path / "runs", n, 2, 0.2)

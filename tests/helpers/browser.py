@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 import shutil
+import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import pytest
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from tests.helpers.opened_app import PATIENCE
 
-    from playwright.sync_api import Browser
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from playwright.sync_api import Browser, Page
 
 VARIABLE = "BUSHING_NOISE_CHROMIUM"
 """Environment variable that names the browser to use."""
@@ -35,24 +38,75 @@ def find_chromium() -> str | None:
     return next(filter(None, map(shutil.which, _NAMES)), None)
 
 
-TAP = """
-window.heard = [];
-const connect = AudioNode.prototype.connect;
-AudioNode.prototype.connect = function (target, ...rest) {
-  if (target instanceof AudioDestinationNode && !(this instanceof ScriptProcessorNode)) {
+_TAP = """(() => {
+  window.heard = [];
+  const taps = [];
+  window.hearAnew = () => {
+    heard.length = 0;
+    const crossed = 0.05; // until all gains have
+    for (const tap of taps) tap.since = tap.context.currentTime + crossed;
+  };
+  const keeper = "data:text/javascript," + encodeURIComponent(`
+    registerProcessor("keeper", class extends AudioWorkletProcessor {
+      process([[samples]]) {
+        if (samples) this.port.postMessage({ time: currentTime, samples: samples.slice() });
+        return true;
+      }
+    });`);
+  const connect = AudioNode.prototype.connect;
+  AudioNode.prototype.connect = function (target, ...rest) {
+    if (!(target instanceof AudioDestinationNode)) return connect.call(this, target, ...rest);
     const { context } = this;
     if (!context.tap) {
-      context.tap = context.createScriptProcessor(1024, 1, 1);
-      context.tap.onaudioprocess = (event) =>
-        window.heard.push(...event.inputBuffer.getChannelData(0));
-      connect.call(context.tap, target);
+      const tap = (context.tap = Object.assign(context.createGain(), { since: 0 }));
+      taps.push(tap);
+      connect.call(tap, target);
+      context.audioWorklet.addModule(keeper).then(() => {
+        const one = { numberOfOutputs: 0, channelCount: 1, channelCountMode: "explicit" };
+        const node = new AudioWorkletNode(context, "keeper", one);
+        node.port.onmessage = ({ data: { time, samples } }) => {
+          if (time >= tap.since) heard.push(...samples);
+        };
+        connect.call(tap, node);
+      });
     }
-    connect.call(this, context.tap);
-  }
-  return connect.call(this, target, ...rest);
-};
-"""
-"""Script that collects in `heard` what goes to the loudspeaker."""
+    return connect.call(this, context.tap, ...rest);
+  };
+})();"""
+# In the audio thread, so that there is no gap however busy the page is.
+
+
+def new_page(browser: Browser, *, tapped: bool = False, **options) -> Page:
+    """Open an empty page.
+
+    Where it is tapped, what goes to the loudspeaker is in its `heard`, and after `hearAnew()` only
+    what is rendered from then on; its policy, which forbids that, does not hold.
+    """
+    page = browser.new_page(bypass_csp=tapped, **options)
+    if tapped:
+        page.add_init_script(_TAP)
+    return page
+
+
+def until(page: Page, is_true: Callable[[], object]) -> None:
+    """Wait for what this process, not the page, gets to know."""
+    end = time.monotonic() + PATIENCE
+    while not is_true():
+        assert time.monotonic() < end
+        page.wait_for_timeout(20)
+
+
+def refuses_other_sources(page: Page) -> None:
+    """Ask for something from elsewhere, and wait until the page complains of it."""
+    with page.expect_console_message(lambda said: "Content Security Policy" in said.text):
+        page.evaluate("fetch('https://example.org').catch(() => null)")
+
+
+def styled(page: Page) -> None:
+    """Wait for all style sheets of the page."""
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('link[rel=stylesheet]')].every((one) => one.sheet)"
+    )
 
 
 @contextmanager
@@ -71,15 +125,14 @@ def chromium() -> Iterator[Browser]:
 class OpenedPage:
     """The page in the browser, with all that it complains of and asks for."""
 
-    def __init__(self, browser, file, width=1280, before=""):
+    def __init__(self, browser, file, width=1280, *, tapped=False):
         self.complaints = []
         self.requests = []
-        self.page = browser.new_page(viewport={"width": width, "height": 800})
+        viewport = {"width": width, "height": 800}
+        self.page = new_page(browser, tapped=tapped, viewport=viewport)
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("request", lambda request: self.requests.append(request.url))
-        if before:
-            self.page.add_init_script(before)
         self.page.goto(file.as_uri())
 
     def state(self):

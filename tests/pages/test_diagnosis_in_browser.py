@@ -6,7 +6,7 @@ import pytest
 
 from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
 from noise.pages.diagnosis.page import write_diagnosis
-from tests.helpers.browser import chromium
+from tests.helpers.browser import chromium, refuses_other_sources
 from tests.helpers.made_diagnoses import KINDS
 
 SHOWN = ("none", "one effect", "pair", "triple", "pressure alone")
@@ -146,6 +146,5 @@ def test_the_page_is_quiet_and_asks_nothing_of_the_network(opened):
 
 def test_the_page_itself_forbids_other_sources(opened):
     heard = len(opened.complaints)
-    opened.page.evaluate("fetch('https://example.org').catch(() => null)")
-    assert any("Content Security Policy" in words for words in opened.complaints[heard:])
+    refuses_other_sources(opened.page)
     del opened.complaints[heard:]

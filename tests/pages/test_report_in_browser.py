@@ -10,7 +10,7 @@ from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
 from noise.pages.report import ReportEntry, write_report
-from tests.helpers.browser import chromium
+from tests.helpers.browser import chromium, refuses_other_sources
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE
@@ -115,9 +115,7 @@ def test_the_page_is_quiet_and_asks_nothing_of_the_network(opened):
 
 
 def test_the_page_itself_forbids_other_sources(browser, page_file):
-    fresh = Opened(browser, page_file)
-    fresh.page.evaluate("fetch('https://example.org').catch(() => null)")
-    assert any("Content Security Policy" in text for text in fresh.complaints)
+    refuses_other_sources(Opened(browser, page_file).page)
 
 
 def test_every_picture_is_drawn(page):

@@ -11,7 +11,7 @@ from models.rig_files.rig_file import load_material_rig
 from noise.pages.screening.page import write_screening
 from noise.screening.design.design import Design, Use
 from noise.screening.screen import screen
-from tests.helpers.browser import TAP, OpenedPage, chromium
+from tests.helpers.browser import OpenedPage, chromium
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 OLD, NEW, QUIET = "old <b>", "new & damped", "PDMS"
@@ -105,10 +105,11 @@ def test_a_click_on_the_other_map_changes_over_without_a_jump(opened):
 
 
 def test_what_is_heard_is_the_sound_of_the_page_at_its_own_gain(browser, page_file):
-    opened = OpenedPage(browser, page_file, before=TAP)
+    opened = OpenedPage(browser, page_file, tapped=True)
     click_spot(opened, OLD, 2)
-    opened.page.wait_for_function("() => heard.length > 120000")
-    heard = np.array(opened.page.evaluate("heard.slice(-96000)"))
+    opened.page.evaluate("hearAnew()")
+    opened.page.wait_for_function("() => heard.length >= 96000")
+    heard = np.array(opened.page.evaluate("heard.slice(0, 96000)"))
     kept = np.array(
         opened.page.evaluate(
             """async () => {

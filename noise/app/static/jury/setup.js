@@ -33,7 +33,7 @@ export class Setup {
     const all = made("button", { type: "button", textContent: "All shown" });
     const none = made("button", { type: "button", textContent: "None" });
     this.count = made("output", { className: "count" });
-    this.begin = made("button", { type: "button", className: "begin", textContent: "Begin" });
+    this.begin = made("button", { type: "button", className: "begin", textContent: "Begin", disabled: true });
     this.plan = made("p", { className: "plan" });
     this.progress = made("progress", { hidden: true, ariaLabel: "Sounds prepared" });
     element.append(this.goingOn, made("section", {},

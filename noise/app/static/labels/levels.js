@@ -86,6 +86,13 @@ export class Bands {
     this.draw();
   }
 
+  clear() {
+    this.turn += 1; // what is asked for is not awaited any more
+    this.found = null;
+    this.text.textContent = "";
+    this.draw();
+  }
+
   draw() {
     const { pen, width, height } = sheet(this.plot);
     if (!this.found) return;

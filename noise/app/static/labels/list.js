@@ -244,10 +244,11 @@ class RecordingList {
     numbers.textContent = shown ? figures(shown) : "";
   }
 
-  #open(at) {
+  async #open(at) {
     this.at = at;
+    if (!this.row(at)) await this.#fetch(Math.floor(at / PAGE)); // it is in view sooner than it is here
     const shown = this.row(at);
-    if (shown) {
+    if (shown && at === this.at) {
       this.marked = shown.id;
       this.onOpen(shown.id);
     }

@@ -48,6 +48,8 @@ export class RecordingPage {
     const { parts } = this;
     this.id = id;
     for (const said of [parts.saved, parts.readout, parts.levelRead]) said.textContent = ""; // it was of another recording
+    clearTimeout(this.measuring);
+    this.bands.clear();
     // All at once: what each needs of the others comes with it.
     const seen = this.spectrogram.load(id, null);
     const sound = await about(id);
