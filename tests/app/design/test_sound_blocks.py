@@ -73,7 +73,7 @@ def test_another_support_is_heard_once_its_response_is_known(player):
     stiff = {"base": "PDMS", "values": {"support": 3745.0}}
     first = heard(player, [{"base": "PDMS", "values": {}}, None, stiff])
     assert np.isfinite(first).all()
-    end = time.monotonic() + 60.0
+    end = time.monotonic() + 6 * PATIENCE  # its process lets all others go first
     i = 3
     while player.beside.newest is None and time.monotonic() < end:
         heard(player, [None], first=i)
