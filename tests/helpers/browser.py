@@ -48,8 +48,8 @@ _TAP = """(() => {
   };
   const keeper = "data:text/javascript," + encodeURIComponent(`
     registerProcessor("keeper", class extends AudioWorkletProcessor {
-      process([[samples]]) {
-        if (samples) this.port.postMessage({ time: currentTime, samples: samples.slice() });
+      process([[samples = new Float32Array(128)]]) { // where nothing plays, silence
+        this.port.postMessage({ time: currentTime, samples: samples.slice() });
         return true;
       }
     });`);
