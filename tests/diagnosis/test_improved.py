@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +28,7 @@ from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, 
 from noise.diagnosis.text.improved_sentences import improved_commands
 from noise.screening.design.design import load_design
 from sim.effects import EFFECTS
+from tests.helpers.answered_diagnoses import as_the_contract_has_it
 from tests.helpers.small_rigs import RIG, RIG_FILE, at, run, write_case
 
 WEAK = ("velocity_weakening", {"form": "exponential", "share": 0.4, "speed": 5.0})
@@ -41,12 +44,31 @@ def weak():
 def improved(weak, tmp_path_factory):
     folder = tmp_path_factory.mktemp("weak")
     data, rig = write_case(folder, weak)
-    assert main(["diagnose", str(data), "--rig", str(rig), "--out", str(folder / "out")]) == 0
-    return data, folder / "out"
+    out = folder / "not" / "there" / "yet"
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        assert main(["diagnose", str(data), "--rig", str(rig), "--out", str(out)]) == 0
+    return data, out, printed.getvalue().split()
+
+
+def test_the_whole_answer_has_the_contracts_keys_and_a_page(improved):
+    _, out, printed = improved
+    assert printed[:2] == [str(out / "report.html"), str(out / "diagnosis.json")]
+    told = json.loads((out / "diagnosis.json").read_text())
+    as_the_contract_has_it(told)
+    assert told["held_out"]
+    assert set(told["held_out"]) < {f"run{i:02d}.wav" for i in range(1, 5)}
+    for effect in told["effects"]:
+        if effect["closed"] is not None:
+            assert effect["gap_floor"] == 1.0
+            before, after = effect["gap_before"], max(effect["gap_after"], 1.0)
+            assert effect["closed"] == pytest.approx((before - after) / (before - 1.0), abs=2e-3)
+            assert effect["closed_low"] <= effect["closed"] + 1e-3
+            assert effect["closed"] <= effect["closed_high"] + 1e-3
+    assert "<html" in (out / "report.html").read_text()[:200].lower()
 
 
 def test_a_diagnosis_writes_the_rig_that_closes_its_gap(improved):
-    data, out = improved
+    data, out, _ = improved
     told = json.loads((out / "diagnosis.json").read_text())
     assert told["improved"] == "improved.toml"
     rig = load_rig(out / "improved.toml")
@@ -59,12 +81,12 @@ def test_a_diagnosis_writes_the_rig_that_closes_its_gap(improved):
 
 
 def test_an_improved_rig_says_from_what_it_is_and_how_sure(improved):
-    data, out = improved
+    data, out, _ = improved
     text = (out / "improved.toml").read_text()
     for name in (path.name for path in data.glob("*.wav")):
         assert name in text
     assert "Do not trust it" in text
-    assert 'base = "../rig.toml"' in text
+    assert 'base = "../../../rig.toml"' in text
     stated = {one.name: one for one in load_design(out / "improved.toml").tolerances}
     share = load_rig(out / "improved.toml").effects[0].parameters["share"]
     assert abs(share - 0.4) <= 3.0 * 0.4 * stated["velocity_weakening.share"].first
@@ -72,7 +94,7 @@ def test_an_improved_rig_says_from_what_it_is_and_how_sure(improved):
 
 
 def test_the_page_names_the_improved_rig_and_what_to_call_next(improved):
-    _, out = improved
+    _, out, _ = improved
     page = (out / "report.html").read_text()
     assert "improved.toml" in page
     assert "bushing-noise screen" in page
