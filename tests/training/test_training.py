@@ -60,6 +60,7 @@ def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
     assert small.card["three_channels"]["n"] < small.card["pressure"]["n"]
 
 
+@pytest.mark.slow
 def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored(small, samples):
     clear = [i for i, sample in enumerate(samples) if not sample.ambiguous]
     doubted = {clear[0], *clear[-2:]}  # one of those that are learned, two of those scored
