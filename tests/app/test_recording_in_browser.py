@@ -283,6 +283,26 @@ def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
     opened.close()
 
 
+def test_conditions_of_a_segment_say_what_they_are_from(browser, folder):
+    logged = {
+        "speed_rad_s": 5.0,
+        "speed_rad_s_source": "logged",
+        "note": "logged as 5, turned at 7",
+    }
+    inferred = {
+        "interference_mm": 0.2, "interference_mm_low": 0.18, "interference_mm_high": 0.28,
+        "interference_mm_source": "inferred",
+    }  # fmt: skip
+    rows = [made_row(TONE, "squeal", 0.0, 2.0, p_squeal=0.9, **logged, **inferred)]
+    write_table(folder / "labels.csv", COLUMNS, rows)
+    with opened_app(folder) as app:
+        opened = OpenPage(browser, app).open(TONE)
+        said = opened.page.locator(".recording .conditions").text_content()
+        opened.close()
+    assert said.startswith("speed 5 rad/s; interference 0.18 to 0.28 mm (inferred); material assum")
+    assert said.endswith("; logged as 5, turned at 7")
+
+
 def test_what_is_checked_next_is_opened_at_the_segment_in_doubt(browser, app):
     opened = OpenPage(browser, app, height=400)
     for name in (ODD, HALF, TONE):

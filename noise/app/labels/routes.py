@@ -13,7 +13,7 @@ from noise.app.labels.list_query import read_list_query, whole_number
 from noise.app.labels.next_check import NextCheck
 from noise.app.labels.segment_features import SegmentFeatures
 from noise.app.labels.store import Labels
-from noise.app.labels.summary import plain
+from noise.app.labels.summary import conditions, plain
 from noise.app.labels.training_run import TrainingRun, own_classifier
 from noise.app.requests import body
 from noise.labels.labelling import Labelling
@@ -86,7 +86,10 @@ def routes(opened: Opened) -> list[BaseRoute]:
             "id": index,
             "name": opened.jobs[index].name,
             "channels": channels or ["all"],
-            "rows": plain(rows),
+            "rows": [
+                shown | {"conditions": conditions(row)}
+                for row, shown in zip(rows, plain(rows), strict=True)
+            ],
         }
 
     return [

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
     Row = dict[str, object]
 
-__all__ = ["plain", "summary"]
+__all__ = ["conditions", "plain", "summary"]
 
+_CONDITIONS = ("speed", "interference", "stiffness", "material")
 _SUPPORT = "support_stiffness"
 
 
@@ -43,6 +44,24 @@ def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:
         "corrected": any(row.get("label_source") == HUMAN for row in rows),
         "error": next((row["error"] for row in rows if row.get("error")), None),
     }
+
+
+def conditions(row: Row) -> list[str]:
+    """Return the operating conditions of a segment in words, as pages say them.
+
+    Examples
+    --------
+    >>> row = {"label": "creak", "interference_mm": 0.279}
+    >>> speed = {"speed_rad_s": 5.2, "speed_rad_s_low": 3.1, "speed_rad_s_high": 8.0}
+    >>> conditions({**row, **speed, "speed_rad_s_source": "inferred"})
+    ['speed 3.1 to 8 rad/s (inferred)', 'interference 0.279 mm', ...]
+    """
+    # The list is there before what only pages need is loaded.
+    from noise.pages.engine.entry import Entry
+    from noise.pages.engine.entry_display import facts_of
+
+    facts = facts_of(Entry("", (row,)))
+    return [f"{name} {facts[name].words}" for name in _CONDITIONS if name in facts]
 
 
 def plain(rows: Sequence[Row]) -> list[Row]:

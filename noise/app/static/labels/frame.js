@@ -62,7 +62,7 @@ export function build(element) {
     wave: canvas("wave", "Samples over time"), waveAxis: canvas("axis wave"),
     plot: canvas("plot"), marks: canvas("marks"), frequencies: canvas("axis frequencies"), legend: canvas("legend", "Colours of levels"),
     course: canvas("course", "A-weighted level over time, Fast"), courseAxis: canvas("axis course"), times: canvas("times"),
-    chosen: made("div", { className: "chosen" }), labels: group("Label of the segment"), shares: made("dl", { className: "shares" }), source: made("p"),
+    chosen: made("div", { className: "chosen" }), labels: group("Label of the segment"), shares: made("dl", { className: "shares" }), source: made("p"), conditions: made("p", { className: "conditions" }),
     split: button("Split", "S: at the cursor, or where it is played"), join: button("Join", "Delete: to the segment before it"), undo: button("Undo", "U"), next: button("Next to check", "N"),
     bands: canvas("bands", "Third octaves"), bandsText: made("p", { className: "facts" }), dialog: helpDialog(),
   };
@@ -93,7 +93,7 @@ export function build(element) {
     parts.lanes,
     made("div", { className: "under" }, parts.readout, parts.levelRead, parts.legend),
     made("div", { className: "below" },
-      made("section", { ariaLabel: "Segment" }, parts.chosen, parts.labels, parts.source, parts.shares),
+      made("section", { ariaLabel: "Segment" }, parts.chosen, parts.labels, parts.source, parts.conditions, parts.shares),
       made("section", { ariaLabel: "Third octaves" }, parts.bands, parts.bandsText)),
     parts.gains,
     made("div", { className: "tools" }, parts.channel.label, parts.track.label, frames.label, range.label,

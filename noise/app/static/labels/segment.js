@@ -1,14 +1,14 @@
-// What is known of the chosen segment: its place, level, frequency, and how sure its label is.
+// What is known of the chosen segment: its place, level, frequency, how sure its label is, and its conditions.
 import { LABELS } from "./frame.js";
 import { made } from "./list.js";
 
 const HALF = 0.5;
 
-export function showSegment({ chosen, labels, shares, source }, row) {
+export function showSegment({ chosen, labels, shares, source, conditions }, row) {
   for (const button of labels.children) button.setAttribute("aria-pressed", button.dataset.label === row?.label);
   if (!row) {
     chosen.textContent = "No label yet: a label here is of the whole recording.";
-    source.textContent = "";
+    source.textContent = conditions.textContent = "";
     shares.replaceChildren();
     return;
   }
@@ -22,6 +22,7 @@ export function showSegment({ chosen, labels, shares, source }, row) {
   else if (!found.length) source.textContent = "How sure this is, the table does not say.";
   else if ((row[`p_${row.label}`] ?? 0) < HALF) source.textContent = "By the classifier, which gives it less than a half: listen.";
   else source.textContent = "By the classifier.";
+  conditions.textContent = [...(row.conditions ?? []), row.note].filter(Boolean).join("; ");
   shares.replaceChildren(...found.flatMap(([label, share]) => {
     const bar = made("span", { className: `bar ${label}` });
     bar.style.width = `${100 * share}%`;
