@@ -76,7 +76,7 @@ def kill_while_correcting(processes, folder, rng):
     return answers, asked
 
 
-@pytest.mark.parametrize("tries", [20, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("tries", [8, pytest.param(200, marks=pytest.mark.slow)])
 def test_no_correction_is_lost_by_a_kill_while_the_table_is_labelled(processes, tmp_path, tries):
     rng, said, n_answered = np.random.default_rng(tries), {}, 0
     labelled_journal(tmp_path)

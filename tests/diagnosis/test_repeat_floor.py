@@ -71,6 +71,7 @@ def _p_values(count, seed, tmp_path, *, brief):
     return np.array([g.p_value for g in gaps]), np.array([g.distance for g in gaps])
 
 
+@pytest.mark.slow
 def test_a_second_rig_without_effects_lies_within_the_floor(tmp_path):
     p_values, distances = _p_values(12, 31, tmp_path, brief=True)
     assert np.sum(p_values < 0.05) <= 3

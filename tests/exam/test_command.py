@@ -165,6 +165,7 @@ def test_the_gap_is_one_where_nothing_is_the_matter_and_above_elsewhere(kind):
     assert set(found["gap_alone"]) == {form.effect for form, _ in design.forms}
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
 def test_turning_a_strong_effect_off_closes_the_gap_to_about_a_floor():
     designs = (draw_design(2, i, DEVELOPMENT) for i in range(200))

@@ -45,6 +45,7 @@ def _seen(tmp_path, count, change=None, kinds=("quiet",)):
     return seen, classes
 
 
+@pytest.mark.slow
 def test_what_is_no_sound_tells_no_class(tmp_path):
     seen, classes = _seen(tmp_path, 60)
     found = leak(seen, ["nothing" if kind in ("none", "parameters") else "something"
@@ -52,6 +53,7 @@ def test_what_is_no_sound_tells_no_class(tmp_path):
     assert found.p_value > 0.05
 
 
+@pytest.mark.slow
 def test_no_kind_of_bench_tells_the_class(tmp_path):
     seen, classes = _seen(tmp_path, 66, kinds=tuple(KINDS))
     found = leak(seen, ["nothing" if kind in ("none", "parameters") else "something"

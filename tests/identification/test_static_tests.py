@@ -155,8 +155,17 @@ def test_a_static_test_without_its_interference_is_named():
         static_test(500.0 * angle, angle, 1000.0, Condition(None, None, SUPPORT), "slow")
 
 
-@pytest.mark.parametrize("memory", [0.0, 0.9, 0.97])
-@pytest.mark.parametrize("yields", [False, True])
+@pytest.mark.parametrize(
+    ("memory", "yields"),
+    [
+        (0.0, True),
+        (0.97, False),
+        *(
+            pytest.param(*one, marks=pytest.mark.slow)
+            for one in [(0.0, False), (0.9, False), (0.9, True), (0.97, True)]
+        ),
+    ],
+)
 def test_the_stated_error_is_the_scatter_of_tests_whose_noise_remembers(memory, yields):
     torque = 4.0 * np.sin(2 * np.pi * 2.5 * np.arange(4000) / 4000)
     step = np.diff(torque, prepend=torque[0])

@@ -97,6 +97,7 @@ def test_standing_free_costs_what_a_baffle_adds_below_the_critical_frequency():
     assert np.abs(louder[-2:]).max() < 2.0
 
 
+@pytest.mark.slow
 def test_pulses_of_the_anchors_are_heard_in_the_power():
     rig = load_material_rig("fluorocarbon")  # whose slips strike the anchors
     motion = simulate(rig, 1.0, interference=0.381e-3, seconds=0.5).motion

@@ -10,6 +10,7 @@ from noise.batch.lines import journal_path
 from noise.classifier import LABELS, load_classifier
 from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
+from noise.training.classifier import cross_fitting
 from noise.training.classifier.described_samples import draw_sample
 from noise.training.classifier.designs import random_design
 from noise.training.classifier.fit import learn, train
@@ -28,14 +29,21 @@ def samples():
     return [draw_sample(seed) for seed in np.random.SeedSequence(6).spawn(48)]
 
 
+def learn_quickly(*samples, **options):
+    """Learn in fewer rounds: what is asked here does not depend on how many there are."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cross_fitting, "_N_ROUNDS", 40)
+        return learn(*samples, **options)
+
+
 @pytest.fixture(scope="module")
 def small(samples):
-    return learn(samples, 28, seed=3)
+    return learn_quickly(samples, 28, seed=3)
 
 
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_of_predictions(small, samples):
-    again = learn(samples, 28, seed=3)
+    again = learn_quickly(samples, 28, seed=3)
     features = columns(small, samples[0])
     assert small.predict_proba(features).tobytes() == again.predict_proba(features).tobytes()
     assert small.card == again.card
@@ -60,12 +68,11 @@ def test_the_card_tells_what_was_learned_and_scores_what_was_not(small):
     assert small.card["three_channels"]["n"] < small.card["pressure"]["n"]
 
 
-@pytest.mark.slow
 def test_samples_whose_name_hangs_on_a_bound_are_neither_learned_nor_scored(small, samples):
     clear = [i for i, sample in enumerate(samples) if not sample.ambiguous]
     doubted = {clear[0], *clear[-2:]}  # one of those that are learned, two of those scored
     unclear = [replace(s, ambiguous=s.ambiguous or i in doubted) for i, s in enumerate(samples)]
-    fewer = learn(unclear, 28, seed=3).card
+    fewer = learn_quickly(unclear, 28, seed=3).card
     assert sum(fewer["samples"].values()) == sum(small.card["samples"].values()) - 1
     assert fewer["pressure"]["n"] == small.card["pressure"]["n"] - 2
 
@@ -126,7 +133,7 @@ def test_own_samples_are_learned_beside_the_others_and_scored_before_and_after(s
             begun.append((fit, total))
             yield fit
 
-    said = learn(samples, 34, seed=3, added=own, growing=growing).card["own"]
+    said = learn_quickly(samples, 34, seed=3, added=own, growing=growing).card["own"]
     assert begun == [(fit, N_FOLDS + 2) for fit in range(N_FOLDS + 2)]
     squawk = said["labels"]["squawk"]
     assert said["files"] == squawk["files"] == len(own)
