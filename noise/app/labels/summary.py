@@ -54,13 +54,15 @@ def conditions(row: Row) -> list[str]:
     >>> row = {"label": "creak", "interference_mm": 0.279}
     >>> speed = {"speed_rad_s": 5.2, "speed_rad_s_low": 3.1, "speed_rad_s_high": 8.0}
     >>> conditions({**row, **speed, "speed_rad_s_source": "inferred"})
-    ['speed 3.1 to 8 rad/s (inferred)', 'interference 0.279 mm', ...]
+    ['speed 3.1 to 8 rad/s (inferred)', 'interference 0.279 mm']
     """
     # The list is there before what only pages need is loaded.
     from noise.pages.engine.entry import Entry
     from noise.pages.engine.entry_display import facts_of
 
     facts = facts_of(Entry("", (row,)))
+    if not row.get("material"):  # which one is assumed, the row's note says
+        facts.pop("material", None)
     return [f"{name} {facts[name].words}" for name in _CONDITIONS if name in facts]
 
 
