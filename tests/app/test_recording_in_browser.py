@@ -335,6 +335,20 @@ def test_a_label_that_is_given_before_the_segments_have_come_changes_nothing(bro
     opened.close()
 
 
+def test_a_label_that_is_given_while_it_is_opened_again_changes_nothing(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    before = in_table(folder)
+    go_on = opened.holding("segments")
+    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
+    opened.page.locator(".strip button").first.wait_for(state="detached")
+    opened.press("1")
+    opened.page.locator(".saved").filter(has_text="still being read").wait_for()
+    go_on()
+    opened.page.locator(".strip button").nth(2).wait_for()
+    assert in_table(folder) == before
+    opened.close()
+
+
 def test_changes_that_wait_are_written_although_another_recording_is_opened(browser, app, folder):
     opened = OpenPage(browser, app).open(TONE)
     go_on = opened.holding("segments")

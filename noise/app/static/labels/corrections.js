@@ -14,8 +14,8 @@ export class Corrections extends EventTarget {
 
   // Until rows have come there are none to correct: what is written then would replace what nobody has seen.
   async open(id, duration) {
-    const again = id === this.id;
-    Object.assign(this, { id, duration, rows: [], before: null, known: again && this.known });
+    const none = id === this.id && this.known && !this.rows.length; // labels are awaited: any may be given meanwhile
+    Object.assign(this, { id, duration, rows: [], before: null, known: none });
     this.#tell();
     await this.writing;
     const answer = await api(`recordings/${id}/segments`);
