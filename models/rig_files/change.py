@@ -3,7 +3,9 @@
 A quantity of the bushing has a short name, ``damping``, and a long one with its unit,
 ``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` go with both, a bare number with the long one alone,
 and is then the value at every fit and support. Parameters of the friction law and of effects go by
-their own names, ``ageing_time`` or ``slip_pulse.amplitude``.
+their own names, ``slip_pulse.amplitude``, or by the last part of these where only one has it,
+``ageing_time``. A name of the bushing is always the bushing's, although an effect may have a
+parameter that is called alike, such as ``room_reflections.length``.
 
 Size and modulus of the rubber, ``wall_mm``, ``length_mm``, ``youngs_modulus_MPa`` or
 ``hardness_shore_A``, take the bushing along: its torques go with contact pressure, area and
@@ -192,8 +194,9 @@ def _target(rig: Rig, name: str, where: str) -> _Target:
             f"{where}: {name} is an operating condition, not a property of the bushing; leave it "
             "out and ask for it with --interference"
         )
-    found = [_Target("", short) for short, long in _LONG.items() if name in (short, long)]
-    found += [_Target(own, name) for own, law in owners.items() if name in law.parameters]
+    # The whole name of a quantity of the bushing: that parameters end alike makes it no other.
+    whole = [_Target("", short) for short, long in _LONG.items() if name in (short, long)]
+    found = whole or [_Target(own, name) for own, law in owners.items() if name in law.parameters]
     if len(found) == 1:
         return found[0]
     if found:

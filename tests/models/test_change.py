@@ -117,6 +117,16 @@ def test_a_name_that_means_several_quantities_is_refused_with_them(tmp_path):
     assert [effect.parameters["amplitude"] for effect in rig.effects] == [60.0, 2.0]
 
 
+def test_a_name_of_the_bushing_is_the_bushings_although_an_effect_has_one_alike(tmp_path):
+    text = 'base = "fluorocarbon"\neffects = ["room_reflections:length=4.5"]\n[change]\n'
+    longer = load_rig(written(tmp_path, text + 'length = "x2"'))
+    assert longer.sleeve.length == 2.0 * RIG.sleeve.length
+    assert longer.effects[0].parameters == {"length": 4.5}
+    room = load_rig(written(tmp_path, text + "room_reflections.length = 9.0"))
+    assert room.sleeve == RIG.sleeve
+    assert room.effects[0].parameters == {"length": 9.0}
+
+
 @pytest.mark.parametrize("name", material_names())
 def test_what_is_shipped_is_plausible(name):
     assert rig_remarks(load_material_rig(name)) == ()

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_rig
+from models.foreign_file import parse_toml
+from models.rig_files.rig_file import load_rig, rig_from
 from noise.app.design.bases import bases_of
 from noise.app.design.controls import controls_of
 from noise.app.design.design import design_of
@@ -71,6 +72,32 @@ def test_names_that_lead_elsewhere_are_refused(name, tmp_path):
     with pytest.raises(ParameterError, match="name: must begin"):
         save_rig({"base": "PDMS", "values": {}, "name": name}, MATERIALS, tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def others(control, value):
+    """Values that a control takes beside one, near it where it is a number."""
+    if control.kind == "switch":
+        return [not value]
+    if control.kind == "choice":
+        return [one for one in control.choices if one != value]
+    factor = 0.99 if control.key == "change.kinetic_torque" else 1.01  # or it is the critical one
+    near = (value or 0.5 * control.high) * factor
+    return [near if control.least <= near <= control.most else value / factor]
+
+
+@pytest.mark.parametrize("base", MATERIALS)
+def test_each_control_acts_with_all_effects_on_and_what_is_saved_is_read_as_such(base, tmp_path):
+    every = {f"effect.{name}": True for name in EFFECTS}
+    for control in controls_of(MATERIALS[base].rig):
+        on = every | (dict([control.only]) if control.only else {})
+        before = design(on, base)
+        for value in others(control, before.values[control.key]):
+            changed = design(on | {control.key: value}, base)
+            read = rig_from(parse_toml(changed.text(tmp_path, "mine.toml")), tmp_path, "mine.toml")
+            assert read == changed.rig, control.key
+            of_the_rig = control.key.startswith(("change.", "effect.", "law"))
+            assert (changed.rig != before.rig) == of_the_rig, control.key
+            assert of_the_rig or changed.options != before.options, control.key
 
 
 def test_laws_and_effects_of_the_registries_can_all_be_changed():
