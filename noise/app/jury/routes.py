@@ -68,6 +68,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
             "sounds": len(jury.sounds),
             "total": len(jury.pairs),
             "waiting": jury.waiting,
+            "last": {"place": len(jury.votes) - 1, "time": jury.last_time} if jury.votes else None,
             "open": all(len(by_name.get(name, ())) == 1 for name in jury.sounds),
         }
 
@@ -141,8 +142,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
         number = request.path_params["jury"]
         return JSONResponse(state(votes.vote(number, place, what, float(seconds))))
 
-    def undone(request: Request, _: object) -> Response:
-        return JSONResponse(state(votes.undo(request.path_params["jury"])))
+    def undone(request: Request, said: object) -> Response:
+        vote = said if isinstance(said, dict) else {}
+        place, time = vote.get("place"), vote.get("time")
+        if type(place) is not int or not isinstance(time, str):
+            raise ParameterError("an undo says place and time of the vote that it takes back")
+        return JSONResponse(state(votes.undo(request.path_params["jury"], place, time)))
 
     def told(request: Request) -> Response:
         return JSONResponse(result(asked(request)))

@@ -50,6 +50,9 @@ class Jury:
         Names of the sounds that are called A and B.
     votes : tuple of str
         One of `VOTES` each; as many as were voted.
+    last_time : str
+        When the last of them was given, as it stands in the table: it tells that vote from another
+        which was given in its place.
 
     Examples
     --------
@@ -65,6 +68,7 @@ class Jury:
     played: str
     pairs: tuple[tuple[str, str], ...]
     votes: tuple[str, ...]
+    last_time: str = ""
 
     @property
     def sounds(self) -> tuple[str, ...]:
@@ -159,7 +163,7 @@ class Votes:
         return self.jury(number)
 
     def vote(self, number: int, place: int, said: str, seconds: float) -> Jury:
-        """Write a vote and return the jury.
+        """Write a vote and return the jury with it.
 
         Parameters
         ----------
@@ -186,27 +190,39 @@ class Votes:
             jury = _jury(self.path, rows)
             if jury.waiting != place:
                 raise ParameterError(f"comparison {place + 1} is not the one whose turn it is")
-            now = datetime.now().astimezone().isoformat(timespec="seconds")
+            now = datetime.now().astimezone().isoformat(timespec="milliseconds")
             rows[place] |= {"vote": said, "seconds": round(seconds, 2), "time": now}
-        return self.jury(number)
+            return _jury(self.path, rows)  # not as others may have made it since
 
-    def undo(self, number: int) -> Jury:
-        """Take back the last vote of a jury and return it.
+    def undo(self, number: int, place: int, time: str) -> Jury:
+        """Take back the last vote of a jury and return the jury without it.
+
+        Parameters
+        ----------
+        number : int
+            Of the jury.
+        place : int
+            Of the comparison whose vote is meant.
+        time : str
+            When that vote was given, the `last_time` of a jury that has it.
 
         Raises
         ------
         ParameterError
-            There is none, or the table cannot be written.
+            That vote is not the last one, or the table cannot be written; then all is as it was.
         RecordingError
             Somebody else has made something of the table that is none.
         """
         with self._changed() as juries:
             rows = _rows_of(juries, number)
-            voted = len(_jury(self.path, rows).votes)
-            if not voted:
-                raise ParameterError("there is no vote to undo")
-            rows[voted - 1] |= {"vote": None, "seconds": None, "time": None}
-        return self.jury(number)
+            jury = _jury(self.path, rows)
+            if (len(jury.votes) - 1, jury.last_time) != (place, time):
+                raise ParameterError(
+                    f"the vote on comparison {place + 1} that was to be undone is not the last one "
+                    "any more"
+                )
+            rows[place] |= {"vote": None, "seconds": None, "time": None}
+            return _jury(self.path, rows)
 
     @contextmanager
     def _changed(self) -> Iterator[dict[int, list[Row]]]:
@@ -261,4 +277,5 @@ def _jury(path: Path, rows: Sequence[Row]) -> Jury:
     pairs = tuple((str(row["first"] or ""), str(row["second"] or "")) for row in rows)
     if any("" in pair or pair[0] == pair[1] for pair in pairs):
         raise RecordingError(f"{path}: jury {number} has a row without two different sounds")
-    return Jury(number, listener, question, played, pairs, tuple(said[:voted]))
+    last_time = str(rows[voted - 1]["time"] or "") if voted else ""
+    return Jury(number, listener, question, played, pairs, tuple(said[:voted]), last_time)

@@ -77,9 +77,14 @@ def test_votes_are_answered_by_what_is_next_and_undone(app, folder):
     assert app.json(f"{one}/vote", vote)["waiting"] == 1
     status, said = app.request(f"{one}/vote", vote)  # pressed twice
     assert (status, b"not the one whose turn it is" in said) == (400, True)
-    assert app.json(f"{one}/undo", {})["waiting"] == 0
-    assert begun["total"] == 9
+    last = app.json(one)["last"]
+    assert last["place"] == 0
+    assert app.request(f"{one}/undo", last | {"time": "x"})[0] == 400
     assert app.request(f"{one}/undo", {})[0] == 400
+    undone = app.json(f"{one}/undo", last)
+    assert (undone["waiting"], undone["last"]) == (0, None)
+    assert begun["total"] == 9
+    assert app.request(f"{one}/undo", last)[0] == 400
 
 
 def test_the_result_has_names_and_remarks_and_is_a_table(app, folder):

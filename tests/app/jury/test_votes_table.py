@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import time
+from contextlib import contextmanager
+
 import pytest
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.app.jury.store import COLUMNS, Votes
+from noise.base.lock import locked
 from noise.base.tables import read_table
 
 NAMES = ["=cmd.wav", "<img src=x onerror=alert(1)>.wav", "c d.wav"]
@@ -41,11 +45,37 @@ def test_each_vote_is_in_the_table_at_once_and_goes_on_after_a_new_start(votes):
 
 def test_the_last_vote_is_undone_and_no_more_than_there_are(votes):
     before = votes.path.read_bytes()
-    votes.vote(1, 0, "first", 1.0)
-    assert votes.undo(1).votes == ()
+    given = votes.vote(1, 0, "first", 1.0)
+    assert votes.undo(1, 0, given.last_time).votes == ()
     assert votes.path.read_bytes() == before
-    with pytest.raises(ParameterError, match="no vote to undo"):
-        votes.undo(1)
+    with pytest.raises(ParameterError, match="not the last one any more"):
+        votes.undo(1, 0, given.last_time)
+
+
+def test_an_undo_means_one_vote_and_takes_back_none_that_was_given_in_its_place(votes):
+    meant = votes.vote(1, 0, "first", 1.0)
+    votes.undo(1, 0, meant.last_time)
+    time.sleep(0.002)  # the time of a vote is written in milliseconds
+    votes.vote(1, 0, "first", 1.0)
+    with pytest.raises(ParameterError, match="vote on comparison 1 that was to be undone"):
+        votes.undo(1, 0, meant.last_time)
+    later = votes.vote(1, 1, "equal", 1.0)
+    with pytest.raises(ParameterError, match="not the last one any more"):
+        votes.undo(1, 0, later.last_time)
+    assert votes.jury(1).votes == ("first", "equal")
+
+
+def test_what_is_answered_to_a_vote_ends_with_it_though_another_follows_at_once(votes, monkeypatch):
+    @contextmanager
+    def followed(path):
+        with locked(path):
+            yield
+        monkeypatch.undo()
+        Votes(path).vote(1, 1, "equal", 1.0)
+
+    monkeypatch.setattr("noise.app.jury.store.locked", followed)
+    assert votes.vote(1, 0, "first", 1.0).votes == ("first",)
+    assert votes.jury(1).votes == ("first", "equal")
 
 
 @pytest.mark.parametrize(

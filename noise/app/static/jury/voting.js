@@ -15,13 +15,14 @@ export class Voting {
     this.player = new Player(told, ({ samples }) => Promise.resolve(samples));
     this.kept = new Map(); // sounds of this comparison and the next
     this.ready = false;
+    this.shown = 0; // counts what is shown: what was asked for before comes too late
     this.#build(element);
     this.#playing();
     this.player.addEventListener("change", () => this.#playing());
     listen(element, {
       a: () => this.hear("a"), b: () => this.hear("b"), x: () => this.hear(this.player.active === "a" ? "b" : "a"),
-      " ": () => this.toggle(), l: () => this.loop(), u: () => this.undo(),
-      1: () => this.vote("first"), 2: () => this.vote("second"), 0: () => this.vote("equal"),
+      " ": () => this.toggle(), l: () => this.loop(), u: ({ repeat }) => repeat || this.undo(),
+      ...Object.fromEntries(Object.entries(VOTES).map(([key, vote]) => [key, ({ repeat }) => repeat || this.vote(vote)])),
     });
   }
 
@@ -55,21 +56,28 @@ export class Voting {
   get voted() { return this.state ? this.state.waiting ?? this.state.total : 0; }
 
   async open(number) {
+    const shown = ++this.shown;
     this.number = number;
     this.ready = false;
     this.#playing();
-    this.kept.clear();
-    this.player.kept.clear();
+    this.#forget();
     this.saved.textContent = "";
     this.state = null;
     told(""); // what went wrong before may name a sound
     const state = await api(`juries/${number}`);
+    if (shown !== this.shown) return;
     this.gain.textContent = `Played at ${state.gain}.`;
     await this.#show(state);
     this.stage.focus();
   }
 
+  #forget() {
+    this.kept.clear();
+    this.player.kept.clear();
+  }
+
   async #show(state) {
+    const shown = ++this.shown;
     this.player.stop();
     this.state = state;
     this.stage.textContent = state.question;
@@ -84,7 +92,7 @@ export class Voting {
     this.#playing();
     if (place === null) return;
     const [a, b] = await this.#sounds(place);
-    if (place !== this.state.waiting) return;
+    if (shown !== this.shown) return;
     const duration = Math.max(a.length, b.length) / RATE; // the shorter one is silent at its end
     const slot = (side, samples) => ({ id: `${this.number} ${place} ${side}`, samples, channel: "", kind: "pressure", calibrated: false, duration, anchor: null });
     this.player.put("a", slot("a", a));
@@ -156,22 +164,31 @@ export class Voting {
     await this.#write(() => api(`juries/${this.number}/vote`, { place: this.state.waiting, vote, seconds }), "saved");
   }
 
+  // Of the last vote that is shown, whatever another page has done since.
   async undo() {
     if (!this.voted || this.busy) return;
-    await this.#write(() => api(`juries/${this.number}/undo`, {}), "undone, saved");
+    await this.#write(() => api(`juries/${this.number}/undo`, this.state.last), "undone");
   }
 
   async #write(ask, word) {
+    const { number, shown, state: { waiting } } = this;
     this.busy = true;
-    let state = null;
+    let state, said;
     try {
       state = await ask();
-      this.saved.textContent = `${word} ${new Date().toTimeString().slice(0, 8)}`;
-    } catch (error) {
-      this.saved.textContent = `not saved: ${error.message}`;
+      said = `${word} ${new Date().toTimeString().slice(0, 8)}`;
+      told(""); // what was refused before no longer matters
+    } catch ({ message }) {
+      state = await api(`juries/${number}`).catch(() => null);
+      // Another page has voted, or an answer was lost.
+      const moved = state && state.waiting !== waiting;
+      said = moved ? `${message}; shown is what is saved` : `not ${word}: ${message}`;
+      if (shown === this.shown) this.#forget();
     } finally {
       this.busy = false;
     }
+    if (shown !== this.shown) return;
+    this.saved.textContent = said;
     if (state) await this.#show(state);
   }
 
