@@ -33,7 +33,9 @@ export class Result {
 
   async open(number) {
     this.number = number;
-    const found = (this.found = await api(`juries/${number}/result`));
+    const found = await api(`juries/${number}/result`);
+    if (number !== this.number) return; // another was asked for, or a vote, before this came
+    this.found = found;
     this.title.textContent = found.question;
     this.facts.textContent = [found.listener, `played at ${found.played}`, ...found.facts].filter(Boolean).join(" · ");
     this.remarks.replaceChildren(...found.remarks.map((textContent) => made("li", { textContent })));
@@ -48,7 +50,7 @@ export class Result {
   }
 
   clear() {
-    this.found = null;
+    this.number = this.found = null;
     for (const part of [this.svg, this.rows, this.remarks]) part.replaceChildren();
   }
 

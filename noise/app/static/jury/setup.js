@@ -10,6 +10,8 @@ const SECONDS = 10; // that a comparison takes, about
 export class Setup {
   constructor(element, goes) {
     this.goes = goes;
+    this.element = element;
+    this.asked = 0; // counts lists: one that was asked for before comes too late
     this.chosen = null; // ids
     this.shown = [];
     this.#build(element);
@@ -45,8 +47,7 @@ export class Setup {
         made("div", { className: "line" }, field("With", this.kind), field("Find", this.find), all, none, this.count),
         this.sounds),
       made("div", { className: "line" }, this.begin, this.progress, this.plan)));
-    let wait;
-    this.find.addEventListener("input", () => { clearTimeout(wait); wait = setTimeout(() => this.#list(), 150); });
+    this.find.addEventListener("input", () => { clearTimeout(this.wait); this.wait = setTimeout(() => this.#list(), 150); });
     this.kind.addEventListener("change", () => this.#list());
     for (const box of [this.each, this.repeats]) box.addEventListener("change", () => this.#tell());
     all.addEventListener("click", () => { for (const { id } of this.shown) this.chosen.add(id); this.#draw(); });
@@ -56,6 +57,7 @@ export class Setup {
 
   async open() {
     const { juries, most, longest_s: longest } = await api("juries");
+    if (this.element.hidden) return; // somebody votes
     Object.assign(this, { most, longest });
     this.goingOn.hidden = !juries.length;
     this.going.replaceChildren(...juries.map((jury) => this.#jury(jury)).reverse());
@@ -64,6 +66,7 @@ export class Setup {
 
   // While somebody votes no name is in the page.
   clear() {
+    clearTimeout(this.wait);
     this.sounds.replaceChildren();
   }
 
@@ -72,7 +75,10 @@ export class Setup {
     const said = [`${number}. ${question}`, listener, `${sounds} sounds`, `${waiting ?? total} of ${total} voted`].filter(Boolean).join(" · ");
     const on = made("button", { type: "button", textContent: "Go on", ariaLabel: `Go on with jury ${number}`, disabled: !open });
     const result = made("button", { type: "button", textContent: "Result", ariaLabel: `Result of jury ${number}` });
-    on.addEventListener("click", () => this.#prepared(`juries/${number}/prepare`, {}).then(() => this.goes.voting(number)));
+    on.addEventListener("click", async () => {
+      await this.#alone(() => this.#prepared(`juries/${number}/prepare`, {}));
+      await this.goes.voting(number);
+    });
     result.addEventListener("click", () => this.goes.result(number));
     const row = made("li", {}, made("span", { textContent: open ? said : `${said} · its sounds are not open` }));
     if (waiting !== null) row.append(on);
@@ -81,8 +87,10 @@ export class Setup {
   }
 
   async #list() {
+    const asked = ++this.asked;
     const query = new URLSearchParams({ label: this.kind.value, text: this.find.value, count: 1000 });
     const { rows, total } = await api(`recordings?${query}`);
+    if (asked !== this.asked || this.element.hidden) return;
     this.shown = rows;
     this.more = total - rows.length; // are not shown
     this.chosen ??= new Set(rows.slice(0, AT_FIRST).map(({ id }) => id));
@@ -126,16 +134,23 @@ export class Setup {
     }
   }
 
+  // Until it is done nothing else is begun, nor anything changed in what is.
+  async #alone(work) {
+    this.element.inert = true;
+    try {
+      return await work();
+    } finally {
+      this.element.inert = false;
+    }
+  }
+
   async #begin() {
     const sounds = [...this.chosen];
-    this.begin.disabled = true;
-    try {
+    const said = { sounds, question: this.question.value, listener: this.listener.value, played: this.played.value, each: this.each.value, repeats: this.repeats.value };
+    const { jury } = await this.#alone(async () => {
       await this.#prepared("juries/prepare", { sounds });
-      const said = { sounds, question: this.question.value, listener: this.listener.value, played: this.played.value, each: this.each.value, repeats: this.repeats.value };
-      const { jury } = await api("juries", said);
-      await this.goes.voting(jury);
-    } finally {
-      this.begin.disabled = false;
-    }
+      return api("juries", said);
+    });
+    await this.goes.voting(jury);
   }
 }
