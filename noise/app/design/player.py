@@ -44,7 +44,9 @@ REFUSED = 0xFFFFFFFF
 @dataclass(eq=False)
 class _Run:
     live: LiveRun
+    paths: LiveTransferPaths
     serial: int
+    refused: int = -1
     change: tuple[int, Setting] | None = None
     sequence: int = 0
     pace: Pace = field(default_factory=lambda: Pace(BLOCK / RATE))
@@ -65,8 +67,9 @@ class Player:
         ParameterError
             The setting cannot be used.
         """
-        live = LiveRun(setting, rate=RATE, n=BLOCK, paths=LiveTransferPaths(self.beside))
-        self._runs[number] = _Run(live, serial)
+        paths = LiveTransferPaths(self.beside)
+        live = LiveRun(setting, rate=RATE, n=BLOCK, paths=paths)
+        self._runs[number] = _Run(live, paths, serial)
 
     def stop(self, number: int) -> None:
         """End a run, if there is one of that number."""
@@ -96,7 +99,8 @@ class Player:
             Sequence, serial, samples of pressure and of torque as unsigned integers; milliseconds
             that it took and speed of the shaft [rad/s], then pressure [Pa] and torque [Nm] as
             floating-point numbers; all of 32 bits, little-endian. Where the change that was to be
-            heard could not be, `REFUSED` and why comes before it.
+            heard could not be, or what carries it to the microphone cannot, `REFUSED` and why comes
+            before it.
 
         Raises
         ------
@@ -116,6 +120,9 @@ class Player:
             except ParameterError as error:
                 why = refusal(run.serial, error)
                 made = run.live.block()
+        if run.paths.refusal and run.refused != run.serial:
+            why += refusal(run.serial, run.paths.refusal)
+            run.refused = run.serial
         pressure = made.pressure.astype("<f4")
         torque = made.torque[::TORQUE_STEP].astype("<f4")
         took = 1e3 * (time.perf_counter() - started)
@@ -125,7 +132,7 @@ class Player:
         return why + header + pressure.tobytes() + torque.tobytes()
 
 
-def refusal(serial: int, error: ParameterError) -> bytes:
+def refusal(serial: int, error: ParameterError | str) -> bytes:
     """Return the message that a change could not be."""
     why = " ".join(str(error).split()).encode()
     return HEADER.pack(REFUSED, serial, len(why), 0, 0.0, 0.0) + why

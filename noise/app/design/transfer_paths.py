@@ -40,6 +40,13 @@ class LiveTransferPaths:
         self._known: tuple[tuple[object, ...], ImpulseResponses] | None = None
         self._wanted: tuple[Setting, tuple[object, ...]] | None = None
         self._asked: dict[int, tuple[Setting, tuple[object, ...]]] = {}
+        self._refused: tuple[tuple[object, ...], str] | None = None
+
+    @property
+    def refusal(self) -> str:
+        """Why those of the setting that was asked for last cannot be, as far as that is known."""
+        refused, wanted = self._refused, self._wanted
+        return refused[1] if refused and wanted and refused[0] == wanted[1] else ""
 
     def __call__(self, setting: Setting) -> ImpulseResponses | None:
         """Return those of a setting, None while they are not known."""
@@ -52,9 +59,13 @@ class LiveTransferPaths:
             return self._known[1]
         newest = self._beside.newest
         mine = None if newest is None else self._asked.pop(id(newest[0]), None)
-        if newest is not None and mine is not None and newest[1] is not None:
-            self._known = mine[1], newest[1]
-            return newest[1]
+        if newest is not None and mine is not None:
+            if newest[1] is not None:
+                self._known = mine[1], newest[1]
+                return newest[1]
+            self._refused = mine[1], newest[2]
+        if self.refusal:  # asking again would bring no other answer
+            return None
         if mine is None and not any(asked == key for _, asked in self._asked.values()):
             self._ask(setting, key)
         elif not self._beside.busy:  # what another page asked for took its place

@@ -44,6 +44,15 @@ def read(block):
     return {"sequence": sequence, "serial": serial, "pressure": numbers[:n], "speed": speed}
 
 
+def told(message):
+    """Serial of what was refused and why, None and nothing where nothing was; then the block."""
+    refused, serial, n, *_ = HEADER.unpack(message[: HEADER.size])
+    if refused != REFUSED:
+        return None, "", read(message)
+    end = HEADER.size + n
+    return serial, message[HEADER.size : end].decode(), read(message[end:])
+
+
 def heard(player, designs, run=1, first=0):
     """Blocks in a row; a design that is None stays as it is."""
     blocks = []
@@ -90,16 +99,36 @@ def test_a_change_that_cannot_be_is_told_and_the_run_goes_on_as_it_was(player):
     heard(player, [PLAIN, None])
     too_tight = replace(setting(PLAIN), interference=0.5)
     player.change(1, 2, too_tight)
-    answer = player.block(1)
-    refused, serial, n, *_ = HEADER.unpack(answer[: HEADER.size])
-    assert (refused, serial) == (REFUSED, 2)
-    why = answer[HEADER.size : HEADER.size + n].decode()
+    serial, why, block = told(player.block(1))
+    assert serial == 2
     assert "interference" in why
     assert "\n" not in why
-    block = read(answer[HEADER.size + n :])["pressure"]
     goes_on = heard(player, [None] * 2, first=3)
     untouched = heard(player, [PLAIN, *[None] * 4], run=3)
-    np.testing.assert_array_equal(np.concatenate([block, goes_on]), untouched[2 * BLOCK :])
+    np.testing.assert_array_equal(
+        np.concatenate([block["pressure"], goes_on]), untouched[2 * BLOCK :]
+    )
+
+
+def test_what_cannot_be_carried_to_the_microphone_is_told_once_of_each_change(player):
+    light = {"base": "fluorocarbon", "values": {"change.clamp_inertia": 0.2}}
+    heard(player, [PLAIN, light])
+    until = time.monotonic() + 6 * PATIENCE  # its process lets all others go first
+    i = 2
+    while (answer := told(player.block(1)))[0] is None and time.monotonic() < until:
+        i += 1
+        time.sleep(0.05)
+    assert answer[0] == 1
+    assert "more inertia than the clamp" in answer[1]
+    assert answer[2]["sequence"] == i
+    assert told(player.block(1))[0] is None
+    light["values"]["speed"] = 6.0
+    player.change(1, 2, setting(light))
+    serial, why, block = told(player.block(1))
+    assert (serial, why) == (2, answer[1])
+    assert block["serial"] == 2
+    heard(player, [PLAIN], first=block["sequence"] + 1)
+    assert told(player.block(1))[0] is None
 
 
 def test_blocks_are_due_one_after_the_other_and_sooner_where_somebody_asks(player):

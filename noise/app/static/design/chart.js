@@ -14,7 +14,7 @@ export class Chart {
     this.ask = made("button", { type: "button", textContent: "What would end the noise?" });
     this.helps = made("ul", { className: "helps" });
     this.ask.addEventListener("click", () => this.help());
-    panel.append(made("section", {}, made("h2", { textContent: "Map" }), this.box, this.said),
+    panel.append(made("section", { className: "shown" }, made("h2", { textContent: "Map" }), this.box, this.said),
       made("section", {}, made("h2", { textContent: "What to change" }), made("div", { className: "tools" }, this.ask), this.helps));
   }
 
@@ -106,7 +106,7 @@ export class Chart {
 // Ask until it is known, or nobody wants to know any more.
 async function asked(path, stated, wanted) {
   while (wanted()) {
-    const answer = await api(path, stated).catch((error) => ({ known: true, found: null, error: error.message }));
+    const answer = await api(path, stated, () => {}).catch((error) => ({ known: true, found: null, error: error.message }));
     if (answer.known) return wanted() ? answer : null;
     await new Promise((resolve) => { setTimeout(resolve, AGAIN); });
   }

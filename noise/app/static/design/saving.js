@@ -1,5 +1,5 @@
 // What is kept of a design: a rig file, both designs as WAVs, or as a page to send.
-import { api, told } from "../api.js";
+import { api } from "../api.js";
 import { made } from "../labels/list.js";
 
 const AGAIN = 500; // ms
@@ -45,13 +45,12 @@ export class Saving {
   async #kept(what, path, asked, then) {
     const name = this.name.value.trim(), key = `${what} ${name}`;
     try {
-      const found = await api(path, { ...asked, name, replace: this.again === key });
+      const found = await api(path, { ...asked, name, replace: this.again === key }, () => {});
       this.again = "";
       await then(found);
     } catch (error) {
       this.said.textContent = error.message;
       this.again = /is there already/.test(error.message) ? key : "";
-      told("");
     }
   }
 }

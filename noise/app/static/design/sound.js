@@ -14,7 +14,8 @@ export class Sound extends EventTarget {
     this.latencies = []; // from a change to when it is heard [ms]
     this.costs = []; // of blocks, at the server [ms]
     this.waiting = []; // changes that are not heard yet
-    this.serial = 0;
+    this.serial = 0; // of the newest change
+    this.refusedSerial = -1; // of the newest that could not be
     this.design = null;
   }
 
@@ -38,6 +39,7 @@ export class Sound extends EventTarget {
       this.added ??= this.context.audioWorklet.addModule(new URL("./ring.js", import.meta.url));
       await this.added;
     } finally { this.starting = false; }
+    this.refusedSerial = -1;
     this.run = crypto.getRandomValues(new Uint32Array(1))[0];
     this.worker = new Worker(new URL("./feed.js", import.meta.url));
     this.worker.onmessage = ({ data }) => this.#fed(data);
@@ -73,10 +75,10 @@ export class Sound extends EventTarget {
   #fed(data) {
     if (data.refused !== undefined) {
       this.waiting = this.waiting.filter(({ serial }) => serial > data.serial);
-      this.dispatchEvent(new CustomEvent("refused", { detail: data.refused }));
+      this.#refuse(data.serial, data.refused);
     }
     if (data.ended !== undefined) {
-      if (data.ended) this.dispatchEvent(new CustomEvent("refused", { detail: data.ended }));
+      if (data.ended) this.#refuse(this.serial, data.ended);
       this.stop();
     }
     if (data.block) {
@@ -102,6 +104,11 @@ export class Sound extends EventTarget {
     if (this.latencies.length > LATENCIES) this.latencies.splice(0, this.latencies.length - LATENCIES);
     this.heardSerial = serial;
     this.#tell("heard");
+  }
+
+  #refuse(serial, reason) {
+    this.refusedSerial = serial;
+    this.dispatchEvent(new CustomEvent("refused", { detail: { serial, reason } }));
   }
 
   #tell(what) { this.dispatchEvent(new Event(what)); }

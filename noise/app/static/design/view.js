@@ -32,12 +32,13 @@ export async function mount(panel) {
   const remarks = made("ul", { className: "remarks", ariaLabel: "To be known" });
   left.append(tools, start, rows);
   right.append(
-    made("section", { className: "heard" }, made("h2", { textContent: "What is heard" }), level, made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit), remarks),
-    made("section", {}, made("h2", { textContent: "Torque" }), torque),
-    made("section", {}, made("h2", { textContent: "Spectrum" }), spectrum),
+    made("section", { className: "shown heard" }, made("h2", { textContent: "What is heard" }), level, made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit), remarks),
+    made("section", { className: "shown" }, made("h2", { textContent: "Torque" }), torque),
+    made("section", { className: "shown" }, made("h2", { textContent: "Spectrum" }), spectrum),
   );
+  const refusal = made("p", { className: "refusal", role: "status" });
   view.append(left, right);
-  panel.replaceChildren(view);
+  panel.replaceChildren(view, refusal);
 
   const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, torque, spectrum);
   const design = { sound, controls, drawings, about };
@@ -67,13 +68,24 @@ export async function mount(panel) {
   function facts() {
     clearTimeout(asked);
     asked = setTimeout(async () => {
-      const found = await api("design/facts", states[slot]).catch(() => null);
-      if (!found) return;
+      const { serial } = sound;
+      let found = { facts: {}, remarks: [] }, why = "";
+      try { found = await api("design/facts", states[slot], () => {}); } catch (error) { why = error.message; }
+      if (serial !== sound.serial) return; // of numbers that are no longer shown
+      judge(serial, why);
       controls.told(found.facts);
       design.options = found.options;
       remarks.replaceChildren(...found.remarks.map((textContent) => made("li", { textContent })));
       view.dispatchEvent(new CustomEvent("design-facts", { detail: found }));
     }, FACTS_AFTER);
+  }
+
+  // Whether the newest change can be. Where it cannot, all that is heard and shown is marked.
+  function judge(serial, why = "") {
+    if (serial !== sound.serial || (!why && serial === sound.refusedSerial)) return;
+    view.classList.toggle("refused", Boolean(why));
+    const words = why && `What is heard and shown is not of these numbers: ${why}`;
+    if (refusal.textContent !== words) refusal.textContent = words;
   }
 
   async function choose(name) {
@@ -109,20 +121,22 @@ export async function mount(panel) {
   play.addEventListener("click", () => {
     if (sound.playing) {
       sound.stop();
-      level.textContent = "Not playing.";
     } else {
-      level.textContent = "Begins; the very first time that takes a while.";
       sound.start();
+      level.textContent = "Begins; the very first time that takes a while.";
     }
   });
   sound.addEventListener("change", () => {
-    if (!sound.playing) design.speed = undefined;
+    if (!sound.playing) {
+      design.speed = undefined;
+      level.textContent = "Not playing.";
+    }
     play.textContent = sound.playing ? "Stop sound" : "Play";
     scale.value = sound.fullScale;
     gain.textContent = `Full scale = ${sound.fullScale} Pa (${(20 * Math.log10(sound.fullScale / 2e-5)).toFixed(0)} dB peak re 20 µPa)`;
   });
-  sound.addEventListener("refused", ({ detail }) => told(detail));
-  sound.addEventListener("heard", () => told(""));
+  sound.addEventListener("refused", ({ detail }) => judge(detail.serial, detail.reason));
+  sound.addEventListener("heard", () => judge(sound.heardSerial));
   sound.addEventListener("block", ({ detail }) => {
     drawings.take(detail);
     design.speed = detail.speed;
@@ -133,7 +147,7 @@ export async function mount(panel) {
   setInterval(async () => {
     if (!sound.playing || panel.hidden) return;
     const found = await api(`design/levels?run=${sound.run}`).catch(() => null);
-    if (found) level.textContent = words(found, sound.fullScale);
+    if (found && sound.playing) level.textContent = words(found, sound.fullScale);
   }, LEVELS_EVERY);
   document.addEventListener("view-shown", ({ detail }) => {
     if (detail === "design") chart.changed();
