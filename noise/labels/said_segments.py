@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from noise.labels.frequencies import TELLING, segment_frequency
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["LONGEST_MEASURED", "said_rows"]
 
 LONGEST_MEASURED = 120.0
-"""Recordings that are longer are not measured while a person waits [s]."""
+"""No more is measured while a person waits [s]: of a longer recording what is new alone."""
 
 
 def said_rows(
@@ -30,6 +31,7 @@ def said_rows(
     name: str,
     segments: Sequence[tuple[str, float, float, str]],
     full_scale: PascalPerFullScale | None = None,
+    new: Sequence[tuple[str, float, float, str]] | None = None,
 ) -> list[dict[str, object]]:
     """Return a row for each segment of a recording that a person has drawn.
 
@@ -42,13 +44,16 @@ def said_rows(
         Channel, start [s], end [s] and label of all segments.
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    new : sequence of (str, float, float, str), optional
+        Those of the segments that are measured where the recording is longer than
+        `LONGEST_MEASURED`, the shortest of them up to that; by default all segments.
 
     Returns
     -------
     list of dict
-        By `noise.labels.labelling.COLUMNS`, without probabilities; those of a recording that is
-        longer than `LONGEST_MEASURED`, of a channel that it does not have, and beyond its end are
-        left out.
+        By `noise.labels.labelling.COLUMNS`, without probabilities; those that are not measured, of
+        a channel that it does not have, and beyond its end are left out. Where not all are
+        measured, none has a level over the background, which lies in all of them.
 
     Raises
     ------
@@ -72,15 +77,30 @@ def said_rows(
     """
     with open_blocks(path, full_scale=full_scale) as opened:
         recording = opened or RecordingBlocks.of(read_recording(path, full_scale=full_scale))
-        if recording.n_samples > LONGEST_MEASURED * recording.rate:
-            return []
+        whole = recording.n_samples <= LONGEST_MEASURED * recording.rate
+        if not whole:
+            segments = _as_many_as_fit(segments if new is None else new)
         found = [
             segment
             for channel, track in tracks(recording, per_track=names_no_channels(path))
             for segment in with_weighted_levels(track, _measured(track, channel, segments))
         ]
+        if not whole:
+            found = [replace(segment, snr=None) for segment in found]
         rows = label_rows(name, recording, found)
         return [row | {"label_source": HUMAN} for row in rows]
+
+
+def _as_many_as_fit(
+    segments: Sequence[tuple[str, float, float, str]],
+) -> list[tuple[str, float, float, str]]:
+    """Return the shortest of some segments, `LONGEST_MEASURED` together, in order of time."""
+    fit, left = [], LONGEST_MEASURED
+    for segment in sorted(segments, key=lambda one: one[2] - one[1]):
+        left -= segment[2] - segment[1]
+        if left >= 0.0:
+            fit.append(segment)
+    return sorted(fit)
 
 
 def _measured(

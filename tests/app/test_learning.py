@@ -113,8 +113,7 @@ def test_a_training_that_fails_says_so_and_labels_nothing(learning, monkeypatch)
 @pytest.mark.slow
 def test_the_button_learns_and_labels_all_but_what_a_person_has_said(folder):
     with opened_app(folder, "--samples", 60) as app:
-        rows = [{"start_s": 0.0, "end_s": 1.5, "label": "unknown", "label_source": "human"}]
-        app.json("api/recordings/0/segments", {"rows": rows})
+        app.correct(0, "unknown", 0.0, 1.5)
         app.json("api/train", {})
         while app.json("api/train")["running"] or app.json("api/recordings")["state"]["running"]:
             pass

@@ -129,13 +129,12 @@ def test_keys_go_through_the_list_and_open(page):
 
 
 def test_a_correction_by_anybody_is_in_the_list_when_it_is_asked_for_again(page, app):
-    rows = [{"start_s": 0.0, "end_s": 5.0, "label": "squawk", "label_source": "human"}]
-    app.json("api/recordings/1/segments", {"rows": rows})
+    app.correct(1, "squawk", 0.0, 5.0)
     page.evaluate(
         "async () => { const { refresh } = await import('/static/labels/list.js');"
-        " await refresh(1); }"
+        " await refresh(); }"
     )
-    assert "squawk, corrected" in page.locator(CHOSEN).inner_text()
+    assert "squawk, corrected" in shown(page)[1]
     app.json("api/undo", {})
 
 
@@ -186,8 +185,7 @@ def test_labels_arrive_while_they_are_computed_and_the_table_holds_them(browser,
     write_folder(tmp_path, ("bad.wav",))
     with opened_app(tmp_path) as app:
         page = mounted(browser, app)
-        rows = [{"start_s": 0.0, "end_s": 0.5, "label": "creak"}]
-        app.json("api/recordings/1/segments", {"rows": rows})
+        app.correct(1, "creak", 0.0, 0.5)
         page.get_by_role("button", name="Label 3", exact=True).click()
         page.wait_for_selector(f"{ROW} >> text=refused")
         page.wait_for_function("() => !list.running")

@@ -27,10 +27,10 @@ def one(p_creak, p_squeal, source="classifier", **more):
 
 
 def order(recordings, jobs=JOBS, describing=None):
-    check, found = NextCheck(jobs, describing), []
-    while (index := check.next(recordings, None)["id"]) is not None:
+    check, found = NextCheck(jobs, describing), [None]
+    while (index := check.next(recordings, found[-1])["id"]) is not None:
         found.append(index)
-    return found
+    return found[1:]
 
 
 def test_the_least_sure_comes_first_and_each_comes_once():
@@ -52,6 +52,11 @@ def test_what_was_looked_at_does_not_come_again():
     check, recordings = NextCheck(JOBS), [one(0.5, 0.5), one(0.9, 0.1)]
     assert check.next(recordings, 0)["id"] == 1
     assert check.next(recordings, 1) == {"id": None}
+
+
+def test_what_was_told_but_not_looked_at_is_told_again():
+    check, recordings = NextCheck(JOBS), [one(0.5, 0.5), one(0.9, 0.1)]
+    assert [check.next(recordings, None)["id"] for _ in range(2)] == [0, 0]
 
 
 def test_a_recording_without_labels_is_nothing_to_check():

@@ -71,8 +71,9 @@ def test_the_page_gets_answers_by_its_cookie_beside_those_of_other_programs(app)
 
 
 def test_a_correction_from_another_site_changes_nothing(app):
-    rows = {"rows": [{"start_s": 0.0, "end_s": 1.0, "label": "creak"}]}
     before = app.json("api/recordings/1/segments")
+    row = {"start_s": 0.0, "end_s": 1.0, "label": "creak"}
+    rows = {"rows": [row], "version": before["version"]}
     assert app.request("api/recordings/1/segments", rows, token="x")[0] == 403
     assert app.request("api/recordings/1/segments", rows, Origin="http://x.example")[0] == 403
     assert app.json("api/recordings/1/segments") == before

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
+from noise.app.labels.row_places import place
+from noise.app.labels.split_rows import row_of_piece, with_measured, without_opinion
 from noise.base.label_names import LABELS
-from noise.labels.labelling import COLUMNS
 from noise.labels.table import HUMAN
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ _MOST = 10_000
 
 _LONGEST = 1e9
 """Nothing is recorded for longer [s]."""
-
-_OF_LABEL = tuple(f"p_{label}" for label in LABELS)
 
 
 @dataclass(frozen=True)
@@ -104,7 +102,7 @@ def _seconds(row: dict[object, object], key: str) -> float:
 
 def news(said: Sequence[Correction], before: Sequence[Row]) -> list[Correction]:
     """Return those segments that no row was before."""
-    there = {(*_place(row), row["label"]) for row in before}
+    there = {(*place(row), row["label"]) for row in before}
     return [one for one in said if (one.channel, one.start, one.end, one.label) not in there]
 
 
@@ -127,7 +125,7 @@ def as_rows(
     -------
     list of dict
         A segment that is as it was keeps its row; one with another label keeps what was measured
-        of it, but no probability. Where all are as they were, the person agrees with all.
+        of it, but no probability; one with other borders what was logged of that it was cut from.
 
     Examples
     --------
@@ -136,37 +134,17 @@ def as_rows(
     >>> new["label"], new["level_dba"], new["label_source"]
     ('creak', 50.0, 'human')
     """
-    there = {_place(row): row for row in before if row["label"] is not None}
-    numbers = {_place(row): row for row in measured}
+    there = {place(row): row for row in before if row["label"] is not None}
+    numbers = {place(row): row for row in measured}
     rows = []
     for one in said:
-        old = there.get((one.channel, one.start, one.end))
+        at = (one.channel, one.start, one.end)
+        old = there.get(at)
         if old is not None and old["label"] == one.label:
             rows.append(old | ({"label_source": HUMAN} if one.confirmed else {}))
             continue
-        row: Row = dict.fromkeys(COLUMNS) if old is None else old | _without_opinion(old)
-        row |= numbers.get((one.channel, one.start, one.end), {})
+        row = row_of_piece(at, before) if old is None else without_opinion(old)
+        row = with_measured(row, numbers.get(at, {}))
         row |= {"file": name, "channel": one.channel, "start_s": one.start, "end_s": one.end}
         rows.append(row | {"label": one.label, "label_source": HUMAN, "error": None})
-    if rows == [row for row in before if row["label"] is not None]:
-        return [row | {"label_source": HUMAN} for row in rows]
     return rows
-
-
-def _place(row: Row) -> tuple[str, float, float]:
-    start, end = row.get("start_s"), row.get("end_s")
-    return (
-        str(row.get("channel") or "all"),
-        start if isinstance(start, float) else 0.0,
-        end if isinstance(end, float) else math.inf,
-    )
-
-
-def _without_opinion(row: Row) -> Row:
-    """Return what of a row hangs on the label that it had, as nothing known."""
-    cleared: Row = dict.fromkeys((*_OF_LABEL, "frequency_hz"))
-    for name in ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad"):
-        if row.get(f"{name}_source") == "inferred":
-            cleared |= dict.fromkeys((name, f"{name}_low", f"{name}_high"))
-            cleared[f"{name}_source"] = "missing"
-    return cleared

@@ -96,7 +96,6 @@ class NextCheck:
             if not left:
                 return {"id": None}
             index, row = self._best(left)
-            self._asked[index] = row
             told = {name: row.get(name) for name in ("channel", "start_s", "end_s", "label")}
             return {"id": index, "left": len(left)} | told
 

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 from starlette.responses import JSONResponse
 from starlette.routing import Route
 
+from models.errors import ParameterError
 from noise.app.labels.corrections import read_corrections
 from noise.app.labels.labelling_run import LabellingRun
 from noise.app.labels.list_query import read_list_query, whole_number
 from noise.app.labels.next_check import NextCheck
+from noise.app.labels.row_places import version
 from noise.app.labels.segment_features import SegmentFeatures
 from noise.app.labels.store import Labels
 from noise.app.labels.summary import conditions, plain
@@ -46,9 +48,11 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def recordings(request: Request) -> Response:
         shown = labels.summaries()
         done = sum(bool(one["labels"] or one["error"]) for one in shown)
-        return JSONResponse(
-            {**read_list_query(request.query_params).answer(shown), "state": run.state(done)}
-        )
+        answer = read_list_query(request.query_params).answer(shown)
+        seen = _recording(request, "open")
+        if seen is not None:
+            answer["open"] = {"id": seen, "version": version(labels.rows(seen))}
+        return JSONResponse({**answer, "state": run.state(done)})
 
     def segments(request: Request) -> Response:
         job = opened.job(request.path_params["id"])
@@ -56,8 +60,11 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def corrected(request: Request, said: object) -> Response:
         job = opened.job(request.path_params["id"])
-        rows = said.get("rows") if isinstance(said, dict) else None
-        return JSONResponse(_segments(job.index, labels.correct(job.index, read_corrections(rows))))
+        said = said if isinstance(said, dict) else {}
+        corrections = read_corrections(said.get("rows"))
+        if not isinstance(of := said.get("version"), str):
+            raise ParameterError("version: must be that of the segments which are corrected")
+        return JSONResponse(_segments(job.index, labels.correct(job.index, corrections, of)))
 
     def undone(_: Request, __: object) -> Response:
         index, rows = labels.undo()
@@ -68,10 +75,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(run.state(0))
 
     def following(request: Request) -> Response:
-        query = request.query_params
-        most = len(opened.jobs) - 1
-        after = whole_number(query, "after", 0, most) if query.get("after") else None
-        return JSONResponse(check.next(labels.all_rows(), after))
+        return JSONResponse(check.next(labels.all_rows(), _recording(request, "after")))
 
     def trained(_: Request, __: object) -> Response:
         training.start()
@@ -80,11 +84,16 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def learning(_: Request) -> Response:
         return JSONResponse(training.state())
 
+    def _recording(request: Request, key: str) -> int | None:
+        query = request.query_params
+        return whole_number(query, key, 0, len(opened.jobs) - 1) if query.get(key) else None
+
     def _segments(index: int, rows: list[dict[str, object]]) -> dict[str, object]:
         channels = list(dict.fromkeys(str(row["channel"]) for row in rows if row["channel"]))
         return {
             "id": index,
             "name": opened.jobs[index].name,
+            "version": version(rows),
             "channels": channels or ["all"],
             "rows": [
                 shown | {"conditions": conditions(row)}

@@ -6,18 +6,20 @@ table is written. A correction is in the table before it is answered.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from threading import RLock
 from typing import TYPE_CHECKING
 
-from models.errors import BushingNoiseError, ParameterError
-from noise.app.labels.corrections import as_rows, news
+from models.errors import ParameterError
+from noise.app.labels.corrections import as_rows
+from noise.app.labels.measured_rows import measured_rows
+from noise.app.labels.row_places import track, version
 from noise.app.labels.summary import summary
 from noise.app.labels.table_cache import TableCache
 from noise.base.lock import locked
 from noise.batch import JournalReader
 from noise.labels.labelling import COLUMNS, Labelling
-from noise.labels.said_segments import said_rows
-from noise.labels.table import with_corrected_rows
+from noise.labels.table import HUMAN, with_corrected_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,6 +31,15 @@ if TYPE_CHECKING:
     Row = dict[str, object]
 
 __all__ = ["Labels"]
+
+
+@dataclass(frozen=True)
+class _Correction:
+    """Rows of the tracks of a recording that a correction changed, before and after it."""
+
+    index: int
+    before: list[Row]
+    after: list[Row]
 
 
 class Labels:
@@ -56,7 +67,7 @@ class Labels:
         self._rows: list[list[Row]] = [[] for _ in jobs]
         self._others: list[Row] = []
         self._summaries: list[dict[str, object] | None] = [None for _ in jobs]
-        self._undo: list[tuple[int, list[Row]]] = []
+        self._undo: list[_Correction] = []
         self._fresh: dict[int, list[Row]] = {}
         self._classified: dict[int, list[Row]] = {}
         self._read_table()
@@ -105,6 +116,7 @@ class Labels:
     def rows(self, index: int) -> list[Row]:
         """Return the rows of a recording."""
         with self._lock:
+            self.refresh()
             return list(self._rows[index])
 
     def all_rows(self) -> list[list[Row]]:
@@ -113,24 +125,38 @@ class Labels:
             self.refresh()
             return list(self._rows)
 
-    def correct(self, index: int, said: Sequence[Correction]) -> list[Row]:
+    def correct(self, index: int, said: Sequence[Correction], of: str) -> list[Row]:
         """Put what a person says in place of a recording's segments, and write the table.
+
+        Parameters
+        ----------
+        index : int
+            Of the recording.
+        said : sequence of Correction
+        of : str
+            `noise.app.labels.row_places.version` of the rows that the person saw.
 
         Raises
         ------
         ParameterError
-            The table cannot be written; then all is as it was.
+            There are other rows by now, which nobody who said this has seen, or the table cannot
+            be written; then all is as it was.
         RecordingError
             Somebody else has made something of the table that is none.
         """
         job = self._jobs[index]
-        measured = _measured(job, said, self.rows(index))
+        self._check_seen(index, of, self.rows(index))
+        measured = measured_rows(job, said, self.rows(index))
         with self._lock, locked(self.path):
             self.refresh()
             before = self._rows[index]
-            self._write(index, as_rows(said, job.name, before, measured))
-            self._undo.append((index, before))
-            return self._rows[index]
+            self._check_seen(index, of, before)
+            after = as_rows(said, job.name, before, measured)
+            self._write(index, after)
+            changed = _changed_tracks(before, after)
+            parts = ([row for row in rows if track(row) in changed] for rows in (before, after))
+            self._undo.append(_Correction(index, *parts))
+            return after
 
     def undo(self) -> tuple[int, list[Row]]:
         """Put back what the last correction replaced, and write the table.
@@ -138,18 +164,36 @@ class Labels:
         Raises
         ------
         ParameterError
-            There is none, or the table cannot be written.
+            There is none, somebody has changed the same since, or the table cannot be written.
         """
         with self._lock, locked(self.path):
             if not self._undo:
                 raise ParameterError("there is no correction to undo")
             self.refresh()
-            index, before = self._undo[-1]
+            last = self._undo[-1]
+            rows = self._rows[last.index]
+            tracks = {track(row) for row in (*last.before, *last.after)}
+            if version([row for row in rows if track(row) in tracks]) != version(last.after):
+                self._undo.pop()
+                name = self._jobs[last.index].name
+                raise ParameterError(f"{name}: what was corrected last has been changed since then")
             # What the classifier has found since then is better than nothing.
-            before = before or self._classified.get(index, [])
-            self._write(index, before)
+            found = self._classified.get(last.index, []) if not last.before else []
+            back = last.before or [row for row in found if track(row) in tracks]
+            rows = [*(row for row in rows if track(row) not in tracks), *back]
+            self._write(last.index, sorted(rows, key=_order))
             self._undo.pop()
-            return index, before
+            return last.index, self._rows[last.index]
+
+    def _check_seen(self, index: int, of: str, rows: Sequence[Row]) -> None:
+        """Refuse what was said of other rows than these."""
+        # Whoever names a recording before the classifier has does not depend on what that says.
+        unseen = of == version(()) and all(row.get("label_source") != HUMAN for row in rows)
+        if of != version(rows) and not unseen:
+            raise ParameterError(
+                f"{self._jobs[index].name}: its labels have been changed elsewhere since they were "
+                "shown; look at them as they are now"
+            )
 
     def _write(self, index: int, rows: list[Row]) -> None:
         before = self._rows[index]
@@ -179,18 +223,19 @@ class Labels:
         return news
 
 
-def _measured(job: Job, said: Sequence[Correction], before: Sequence[Row]) -> list[Row]:
-    """Measure a recording's segments where some are new; none where it cannot be."""
-    if not news(said, before):
-        return []
-    drawn = [(one.channel, one.start, one.end, one.label) for one in said]
-    try:
-        measured = said_rows(job.path, job.name, drawn)
-    except (BushingNoiseError, OSError):  # the correction counts without numbers, too
-        return []
-    # Who gave a calibration to `label` that the file does not have is not contradicted.
-    known = any(row.get("calibrated") is True for row in before)
-    return [row for row in measured if row["calibrated"] or not known]
+def _changed_tracks(before: Sequence[Row], after: Sequence[Row]) -> set[str]:
+    return {track(row) for row in before if row not in after} | {
+        track(row) for row in after if row not in before
+    }
+
+
+def _order(row: Row) -> tuple[int, float]:
+    """Sort rows of a recording as `label` writes them: by track, then by time."""
+    number, start = track(row), row.get("start_s")
+    return (
+        int(number) if number.isascii() and number.isdecimal() else 0,
+        start if isinstance(start, float) else 0.0,
+    )
 
 
 def _rows(done: Done) -> list[Row]:

@@ -1,27 +1,52 @@
-// Segments of the recording that is open: each change is written at once, and goes back where it cannot be.
+// Segments of the recording that is open: each change is written at once, in the order of the keys, and goes back where it cannot be.
 import { api } from "../api.js";
 
 export class Corrections extends EventTarget {
-  // `tell` says what has become of the last change, `others` takes the number of what has changed.
+  // `tell` says what has become of the last change.
   constructor(tell) {
     super();
     this.tell = tell;
     this.rows = [];
     this.track = "all";
-    this.writing = null;
-    this.waiting = new Map(); // rows that are written next, of each recording
+    this.saved = null; // rows as the table has them; none is known before they have come
+    this.versions = new Map(); // of the rows of each recording, which a change of them is based on
+    this.queue = []; // what is still to be done: { id, name, rows, merge } is written, { undone } undoes
+    this.sending = null; // of the queue
+    this.working = null;
+    this.undoing = null;
   }
 
   // Until rows have come there are none to correct: what is written then would replace what nobody has seen.
-  async open(id, duration) {
-    const none = id === this.id && this.known && !this.rows.length; // labels are awaited: any may be given meanwhile
-    Object.assign(this, { id, duration, rows: [], before: null, known: none });
+  leave(id) {
+    Object.assign(this, { id, name: "", duration: null, rows: [], saved: null });
     this.#tell();
-    await this.writing;
-    const answer = await api(`recordings/${id}/segments`);
-    if (id !== this.id || this.writing) return;
-    this.known = true;
-    this.#take(answer.rows);
+  }
+
+  async open({ id, name, duration_s: duration }) {
+    const awaited = id === this.id && this.saved && !this.rows.length; // labels are: any may be given meanwhile
+    if (!awaited) this.leave(id);
+    Object.assign(this, { name, duration });
+    await this.#read();
+  }
+
+  // What is read while something is written may be older than that.
+  async #read() {
+    const { id } = this;
+    let answer;
+    do {
+      await this.working;
+      answer = await api(`recordings/${id}/segments`);
+    } while (id === this.id && this.working);
+    if (id === this.id) this.#take(answer);
+  }
+
+  // Somebody else may have changed the table: then its rows are shown anew.
+  async seen({ id, version }) {
+    const shown = this.versions.get(id);
+    if (id !== this.id || !this.saved || this.working || version === shown) return;
+    const wereNone = !this.rows.length;
+    await this.#read();
+    if (id === this.id && this.versions.get(id) !== shown && !wereNone) this.tell("changed elsewhere: shown as they are now");
   }
 
   get tracks() { return [...new Set(this.rows.map((row) => row.channel))]; }
@@ -31,9 +56,15 @@ export class Corrections extends EventTarget {
     return this.rows.filter((row) => row.channel === this.track).sort((one, two) => one.start_s - two.start_s);
   }
 
-  #take(rows) {
+  #take({ id, rows, version }) {
+    this.versions.set(id, version);
     const known = rows.filter((row) => row.label);
-    this.rows = known.map((row) => ({ ...row, channel: row.channel || "all", start_s: row.start_s ?? 0, end_s: row.end_s ?? this.duration }));
+    this.saved = known.map((row) => ({ ...row, channel: row.channel || "all", start_s: row.start_s ?? 0, end_s: row.end_s ?? this.duration }));
+    this.#show(this.saved);
+  }
+
+  #show(rows) {
+    this.rows = rows;
     if (!this.tracks.includes(this.track)) this.track = this.tracks[0] ?? "all";
     this.#tell();
   }
@@ -46,57 +77,92 @@ export class Corrections extends EventTarget {
   #tell() { this.dispatchEvent(new Event("change")); }
 
   // Show rows of the track without writing them, such as while a border is dragged.
-  preview(shown) {
-    this.before ??= this.rows;
-    this.#put(shown);
+  preview(shown) { this.#show([...this.rows.filter((row) => row.channel !== this.track), ...shown]); }
+
+  // No longer show what was only looked at.
+  restore() { this.#show([this.sending, ...this.queue].findLast((one) => one?.rows && one.id === this.id)?.rows ?? this.saved); }
+
+  // Write rows of the track. One of the same kind that waits to be written is replaced, such as a border's step.
+  write(shown, kind = null) {
+    if (!this.saved) return this.tell("not changed: its labels are still being read");
+    this.preview(shown);
+    const { id, name, rows } = this, last = this.queue.at(-1);
+    if (kind !== null && last?.kind === kind && last.id === id) last.rows = rows;
+    else this.queue.push({ id, name, rows, kind });
+    this.working ??= this.#work();
   }
 
-  #put(shown) {
-    this.rows = [...this.rows.filter((row) => row.channel !== this.track), ...shown];
-    this.#tell();
+  // Act now, or once what is being undone is there: who goes on after that means what it was before.
+  inTurn(act) {
+    const { id, undoing } = this;
+    if (!undoing) return act();
+    return undoing.then(() => (id === this.id ? this.inTurn(act) : this.tell("not changed: another recording is open by now")));
   }
 
-  // Write rows of the track. Of several changes during one writing, the last one of each recording is written next.
-  write(shown) {
-    if (!this.known) return this.tell("not changed: its labels are still being read");
-    this.before ??= this.rows;
-    this.#put(shown);
-    this.waiting.set(this.id, this.rows);
-    this.writing ??= this.#send().finally(() => { this.writing = null; });
-    return this.writing;
+  // Undo the last change; the number of its recording comes of it, null where there is none.
+  undo() {
+    const undoing = new Promise((undone) => this.queue.push({ undone }));
+    this.undoing = undoing;
+    this.working ??= this.#work();
+    return undoing.finally(() => { if (this.undoing === undoing) this.undoing = null; });
   }
 
-  async #send() {
-    while (this.waiting.size) {
-      const [id, changed] = this.waiting.entries().next().value;
-      this.waiting.delete(id);
-      this.tell("saving ...");
-      const rows = changed.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
-      let answer;
-      try {
-        answer = await api(`recordings/${id}/segments`, { rows });
-      } catch (error) {
-        this.waiting.delete(id);
-        if (id === this.id && this.before) Object.assign(this, { rows: this.before, before: null });
-        this.tell(`not saved: ${error.message}`);
-        this.#tell();
-        continue;
-      }
-      this.tell(`saved ${new Date().toTimeString().slice(0, 8)}`);
-      if (id === this.id && !this.waiting.has(id)) {
-        this.before = null;
-        this.#take(answer.rows);
-      }
-      this.dispatchEvent(new CustomEvent("saved", { detail: id }));
+  async #work() {
+    while (this.queue.length) {
+      this.sending = this.queue.shift();
+      await (this.sending.undone ? this.#undo(this.sending) : this.#send(this.sending));
+      this.sending = null;
+    }
+    this.working = null;
+  }
+
+  async #send({ id, name, rows }) {
+    this.#say(id, name, "saving ...");
+    try {
+      const said = rows.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
+      const answer = await api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id) });
+      this.versions.set(id, answer.version);
+      this.#say(id, name, `saved ${clock()}`);
+      if (id === this.id && !this.queue.some((one) => one.id === id)) this.#take(answer);
+    } catch (error) {
+      this.#drop(id);
+      this.#say(id, name, `not saved: ${error.message}`);
+      if (id === this.id) await this.#again();
+    }
+    this.dispatchEvent(new CustomEvent("saved", { detail: id }));
+  }
+
+  // What was changed after what could not be written was made of it, and what undoes means it.
+  #drop(id) {
+    for (const { undone } of this.queue) undone?.(null);
+    this.queue = this.queue.filter((one) => !one.undone && one.id !== id);
+  }
+
+  async #undo({ undone }) {
+    try {
+      const answer = await api("undo", {});
+      this.versions.set(answer.id, answer.version);
+      this.#say(answer.id, answer.name, `undone, saved ${clock()}`);
+      if (answer.id === this.id) this.#take(answer);
+      undone(answer.id);
+      this.dispatchEvent(new CustomEvent("saved", { detail: answer.id }));
+    } catch (error) {
+      this.tell(`not undone: ${error.message}`);
+      await this.#again();
+      undone(null);
     }
   }
 
-  async undo() {
-    await this.writing;
-    const { id, rows } = await api("undo", {});
-    this.tell(`undone, saved ${new Date().toTimeString().slice(0, 8)}`);
-    if (id === this.id) this.#take(rows);
-    this.dispatchEvent(new CustomEvent("saved", { detail: id }));
-    return id;
+  // Rows as the table has them; as they were known where it cannot be asked.
+  async #again() {
+    const { id } = this;
+    const answer = await api(`recordings/${id}/segments`).catch(() => null);
+    if (id !== this.id) return;
+    if (answer) this.#take(answer);
+    else if (this.saved) this.#show(this.saved);
   }
+
+  #say(id, name, text) { this.tell(id === this.id ? text : `${name}: ${text}`); }
 }
+
+function clock() { return new Date().toTimeString().slice(0, 8); }

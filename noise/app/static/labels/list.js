@@ -1,5 +1,6 @@
 // The list of recordings: filter, order, rows as they scroll into view, labels as they arrive.
 import { api, told } from "../api.js";
+import { fillRow } from "./list_row.js";
 import { mountTraining } from "./training.js";
 
 const PAGE = 200; // rows of one request
@@ -12,23 +13,23 @@ const ORDERS = [["", "as found"], ["name asc", "name"], ["label asc", "label"], 
 
 let list = null;
 
-export function mountList(element, { onOpen }) {
-  list = new RecordingList(element, onOpen);
+// `onOpen` opens a recording, `onSeen` is told which version of its labels the table has.
+export function mountList(element, { onOpen, onSeen }) {
+  list = new RecordingList(element, onOpen, onSeen);
   list.load();
   return list;
 }
 
-// Take the list again, such as after a correction; `id` becomes the one that is marked.
-export async function refresh(id) {
-  if (id !== undefined) list.marked = id;
-  await list.load();
-}
+// Take the list again, such as after a correction.
+export async function refresh() { await list.load(); }
+
+export function openRecording(id) { list.open(id); }
 
 // Open the recording that is best checked next; where there is none, say so.
 export async function openNext(after) {
   const { id, ...segment } = await api(`next${after === undefined || after === null ? "" : `?after=${after}`}`);
   if (id === null) told("Nothing is left to check.");
-  else { list.marked = id; list.onOpen(id, segment); await list.reveal(id); }
+  else { list.open(id, segment); await list.reveal(id); }
   return id;
 }
 
@@ -47,14 +48,16 @@ export function onceShown(node, act) {
 }
 
 class RecordingList {
-  constructor(element, onOpen) {
-    this.onOpen = onOpen;
+  constructor(element, onOpen, onSeen) {
+    Object.assign(this, { onOpen, onSeen });
     this.label = "";
     this.total = 0;
     this.pages = new Map();
     this.asked = 0;
     this.at = 0; // where the keyboard is
-    this.marked = null;
+    this.on = this.next = null; // numbers of the recording there, and of the one after it
+    this.gone = false; // whether the keyboard is before the one that took its recording's place
+    this.marked = null; // the one that is open
     this.#build(element);
   }
 
@@ -78,7 +81,7 @@ class RecordingList {
     this.labelButton = made("button", { type: "button", hidden: true });
     this.labelButton.addEventListener("click", async () => { await api("label", {}); this.load(); });
     this.nextButton = made("button", { type: "button", textContent: "Next to check" });
-    this.nextButton.addEventListener("click", () => openNext(this.marked));
+    this.nextButton.addEventListener("click", ({ detail }) => { if (detail < 2) openNext(this.marked); }); // a double click is one
     this.box = made("div", { className: "rows", tabIndex: 0, id: "recordings" });
     this.box.setAttribute("role", "listbox");
     this.box.setAttribute("aria-label", "Recordings");
@@ -103,6 +106,7 @@ class RecordingList {
       requestAnimationFrame(() => { due = false; this.draw(); });
     }, { passive: true });
     new ResizeObserver(() => this.draw()).observe(this.box);
+    addEventListener("focus", () => onceShown(this.box, () => this.load())); // somebody may come back from another page of the same table
     this.box.addEventListener("click", (event) => {
       const row = event.target.closest("[role=option]");
       if (row) this.#open(Number(row.dataset.at));
@@ -112,9 +116,9 @@ class RecordingList {
 
   #ask(change) {
     change();
-    this.at = 0;
     this.box.scrollTop = 0;
     this.pages.clear();
+    this.#put(0);
     return this.load();
   }
 
@@ -126,13 +130,24 @@ class RecordingList {
 
   // Bring a recording into view, where it is among those that are shown.
   async reveal(id) {
-    const { place } = await api(`${this.#query(0)}&place=${id}`);
+    const place = await this.#placeOf(id);
     if (place !== null) this.#goTo(place);
     this.draw();
   }
 
+  async #placeOf(id) {
+    const { place } = await api(`${this.#query(0)}&place=${id}`);
+    return place;
+  }
+
+  open(id, segment) {
+    this.marked = id;
+    this.onOpen(id, segment);
+    this.draw();
+  }
+
   #goTo(at) {
-    this.at = at;
+    this.#put(at);
     const top = at * ROW;
     if (top < this.box.scrollTop) this.box.scrollTop = top;
     else if (top + ROW > this.box.scrollTop + this.box.clientHeight) this.box.scrollTop = top + ROW - this.box.clientHeight;
@@ -151,16 +166,38 @@ class RecordingList {
     const turn = ++this.asked;
     const [first, last] = this.#inView();
     const numbers = new Set([Math.floor(first / PAGE), Math.floor(Math.max(first, last - 1) / PAGE)]);
-    const answers = await Promise.all([...numbers].map(async (number) => [number, await api(this.#query(number * PAGE))]));
+    const { on, marked } = this;
+    const more = new URLSearchParams({ ...(on !== null && { place: on }), ...(marked !== null && { open: marked }) });
+    const answers = await Promise.all([...numbers].map(async (number) => [number, await api(`${this.#query(number * PAGE)}&${more}`)]));
     if (turn !== this.asked) return; // something else was asked for meanwhile
     this.pages = new Map(answers.map(([number, answer]) => [number, answer.rows]));
-    const { total, counts, state } = answers[0][1];
+    const { total, counts, state, place, open } = answers[0][1];
     this.total = total;
+    await this.#stay(place);
+    if (turn !== this.asked) return;
+    if (open) this.onSeen(open);
     this.space.style.height = `${total * ROW}px`;
     this.#tell(counts, state);
     this.draw();
-    // Somebody may label on the command line, too.
-    if (state.running || state.done < state.total) this.timer = setTimeout(() => onceShown(this.box, () => this.load()), state.running ? POLL : 5 * POLL);
+    // Somebody may label on the command line, too, or change the table.
+    this.timer = setTimeout(() => onceShown(this.box, () => this.load()), state.running ? POLL : 5 * POLL);
+  }
+
+  // The keyboard stays on its recording. Where a correction took that away or elsewhere, it is before the one after it.
+  async #stay(place) {
+    if (place === this.at) this.gone = false;
+    else if (this.on !== null && !this.gone) {
+      const { on, next } = this, after = next === null ? null : await this.#placeOf(next);
+      if (on !== this.on) return; // it has been moved meanwhile
+      if (place !== null && (after === null || after === place + 1)) this.at = place;
+      else [this.at, this.gone] = [after ?? this.at, true];
+    }
+    this.at = Math.min(this.at, Math.max(0, this.total - 1));
+    if (!this.gone && this.row(this.at)) this.#put(this.at);
+  }
+
+  #put(at) {
+    Object.assign(this, { at, on: this.row(at)?.id ?? null, next: this.row(at + 1)?.id ?? null, gone: false });
   }
 
   async #fetch(number) {
@@ -216,7 +253,7 @@ class RecordingList {
     for (let number = Math.floor(first / PAGE); number * PAGE < last; number++) {
       if (!this.pages.has(number)) this.#fetch(number);
     }
-    this.box.setAttribute("aria-activedescendant", this.total && this.at >= first && this.at < last ? `row-${this.at}` : "");
+    this.box.setAttribute("aria-activedescendant", this.total && !this.gone && this.at >= first && this.at < last ? `row-${this.at}` : "");
   }
 
   #fill(node, at) {
@@ -231,28 +268,18 @@ class RecordingList {
     }
     node.setAttribute("aria-setsize", this.total);
     node.setAttribute("aria-selected", shown !== undefined && shown !== null && shown.id === this.marked);
-    node.classList.toggle("at", at === this.at);
+    node.classList.toggle("at", at === this.at && !this.gone);
     if (node.shown === shown && shown) return;
     node.shown = shown;
-    const [mark, name, labels, numbers] = node.children;
-    mark.className = shown?.label ?? "";
-    // What tells files apart is at the end of a path: its folders are cut first.
-    const file = shown ? shown.name.lastIndexOf("/") + 1 : 0;
-    name.replaceChildren(...(shown ? [shown.name.slice(0, file), shown.name.slice(file)] : ["..."]).filter(Boolean).map((textContent) => made("bdi", { textContent })));
-    name.title = shown ? shown.name : "";
-    labels.textContent = shown ? title(shown) : "";
-    numbers.textContent = shown ? figures(shown) : "";
+    fillRow(node, shown);
   }
 
   async #open(at) {
-    this.at = at;
+    this.#put(at);
     if (!this.row(at)) await this.#fetch(Math.floor(at / PAGE)); // it is in view sooner than it is here
     const shown = this.row(at);
-    if (shown && at === this.at) {
-      this.marked = shown.id;
-      this.onOpen(shown.id);
-    }
-    this.draw();
+    if (at === this.at) this.#put(at);
+    if (shown && at === this.at) this.open(shown.id);
   }
 
   #key(event) {
@@ -260,24 +287,11 @@ class RecordingList {
     const step = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page, Home: -this.total, End: this.total }[event.key];
     if (event.key === "Enter" && this.total) this.#open(this.at);
     else if (step && !event.ctrlKey && !event.metaKey && !event.altKey) {
-      this.#goTo(Math.min(Math.max(0, this.at + step), Math.max(0, this.total - 1)));
+      const from = this.gone && step > 0 ? this.at - 1 : this.at;
+      this.#goTo(Math.min(Math.max(0, from + step), Math.max(0, this.total - 1)));
       this.draw();
     } else return;
     event.preventDefault();
     event.stopPropagation();
   }
-}
-
-// Every label in a recording, the longest first.
-function title({ label, labels, error, corrected }) {
-  if (error) return `refused: ${error}`;
-  return (label ? labels.join(" + ") : "no label yet") + (corrected ? ", corrected" : "");
-}
-
-function figures({ frequency_hz: frequency, level_dba: level, duration_s: duration }) {
-  const parts = [];
-  if (frequency !== null) parts.push(`${Math.round(frequency)} Hz`);
-  if (level !== null) parts.push(`${level.toFixed(1)} dB(A)`);
-  if (duration !== null) parts.push(`${duration.toFixed(1)} s`);
-  return parts.join(" · ");
 }

@@ -1,7 +1,7 @@
 // The page of one recording: puts its lanes, segments, player and keys together.
 import { told } from "../api.js";
 import { Corrections } from "./corrections.js";
-import { joined, relabelled, split } from "./edits.js";
+import { joinHere, label, splitHere, undo } from "./editing.js";
 import { build, LABELS } from "./frame.js";
 import { listen } from "./keys.js";
 import { Bands, LevelCourse } from "./levels.js";
@@ -35,7 +35,7 @@ export class RecordingPage {
     timeline.addEventListener("position", () => this.#position());
     timeline.addEventListener("selection", () => { this.#marks(); this.#stretch(); });
     this.corrections.addEventListener("change", () => this.#rows());
-    this.corrections.addEventListener("saved", ({ detail }) => refresh(detail));
+    this.corrections.addEventListener("saved", () => refresh());
     this.player.addEventListener("change", () => this.#playing());
     new ResizeObserver(() => { this.#view(); this.bands.draw(); }).observe(parts.area);
     follow(this);
@@ -47,6 +47,9 @@ export class RecordingPage {
   async open(id, segment = null) {
     const { parts } = this;
     this.id = id;
+    this.sound = null; // nothing is done to one that is not there
+    this.corrections.leave(id);
+    clearTimeout(this.timer);
     for (const said of [parts.saved, parts.readout, parts.levelRead]) said.textContent = ""; // it was of another recording
     clearTimeout(this.measuring);
     this.bands.clear();
@@ -66,7 +69,6 @@ export class RecordingPage {
     this.player.stop();
     this.timeline.go(0);
     this.player.position = 0;
-    this.segments.at = 0;
     await Promise.all([seen, this.outline.load(id, this.channel), this.#labels(id)]);
     if (id !== this.id) return;
     if (segment) this.#reveal(segment);
@@ -77,7 +79,7 @@ export class RecordingPage {
   // Labels, which may be on their way.
   async #labels(id) {
     clearTimeout(this.timer);
-    await this.corrections.open(id, this.sound.duration_s);
+    await this.corrections.open(id, this.sound);
     if (id !== this.id || this.corrections.rows.length) return;
     this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
   }
@@ -97,6 +99,7 @@ export class RecordingPage {
   }
 
   async hearChannel(name) {
+    if (!this.sound) return;
     this.channel = name;
     const at = this.sound.channels.findIndex((one) => one.name === name);
     if (this.corrections.tracks.includes(`${at + 1}`)) this.corrections.show(`${at + 1}`);
@@ -200,35 +203,6 @@ export class RecordingPage {
     }, 60);
   }
 
-  label(label) {
-    const { corrections, segments } = this;
-    if (segments.chosen) return corrections.write(relabelled(corrections.shown, segments.at, label));
-    return corrections.write([{ start_s: 0, end_s: this.timeline.duration, label, channel: "all", label_source: "human" }]);
-  }
-
-  splitHere() {
-    const { corrections, timeline } = this;
-    const time = this.pointed ?? timeline.position;
-    const rows = split(corrections.shown, time);
-    if (!rows) return told("A segment is split inside it: put the cursor there.");
-    const at = rows.findIndex((row) => Math.abs(row.start_s - time) < 0.002);
-    corrections.write(rows);
-    if (at > 0) this.segments.choose(at);
-  }
-
-  joinHere() {
-    const rows = joined(this.corrections.shown, this.segments.at);
-    if (!rows) return told("There is no other segment to join it to.");
-    const at = Math.max(0, this.segments.at - 1);
-    this.corrections.write(rows);
-    this.segments.choose(at);
-  }
-
-  async undo() {
-    const id = await this.corrections.undo();
-    if (id !== this.id) this.onOpen(id);
-  }
-
   keepAsB() {
     const { selection } = this.timeline;
     const from = selection?.start ?? (this.player.looping && this.segments.chosen ? this.segments.chosen.start_s : null);
@@ -237,6 +211,7 @@ export class RecordingPage {
   }
 
   filter(low, high) {
+    if (!this.sound) return;
     const { parts } = this, top = 0.5 * this.sound.rate;
     const band = low || high ? { low: low || 10, high: high || top } : null;
     if (band && band.low >= band.high) return told("A band begins below where it ends.");
@@ -267,10 +242,10 @@ export class RecordingPage {
       a: () => this.changeOver("a"), b: () => this.changeOver("b"), keep: () => this.keepAsB(),
       in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN),
       whole: () => timeline.whole(), fit: () => this.fit(), help: () => parts.dialog.showModal(),
-      split: () => this.splitHere(), join: () => this.joinHere(), undo: () => this.undo(), next: () => openNext(this.id), unfiltered: () => this.filter(0, 0),
+      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), next: ({ detail }) => { if (detail < 2) openNext(this.id); }, unfiltered: () => this.filter(0, 0),
     };
-    for (const [name, action] of Object.entries(actions)) parts[name].addEventListener("click", () => { if (this.sound) action(); });
-    for (const button of parts.labels.children) button.addEventListener("click", () => this.label(button.dataset.label));
+    for (const [name, action] of Object.entries(actions)) parts[name].addEventListener("click", (event) => { if (this.sound) action(event); });
+    for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
     for (const box of [parts.low, parts.high]) box.addEventListener("change", () => this.filter(Number(parts.low.value), Number(parts.high.value)));
     parts.range.box.addEventListener("change", ({ target }) => this.spectrogram.setRange(Number(target.value)));
     parts.frames.box.addEventListener("change", ({ target }) => this.spectrogram.setWindow(target.value || null));
@@ -290,12 +265,18 @@ export class RecordingPage {
     const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
     const actions = {
       " ": () => this.toggle("play"), l: () => this.toggle("looping"), e: () => this.toggle("equal"), h: () => this.toggle("harmonic"),
-      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => this.splitHere(), u: () => this.undo(), n: () => openNext(this.id),
-      Delete: () => this.joinHere(), Backspace: () => this.joinHere(), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1),
+      x: () => this.changeOver(), b: () => this.keepAsB(), s: () => splitHere(this), u: () => undo(this), n: ({ repeat }) => { if (!repeat) openNext(this.id); },
+      Delete: () => joinHere(this), Backspace: () => joinHere(this), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1),
       "+": () => timeline.zoom(ZOOM), "=": () => timeline.zoom(ZOOM), "-": () => timeline.zoom(1 / ZOOM), 0: () => timeline.whole(), f: () => this.fit(),
       Escape: () => timeline.select(null), "?": () => this.parts.dialog.showModal(),
     };
-    for (const [at, label] of LABELS.entries()) actions[at + 1] = () => this.label(label);
-    listen(this.element, Object.fromEntries(Object.entries(actions).map(([key, action]) => [key, (event) => { if (this.sound || key === "n") action(event); }])));
+    for (const [at, name] of LABELS.entries()) actions[at + 1] = () => label(this, name);
+    listen(this.element, Object.fromEntries(Object.entries(actions).map(([key, action]) => [key, (event) => this.#act(key, action, event)])));
+  }
+
+  // What is done before a recording is there would be done to another.
+  #act(key, action, event) {
+    if (this.sound || key === "n") action(event);
+    else if (this.id !== undefined) this.parts.saved.textContent = "not done: the recording is still being opened";
   }
 }

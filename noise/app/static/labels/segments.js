@@ -9,6 +9,7 @@ export class Segments {
   constructor(timeline, corrections, { strip, overlay }, chosen) {
     Object.assign(this, { timeline, corrections, strip, overlay, onChosen: chosen });
     this.at = 0; // which is chosen
+    this.known = { length: 0, middle: 0 }; // how many there were, and where the chosen one lay [s]
     this.regions = made("div", { className: "regions" });
     this.handles = made("div", { className: "handles" });
     overlay.append(this.regions, this.handles);
@@ -20,6 +21,7 @@ export class Segments {
   choose(at) {
     const { length } = this.corrections.shown;
     this.at = Math.min(Math.max(0, at), Math.max(0, length - 1));
+    this.known.length = length;
     this.draw();
     this.onChosen(this.chosen);
   }
@@ -36,7 +38,7 @@ export class Segments {
 
   draw() {
     const rows = this.corrections.shown;
-    this.at = Math.min(this.at, Math.max(0, rows.length - 1));
+    this.at = this.#place(rows);
     fill(this.strip, rows.length, () => this.#button());
     fill(this.regions, rows.length, () => made("div"));
     for (const [at, row] of rows.entries()) {
@@ -47,8 +49,8 @@ export class Segments {
       button.setAttribute("aria-pressed", chosen);
       button.setAttribute("aria-label", `${row.label}, ${seconds(row.start_s, 0.01)} to ${seconds(row.end_s, 0.01)} s${row.label_source === "human" ? ", by a person" : ""}`);
       region.classList.toggle("chosen", chosen);
-      this.#place(button, row.start_s, row.end_s);
-      this.#place(region, row.start_s, row.end_s);
+      this.#put(button, row.start_s, row.end_s);
+      this.#put(region, row.start_s, row.end_s);
     }
     const found = borders(rows);
     fill(this.handles, found.length, () => this.#handle());
@@ -66,7 +68,16 @@ export class Segments {
     }
   }
 
-  #place(node, start, end) {
+  // Where the chosen one is now: of others than before it is the one at the same time.
+  #place(rows) {
+    const { length, middle } = this.known;
+    const found = length && rows.length !== length ? rows.findLastIndex((row) => row.start_s <= middle) : this.at;
+    const at = Math.min(Math.max(0, found), Math.max(0, rows.length - 1));
+    this.known = rows.length ? { length: rows.length, middle: 0.5 * (rows[at].start_s + rows[at].end_s) } : { length: 0, middle };
+    return at;
+  }
+
+  #put(node, start, end) {
     const from = Math.max(0, this.timeline.share(start)), to = Math.min(1, this.timeline.share(end));
     node.hidden = to <= 0 || from >= 1;
     node.style.left = `${100 * from}%`;
@@ -93,27 +104,30 @@ export class Segments {
       event.preventDefault();
       event.stopPropagation();
       const { border } = handle;
-      this.corrections.write(moved(this.corrections.shown, border, border.time + step * (event.shiftKey ? 10 : 1)));
+      const { corrections } = this, by = step * (event.shiftKey ? 10 : 1);
+      corrections.inTurn(() => corrections.write(moved(corrections.shown, border, border.time + by), `border ${border.left} ${border.right}`));
     });
     handle.addEventListener("pointerdown", (event) => {
       if (event.button) return;
       event.preventDefault();
       handle.focus();
       handle.setPointerCapture(event.pointerId);
-      const { border } = handle, { id, shown: rows } = this.corrections;
-      let changed = null;
+      const { corrections } = this, { border } = handle, { id, track, shown: { length } } = corrections;
+      const same = () => id === corrections.id && track === corrections.track && length === corrections.shown.length;
+      let time = null;
+      // Of the rows as they are by now: a key may have given one another label.
       const move = ({ clientX }) => {
         const box = this.overlay.getBoundingClientRect();
-        if (id !== this.corrections.id) return;
-        changed = moved(rows, border, this.timeline.time((clientX - box.left) / box.width));
-        this.corrections.preview(changed);
+        time = this.timeline.time((clientX - box.left) / box.width);
+        if (same()) corrections.preview(moved(corrections.shown, border, time));
       };
       const end = (last) => {
         handle.removeEventListener("pointermove", move);
         handle.removeEventListener("pointerup", end);
         handle.removeEventListener("pointercancel", end);
-        if (!changed || id !== this.corrections.id) return;
-        this.corrections.write(last.type === "pointerup" ? changed : rows);
+        if (time === null || !same()) return;
+        if (last.type === "pointerup") corrections.write(moved(corrections.shown, border, time));
+        else corrections.restore();
       };
       handle.addEventListener("pointermove", move);
       handle.addEventListener("pointerup", end);

@@ -1,5 +1,5 @@
 // The view of recordings: their list beside the page of the one that is open.
-import { made, mountList } from "./list.js";
+import { made, mountList, openRecording } from "./list.js";
 import { RecordingPage } from "./recording.js";
 
 export function mount(panel) {
@@ -13,8 +13,8 @@ export function mount(panel) {
     empty.hidden = true;
     recording.open(id, segment);
   };
-  const recording = new RecordingPage(page, open);
-  mountList(list, { onOpen: open });
+  const recording = new RecordingPage(page, openRecording);
+  mountList(list, { onOpen: open, onSeen: (seen) => recording.corrections.seen(seen) });
   document.addEventListener("view-shown", ({ detail }) => { if (detail !== "labels" && recording.player.playing) recording.player.stop(); });
   return { recording };
 }
