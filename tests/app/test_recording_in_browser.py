@@ -357,8 +357,7 @@ def test_changes_that_wait_are_written_although_another_recording_is_opened(brow
     opened.page.get_by_role("heading", name=HALF).wait_for()
     go_on()
     opened.page.locator(".strip button").first.wait_for()
-    opened.saved()
-    assert [row[2] for row in in_table(folder)] == ["creak", "squawk", "none"]
+    until(opened.page, lambda: [row[2] for row in in_table(folder)] == ["creak", "squawk", "none"])
     assert opened.segments() == ["squeal, 0.00 to 2.00 s"]
     opened.close()
 
@@ -459,4 +458,142 @@ def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, sh
         wrong = [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
         assert wrong == []
     assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
+    opened.close()
+
+
+def test_what_another_page_has_changed_is_shown_and_not_overwritten(browser, app, folder):
+    one, other = (OpenPage(browser, app).open(TONE) for _ in range(2))
+    one.press("]", "1")
+    one.saved()
+    other.press("[", "2")
+    other.page.locator(".saved").filter(has_text="not saved").wait_for()
+    other.page.locator(".strip .creak").wait_for()
+    assert [row[2:] for row in in_table(folder)] == [
+        ("none", "classifier"),
+        ("creak", "human"),
+        ("none", "classifier"),
+    ]
+    other.press("2")
+    other.saved()
+    assert [row[2] for row in in_table(folder)] == ["squawk", "creak", "none"]
+    for opened in (one, other):
+        opened.complaints.clear()  # of the refusal, which the browser tells as an error
+        opened.close()
+
+
+def test_labels_that_are_made_anew_are_shown_in_the_recording_that_is_open(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    rows = read_label_table(folder / "labels.csv")
+    write_table(folder / "labels.csv", COLUMNS, [row | {"label": "unknown"} for row in rows])
+    opened.page.locator(".saved").filter(has_text="changed elsewhere").wait_for()
+    assert [label.split(",")[0] for label in opened.segments()] == ["unknown"] * 3
+    opened.close()
+
+
+def test_keys_during_a_save_count_in_their_order(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    go_on = opened.holding("segments")
+    opened.press("1", "]", "2", "u", "]", "3")  # the first is taken back by none of these
+    go_on()
+    opened.page.locator(".strip button").nth(2).and_(opened.page.locator(".squeal")).wait_for()
+    opened.saved()
+    assert [row[2:] for row in in_table(folder)] == [
+        ("creak", "human"),
+        ("squeal", "classifier"),
+        ("squeal", "human"),
+    ]
+    opened.close()
+
+
+def test_a_segment_that_is_split_is_chosen_when_that_is_undone(browser, app):
+    opened = OpenPage(browser, app).open(TONE)
+    opened.page.mouse.move(*opened.at(1.0))
+    opened.press("s")
+    chosen = opened.page.locator(".strip [aria-pressed=true]")
+    chosen.and_(opened.page.locator("[aria-label*='to 1.50']")).wait_for()
+    opened.saved()
+    opened.undo()
+    assert chosen.get_attribute("aria-label") == "squeal, 0.50 to 1.50 s"
+    opened.close()
+
+
+def test_a_label_that_is_given_while_a_border_is_dragged_counts(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    opened.press("]")
+    opened.page.mouse.move(*opened.at(1.5))
+    opened.page.mouse.down()
+    opened.page.mouse.move(*opened.at(1.6), steps=3)
+    opened.press("1")
+    opened.page.mouse.move(*opened.at(1.7), steps=3)
+    opened.page.mouse.up()
+    border = "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') > 1.65"
+    opened.page.wait_for_function(border)
+    opened.saved()
+    assert in_table(folder)[1][2:] == ("creak", "human")
+    assert in_table(folder)[1][1] == pytest.approx(1.7, abs=0.01)
+    opened.close()
+
+
+def test_a_key_while_another_recording_is_opened_labels_neither(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    before = [in_table(folder, name) for name in (TONE, HALF)]
+    go_on = opened.holding("sounds/*")
+    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
+    opened.press("1")
+    opened.page.locator(".saved").filter(has_text="still being opened").wait_for()
+    go_on()
+    opened.page.get_by_role("heading", name=HALF).wait_for()
+    opened.page.locator(".strip button").first.wait_for()
+    assert [in_table(folder, name) for name in (TONE, HALF)] == before
+    opened.close()
+
+
+def test_a_save_says_of_which_recording_it_is_and_leaves_the_mark_on_the_open_one(browser, app):
+    opened = OpenPage(browser, app).open(TONE)
+    go_on = opened.holding("segments")
+    opened.press("1")
+    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
+    opened.page.get_by_role("heading", name=HALF).wait_for()
+    go_on()
+    opened.page.locator(".saved").filter(has_text=re.compile(f"^{TONE}: saved ")).wait_for()
+    corrected = opened.page.get_by_role("option").filter(has_text="corrected")
+    corrected.wait_for()
+    assert TONE in corrected.inner_text()
+    assert HALF in opened.page.locator("[role=option][aria-selected=true]").inner_text()
+    opened.close()
+
+
+@pytest.mark.parametrize("sort", ["as found", "least sure first"])
+def test_the_arrow_goes_on_to_the_next_after_a_corrected_recording(browser, app, sort):
+    opened = OpenPage(browser, app)
+    opened.page.get_by_role("combobox", name="Order").select_option(label=sort)
+    opened.page.get_by_role("button", name="squeal").first.click()
+    rows = opened.page.get_by_role("option").filter(has_text=".wav")
+    opened.page.wait_for_function(
+        "() => document.querySelectorAll('[role=option]:not([hidden])').length === 2"
+    )
+    first, second = (one.split("\n")[0] for one in rows.all_inner_texts())
+    rows.filter(has_text=first).click()
+    opened.page.get_by_role("heading", name=first).wait_for()
+    opened.page.locator(".strip .segment").first.wait_for()
+    if first == TONE:
+        opened.press("]")
+    opened.press("4")
+    opened.saved()
+    opened.page.wait_for_function(
+        "() => document.querySelectorAll('[role=option]:not([hidden])').length === 1"
+    )
+    opened.page.get_by_role("listbox").focus()
+    opened.press("ArrowDown", "Enter")
+    opened.page.get_by_role("heading", name=second).wait_for()
+    opened.close()
+
+
+def test_a_double_click_on_next_to_check_opens_one(browser, app):
+    opened = OpenPage(browser, app)
+    asked = []
+    opened.page.on("request", lambda request: asked.append(request.url))
+    opened.page.get_by_role("button", name="Next to check").first.dblclick()
+    opened.page.get_by_role("heading", name=ODD).wait_for()
+    assert sum("/next" in url for url in asked) == 1
     opened.close()

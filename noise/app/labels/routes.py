@@ -89,12 +89,10 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return whole_number(query, key, 0, len(opened.jobs) - 1) if query.get(key) else None
 
     def _segments(index: int, rows: list[dict[str, object]]) -> dict[str, object]:
-        channels = list(dict.fromkeys(str(row["channel"]) for row in rows if row["channel"]))
         return {
             "id": index,
             "name": opened.jobs[index].name,
             "version": version(rows),
-            "channels": channels or ["all"],
             "rows": [
                 shown | {"conditions": conditions(row)}
                 for row, shown in zip(rows, plain(rows), strict=True)

@@ -79,7 +79,7 @@ export class RecordingPage {
   // Labels, which may be on their way.
   async #labels(id) {
     clearTimeout(this.timer);
-    await this.corrections.open(id, this.sound);
+    await this.corrections.open({ ...this.sound, id });
     if (id !== this.id || this.corrections.rows.length) return;
     this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
   }
