@@ -7,7 +7,7 @@ import pytest
 
 from models.recording import Channel, Recording
 from noise.recordings import write_recording
-from tests.helpers.browser import chromium, styled
+from tests.helpers.browser import styled
 from tests.helpers.labelled_folder import many_rows, write_folder
 from tests.helpers.opened_app import opened_app
 
@@ -20,7 +20,7 @@ MOUNT = """async () => {
   holder.style.height = "100%";
   document.getElementById("view-labels").replaceChildren(holder);
   window.opens = [];
-  window.list = mountList(holder, { onOpen: (id) => opens.push(id) });
+  window.list = mountList(holder, { onOpen: (id) => opens.push(id), onSeen: () => {} });
 }"""
 FIRST_ROWS = f"""async () => {{
   const start = performance.now();
@@ -40,12 +40,6 @@ SCROLL = """() => new Promise((done) => {
 })"""
 ROW = ".rows [role=option]:visible"
 CHOSEN = ".rows [aria-selected=true]"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 def written(folder, number):

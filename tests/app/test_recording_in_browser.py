@@ -1,4 +1,4 @@
-"""One recording in the app: what is seen, read, heard and corrected in a browser."""
+"""One recording in the app: what is seen, read and heard in a browser."""
 
 from __future__ import annotations
 
@@ -11,115 +11,12 @@ import pytest
 from models.recording import Channel, Recording
 from noise.base.tables import write_table
 from noise.labels.labelling import COLUMNS
-from noise.labels.table import read_label_table
 from noise.recordings.writing import write_recording
-from tests.helpers.browser import chromium, new_page, until
 from tests.helpers.labelled_folder import made_row
 from tests.helpers.opened_app import opened_app
+from tests.helpers.recording_page import HALF, ODD, RATE, TONE, OpenPage, write_sounds
 
-RATE = 48000
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
-TONE, HALF, ODD = "tone.wav", "half.wav", "<img src=x onerror=alert(1)>.wav"
-
-
-def write_sounds(folder):
-    t = np.arange(2 * RATE) / RATE
-    tone = np.sqrt(2.0) * np.sin(2 * np.pi * 1000 * t)
-    for name, samples in {TONE: tone, HALF: 0.5 * tone, ODD: 0.1 * tone}.items():
-        sound = Recording(samples[None], RATE, (Channel("pressure"),), calibrated=True)
-        write_recording(folder / name, sound)
-    sure = {"p_creak": 0.02, "p_squawk": 0.03, "p_squeal": 0.9, "p_none": 0.04, "p_unknown": 0.01}
-    unsure = {**sure, "p_squeal": 0.4, "p_none": 0.54}
-    rows = [
-        made_row(TONE, "none", 0.0, 0.5, p_none=0.97),
-        made_row(TONE, "squeal", 0.5, 1.5, frequency_hz=1000.0, level_dba=93.98, **sure),
-        made_row(TONE, "none", 1.5, 2.0, p_none=0.97),
-        made_row(HALF, "squeal", 0.0, 2.0, **unsure),
-        made_row(ODD, "unknown", 0.0, 2.0, **sure),
-    ]
-    write_table(folder / "labels.csv", COLUMNS, rows)
-    return folder
-
-
-class OpenPage:
-    """The app in a browser, with one recording open."""
-
-    def __init__(self, browser, app, width=1280, height=900, *, tapped=False):
-        self.complaints = []
-        viewport = {"width": width, "height": height}
-        self.page = new_page(browser, tapped=tapped, viewport=viewport)
-        self.page.on("console", lambda message: self.complaints.append(message.text))
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
-        self.page.goto(app.address)
-
-    def open(self, name):
-        row = self.page.get_by_role("option").filter(has_text=name).first
-        number = row.get_attribute("data-at")  # as they are found
-        row.click()
-        self.page.get_by_role("heading", name=name).wait_for()
-        for lane in ("plot", "course"):
-            self.page.locator(f".{lane}[data-drawn='{number}']").wait_for()
-        self.page.locator(".strip .segment").first.wait_for()
-        self.page.locator(".recording").get_by_text("strongest third octave").wait_for()
-        return self
-
-    def at(self, time, share=0.5, lane=".screen"):
-        box = self.page.locator(lane).bounding_box()
-        return box["x"] + box["width"] * time / 2.0, box["y"] + share * box["height"]
-
-    def holding(self, requests):
-        """Hold the first of these requests until what is returned is called."""
-        held = []
-        self.page.route(
-            f"**/{requests}", lambda route: route.fallback() if held else held.append(route)
-        )
-
-        def go_on():
-            until(self.page, lambda: held)
-            held[0].continue_()
-
-        return go_on
-
-    def segments(self):
-        return [one.get_attribute("aria-label") for one in self.page.locator(".strip button").all()]
-
-    def press(self, *keys):
-        for key in keys:
-            self.page.keyboard.press(key)
-
-    def saved(self):
-        """Wait until all that was changed is written: while some is not, "saving" is said."""
-        self.page.locator(".saved").filter(has_text=re.compile("^saved ")).wait_for()
-
-    def undo(self):
-        self.page.locator(".saved").evaluate("(one) => { one.textContent = ''; }")
-        self.press("u")
-        self.page.locator(".saved").filter(has_text="undone").wait_for()
-
-    def is_playing(self):
-        self.page.locator(".play").filter(has_text="Pause").wait_for()
-
-    def more(self, n=24000):
-        """What has gone to the loudspeaker, once it is so many samples more."""
-        known = self.page.evaluate("heard.length")
-        self.page.wait_for_function("(n) => heard.length >= n", arg=known + n)
-        return np.array(self.page.evaluate("heard"))
-
-    def heard(self):
-        """What goes to the loudspeaker from now on."""
-        self.page.evaluate("hearAnew()")
-        return self.more()
-
-    def close(self):
-        assert self.complaints == []
-        self.page.close()
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 @pytest.fixture(scope="module")
@@ -131,21 +28,6 @@ def shown(browser, tmp_path_factory):
 @pytest.fixture
 def folder(tmp_path):
     return write_sounds(tmp_path)
-
-
-@pytest.fixture
-def app(browser, folder):
-    with opened_app(folder) as running:
-        yield running
-
-
-def in_table(folder, name=TONE):
-    rows = read_label_table(folder / "labels.csv")
-    return [
-        (row["start_s"], row["end_s"], row["label"], row["label_source"])
-        for row in rows
-        if row["file"] == name
-    ]
 
 
 def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, shown):
@@ -222,67 +104,6 @@ def test_names_are_text(browser, shown):
     opened.close()
 
 
-def test_corrections_by_keys_are_in_the_table_when_the_server_is_killed(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    opened.press("]", "1")
-    opened.saved()
-    app.kill()
-    assert in_table(folder) == [
-        (0.0, 0.5, "none", "classifier"),
-        (0.5, 1.5, "creak", "human"),
-        (1.5, 2.0, "none", "classifier"),
-    ]
-    opened.press("2")  # it goes back, and says so
-    opened.page.locator(".saved").filter(has_text="not saved").wait_for()
-    assert opened.segments()[1] == "creak, 0.50 to 1.50 s, by a person"
-    opened.page.close()
-
-
-def test_split_join_undo_and_borders_by_keys_and_pointer(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    before = in_table(folder)
-    opened.page.mouse.move(*opened.at(1.0))
-    opened.press("s")
-    opened.page.locator(".strip button").nth(3).wait_for()
-    opened.saved()
-    assert len(in_table(folder)) == 4
-    assert in_table(folder)[2][0] == pytest.approx(1.0, abs=0.005)
-    opened.press("Delete")
-    opened.page.wait_for_function("() => document.querySelectorAll('.strip button').length === 3")
-    opened.page.locator(".handle").first.focus()
-    for _ in range(3):
-        opened.press("ArrowRight")
-    opened.page.wait_for_function(
-        "() => document.querySelector('.handle').getAttribute('aria-valuenow') === '0.530'"
-    )
-    opened.saved()
-    x, y = opened.at(1.5)
-    opened.page.mouse.move(x, y)
-    opened.page.mouse.down()
-    opened.page.mouse.move(*opened.at(1.7), steps=4)
-    opened.page.mouse.up()
-    opened.page.wait_for_function(
-        "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') > 1.65"
-    )
-    opened.saved()
-    assert [row[0] for row in in_table(folder)] == pytest.approx([0.0, 0.53, 1.7], abs=0.004)
-    opened.page.mouse.move(*opened.at(1.7, lane="div.strip"))
-    opened.page.mouse.down()
-    opened.page.mouse.move(*opened.at(1.6, lane="div.strip"), steps=4)
-    opened.page.mouse.up()
-    opened.page.wait_for_function(
-        "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') < 1.65"
-    )
-    opened.saved()
-    assert in_table(folder)[2][0] == pytest.approx(1.6, abs=0.004)
-    for _ in range(10):
-        if in_table(folder) == before:
-            break
-        opened.undo()
-    assert in_table(folder) == before
-    opened.close()
-
-
 def test_conditions_of_a_segment_say_what_they_are_from(browser, folder):
     logged = {
         "speed_rad_s": 5.0,
@@ -302,64 +123,6 @@ def test_conditions_of_a_segment_say_what_they_are_from(browser, folder):
     assert (
         said == "speed 5 rad/s; interference 0.18 to 0.28 mm (inferred); logged as 5, turned at 7"
     )
-
-
-def test_what_is_checked_next_is_opened_at_the_segment_in_doubt(browser, app):
-    opened = OpenPage(browser, app, height=400)
-    for name in (ODD, HALF, TONE):
-        opened.page.get_by_role("button", name="Next to check").first.click()
-        opened.page.get_by_role("heading", name=name).wait_for()
-    chosen = opened.page.locator(".strip [aria-pressed=true]").filter(has_text="squeal")
-    chosen.wait_for()
-    assert chosen.get_attribute("aria-label").startswith("squeal, 0.50 to 1.50 s")
-    assert opened.page.locator(".clock").text_content() == "0.50 s"
-    box = chosen.bounding_box()
-    assert 0.0 <= box["y"] <= 400 - box["height"]
-    opened.close()
-
-
-def test_a_label_that_is_given_before_the_segments_have_come_changes_nothing(browser, app, folder):
-    opened = OpenPage(browser, app)
-    before = in_table(folder)
-    go_on = opened.holding("segments")
-    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
-    opened.page.get_by_role("heading", name=TONE).wait_for()
-    opened.press("1")
-    opened.page.locator(".saved").filter(has_text="still being read").wait_for()
-    go_on()
-    opened.page.locator(".strip button").nth(2).wait_for()
-    assert in_table(folder) == before
-    opened.press("1")
-    opened.saved()
-    assert [row[2] for row in in_table(folder)] == ["creak", "squeal", "none"]
-    opened.close()
-
-
-def test_a_label_that_is_given_while_it_is_opened_again_changes_nothing(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    before = in_table(folder)
-    go_on = opened.holding("segments")
-    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
-    opened.page.locator(".strip button").first.wait_for(state="detached")
-    opened.press("1")
-    opened.page.locator(".saved").filter(has_text="still being read").wait_for()
-    go_on()
-    opened.page.locator(".strip button").nth(2).wait_for()
-    assert in_table(folder) == before
-    opened.close()
-
-
-def test_changes_that_wait_are_written_although_another_recording_is_opened(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    go_on = opened.holding("segments")
-    opened.press("1", "]", "2")  # the second waits for the first
-    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
-    opened.page.get_by_role("heading", name=HALF).wait_for()
-    go_on()
-    opened.page.locator(".strip button").first.wait_for()
-    until(opened.page, lambda: [row[2] for row in in_table(folder)] == ["creak", "squawk", "none"])
-    assert opened.segments() == ["squeal, 0.00 to 2.00 s"]
-    opened.close()
 
 
 def test_third_octaves_of_one_recording_are_not_shown_beside_another(browser, shown):
@@ -458,142 +221,4 @@ def test_an_accessibility_checker_finds_nothing_and_nothing_is_wider(browser, sh
         wrong = [(one["id"], one["nodes"][0]["html"][:150]) for one in found["violations"]]
         assert wrong == []
     assert opened.page.evaluate("document.documentElement.scrollWidth") <= width
-    opened.close()
-
-
-def test_what_another_page_has_changed_is_shown_and_not_overwritten(browser, app, folder):
-    one, other = (OpenPage(browser, app).open(TONE) for _ in range(2))
-    one.press("]", "1")
-    one.saved()
-    other.press("[", "2")
-    other.page.locator(".saved").filter(has_text="not saved").wait_for()
-    other.page.locator(".strip .creak").wait_for()
-    assert [row[2:] for row in in_table(folder)] == [
-        ("none", "classifier"),
-        ("creak", "human"),
-        ("none", "classifier"),
-    ]
-    other.press("2")
-    other.saved()
-    assert [row[2] for row in in_table(folder)] == ["squawk", "creak", "none"]
-    for opened in (one, other):
-        opened.complaints.clear()  # of the refusal, which the browser tells as an error
-        opened.close()
-
-
-def test_labels_that_are_made_anew_are_shown_in_the_recording_that_is_open(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    rows = read_label_table(folder / "labels.csv")
-    write_table(folder / "labels.csv", COLUMNS, [row | {"label": "unknown"} for row in rows])
-    opened.page.locator(".saved").filter(has_text="changed elsewhere").wait_for()
-    assert [label.split(",")[0] for label in opened.segments()] == ["unknown"] * 3
-    opened.close()
-
-
-def test_keys_during_a_save_count_in_their_order(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    go_on = opened.holding("segments")
-    opened.press("1", "]", "2", "u", "]", "3")  # the first is taken back by none of these
-    go_on()
-    opened.page.locator(".strip button").nth(2).and_(opened.page.locator(".squeal")).wait_for()
-    opened.saved()
-    assert [row[2:] for row in in_table(folder)] == [
-        ("creak", "human"),
-        ("squeal", "classifier"),
-        ("squeal", "human"),
-    ]
-    opened.close()
-
-
-def test_a_segment_that_is_split_is_chosen_when_that_is_undone(browser, app):
-    opened = OpenPage(browser, app).open(TONE)
-    opened.page.mouse.move(*opened.at(1.0))
-    opened.press("s")
-    chosen = opened.page.locator(".strip [aria-pressed=true]")
-    chosen.and_(opened.page.locator("[aria-label*='to 1.50']")).wait_for()
-    opened.saved()
-    opened.undo()
-    assert chosen.get_attribute("aria-label") == "squeal, 0.50 to 1.50 s"
-    opened.close()
-
-
-def test_a_label_that_is_given_while_a_border_is_dragged_counts(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    opened.press("]")
-    opened.page.mouse.move(*opened.at(1.5))
-    opened.page.mouse.down()
-    opened.page.mouse.move(*opened.at(1.6), steps=3)
-    opened.press("1")
-    opened.page.mouse.move(*opened.at(1.7), steps=3)
-    opened.page.mouse.up()
-    border = "() => document.querySelectorAll('.handle')[1].getAttribute('aria-valuenow') > 1.65"
-    opened.page.wait_for_function(border)
-    opened.saved()
-    assert in_table(folder)[1][2:] == ("creak", "human")
-    assert in_table(folder)[1][1] == pytest.approx(1.7, abs=0.01)
-    opened.close()
-
-
-def test_a_key_while_another_recording_is_opened_labels_neither(browser, app, folder):
-    opened = OpenPage(browser, app).open(TONE)
-    before = [in_table(folder, name) for name in (TONE, HALF)]
-    go_on = opened.holding("sounds/*")
-    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
-    opened.press("1")
-    opened.page.locator(".saved").filter(has_text="still being opened").wait_for()
-    go_on()
-    opened.page.get_by_role("heading", name=HALF).wait_for()
-    opened.page.locator(".strip button").first.wait_for()
-    assert [in_table(folder, name) for name in (TONE, HALF)] == before
-    opened.close()
-
-
-def test_a_save_says_of_which_recording_it_is_and_leaves_the_mark_on_the_open_one(browser, app):
-    opened = OpenPage(browser, app).open(TONE)
-    go_on = opened.holding("segments")
-    opened.press("1")
-    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
-    opened.page.get_by_role("heading", name=HALF).wait_for()
-    go_on()
-    opened.page.locator(".saved").filter(has_text=re.compile(f"^{TONE}: saved ")).wait_for()
-    corrected = opened.page.get_by_role("option").filter(has_text="corrected")
-    corrected.wait_for()
-    assert TONE in corrected.inner_text()
-    assert HALF in opened.page.locator("[role=option][aria-selected=true]").inner_text()
-    opened.close()
-
-
-@pytest.mark.parametrize("sort", ["as found", "least sure first"])
-def test_the_arrow_goes_on_to_the_next_after_a_corrected_recording(browser, app, sort):
-    opened = OpenPage(browser, app)
-    opened.page.get_by_role("combobox", name="Order").select_option(label=sort)
-    opened.page.get_by_role("button", name="squeal").first.click()
-    rows = opened.page.get_by_role("option").filter(has_text=".wav")
-    opened.page.wait_for_function(
-        "() => document.querySelectorAll('[role=option]:not([hidden])').length === 2"
-    )
-    first, second = (one.split("\n")[0] for one in rows.all_inner_texts())
-    rows.filter(has_text=first).click()
-    opened.page.get_by_role("heading", name=first).wait_for()
-    opened.page.locator(".strip .segment").first.wait_for()
-    if first == TONE:
-        opened.press("]")
-    opened.press("4")
-    opened.saved()
-    opened.page.wait_for_function(
-        "() => document.querySelectorAll('[role=option]:not([hidden])').length === 1"
-    )
-    opened.page.get_by_role("listbox").focus()
-    opened.press("ArrowDown", "Enter")
-    opened.page.get_by_role("heading", name=second).wait_for()
-    opened.close()
-
-
-def test_a_double_click_on_next_to_check_opens_one(browser, app):
-    opened = OpenPage(browser, app)
-    asked = []
-    opened.page.on("request", lambda request: asked.append(request.url))
-    opened.page.get_by_role("button", name="Next to check").first.dblclick()
-    opened.page.get_by_role("heading", name=ODD).wait_for()
-    assert sum("/next" in url for url in asked) == 1
     opened.close()

@@ -277,6 +277,6 @@ export class RecordingPage {
   // What is done before a recording is there would be done to another.
   #act(key, action, event) {
     if (this.sound || key === "n") action(event);
-    else if (this.id !== undefined) this.parts.saved.textContent = "not done: the recording is still being opened";
+    else if (this.id !== undefined) this.parts.saved.textContent = "not done: the recording is still being read";
   }
 }
