@@ -8,16 +8,26 @@ import json
 import math
 from typing import TYPE_CHECKING
 
-from noise.base.excel_csv import plain_text, separator_of, with_apostrophe, without_apostrophe
+from models.errors import BushingNoiseError
+from models.foreign_file import reading
+from noise.base.excel_csv import (
+    PLAIN,
+    CsvSigns,
+    decimal_sign,
+    plain_text,
+    separator_of,
+    with_apostrophe,
+    without_apostrophe,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from pathlib import Path
     from typing import TextIO
 
-    from noise.base.excel_csv import ExcelSigns
     from noise.base.tables import Cell
 
-__all__ = ["finite_or_fixed", "read_csv", "write_csv"]
+__all__ = ["finite_or_fixed", "read_csv", "signs_there", "write_csv"]
 
 _MARK = "\ufeff"
 """How CSV begins by which Excel knows that it is UTF-8."""
@@ -36,12 +46,10 @@ def read_csv(file: TextIO) -> tuple[list[str], list[dict[str, object]]]:
     [{'file': 'run07.wav', 'level_db': '59.9'}]
     """
     header = file.readline()
-    of_excel = header.startswith(_MARK)
-    header = header.removeprefix(_MARK)
-    lines = itertools.chain([header], file)
-    reader = csv.DictReader(lines, delimiter=separator_of(header))
-    of_excel |= reader.reader.dialect.delimiter == ";"
-    meant = plain_text if of_excel else without_apostrophe
+    signs = _signs(header)
+    lines = itertools.chain([header.removeprefix(_MARK)], file)
+    reader = csv.DictReader(lines, delimiter=signs.separator)
+    meant = plain_text if signs.of_excel else without_apostrophe
     rows: list[dict[str, object]] = [
         {str(c): meant(value) if isinstance(value, str) else value for c, value in row.items()}
         for row in reader
@@ -53,9 +61,9 @@ def write_csv(
     file: TextIO,
     columns: Sequence[str],
     rows: Iterable[Sequence[Cell]],
-    signs: ExcelSigns | None = None,
+    signs: CsvSigns = PLAIN,
 ) -> None:
-    """Write a table, as Excel opens it where its signs are given.
+    """Write a table, by default as programs do.
 
     Examples
     --------
@@ -64,15 +72,55 @@ def write_csv(
     file,level_db
     run07.wav,59.9
     """
-    if signs is None:
-        writer = csv.writer(file, lineterminator="\n")
-    else:
+    if signs.marked:
         file.write(_MARK)
-        writer = csv.writer(file, delimiter=signs.separator, lineterminator="\r\n")
+    writer = csv.writer(file, delimiter=signs.separator, lineterminator=signs.line_end)
     writer.writerow(columns)
     for row in rows:
         cells = map(_csv_cell, columns, row)
-        writer.writerow(cells if signs is None else [_excel_cell(cell, signs) for cell in cells])
+        writer.writerow(cells if signs.decimal == "." else map(signs.cell, cells))
+
+
+def signs_there(path: Path) -> CsvSigns:
+    r"""Return how the CSV table is written that is there; plain where there is none to be read.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    CsvSigns
+        By the header; the decimal sign is that of the first number which has one.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "labels.csv"
+    ...     _ = path.write_text("file;level_db\nrun07.wav;59,9\n")
+    ...     signs_there(path)
+    CsvSigns(separator=';', decimal=',', marked=False, line_end='\n')
+    """
+    try:
+        with reading(path, "table"), path.open(encoding="utf-8", newline="") as file:
+            signs = _signs(file.readline())
+            if not signs.of_excel:
+                return signs
+            cells = (cell for row in csv.reader(file, delimiter=signs.separator) for cell in row)
+            found = next(filter(None, map(decimal_sign, cells)), signs.decimal)
+            return signs._replace(decimal=found)
+    except BushingNoiseError:
+        return PLAIN
+
+
+def _signs(header: str) -> CsvSigns:
+    """Return how a table is written; how its numbers are is likely, not known."""
+    separator = separator_of(header)
+    decimal = "," if separator == ";" else "."
+    line_end = "\r\n" if header.endswith("\r\n") else "\n"
+    return CsvSigns(separator, decimal, header.startswith(_MARK), line_end)
 
 
 def finite_or_fixed(column: str, value: Cell) -> Cell:
@@ -92,7 +140,3 @@ def _csv_cell(column: str, value: Cell) -> Cell:
     if isinstance(value, str):
         return with_apostrophe(value)
     return json.dumps(value) if isinstance(value, bool) else finite_or_fixed(column, value)
-
-
-def _excel_cell(value: Cell, signs: ExcelSigns) -> Cell:
-    return signs.text(value) if isinstance(value, float) else value

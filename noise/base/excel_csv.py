@@ -14,7 +14,9 @@ from typing import NamedTuple
 
 __all__ = [
     "EXCEL_LANGUAGES",
-    "ExcelSigns",
+    "PLAIN",
+    "CsvSigns",
+    "decimal_sign",
     "excel_signs",
     "plain_text",
     "separator_of",
@@ -31,47 +33,88 @@ EXCEL_LANGUAGES = (*_COMMAS, *_POINTS, "de-ch", "system")
 _FORMULA = re.compile(r"'*[=+\-@\t\r]")
 """How a text begins that a spreadsheet computes, or that was kept from being one."""
 
-_NUMBER = re.compile(r"-?\d+(,\d+)?(e[+-]?\d+)?")
+_NUMBER = re.compile(r"-?\d+(?:([.,])\d+)?(?:[eE][+-]?\d+)?")
+"""As it is written here, or by Excel."""
 
 
-class ExcelSigns(NamedTuple):
-    """What stands between two cells, and between whole and parts of a number."""
+class CsvSigns(NamedTuple):
+    """How CSV is written: what stands between cells, in numbers, and at both ends.
+
+    Parameters
+    ----------
+    separator, decimal : str
+        What stands between two cells, and between whole and parts of a number.
+    marked : bool
+        Whether a byte-order mark is at the beginning.
+    line_end : str
+    """
 
     separator: str
     decimal: str
+    marked: bool
+    line_end: str
 
-    def text(self, value: float) -> str:
-        """Return a number as it is written.
+    @property
+    def of_excel(self) -> bool:
+        """Whether numbers may have commas in them.
+
+        Examples
+        --------
+        >>> PLAIN.of_excel
+        False
+        """
+        return self.marked or self.separator == ";"
+
+    def cell(self, value: object) -> object:
+        """Return a number, or a text that is one, as it is written; all else as it is.
 
         Parameters
         ----------
-        value : float
+        value : object
             [unit of its column]
 
         Returns
         -------
-        str
+        object
 
         Examples
         --------
-        >>> ExcelSigns(";", ",").text(59.9)
-        '59,9'
+        >>> [excel_signs("de").cell(value) for value in (59.9, "59.9", "run07.wav", 3)]
+        ['59,9', '59,9', 'run07.wav', 3]
         """
-        return repr(value).replace(".", self.decimal)
+        if self.decimal == "." or not isinstance(value, float | str):
+            return value
+        text = str(value)
+        return text.replace(".", self.decimal) if decimal_sign(text) == "." else text
 
 
-def excel_signs(language: str) -> ExcelSigns:
+PLAIN = CsvSigns(",", ".", marked=False, line_end="\n")
+"""As programs write it."""
+
+
+def excel_signs(language: str) -> CsvSigns:
     """Return the signs of a language, one of `EXCEL_LANGUAGES`.
 
     Examples
     --------
-    >>> excel_signs("de"), excel_signs("en").decimal
-    (ExcelSigns(separator=';', decimal=','), '.')
+    >>> excel_signs("de").decimal, excel_signs("en").decimal
+    (',', '.')
     """
-    if language == "de-ch":
-        return ExcelSigns(";", ".")
     decimal = _of_this_computer() if language == "system" else "," if language in _COMMAS else "."
-    return ExcelSigns(";", ",") if decimal == "," else ExcelSigns(",", ".")
+    separator = ";" if decimal == "," or language == "de-ch" else ","
+    return CsvSigns(separator, decimal, marked=True, line_end="\r\n")
+
+
+def decimal_sign(cell: str) -> str | None:
+    """Return what stands between whole and parts of a number; None where a cell is none, or whole.
+
+    Examples
+    --------
+    >>> [decimal_sign(cell) for cell in ("59,9", "1.5E-07", "3", "run07.wav")]
+    [',', '.', None, None]
+    """
+    number = _NUMBER.fullmatch(cell)
+    return number and number[1]
 
 
 def separator_of(header: str) -> str:
@@ -86,14 +129,14 @@ def separator_of(header: str) -> str:
 
 
 def with_apostrophe(text: str) -> str:
-    """Return a text that a spreadsheet takes for nothing else.
+    """Return a text that a spreadsheet takes for no formula; a number is none.
 
     Examples
     --------
     >>> with_apostrophe("=cmd.wav"), with_apostrophe("run07.wav")
     ("'=cmd.wav", 'run07.wav')
     """
-    return f"'{text}" if _FORMULA.match(text) else text
+    return f"'{text}" if _FORMULA.match(text) and not _NUMBER.fullmatch(text) else text
 
 
 def without_apostrophe(cell: str) -> str:
@@ -115,7 +158,7 @@ def plain_text(cell: str) -> str:
     >>> plain_text("59,9"), plain_text("'=cmd.wav")
     ('59.9', '=cmd.wav')
     """
-    return cell.replace(",", ".") if _NUMBER.fullmatch(cell) else without_apostrophe(cell)
+    return cell.replace(",", ".") if decimal_sign(cell) == "," else without_apostrophe(cell)
 
 
 def _of_this_computer() -> str:

@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
 from models.foreign_file import LARGEST_TEXT, parse_json, reading
 from noise.base.atomic import atomic
-from noise.base.csv_text import finite_or_fixed, read_csv, write_csv
-from noise.base.excel_csv import excel_signs, separator_of
+from noise.base.csv_text import finite_or_fixed, read_csv, signs_there, write_csv
+from noise.base.excel_csv import PLAIN, excel_signs, separator_of
 from noise.base.parquet import finite, read_parquet, write_parquet
 from noise.base.readable import readable
 
@@ -125,7 +125,8 @@ def write_table(
     rows : iterable of mapping
         Column to value: a number, a text, a truth value or None. A missing column is None.
     excel : str, optional
-        One of `noise.base.excel_csv.EXCEL_LANGUAGES`: CSV as Excel in that language opens it.
+        One of `noise.base.excel_csv.EXCEL_LANGUAGES`: CSV as Excel in that language opens it; by
+        default as the one is written that is there, else plain.
 
     Raises
     ------
@@ -142,7 +143,7 @@ def write_table(
     """
     cells = _Cells(rows, columns)
     columns = [readable(column) for column in columns]
-    signs = None if excel is None else excel_signs(excel)
+    signs = PLAIN if excel is None else excel_signs(excel)
     if path is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file for the table")
@@ -152,6 +153,8 @@ def write_table(
     path = Path(path)
     check_table_path(path, excel)
     ending = path.suffix.lower()
+    if excel is None and ending == ".csv":
+        signs = signs_there(path)
     with atomic(path) as temporary:
         if ending == ".parquet":
             write_parquet(temporary, columns, cells)

@@ -150,7 +150,7 @@ def add_excel(parser: ArgumentParser) -> None:
         help="write .csv as Excel in a language opens it at a double click, with a byte-order "
         "mark: de has a semicolon between cells and a decimal comma, en comma and point, de-ch "
         "semicolon and point; without a LANGUAGE, or with system, what this computer is set to "
-        "(default: plain CSV; .xlsx needs none of this)",
+        "(default: as the .csv is written that is there, else plain; .xlsx needs none of this)",
     )
 
 

@@ -293,7 +293,7 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
     if column in _TEXTS:
         return str(value)
     if column == "calibrated":
-        return value in (True, "true", "True")
+        return str(value).lower() == "true"  # Excel writes it in capitals
     if value in ("fixed", math.inf) and column.startswith(_SUPPORT):
         return math.inf
     return cell_number(row, column, where)

@@ -176,6 +176,64 @@ def test_csv_for_excel_has_the_signs_of_its_language_and_no_formula(tmp_path, la
     assert table_columns(path) == set(COLUMNS)
 
 
+OWN = {"file": "-2.wav", "level_db": -3.7, "count": 5, "calibrated": True, "error": "=1, 5; x"}
+
+
+@pytest.mark.parametrize("language", ["de", "en", "de-ch", None])
+def test_csv_that_is_written_again_stays_as_it_was(tmp_path, language):
+    path, columns = tmp_path / "t.csv", [*COLUMNS, "own"]
+    write_table(path, columns, [OWN | {"own": own} for own in (-0.25, 1e-7, None)], language)
+    before = path.read_bytes()
+    assert b"'-0" not in before  # a number is no formula
+    write_table(path, *read_table(path))
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "file;level_db\n3;59,9\n",  # of LibreOffice, which writes no mark
+        "file;level_db\r\n3;59.9\r\n",
+        "\ufefffile;level_db\r\n3;59\r\n",
+        "file,level_db\r\n3,59.9\r\n",
+    ],
+)
+def test_the_signs_of_csv_are_found_one_by_one(tmp_path, content):
+    path = tmp_path / "t.csv"
+    path.write_text(content, encoding="utf-8", newline="")
+    write_table(path, *read_table(path))
+    assert path.read_bytes().decode() == content
+
+
+def test_numbers_in_csv_for_excel_have_a_comma_until_one_says_otherwise(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("\ufefffile;level_db\r\n3;59\r\n", encoding="utf-8", newline="")
+    write_table(path, ["file", "level_db"], [{"file": "3", "level_db": 59.9}])
+    assert path.read_text(encoding="utf-8-sig").splitlines()[1] == "3;59,9"
+
+
+def test_csv_that_is_there_is_written_as_another_language_is_asked_for(tmp_path):
+    path = tmp_path / "t.csv"
+    write_table(path, COLUMNS, [OWN], "de")
+    write_table(path, COLUMNS, [OWN], "en")
+    assert path.read_text(encoding="utf-8-sig").splitlines()[0] == ",".join(COLUMNS)
+
+
+@pytest.mark.parametrize("content", [b"caf\xe9;level\n1;2,5\n", b"", b"\0"])
+def test_what_is_no_csv_has_no_signs(tmp_path, content):
+    path = tmp_path / "t.csv"
+    path.write_bytes(content)
+    write_table(path, ["a", "b"], [{"a": 1.5, "b": 2}])
+    assert path.read_bytes() == b"a,b\n1.5,2\n"
+
+
+def test_small_numbers_are_read_as_excel_writes_them(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("\ufefffile;p\r\na.wav;1,5E-07\r\n", encoding="utf-8")
+    _, (row,) = read_table(path)
+    assert float(row["p"]) == 1.5e-7
+
+
 def test_excel_languages_are_for_csv_alone(tmp_path):
     with pytest.raises(ParameterError, match="leave it out"):
         check_table_path(tmp_path / "t.parquet", "de")

@@ -2,6 +2,7 @@
 
 import csv
 import re
+from pathlib import Path
 
 import pytest
 
@@ -40,6 +41,21 @@ def test_every_table_opens_in_a_german_excel(command, folder, monkeypatch):
     cells = [cell for row in rows for cell in row]
     assert any(re.fullmatch(r"-?\d+,\d+", cell) for cell in cells)
     assert not any(re.fullmatch(r"-?\d+\.\d+", cell) for cell in cells)
+
+
+@pytest.mark.parametrize("call", [["run.wav", "--fresh"], ["old.csv"]])
+def test_a_label_table_stays_as_excel_opens_it_until_another_is_asked_for(
+    call, folder, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(folder)
+    table = tmp_path / "t.csv"
+    assert main(["label", "run.wav", "--out", str(table), "--excel", "de"]) == 0
+    german = table.read_bytes()
+    Path("old.csv").write_bytes(german)
+    assert main(["label", *call, "--out", str(table)]) == 0
+    assert table.read_bytes() == german
+    assert main(["label", *call, "--out", str(table), "--excel", "en"]) == 0
+    assert table.read_bytes().startswith(b"\xef\xbb\xbffile,")
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -1,6 +1,7 @@
 """The label table on disk: read again where somebody else has written it, written whole.
 
-Columns that are not of a label table, such as a remark of one's own, stay in it.
+Columns that are not of a label table, such as a remark of one's own, stay in it, and CSV for Excel
+stays CSV for Excel.
 """
 
 from __future__ import annotations

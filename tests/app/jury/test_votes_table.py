@@ -10,7 +10,7 @@ import pytest
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.app.jury.store import COLUMNS, Votes
 from noise.base.lock import locked
-from noise.base.tables import read_table
+from noise.base.tables import read_table, write_table
 
 NAMES = ["=cmd.wav", "<img src=x onerror=alert(1)>.wav", "c d.wav"]
 PAIRS = [(0, 1), (2, 0), (1, 2)]
@@ -103,6 +103,18 @@ def test_columns_of_ones_own_stay(votes):
     )
     votes.vote(1, 0, "first", 1.0)
     assert [row["remark"] for row in read_table(votes.path)[1]] == ["mine"] * 3
+
+
+def test_votes_are_written_as_excel_opens_the_table(votes):
+    votes.vote(1, 0, "first", 1.5)
+    rows = read_table(votes.path)[1]
+    write_table(votes.path, (*COLUMNS, "own"), [row | {"own": -2.5} for row in rows], "de")
+    before = votes.path.read_text(encoding="utf-8").splitlines()
+    votes.vote(1, 1, "equal", 3.25)
+    after = votes.path.read_text(encoding="utf-8").splitlines()
+    assert [after[0], after[1], after[3]] == [before[0], before[1], before[3]]
+    assert ";equal;3,25;" in after[2]
+    assert after[2].endswith(";-2,5")
 
 
 @pytest.mark.parametrize(
