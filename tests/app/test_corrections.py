@@ -80,6 +80,13 @@ def test_what_a_person_agrees_with_is_by_a_person_and_what_nobody_touched_is_not
     assert [r["label_source"] for r in found] == ["classifier", "human"]
 
 
+def test_a_track_without_times_stays_as_it_was_beside_one_that_is_corrected(folder):
+    (folder / "labels.csv").write_text("file,channel,label\na.wav,1,creak\na.wav,2,none\n")
+    said = [Correction(0.0, 2.0, "squeal", "1", confirmed=True), Correction(0.0, 2.0, "none", "2")]
+    found = correct(labels_of(folder), 0, said)
+    assert [(r["label"], r["label_source"]) for r in found] == [("squeal", "human"), ("none", None)]
+
+
 def test_undo_goes_back_one_correction_at_a_time(tabled):
     before = in_table(tabled)
     labels = labels_of(tabled)

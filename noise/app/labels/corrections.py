@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -140,6 +141,10 @@ def as_rows(
     for one in said:
         at = (one.channel, one.start, one.end)
         old = there.get(at)
+        if (
+            old is None and not one.confirmed
+        ):  # what no table gives an end to ends with the recording
+            old = there.get((one.channel, one.start, math.inf))
         if old is not None and old["label"] == one.label:
             rows.append(old | ({"label_source": HUMAN} if one.confirmed else {}))
             continue

@@ -10,7 +10,7 @@ export class Corrections extends EventTarget {
     this.track = "all";
     this.saved = null; // rows as the table has them; none is known before they have come
     this.versions = new Map(); // of the rows of each recording, which a change of them is based on
-    this.queue = []; // what is still to be done: { id, name, rows, merge } is written, { undone } undoes
+    this.queue = []; // what is still to be done: { id, name, rows, kind } is written, { undone } undoes
     this.sending = null; // of the queue
     this.working = null;
     this.undoing = null;
