@@ -241,7 +241,8 @@ def table_columns(path: Path) -> set[str]:
                 from noise.base.workbook import read_workbook
 
                 return set(read_workbook(path)[0])
-            with path.open(encoding="utf-8-sig", newline="") as file:
+            # Names of columns can be read though cells may not, such as of Excel without Unicode.
+            with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
                 header = file.readline(_LONGEST_LINE)
             if ending == ".jsonl":
                 first = parse_json(header or "{}")

@@ -108,6 +108,8 @@ def run(options: Namespace) -> int:
     from noise.labels.labelling import Labelling
     from noise.labels.table import with_corrections
 
+    with_corrections(options.out, [])  # or its corrections could not be kept after all the work
+
     def keep(out: Path | None, rows: Iterable[dict[str, object]]) -> list[dict[str, object]]:
         return with_corrections(out, list(rows))
 

@@ -67,7 +67,7 @@ def label(
     ------
     ParameterError
         A path does not exist, there are no recordings, a model or the cluster cannot be used,
-        or the table cannot be written.
+        or the table cannot be written, or cannot be read and may have corrections in it.
 
     Examples
     --------
@@ -88,6 +88,7 @@ def label(
     jobs = find_jobs([Path(path) for path in given])
     work = Labelling(_absolute(classifier), _absolute(inference), full_scale, loudness=loudness)
     work.prepare()
+    with_corrections(None if out is None else Path(out), [])  # refused before the work
     kept = nullcontext() if out is None else open_journal(Path(out), work, fresh=fresh)
     with kept as journal:
         outcomes = {} if journal is None else journal.known(jobs)

@@ -12,11 +12,11 @@ import os
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from models.errors import RecordingError
+from models.errors import ParameterError, RecordingError
 from models.foreign_file import refusing
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
-from noise.base.tables import check_table_path, read_table, write_table
+from noise.base.tables import check_table_path, read_table, table_columns, write_table
 from noise.labels.labelling import COLUMNS
 
 if TYPE_CHECKING:
@@ -226,6 +226,11 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
         that track are those of that table: whoever moves a border changes both sides of it. Tracks
         that the new rows do not have come last.
 
+    Raises
+    ------
+    ParameterError
+        What is there has the columns of a label table and cannot be read as one.
+
     Examples
     --------
     >>> import tempfile
@@ -241,7 +246,12 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
         return rows
     try:
         before = read_label_table(path, refusals=[])
-    except RecordingError:  # no label table, so there are none in it
+    except RecordingError as error:
+        if table_columns(path) >= set(_NEEDED):
+            raise ParameterError(
+                f"{error}; what was corrected in it would be lost: save it as UTF-8, move it away, "
+                "or name another table"
+            ) from None
         return rows
     return with_corrected_rows(before, rows)
 

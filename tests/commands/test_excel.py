@@ -58,6 +58,17 @@ def test_a_label_table_stays_as_excel_opens_it_until_another_is_asked_for(
     assert table.read_bytes().startswith(b"\xef\xbb\xbffile,")
 
 
+def test_a_label_table_that_cannot_be_read_is_not_written_over(folder, tmp_path, capsys):
+    run, table = str(folder / "run.wav"), tmp_path / "saved.csv"
+    saved = "file;label;label_source;note\r\nrun.wav;creak;human;T\xfcr\r\n".encode("cp1252")
+    table.write_bytes(saved)
+    assert main(["label", run, "--out", str(table)]) == 2
+    assert "what was corrected in it would be lost" in capsys.readouterr().err
+    assert table.read_bytes() == saved
+    table.write_bytes(b"any;table\n1;T\xfcr\n")
+    assert main(["label", run, "--out", str(table)]) == 0
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_no_number_of_a_table_is_infinite(command, folder, monkeypatch):
     monkeypatch.chdir(folder)
