@@ -82,6 +82,7 @@ def changed_rig_text(
     notes: Sequence[str] = (),
     responses: Sequence[Mapping[str, str | float]] = (),
     friction: LawSpec | None = None,
+    heard: Mapping[str, str | float] | None = None,
 ) -> str:
     """Write a rig file of what differs from another rig.
 
@@ -101,6 +102,8 @@ def changed_rig_text(
         Keys of each ``[[measured_response]]``.
     friction : LawSpec, optional
         The law where it is another than that of the base.
+    heard : mapping of str to str or float, optional
+        The condition that the app begins with, as ``[design.heard]`` takes it [unit of the key].
 
     Returns
     -------
@@ -122,7 +125,10 @@ def changed_rig_text(
     lines = [f"# {note}".rstrip() for note in notes]
     lines += [f"base = {_quoted(base)}", f"effects = {_quoted([str(spec) for spec in effects])}"]
     law = {} if friction is None else {"law": friction.name, **friction.parameters}
-    for name, table in (("friction", law), ("change", changes), ("tolerances", tolerances)):
+    tables = {
+        "friction": law, "change": changes, "tolerances": tolerances, "design.heard": heard,
+    }  # fmt: skip
+    for name, table in tables.items():
         if table:
             lines += ["", f"[{name}]", *(f"{_key(k)} = {_value(v)}" for k, v in table.items())]
     for response in responses:

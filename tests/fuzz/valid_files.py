@@ -72,6 +72,7 @@ interference_mm = [0.279]
 support_stiffness_Nm_rad = [2214]
 temperature_C = [23]
 oscillation = { amplitude_deg = 15, frequency_hz = [1, 2] }
+heard = { motion = "swing", swing = { amplitude_deg = 9, frequency_hz = 3 }, temperature_C = 40 }
 """
 
 RESPONSES = """

@@ -7,12 +7,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
 from models.rig_files.rig_text import base_name
 from models.rig_files.shipped import material_names
+from noise.app.design.controls import Control, controls_of
+from noise.app.design.heard import heard_values
 
 if TYPE_CHECKING:
     from pathlib import Path
+    from typing import Any
 
     from models.rig import Rig
     from noise.app.opened import Opened
@@ -35,10 +38,34 @@ class Base:
     name: str
     file: Path | None = None
 
+    @property
+    def _where(self) -> str:
+        return f"rig file {self.file}"
+
+    @cached_property
+    def _content(self) -> dict[str, Any]:
+        return {} if self.file is None else read_toml(self.file, self._where)
+
     @cached_property
     def rig(self) -> Rig:
         """As it was when it was first asked for."""
-        return load_material_rig(self.name) if self.file is None else load_rig(self.file)
+        if self.file is None:
+            return load_material_rig(self.name)
+        return rig_from(self._content, self.file.parent, self._where)
+
+    @cached_property
+    def controls(self) -> list[Control]:
+        """What can be changed about it; the condition is that which the file was heard at."""
+        heard = heard_values(self._content, self._where)
+        try:
+            return controls_of(self.rig, heard)
+        except ParameterError as error:
+            raise ParameterError(f"{self._where}, design.heard: {error}") from None
+
+    @property
+    def heard(self) -> bool:
+        """Whether the file says at which condition."""
+        return bool(heard_values(self._content, self._where))
 
     def named_in(self, folder: Path) -> str:
         """Name it as ``base`` in a rig file of a folder."""
@@ -61,7 +88,7 @@ def bases_of(opened: Opened) -> dict[str, Base]:
     """
     found = {f"rig {i}": Base(path.name, path) for i, path in enumerate(opened.rigs)}
     for named in found.values():
-        _ = named.rig  # what is wrong with it is told where it was named
+        _ = named.controls  # what is wrong with it is told where it was named
     names = sorted(material_names(), key=lambda name: (name != "fluorocarbon", name.lower()))
     return found | {name: Base(name) for name in names}
 

@@ -8,7 +8,7 @@ is saved.
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
@@ -71,6 +71,8 @@ class Control:
         What can be chosen, and how it is called.
     only : tuple of (str, str) or None
         Key and value of another control with which this one counts.
+    condition : bool
+        Whether it is of how the rig is run, and stays where another base is taken.
     """
 
     key: str
@@ -87,6 +89,7 @@ class Control:
     log: bool = False
     choices: Mapping[str, str] | None = None
     only: tuple[str, str | bool] | None = None
+    condition: bool = False
 
     def as_json(self) -> dict[str, object]:
         """Return it as the page reads it."""
@@ -117,8 +120,19 @@ class Control:
         return float(f"{said:.6g}")  # as a rig file writes it
 
 
-def controls_of(rig: Rig) -> list[Control]:
+def controls_of(rig: Rig, heard: Mapping[str, object] | None = None) -> list[Control]:
     """List what can be changed about a rig.
+
+    Parameters
+    ----------
+    rig : Rig
+    heard : mapping of str to float, bool or str, optional
+        Values of the condition that are other than usual [unit of each].
+
+    Raises
+    ------
+    ParameterError
+        A control does not take what `heard` says.
 
     Examples
     --------
@@ -127,7 +141,12 @@ def controls_of(rig: Rig) -> list[Control]:
     >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
     (['motion', 'speed', 'run_up.start'], True, True)
     """
-    return [*_motion(rig), *_condition(rig), *_bushing(rig), *_law(rig), *_effects(rig)]
+    stated = heard or {}
+    conditions = [
+        replace(one, condition=True, value=one.read(stated.get(one.key, one.value)))
+        for one in (*_motion(rig), *_condition(rig))
+    ]
+    return [*conditions, *_bushing(rig), *_law(rig), *_effects(rig)]
 
 
 def read_values(controls: list[Control], said: object) -> dict[str, float | bool | str]:

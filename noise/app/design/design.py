@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +15,8 @@ from models.rig_files.change import changed_rig
 from models.rig_files.rig_parts import parse_spec
 from models.rig_files.rig_text import changed_rig_text
 from noise.app.design.bases import Base, base_of
-from noise.app.design.controls import Control, controls_of, read_values
+from noise.app.design.controls import read_values
+from noise.app.design.heard import heard_table
 from noise.app.design.motions import motion_of, motion_options
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.map.provenance import fits_remark
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     Values = Mapping[str, float | bool | str]
 
-__all__ = ["Design", "base_controls", "design_of"]
+__all__ = ["Design", "design_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class Design:
         notes = [f"bushing-noise simulate --rig {name} {self.options}"]
         return changed_rig_text(
             self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
-            friction=self.friction,
+            friction=self.friction, heard=heard_table(self.base.controls, self.values),
         )  # fmt: skip
 
     @property
@@ -143,12 +143,6 @@ def _amount(value: str | float) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
 
-@lru_cache(maxsize=16)
-def base_controls(base: Base) -> list[Control]:
-    """Return what can be changed about a base."""
-    return controls_of(base.rig)
-
-
 def design_of(said: object, bases: dict[str, Base]) -> Design:
     """Read a design that a request states: ``{"base": ..., "values": {...}}``.
 
@@ -160,9 +154,8 @@ def design_of(said: object, bases: dict[str, Base]) -> Design:
     if not isinstance(said, dict):
         raise ParameterError("design: must be an object with base and values")
     base = base_of(said.get("base"), bases)
-    controls = base_controls(base)
-    values = read_values(controls, said.get("values", {}))
-    own = {control.key: control.value for control in controls}
+    values = read_values(base.controls, said.get("values", {}))
+    own = {control.key: control.value for control in base.controls}
     friction, changes = _friction(values, own)
     changes |= {
         key.removeprefix("change."): f"x{value:g}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from typing import TYPE_CHECKING
 
 from starlette.responses import JSONResponse, Response, StreamingResponse
@@ -9,7 +10,7 @@ from starlette.routing import Route
 
 from models.errors import ParameterError
 from noise.app.design.bases import base_of, bases_of
-from noise.app.design.design import base_controls, design_of
+from noise.app.design.design import design_of
 from noise.app.design.export import DesignExport
 from noise.app.design.player import BLOCK, RATE, TORQUE_STEP
 from noise.app.design.requests import ChartRequest, SuggestionRequest
@@ -35,6 +36,7 @@ _NICE = 15
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
     bases = bases_of(opened)
+    session = secrets.token_hex(8)  # what a page keeps is of these bases
     sounds = LiveSounds(bases)
     charts: WorkerProcess[ChartRequest, dict[str, object]] = WorkerProcess(
         f"{_CHARTS}:chart_of", _NICE
@@ -48,13 +50,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def listed(_: Request) -> Response:
         sounds.get_ready()
-        named = [{"id": key, "name": base.name} for key, base in bases.items()]
+        named = [{"id": key, "name": base.name, "heard": base.heard} for key, base in bases.items()]
         steps = {"rate": RATE, "block": BLOCK, "torque_step": TORQUE_STEP}
-        return JSONResponse({"bases": named, "lookahead_s": LOOKAHEAD, **steps})
+        about = {"bases": named, "session": session, "lookahead_s": LOOKAHEAD}
+        return JSONResponse(about | steps)
 
     def controls(request: Request) -> Response:
         base = base_of(request.query_params.get("base"), bases)
-        return JSONResponse({"controls": [one.as_json() for one in base_controls(base)]})
+        return JSONResponse({"controls": [one.as_json() for one in base.controls]})
 
     def sound(_: Request, said: object) -> Response:
         blocks = sounds.stream(*sounds.started(said))

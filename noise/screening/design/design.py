@@ -12,6 +12,8 @@ taken from the rig: its fits, its supports.
     support_stiffness_Nm_rad = [2214, 3745, "fixed"]
     temperature_C = 23
     oscillation = { amplitude_deg = 15, frequency_hz = "0.5..4" }
+    [design.heard]                     # where the app begins; no map is of it
+    speed_rad_s = 5
     [tolerances]
     elastomer_stiffness = 0.05                # relative standard deviation
     interference = { absolute = 0.01 }        # the same in mm
@@ -55,6 +57,7 @@ _USE_KEYS = {
     "support_stiffness_Nm_rad",
     "temperature_C",
     "oscillation",
+    "heard",
 }
 
 

@@ -31,8 +31,24 @@ class DesignPage:
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.goto(f"{app.address}#design")
+        self.ready()
+
+    def ready(self):
         self.until(f"Boolean({DESIGN}?.ready)")
         styled(self.page)
+
+    def reload(self):
+        self.page.reload()
+        self.ready()
+
+    def value(self, key):
+        return self.page.locator(f"#design-{key}").input_value()
+
+    def choose_base(self, name):
+        """Choose a base, and wait until its controls are shown."""
+        self.page.locator("#design-base").select_option(label=name)
+        chosen = "document.querySelector('#design-base').value"
+        self.until(f"{DESIGN}.stated().base === {chosen}")
 
     def until(self, said, patience=PATIENCE):
         """Wait for something to be true; the page's policy lets nothing be evaluated within it."""
@@ -171,7 +187,7 @@ def test_a_sound_that_is_not_of_the_numbers_shown_is_marked_until_it_is(browser,
     opened = DesignPage(browser, app)
     opened.play()
     assert opened.marked() == []
-    before = opened.page.locator(f"#design-{key}").input_value()
+    before = opened.value(key)
     opened.type(key, value)
     told = opened.page.get_by_role("status").filter(has_text=why)
     told.filter(has_text="What is heard and shown is not of these numbers").wait_for()
@@ -264,6 +280,104 @@ def test_a_rig_file_is_saved_by_keys(browser, app, tmp_path):
     opened.close()
 
 
+def test_a_reload_keeps_both_designs(browser, app):
+    opened = DesignPage(browser, app)
+    opened.type("speed", 7.5)
+    opened.page.get_by_text("Friction law", exact=True).click()
+    opened.page.locator("#design-law").select_option("lugre")
+    opened.page.get_by_role("button", name="B", exact=True).click()
+    opened.choose_base("PDMS")
+    opened.type("change-wall", 1.25)
+    stated = opened.page.evaluate(f"{DESIGN}.both()")
+    assert stated["A"]["values"] == {"speed": 7.5, "law": "lugre"}
+    assert stated["B"]["base"] == "PDMS"
+    opened.reload()
+    assert opened.page.evaluate(f"{DESIGN}.both()") == stated
+    assert opened.page.locator("#view-design .slot[aria-pressed=true]").inner_text() == "B"
+    assert (opened.value("base"), opened.value("change-wall")) == ("PDMS", "1.25")
+    opened.page.get_by_role("button", name="A", exact=True).click()
+    opened.until("document.querySelector('#design-law').value === 'lugre'")
+    assert (opened.value("base"), opened.value("speed")) == ("rig 0", "7.5")
+    opened.close()
+
+
+def test_a_page_of_another_call_of_the_program_begins_anew(browser, app, tmp_path):
+    opened = DesignPage(browser, app)
+    opened.type("speed", 7.5)
+    kept = "JSON.parse(sessionStorage.getItem('bushing-noise design'))"
+    opened.page.evaluate(
+        "([name, value]) => sessionStorage.setItem(name, value)",
+        [
+            "bushing-noise design",
+            opened.page.evaluate(f"JSON.stringify({{...{kept}, session: 0}})"),
+        ],
+    )
+    opened.reload()
+    assert opened.value("speed") == "5"
+    opened.close()
+
+
+def test_another_base_keeps_the_condition_and_tells_what_it_drops(browser, app):
+    opened = DesignPage(browser, app)
+    condition = {"speed": "7.5", "interference": "0.3", "support": "3745", "temperature": "40"}
+    for key, value in condition.items():
+        opened.type(key, value)
+    opened.type("change-damping", 1.5)
+    before = opened.page.evaluate(f"{DESIGN}.stated()")
+    opened.choose_base("PDMS")
+    opened.page.get_by_text("Dropped with mine.toml: Damping 1.5 x.").wait_for()
+    assert {key: opened.value(key) for key in condition} == condition
+    assert opened.value("change-damping") == "1"
+    opened.type("change-wall", 1.25)
+    after = opened.page.evaluate(f"{DESIGN}.stated()")
+    opened.page.get_by_role("button", name="Undo").click()
+    opened.page.get_by_text("Undone.").wait_for()
+    assert opened.page.evaluate(f"{DESIGN}.stated()") == before
+    assert (opened.value("base"), opened.value("change-damping")) == ("rig 0", "1.5")
+    opened.page.get_by_role("button", name="Redo").click()
+    opened.page.get_by_text("Done again.").wait_for()
+    assert opened.page.evaluate(f"{DESIGN}.stated()") == after
+    opened.close()
+
+
+@pytest.mark.parametrize("name", ["As the base", "Copy to the other"])
+def test_what_one_press_replaces_comes_back_by_another(browser, app, name):
+    opened = DesignPage(browser, app)
+    opened.page.get_by_role("button", name="B", exact=True).click()
+    opened.type("change-damping", 2)
+    opened.page.get_by_role("button", name="A", exact=True).click()
+    opened.type("change-damping", 1.5)
+    before = opened.page.evaluate(f"{DESIGN}.both()")
+    opened.page.get_by_role("button", name=name).click()
+    assert opened.page.evaluate(f"{DESIGN}.both()") != before
+    opened.page.get_by_role("button", name="Undo").click()
+    opened.page.get_by_text("Undone.").wait_for()
+    assert opened.page.evaluate(f"{DESIGN}.both()") == before
+    opened.close()
+
+
+def test_a_rig_that_was_saved_is_opened_as_it_was_heard(browser, app, tmp_path):
+    opened = DesignPage(browser, app)
+    opened.page.locator("#design-motion").select_option("run_up")
+    for key, value in {"run_up-end": 9, "support": 3745, "change-damping": 1.5}.items():
+        opened.type(key, value)
+    opened.page.get_by_role("button", name="Save rig file").click()
+    opened.page.locator(".saved").get_by_text("design.toml").first.wait_for()
+    opened.close()
+    with opened_app(tmp_path / "design.toml", tmp_path / "mine.toml") as app_:
+        opened = DesignPage(browser, app_)
+        assert opened.value("motion") == "run_up"
+        assert (opened.value("run_up-end"), opened.value("support")) == ("9", "3745")
+        opened.type("support", 3000)
+        opened.choose_base("mine.toml")
+        opened.choose_base("design.toml")  # what one is in the midst of stays
+        opened.page.get_by_text("design.toml was saved at others").wait_for()
+        assert (opened.value("motion"), opened.value("support")) == ("run_up", "3000")
+        opened.page.get_by_role("button", name="As the base").click()
+        assert opened.value("support") == "3745"
+        opened.close()
+
+
 def test_fields_show_all_digits_of_what_is_small(browser, app):
     opened = DesignPage(browser, app)
     opened.page.get_by_text("Friction law", exact=True).click()
@@ -284,6 +398,11 @@ def test_it_fits_and_everybody_can_use_it(browser, app, width):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
     opened = DesignPage(browser, app, width)
     opened.play()
+    opened.type("change-damping", 1.5)
+    opened.choose_base("PDMS")
+    opened.type("support", 20)
+    opened.page.locator(".refusal").get_by_text("off the plate").wait_for()
+    opened.page.get_by_role("button", name="Undo").wait_for()
     panel = "document.querySelector('#view-design').scrollWidth"
     assert max(opened.page.evaluate(f"[document.documentElement.scrollWidth, {panel}]")) <= width
     columns = opened.page.evaluate(
@@ -292,4 +411,5 @@ def test_it_fits_and_everybody_can_use_it(browser, app, width):
     assert len(columns) == (2 if width == 1280 else 1)
     found = axe.Axe().run(opened.page, options={"runOnly": RULES, "resultTypes": ["violations"]})
     assert found.violations_count == 0, found.generate_report()
+    opened.forgive_refusals()
     opened.close()

@@ -120,6 +120,10 @@ def test_both_designs_are_kept_as_sounds_at_one_gain_and_as_a_page(tmp_path):
     text = html.unescape(Path(page).read_text(encoding="utf-8"))
     assert "A: fluorocarbon unchanged (--speed 5" in text
     assert "B: fluorocarbon with damping x2 (--oscillate 15,2" in text
+    saved = bases_of(open_paths([tmp_path / "both" / f"{slot}.toml" for slot in "AB"]))
+    for slot, base in zip("AB", ["rig 0", "rig 1"], strict=True):
+        again = design_of({"base": base, "values": {}}, saved)
+        assert again.options == design_of(designs[slot], BASES).options
     keeping.stop()
 
 

@@ -12,7 +12,7 @@ export class Controls extends EventTarget {
     this.shown = new Map(); // key -> { row, put }
   }
 
-  // Show controls; values that they have stay where they are asked to.
+  // Show the controls of a base, with its values.
   show(declared) {
     this.declared = new Map(declared.map((one) => [one.key, one]));
     this.values = new Map(declared.map((one) => [one.key, one.value]));
@@ -35,6 +35,23 @@ export class Controls extends EventTarget {
   // Only what differs from the base.
   get changed() {
     return Object.fromEntries([...this.values].filter(([key, value]) => value !== this.declared.get(key).value));
+  }
+
+  // How the rig is run, which is no matter of the base.
+  get condition() {
+    return Object.fromEntries([...this.values].filter(([key]) => this.declared.get(key).condition));
+  }
+
+  // What differs from the base and counts, in words; of those controls that are asked for.
+  words(asked = () => true) {
+    const found = Object.keys(this.changed).filter((key) => !this.shown.get(key).row.hidden).map((key) => this.declared.get(key));
+    return found.filter(asked).map((one) => `${name(one.label)} ${this.#said(one)}`).join(", ");
+  }
+
+  #said({ key, kind, unit, choices }) {
+    const value = this.values.get(key);
+    if (kind === "number") return `${written(value)} ${unit}`.trim();
+    return kind === "choice" ? choices[value] : value ? "on" : "off";
   }
 
   // Numbers of the bushing as they have become, beside their factors.

@@ -1,11 +1,13 @@
 // A design that is heard while it is changed.
-import { api, told } from "../api.js";
+import { api } from "../api.js";
 import { made } from "../labels/list.js";
 import { Chart } from "./chart.js";
 import { Controls } from "./controls.js";
 import { Drawings } from "./drawings.js";
 import { Saving } from "./saving.js";
+import { keep, kept } from "./session.js";
 import { Sound } from "./sound.js";
+import { Undo } from "./undo.js";
 
 const LEVELS_EVERY = 500, FACTS_AFTER = 200; // ms
 
@@ -30,7 +32,8 @@ export async function mount(panel) {
   const torque = made("canvas", { className: "torque", role: "img", ariaLabel: "Torque of the last fifth of a second" });
   const spectrum = made("canvas", { className: "spectrum", role: "img", ariaLabel: "Spectrum of the sound pressure" });
   const remarks = made("ul", { className: "remarks", ariaLabel: "To be known" });
-  left.append(tools, start, rows);
+  const notice = made("div");
+  left.append(tools, start, notice, rows);
   right.append(
     made("section", { className: "shown heard" }, made("h2", { textContent: "What is heard" }), level, made("div", { className: "tools" }, made("label", { htmlFor: "design-full-scale", textContent: "Full scale, Pa" }), scale, gain, fit), remarks),
     made("section", { className: "shown" }, made("h2", { textContent: "Torque" }), torque),
@@ -43,23 +46,36 @@ export async function mount(panel) {
   const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, torque, spectrum);
   const design = { sound, controls, drawings, about };
   panel.design = design;
-  const states = {}; // by slot: { base, values }
-  let slot = "A", asked = 0;
+  const baseOf = (id) => about.bases.find((one) => one.id === id);
+  let states = {}; // by slot: { base, values }
+  let slot = "A", asked = 0, shown = null; // the base whose controls are shown
 
-  design.stated = () => ({ base: base.value, values: controls.changed });
+  design.stated = () => ({ base: shown, values: controls.changed });
   design.both = () => ({ ...states, [slot]: design.stated() });
   design.hidden = () => panel.hidden;
   const chart = new Chart(right, design);
   new Saving(right, design);
 
-  async function take(base_) {
-    base.value = base_;
-    const found = await api(`design/controls?base=${encodeURIComponent(base_)}`);
+  const state = () => ({ slot, states: { ...states } });
+  const undo = new Undo(notice, state, restore);
+
+  // Show the controls of a base; false where another one was chosen meanwhile, or there is no answer.
+  async function take(id) {
+    base.value = id;
+    let found;
+    try { found = await api(`design/controls?base=${encodeURIComponent(id)}`); } catch {
+      base.value = shown;
+      return false;
+    }
+    if (base.value !== id) return false;
+    shown = id;
     controls.show(found.controls);
+    return true;
   }
 
   function changed() {
     states[slot] = design.stated();
+    keep(about.session, state());
     sound.change(states[slot]);
     facts();
     chart.changed();
@@ -74,9 +90,7 @@ export async function mount(panel) {
       if (serial !== sound.serial) return; // of numbers that are no longer shown
       judge(serial, why);
       controls.told(found.facts);
-      design.options = found.options;
       remarks.replaceChildren(...found.remarks.map((textContent) => made("li", { textContent })));
-      view.dispatchEvent(new CustomEvent("design-facts", { detail: found }));
     }, FACTS_AFTER);
   }
 
@@ -89,29 +103,50 @@ export async function mount(panel) {
   }
 
   async function choose(name) {
-    if (name === slot) return;
-    states[slot] = design.stated();
-    slot = name;
-    for (const one of slots) one.setAttribute("aria-pressed", one.textContent === slot);
-    await put(states[slot] ?? states[slot === "A" ? "B" : "A"]);
+    if (name !== slot) await restore({ slot: name, states: { ...states, [name]: states[name] ?? states[slot] } });
   }
 
-  async function put(state) {
-    if (state.base !== base.value) await take(state.base);
-    controls.put(state.values);
+  async function restore(before) {
+    ({ slot, states } = before);
+    for (const one of slots) one.setAttribute("aria-pressed", one.textContent === slot);
+    await put(states[slot]);
+  }
+
+  async function put({ base: id, values }) {
+    if ((id !== shown || id !== base.value) && !await take(id)) return;
+    controls.put(values);
     changed();
+  }
+
+  // Another base keeps the condition, and drops what was changed of the one before.
+  async function rebase() {
+    const before = state(), { condition } = controls, left = baseOf(shown), dropped = controls.words(({ condition: stays }) => !stays);
+    if (!await take(base.value)) return;
+    controls.put(condition);
+    changed();
+    const { name, heard } = baseOf(shown), texts = [];
+    if (dropped) texts.push(`Dropped with ${left.name}: ${dropped}.`);
+    if (heard && controls.words((one) => one.condition)) texts.push(`Motion and condition stay; ${name} was saved at others, which “As the base” takes.`);
+    if (texts.length) undo.offer(texts.join(" "), before);
   }
   design.put = put;
   design.choose = choose;
 
   controls.addEventListener("change", changed);
-  base.addEventListener("change", async () => { await take(base.value); changed(); });
+  base.addEventListener("change", rebase);
   for (const one of slots) one.addEventListener("click", () => choose(one.textContent));
   copy.addEventListener("click", () => {
-    states[slot === "A" ? "B" : "A"] = design.stated();
-    told(`${slot === "A" ? "B" : "A"} is as ${slot} is.`);
+    const before = state(), other = slot === "A" ? "B" : "A";
+    states[other] = states[slot];
+    keep(about.session, state());
+    undo.offer(`${other} is as ${slot} is.`, before);
   });
-  reset.addEventListener("click", () => { controls.put({}); changed(); });
+  reset.addEventListener("click", () => {
+    const before = state(), dropped = controls.words();
+    controls.put({});
+    changed();
+    if (dropped) undo.offer(`Dropped: ${dropped}.`, before);
+  });
   fit.addEventListener("click", () => sound.fit());
   scale.addEventListener("change", () => {
     const asked = Number(scale.value);
@@ -154,9 +189,8 @@ export async function mount(panel) {
     else sound.stop();
   });
 
-  await take(about.bases[0].id);
   level.textContent = "Not playing.";
-  changed();
+  await restore(kept(about.session) ?? { slot, states: { [slot]: { base: about.bases[0].id, values: {} } } });
   design.ready = true;
   return design;
 }
