@@ -1,0 +1,119 @@
+"""What outlives a reload, another base or a press in the design view, and what is saved."""
+
+from __future__ import annotations
+
+import pytest
+
+from models.rig_files.rig_file import load_rig
+from tests.helpers.design_page import DESIGN, DesignPage
+from tests.helpers.opened_app import opened_app
+
+
+def test_a_rig_file_is_saved_by_keys(browser, app, tmp_path):
+    opened = DesignPage(browser, app)
+    opened.type("change-damping", 1.5)
+    opened.page.locator("#design-name").fill("softer")
+    opened.page.keyboard.press("Tab")
+    opened.page.keyboard.press("Enter")
+    opened.page.locator(".saved").get_by_text("softer.toml").first.wait_for()
+    softer = load_rig(tmp_path / "softer.toml")
+    assert softer == load_rig(tmp_path / "mine.toml").changed(damping="x1.5")
+    opened.close()
+
+
+def test_a_reload_keeps_both_designs(browser, app):
+    opened = DesignPage(browser, app)
+    opened.type("speed", 7.5)
+    opened.page.get_by_text("Friction law", exact=True).click()
+    opened.page.locator("#design-law").select_option("lugre")
+    opened.page.get_by_role("button", name="B", exact=True).click()
+    opened.choose_base("PDMS")
+    opened.type("change-wall", 1.25)
+    stated = opened.page.evaluate(f"{DESIGN}.both()")
+    assert stated["A"]["values"] == {"speed": 7.5, "law": "lugre"}
+    assert stated["B"]["base"] == "PDMS"
+    opened.reload()
+    assert opened.page.evaluate(f"{DESIGN}.both()") == stated
+    assert opened.page.locator("#view-design .slot[aria-pressed=true]").inner_text() == "B"
+    assert (opened.value("base"), opened.value("change-wall")) == ("PDMS", "1.25")
+    opened.page.get_by_role("button", name="A", exact=True).click()
+    opened.until("document.querySelector('#design-law').value === 'lugre'")
+    assert (opened.value("base"), opened.value("speed")) == ("rig 0", "7.5")
+    opened.close()
+
+
+def test_a_page_of_another_call_of_the_program_begins_anew(browser, app, tmp_path):
+    opened = DesignPage(browser, app)
+    opened.type("speed", 7.5)
+    kept = "JSON.parse(sessionStorage.getItem('bushing-noise design'))"
+    opened.page.evaluate(
+        "([name, value]) => sessionStorage.setItem(name, value)",
+        [
+            "bushing-noise design",
+            opened.page.evaluate(f"JSON.stringify({{...{kept}, session: 0}})"),
+        ],
+    )
+    opened.reload()
+    assert opened.value("speed") == "5"
+    opened.close()
+
+
+def test_another_base_keeps_the_condition_and_tells_what_it_drops(browser, app):
+    opened = DesignPage(browser, app)
+    condition = {"speed": "7.5", "interference": "0.3", "support": "3745", "temperature": "40"}
+    for key, value in condition.items():
+        opened.type(key, value)
+    opened.type("change-damping", 1.5)
+    before = opened.page.evaluate(f"{DESIGN}.stated()")
+    opened.choose_base("PDMS")
+    opened.page.get_by_text("Dropped with mine.toml: Damping 1.5 x.").wait_for()
+    assert {key: opened.value(key) for key in condition} == condition
+    assert opened.value("change-damping") == "1"
+    opened.type("change-wall", 1.25)
+    after = opened.page.evaluate(f"{DESIGN}.stated()")
+    opened.page.get_by_role("button", name="Undo").click()
+    opened.page.get_by_text("Undone.").wait_for()
+    assert opened.page.evaluate(f"{DESIGN}.stated()") == before
+    assert (opened.value("base"), opened.value("change-damping")) == ("rig 0", "1.5")
+    opened.page.get_by_role("button", name="Redo").click()
+    opened.page.get_by_text("Done again.").wait_for()
+    assert opened.page.evaluate(f"{DESIGN}.stated()") == after
+    opened.close()
+
+
+@pytest.mark.parametrize("name", ["As the base", "Copy to the other"])
+def test_what_one_press_replaces_comes_back_by_another(browser, app, name):
+    opened = DesignPage(browser, app)
+    opened.page.get_by_role("button", name="B", exact=True).click()
+    opened.type("change-damping", 2)
+    opened.page.get_by_role("button", name="A", exact=True).click()
+    opened.type("change-damping", 1.5)
+    before = opened.page.evaluate(f"{DESIGN}.both()")
+    opened.page.get_by_role("button", name=name).click()
+    assert opened.page.evaluate(f"{DESIGN}.both()") != before
+    opened.page.get_by_role("button", name="Undo").click()
+    opened.page.get_by_text("Undone.").wait_for()
+    assert opened.page.evaluate(f"{DESIGN}.both()") == before
+    opened.close()
+
+
+def test_a_rig_that_was_saved_is_opened_as_it_was_heard(browser, app, tmp_path):
+    opened = DesignPage(browser, app)
+    opened.page.locator("#design-motion").select_option("run_up")
+    for key, value in {"run_up-end": 9, "support": 3745, "change-damping": 1.5}.items():
+        opened.type(key, value)
+    opened.page.get_by_role("button", name="Save rig file").click()
+    opened.page.locator(".saved").get_by_text("design.toml").first.wait_for()
+    opened.close()
+    with opened_app(tmp_path / "design.toml", tmp_path / "mine.toml") as app_:
+        opened = DesignPage(browser, app_)
+        assert opened.value("motion") == "run_up"
+        assert (opened.value("run_up-end"), opened.value("support")) == ("9", "3745")
+        opened.type("support", 3000)
+        opened.choose_base("mine.toml")
+        opened.choose_base("design.toml")  # what one is in the midst of stays
+        opened.page.get_by_text("design.toml was saved at others").wait_for()
+        assert (opened.value("motion"), opened.value("support")) == ("run_up", "3000")
+        opened.page.get_by_role("button", name="As the base").click()
+        assert opened.value("support") == "3745"
+        opened.close()
