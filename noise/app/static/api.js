@@ -1,6 +1,6 @@
 // Requests to the server, and the line that tells what happened.
 
-const GONE = "The program does not answer any more; start it again by `bushing-noise open`.";
+export const GONE = "The program does not answer any more; start it again by `bushing-noise open`.";
 
 // GET without a body, POST of JSON with one; an error is thrown, and told unless the caller does that.
 export async function api(path, body, tell = told) {

@@ -106,6 +106,7 @@ def test_a_vote_whose_answer_is_lost_counts_once(browser, app, folder):
     says(jury, "no answer; shown is what is saved")
     jury.turn(2).is_refused()
     assert votes(folder) == ["first"]
+    assert jury.page.locator("#status").text_content() == ""
     jury.close()
 
 

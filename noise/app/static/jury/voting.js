@@ -1,5 +1,5 @@
 // Two sounds without names, in step; a vote is in the table before the next two come.
-import { api, told } from "../api.js";
+import { GONE, api, told } from "../api.js";
 import { listen } from "../labels/keys.js";
 import { made } from "../labels/list.js";
 import { Player } from "../labels/player.js";
@@ -180,9 +180,10 @@ export class Voting {
       told(""); // what was refused before no longer matters
     } catch ({ message }) {
       state = await api(`juries/${number}`).catch(() => null);
-      // Another page has voted, or an answer was lost.
-      const moved = state && state.waiting !== waiting;
-      said = moved ? `${message}; shown is what is saved` : `not ${word}: ${message}`;
+      const lost = state && message === GONE; // one answer was, and the next was not
+      if (lost) told("");
+      const reason = lost ? "no answer" : message;
+      said = state && state.waiting !== waiting ? `${reason}; shown is what is saved` : `not ${word}: ${reason}`;
       if (shown === this.shown) this.#forget();
     } finally {
       this.busy = false;
