@@ -10,6 +10,7 @@ export class Corrections extends EventTarget {
     this.track = "all";
     this.saved = null; // rows as the table has them; none is known before they have come
     this.versions = new Map(); // of the rows of each recording, which a change of them is based on
+    this.taken = 0; // how often rows of the table came
     this.queue = []; // what is still to be done: { id, name, rows, kind } is written, { undone } undoes
     this.sending = null; // of the queue
     this.working = null;
@@ -29,24 +30,25 @@ export class Corrections extends EventTarget {
     await this.#read();
   }
 
-  // What is read while something is written may be older than that.
+  // What was asked for before something was written may be older than that. Whether it is another than was known comes of it.
   async #read() {
     const { id } = this;
-    let answer;
+    let answer, taken;
     do {
       await this.working;
+      ({ taken } = this);
       answer = await api(`recordings/${id}/segments`);
-    } while (id === this.id && this.working);
-    if (id === this.id) this.#take(answer);
+    } while (id === this.id && (this.working || taken !== this.taken));
+    const isOther = id === this.id && answer.version !== this.versions.get(id);
+    this.#take(answer);
+    return isOther;
   }
 
   // Somebody else may have changed the table: then its rows are shown anew.
   async seen({ id, version }) {
-    const shown = this.versions.get(id);
-    if (id !== this.id || !this.saved || this.working || version === shown) return;
+    if (id !== this.id || !this.saved || this.working || version === this.versions.get(id)) return;
     const wereNone = !this.rows.length;
-    await this.#read();
-    if (id === this.id && this.versions.get(id) !== shown && !wereNone) this.tell("changed elsewhere: shown as they are now");
+    if (await this.#read() && !wereNone) this.tell("changed elsewhere: shown as they are now");
   }
 
   get tracks() { return [...new Set(this.rows.map((row) => row.channel))]; }
@@ -56,11 +58,14 @@ export class Corrections extends EventTarget {
     return this.rows.filter((row) => row.channel === this.track).sort((one, two) => one.start_s - two.start_s);
   }
 
+  // What is still to be written of it stays shown.
   #take({ id, rows, version }) {
     this.versions.set(id, version);
+    if (id !== this.id) return;
+    this.taken += 1;
     const known = rows.filter((row) => row.label);
     this.saved = known.map((row) => ({ ...row, channel: row.channel || "all", start_s: row.start_s ?? 0, end_s: row.end_s ?? this.duration }));
-    this.#show(this.saved);
+    if (!this.queue.some((one) => one.id === id)) this.#show(this.saved);
   }
 
   #show(rows) {
@@ -80,7 +85,7 @@ export class Corrections extends EventTarget {
   preview(shown) { this.#show([...this.rows.filter((row) => row.channel !== this.track), ...shown]); }
 
   // No longer show what was only looked at.
-  restore() { this.#show([this.sending, ...this.queue].findLast((one) => one?.rows && one.id === this.id)?.rows ?? this.saved); }
+  restore() { if (this.saved) this.#show([this.sending, ...this.queue].findLast((one) => one?.rows && one.id === this.id)?.rows ?? this.saved); }
 
   // Write rows of the track. One of the same kind that waits to be written is replaced, such as a border's step.
   write(shown, kind = null) {
@@ -121,45 +126,45 @@ export class Corrections extends EventTarget {
     try {
       const said = rows.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
       const answer = await api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id) });
-      this.versions.set(id, answer.version);
       this.#say(id, name, `saved ${clock()}`);
-      if (id === this.id && !this.queue.some((one) => one.id === id)) this.#take(answer);
+      this.#take(answer);
     } catch (error) {
-      this.#drop(id);
       this.#say(id, name, `not saved: ${error.message}`);
-      if (id === this.id) await this.#again();
+      const now = await this.#now(id);
+      this.#drop(id, now);
     }
     this.dispatchEvent(new CustomEvent("saved", { detail: id }));
   }
 
-  // What was changed after what could not be written was made of it, and what undoes means it.
-  #drop(id) {
-    for (const { undone } of this.queue) undone?.(null);
-    this.queue = this.queue.filter((one) => !one.undone && one.id !== id);
+  // What was changed until now was made of what could not be written, and what undoes means it.
+  #drop(id, now) {
+    const isDropped = (one) => one.undone || one.id === id, dropped = this.queue.filter(isDropped);
+    this.queue = this.queue.filter((one) => !isDropped(one));
+    this.#again(id, now);
+    for (const { undone } of dropped) undone?.(null);
   }
 
   async #undo({ undone }) {
     try {
       const answer = await api("undo", {});
-      this.versions.set(answer.id, answer.version);
       this.#say(answer.id, answer.name, `undone, saved ${clock()}`);
-      if (answer.id === this.id) this.#take(answer);
+      this.#take(answer);
       undone(answer.id);
       this.dispatchEvent(new CustomEvent("saved", { detail: answer.id }));
     } catch (error) {
       this.tell(`not undone: ${error.message}`);
-      await this.#again();
+      const { id } = this;
+      this.#again(id, await this.#now(id));
       undone(null);
     }
   }
 
-  // Rows as the table has them; as they were known where it cannot be asked.
-  async #again() {
-    const { id } = this;
-    const answer = await api(`recordings/${id}/segments`).catch(() => null);
-    if (id !== this.id) return;
-    if (answer) this.#take(answer);
-    else if (this.saved) this.#show(this.saved);
+  // Rows as the table has them; null where it cannot be asked.
+  #now(id) { return api(`recordings/${id}/segments`).catch(() => null); }
+
+  #again(id, now) {
+    if (now) this.#take(now);
+    else if (id === this.id && this.saved) this.#show(this.saved);
   }
 
   #say(id, name, text) { this.tell(id === this.id ? text : `${name}: ${text}`); }

@@ -168,8 +168,11 @@ class RecordingList {
     const numbers = new Set([Math.floor(first / PAGE), Math.floor(Math.max(first, last - 1) / PAGE)]);
     const { on, marked } = this;
     const more = new URLSearchParams({ ...(on !== null && { place: on }), ...(marked !== null && { open: marked }) });
-    const answers = await Promise.all([...numbers].map(async (number) => [number, await api(`${this.#query(number * PAGE)}&${more}`)]));
+    const answers = await Promise.all([...numbers].map(async (number) => [number, await api(`${this.#query(number * PAGE)}&${more}`)])).catch(() => null); // it is told
     if (turn !== this.asked) return; // something else was asked for meanwhile
+    // Somebody may label on the command line, too, or change the table, and it may be no table while that is written.
+    this.timer = setTimeout(() => onceShown(this.box, () => this.load()), answers?.[0][1].state.running ? POLL : 5 * POLL);
+    if (!answers) return;
     this.pages = new Map(answers.map(([number, answer]) => [number, answer.rows]));
     const { total, counts, state, place, open } = answers[0][1];
     this.total = total;
@@ -179,8 +182,6 @@ class RecordingList {
     this.space.style.height = `${total * ROW}px`;
     this.#tell(counts, state);
     this.draw();
-    // Somebody may label on the command line, too, or change the table.
-    this.timer = setTimeout(() => onceShown(this.box, () => this.load()), state.running ? POLL : 5 * POLL);
   }
 
   // The keyboard stays on its recording. Where a correction took that away or elsewhere, it is before the one after it.

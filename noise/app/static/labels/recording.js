@@ -79,7 +79,7 @@ export class RecordingPage {
   // Labels, which may be on their way.
   async #labels(id) {
     clearTimeout(this.timer);
-    await this.corrections.open({ ...this.sound, id });
+    await this.corrections.open({ ...this.sound, id }).catch(() => null); // it is told, and tried again
     if (id !== this.id || this.corrections.rows.length) return;
     this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
   }

@@ -125,9 +125,11 @@ export class Segments {
         handle.removeEventListener("pointermove", move);
         handle.removeEventListener("pointerup", end);
         handle.removeEventListener("pointercancel", end);
-        if (time === null || !same()) return;
-        if (last.type === "pointerup") corrections.write(moved(corrections.shown, border, time));
-        else corrections.restore();
+        if (time === null) return;
+        corrections.inTurn(() => {
+          if (last.type === "pointerup" && same()) corrections.write(moved(corrections.shown, border, time));
+          else corrections.restore();
+        });
       };
       handle.addEventListener("pointermove", move);
       handle.addEventListener("pointerup", end);
