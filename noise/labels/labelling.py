@@ -39,6 +39,7 @@ __all__ = [
     "SEGMENT_COLUMNS",
     "Labelling",
     "label_rows",
+    "labelled_tracks",
     "names_no_channels",
     "segment_cells",
 ]
@@ -173,6 +174,19 @@ def names_no_channels(path: Path) -> bool:
     """Whether it is a plain sound file, whose tracks stand for themselves."""
     sidecar = find_sidecar(path)
     return sidecar is None or read_sidecar(sidecar).channels is None
+
+
+def labelled_tracks(path: Path, n_channels: int) -> list[str]:
+    """Return what of a recording has labels of its own, as the column ``channel`` names it.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> labelled_tracks(Path("stereo.wav"), 2), labelled_tracks(Path("mono.wav"), 1)
+    (['1', '2'], ['all'])
+    """
+    several = n_channels > 1 and names_no_channels(path)
+    return [str(number + 1) for number in range(n_channels)] if several else ["all"]
 
 
 def label_rows(

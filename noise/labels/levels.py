@@ -185,14 +185,14 @@ def with_weighted_levels(blocks: RecordingBlocks, segments: list[Segment]) -> li
     blocks : RecordingBlocks
         The track; where it has no pressure, nothing is added.
     segments : list of Segment
-        All of it, in order of time.
+        All of it, in order of time; there may be none.
 
     Returns
     -------
     list of Segment
     """
     row = blocks.first("pressure")
-    if row is None:
+    if row is None or not segments:
         return segments
     reference = REFERENCE_PRESSURE if blocks.calibrated else 1.0
     measured = []

@@ -1,8 +1,10 @@
-"""Corrections in a browser where a save fails, or answers come late or from a table half written."""
+"""Corrections in a browser where a save fails, an answer is late, or a table half written."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+import soundfile
 
 from noise.base.tables import write_table
 from noise.labels.labelling import COLUMNS
@@ -128,3 +130,18 @@ def test_a_table_that_is_none_for_a_while_is_read_again_when_it_is_one(browser, 
     opened.page.locator(".strip .creak").wait_for()
     opened.page.get_by_role("option").filter(has_text="creak + none").wait_for()
     opened.page.close()
+
+
+def test_a_label_before_the_classifier_names_each_track_of_a_plain_file(browser, tmp_path):
+    tone = 0.1 * np.sin(2 * np.pi * 1000 * np.arange(16000) / 8000)
+    soundfile.write(tmp_path / TONE, np.stack([tone, tone], axis=1), 8000)
+    with opened_app(tmp_path) as app:
+        opened = OpenPage(browser, app)
+        opened.page.get_by_role("option").filter(has_text=TONE).first.click()
+        opened.page.locator(".recording").get_by_text("No label yet").wait_for()
+        opened.press("1")
+        opened.saved()
+        rows = read_label_table(tmp_path / "labels.csv")
+        opened.close()
+    found = [(row["channel"], row["label"], row["label_source"]) for row in rows]
+    assert found == [("1", "creak", "human"), ("2", "creak", "human")]

@@ -35,6 +35,8 @@ def routes(opened: Opened) -> list[BaseRoute]:
     sounds = SoundCache(opened)
 
     def about(request: Request) -> Response:
+        from noise.labels.labelling import labelled_tracks  # which the list comes before
+
         index = request.path_params["id"]
         blocks = sounds.blocks(index)
         tracks = [sounds.track(index, channel.name) for channel in blocks.channels]
@@ -53,6 +55,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
                 "id": index,
                 "name": opened.job(index).name,
                 "channels": channels,
+                "tracks": labelled_tracks(opened.job(index).path, len(channels)),
                 "channel": heard.channel.name,
                 "rate": blocks.rate,
                 "duration_s": heard.duration,

@@ -2,9 +2,9 @@
 import { told } from "../api.js";
 import { joined, relabelled, split } from "./edits.js";
 
-export function label({ corrections, segments, timeline }, said) {
-  const whole = { start_s: 0, end_s: timeline.duration, label: said, channel: "all", label_source: "human" };
-  corrections.inTurn(() => corrections.write(segments.chosen ? relabelled(corrections.shown, segments.at, said) : [whole]));
+export function label({ corrections, segments, timeline, sound }, said) {
+  const whole = (sound?.tracks ?? []).map((channel) => ({ start_s: 0, end_s: timeline.duration, label: said, channel, label_source: "human" }));
+  corrections.inTurn(() => corrections.write(segments.chosen ? relabelled(corrections.shown, segments.at, said) : whole));
 }
 
 export function splitHere({ corrections, segments, timeline, pointed }) {
