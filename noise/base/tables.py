@@ -17,6 +17,7 @@ import math
 import numbers
 import sys
 from collections.abc import Iterator
+from datetime import date, time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +31,7 @@ from noise.base.readable import readable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-    from typing import TextIO
+    from typing import Any, TextIO
 
     Cell = bool | int | float | str | None
 
@@ -161,8 +162,9 @@ def write_table(
         elif ending == ".xlsx":
             from noise.base.workbook import write_workbook
 
+            cells.kept = (date, time)
             finite = [list(map(finite_or_fixed, columns, row)) for row in cells]
-            write_workbook(temporary, columns, finite, path.stem)
+            write_workbook(temporary, columns, finite, path)
         else:
             with temporary.open("w", encoding="utf-8", newline="") as file:
                 if ending == ".csv":
@@ -281,13 +283,16 @@ def _cell(value: object) -> Cell:
 class _Cells:
     """Rows as they are written, each made when it is its turn; to be gone through again."""
 
+    kept: tuple[type, ...] = ()  # what is written as it is
+
     def __init__(self, rows: Iterable[Mapping[str, object]], columns: Sequence[str]) -> None:
         self._rows = list(rows) if isinstance(rows, Iterator) else rows
         self._columns = columns
 
-    def __iter__(self) -> Iterator[list[Cell]]:
+    def __iter__(self) -> Iterator[list[Any]]:
         for row in self._rows:
-            yield [_cell(row.get(column)) for column in self._columns]
+            cells = map(row.get, self._columns)
+            yield [one if isinstance(one, self.kept) else _cell(one) for one in cells]
 
 
 def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

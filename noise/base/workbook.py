@@ -5,10 +5,11 @@ Text stays text whatever it begins with: a recording called ``=cmd.wav`` is its 
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError, not_installed
-from models.foreign_file import ExcessError, check_inflation
+from models.foreign_file import ExcessError, check_inflation, reading
 from noise.base.readable import readable
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def check_openpyxl(path: Path) -> None:
 
 
 def write_workbook(
-    path: Path, columns: Sequence[str], rows: Sequence[Sequence[Cell]], sheet: str
+    path: Path, columns: Sequence[str], rows: Sequence[Sequence[Cell]], there: Path
 ) -> None:
     """Write a table as a workbook.
 
@@ -70,8 +71,9 @@ def write_workbook(
     columns : sequence of str
     rows : sequence of sequence
         Numbers are finite, texts as `noise.base.readable` shows them.
-    sheet : str
-        What its sheet is called.
+    there : Path
+        Whose name its sheet has; where a workbook of several stands there, they are kept, and the
+        table takes the place of the first.
 
     Raises
     ------
@@ -83,13 +85,11 @@ def write_workbook(
             f"{len(rows)} rows are more than an Excel sheet has ({_MOST_ROWS}); name a .csv or "
             ".parquet"
         )
-    from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
     from openpyxl.styles import Font
     from openpyxl.utils import get_column_letter
 
-    book = Workbook(write_only=True)
-    page = book.create_sheet(_sheet_name(sheet))
+    book, page = _empty_sheet(there)
     page.freeze_panes = "A2"
     for number, column in enumerate(columns):
         cells = (column, *(row[number] for row in rows[:_LOOKED_AT]))
@@ -132,14 +132,31 @@ def read_workbook(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     with path.open("rb") as file:
         book = load_workbook(file, read_only=True, data_only=True)
         lines = _lines(book.worksheets[0], path.stat().st_size) if book.worksheets else []
-    columns = [str(name) for name in lines[0] if name is not None] if lines else []
-    width = len(columns)
+    named = (
+        [(at, str(name)) for at, name in enumerate(lines[0]) if name is not None] if lines else []
+    )
     rows = [
-        dict(zip(columns, line[:width], strict=False))
+        {name: line[at] for at, name in named if at < len(line)}
         for line in lines[1:]
         if any(value is not None for value in line)
     ]
-    return columns, rows
+    return [name for _, name in named], rows
+
+
+def _empty_sheet(there: Path) -> tuple[Any, Any]:
+    """Return a workbook and the sheet of it that is to be filled, beside those that are there."""
+    from openpyxl import Workbook, load_workbook
+
+    # What is no workbook is written over.
+    with suppress(ParameterError), reading(there, "workbook"), there.open("rb") as file:
+        check_inflation(there)
+        if len(load_workbook(file, read_only=True).sheetnames) > 1:
+            book = load_workbook(file)
+            old = book.worksheets[0]
+            book.remove(old)
+            return book, book.create_sheet(old.title, 0)
+    book = Workbook(write_only=True)
+    return book, book.create_sheet(_sheet_name(there.stem))
 
 
 def _lines(sheet: Any, size: int) -> list[tuple[object, ...]]:

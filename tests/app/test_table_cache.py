@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import datetime as dt
+
 import pytest
 
+from noise.app.labels.summary import plain
 from noise.app.labels.table_cache import TableCache
 from noise.base.tables import write_table
 from noise.labels.labelling import COLUMNS
@@ -38,6 +41,24 @@ def test_a_workbook_stays_a_workbook(tmp_path):
     head, _, row = openpyxl.load_workbook(path).active.iter_rows(values_only=True)
     assert dict(zip(head, row, strict=True))["level_dba"] == 61.5
     assert dict(zip(head, row, strict=True))["own"] == 1e-7
+
+
+def test_a_workbook_of_ones_own_keeps_its_dates_columns_and_other_sheets(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    day = dt.datetime(2026, 3, 1, 10, 5)
+    book = openpyxl.Workbook()
+    book.active.append(["file", None, "label", "driven"])
+    book.active.append(["a.wav", None, "creak", day])
+    book.create_sheet("notes").append(["left door", "=1+1"])
+    book.save(path := tmp_path / "labels.xlsx")
+    table = TableCache(path)
+    (row,) = table.read()
+    assert plain([row])[0]["driven"] == "2026-03-01 10:05:00"
+    table.write([row | {"label": "squeal"}])
+    (row,) = table.read()
+    assert (row["label"], row["driven"]) == ("squeal", day)
+    notes = openpyxl.load_workbook(path)["notes"]
+    assert [cell.value for cell in notes[1]] == ["left door", "=1+1"]
 
 
 def test_what_is_true_in_excel_is_true(tmp_path):

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from noise.app.labels.next_check import doubt
+from noise.base.tables import plain_cell
 from noise.labels.label_display import labels_in, naming_row
 from noise.labels.table import HUMAN
 
@@ -77,4 +78,4 @@ def plain(rows: Sequence[Row]) -> list[Row]:
 def _plain(name: str, value: object) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         return "fixed" if name.startswith(_SUPPORT) and value > 0.0 else None
-    return value
+    return plain_cell(value)  # a date of a column of one's own is text
