@@ -205,11 +205,13 @@ def _write(
     table: bool,
 ) -> tuple[Rows, list[Path]]:
     columns, out = work.columns, options.out
-    rows: Rows = _Rows(columns, outcomes)
+    made: Rows = _Rows(columns, outcomes)
     # Nobody may change the table between the look at what stays of it and the writing.
     with nullcontext() if out is None else locked(out):
-        rows = keep(out, rows)
+        rows = keep(out, made)
         if table:
+            kept = () if rows is made else (name for row in rows for name in row)
+            columns = tuple(dict.fromkeys((*columns, *kept)))
             write_table(out, columns, rows, options.excel)
     return rows, [*([] if out is None else [out]), *also(rows)]
 

@@ -104,9 +104,9 @@ def run(options: Namespace) -> int:
         export_paths(options.audacity, [job.name for job in jobs], (".txt",), "--audacity")
     if options.plot is not None:
         check_plots(options.plot, jobs)
+    from noise.labels.kept_corrections import with_corrections
     from noise.labels.label_display import result_lines
     from noise.labels.labelling import Labelling
-    from noise.labels.table import with_corrections
 
     with_corrections(options.out, [])  # or its corrections could not be kept after all the work
 
@@ -196,7 +196,7 @@ def _check_exports(options: Namespace) -> None:
 def _from_tables(options: Namespace) -> int:
     """Join label tables, and write what was asked for."""
     from noise.labels.labelling import COLUMNS
-    from noise.labels.table import read_label_table
+    from noise.labels.table import own_columns, read_label_table
 
     if options.out is None and options.map is None and options.audacity is None:
         raise ParameterError(
@@ -206,7 +206,7 @@ def _from_tables(options: Namespace) -> int:
         raise ParameterError("--plot draws recordings; name them in place of the table")
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
-        write_table(options.out, COLUMNS, rows, options.excel)
+        write_table(options.out, (*COLUMNS, *own_columns(rows)), rows, options.excel)
         print(options.out)
     for path in _export(options, rows):
         print(path)

@@ -10,8 +10,9 @@ from models.errors import ParameterError
 from noise.base.lock import locked
 from noise.base.tables import check_table_path
 from noise.batch import find_jobs, open_journal, perform_all
+from noise.labels.kept_corrections import with_corrections
 from noise.labels.labelling import Labelling
-from noise.labels.table import LabelTable, with_corrections
+from noise.labels.table import LabelTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -1,8 +1,7 @@
 """The label table: one row a segment, written, shown and read in any of its formats.
 
 A table of one's own making will do as well, as long as it has the columns ``file`` and ``label``;
-the others of the label table are empty where it has none. What somebody has corrected in a table
-stays in it when the recordings are labelled again.
+the others of the label table are empty where it has none. Columns of one's own stay in it.
 """
 
 from __future__ import annotations
@@ -12,11 +11,11 @@ import os
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from models.errors import ParameterError, RecordingError
+from models.errors import RecordingError
 from models.foreign_file import refusing
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
-from noise.base.tables import check_table_path, read_table, table_columns, write_table
+from noise.base.tables import check_table_path, read_table, write_table
 from noise.labels.labelling import COLUMNS
 
 if TYPE_CHECKING:
@@ -28,12 +27,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "HUMAN",
+    "NEEDED",
     "LabelTable",
     "cell_number",
     "check_name",
+    "own_columns",
     "read_label_table",
-    "with_corrected_rows",
-    "with_corrections",
 ]
 
 HUMAN = "human"
@@ -43,7 +42,9 @@ _TEXTS = {
     "file", "channel", "label", "material", "note", "error",
     *(column for column in COLUMNS if column.endswith("_source")),
 }  # fmt: skip
-_NEEDED = ("file", "label")
+NEEDED = ("file", "label")
+"""Columns without which a table is none of labels."""
+
 _LARGEST = 1e12  # number in a cell, of any unit
 _SUPPORT = "support_stiffness_Nm_rad"
 
@@ -82,7 +83,7 @@ class LabelTable(list[dict[str, object]]):
             No table can be written there.
         """
         check_table_path(path)
-        write_table(path, COLUMNS, self)
+        write_table(path, (*COLUMNS, *own_columns(self)), self)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the labels over time, one row a file.
@@ -140,6 +141,17 @@ class LabelTable(list[dict[str, object]]):
         return table_html(self)
 
 
+def own_columns(rows: Iterable[Mapping[str, object]]) -> tuple[str, ...]:
+    """Return the columns of rows that are not of a label table, such as a remark of one's own.
+
+    Examples
+    --------
+    >>> own_columns([{"file": "a.wav", "remark": "left door"}, {"file": "b.wav", "label": "none"}])
+    ('remark',)
+    """
+    return tuple(dict.fromkeys(name for row in rows for name in row if name not in COLUMNS))
+
+
 def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict[str, object]]:
     r"""Read a label table.
 
@@ -154,7 +166,8 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     Returns
     -------
     list of dict
-        By `noise.labels.labelling.COLUMNS`; the bolted clamp's support stiffness is ``inf``.
+        By `noise.labels.labelling.COLUMNS` and by the table's own columns, such as a remark; the
+        bolted clamp's support stiffness is ``inf``.
 
     Raises
     ------
@@ -175,7 +188,7 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     ('creak', 5.0, None)
     """
     columns, rows = read_table(path)
-    missing = [column for column in _NEEDED if column not in columns]
+    missing = [column for column in NEEDED if column not in columns]
     if missing and path.suffix.lower() == ".csv":
         raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
     checked = []
@@ -192,9 +205,10 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
 
 
 def _checked(row: object, where: str) -> dict[str, object]:
-    if not isinstance(row, dict) or any(column not in row for column in _NEEDED):
-        raise RecordingError(f"{where} lacks {' or '.join(_NEEDED)}, so this is no label table")
-    checked = {column: _value(row, column, where) for column in COLUMNS}
+    if not isinstance(row, dict) or any(column not in row for column in NEEDED):
+        raise RecordingError(f"{where} lacks {' or '.join(NEEDED)}, so this is no label table")
+    checked = {name: value for name, value in row.items() if name not in COLUMNS}
+    checked = {column: _value(row, column, where) for column in COLUMNS} | checked
     for column in ("file", "channel"):  # of which files are written, and lines in them
         check_name(checked[column], column, where)
     if checked["label"] not in (*LABELS, None):
@@ -207,93 +221,6 @@ def _checked(row: object, where: str) -> dict[str, object]:
         if checked[column] is None:
             checked[column] = math.inf  # which JSON cannot write
     return checked
-
-
-def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
-    """Return new rows of a table, with those recordings as they were that somebody has corrected.
-
-    Parameters
-    ----------
-    path : Path or None
-        The label table that the rows are for; there need be none yet.
-    rows : list of dict
-        By `COLUMNS`.
-
-    Returns
-    -------
-    list of dict
-        Where some row of a recording's track is by a human in the table that is there, all rows of
-        that track are those of that table: whoever moves a border changes both sides of it. Tracks
-        that the new rows do not have come last.
-
-    Raises
-    ------
-    ParameterError
-        What is there has the columns of a label table and cannot be read as one.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> row = {"file": "run07.wav", "channel": "all", "label": "squeal", "label_source": "human"}
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     LabelTable([row]).write(Path(folder) / "labels.csv")
-    ...     new = [row | {"label": "creak", "label_source": "classifier"}]
-    ...     with_corrections(Path(folder) / "labels.csv", new)[0]["label"]
-    'squeal'
-    """
-    if path is None or not path.exists():
-        return rows
-    try:
-        before = read_label_table(path, refusals=[])
-    except RecordingError as error:
-        if table_columns(path) >= set(_NEEDED):
-            raise ParameterError(
-                f"{error}; what was corrected in it would be lost: save it as UTF-8, move it away, "
-                "or name another table"
-            ) from None
-        return rows
-    return with_corrected_rows(before, rows)
-
-
-def with_corrected_rows(
-    before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
-) -> list[dict[str, object]]:
-    """Return new rows, with those tracks as they were `before` that somebody has corrected.
-
-    Parameters
-    ----------
-    before, rows : iterable of dict
-        By `COLUMNS`.
-
-    Returns
-    -------
-    list of dict
-        As `with_corrections` does.
-
-    Examples
-    --------
-    >>> row = {"file": "run07.wav", "channel": "all", "label": "squeal", "label_source": "human"}
-    >>> with_corrected_rows([row], [row | {"label": "creak"}])[0]["label"]
-    'squeal'
-    """
-    before = list(before)
-    corrected = {_track(row) for row in before if row["label_source"] == HUMAN}
-    kept: dict[tuple[object, object], list[dict[str, object]]] = {}
-    for row in before:
-        if _track(row) in corrected:
-            kept.setdefault(_track(row), []).append(row)
-    merged: list[dict[str, object]] = []
-    for row in rows:
-        if _track(row) in corrected:
-            merged += kept.pop(_track(row), [])
-        else:
-            merged.append(row)
-    return merged + [row for of_one in kept.values() for row in of_one]
-
-
-def _track(row: Mapping[str, object]) -> tuple[object, object]:
-    return row.get("file"), row.get("channel")
 
 
 def _value(row: Mapping[str, object], column: str, where: str) -> object:

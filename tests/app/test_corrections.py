@@ -20,9 +20,10 @@ from noise.batch import find_jobs, open_journal
 from noise.batch.identity import file_identity
 from noise.batch.work import Done
 from noise.labels.files import label
+from noise.labels.kept_corrections import with_corrections
 from noise.labels.label_display import ASSUMED
 from noise.labels.labelling import COLUMNS, Labelling
-from noise.labels.table import read_label_table, with_corrections
+from noise.labels.table import read_label_table
 from noise.recordings import write_recording
 from tests.helpers.labelled_folder import made_row as row, write_folder
 
@@ -192,6 +193,22 @@ def test_rows_and_columns_that_are_not_ours_stay(folder):
     assert found == [("a.wav", "creak", "left door"), ("gone.wav", "none", "sold")]
 
 
+def test_columns_of_ones_own_stay_beside_their_time_when_all_is_labelled_again(folder):
+    before = [row("a.wav", end=1.0, remark="left"), row("a.wav", start=1.0, remark="right")]
+    before += [row("b.wav", "creak", label_source="human", remark="sold")]
+    write_table(folder / "labels.csv", (*COLUMNS, "remark"), before)
+    new = [row("a.wav", start=0.8), row("a.wav", end=0.8), row("b.wav"), row("c.wav")]
+    found = with_corrections(folder / "labels.csv", new)
+    assert [r["remark"] for r in found] == ["right", "left", "sold", None]
+
+
+def test_a_row_that_cannot_be_used_is_told_before_corrections_are_lost_by_it(folder):
+    rows = [row("a.wav", "creak", label_source="human"), row("b.wav") | {"label": "Creak"}]
+    write_table(folder / "labels.csv", COLUMNS, rows)
+    with pytest.raises(ParameterError, match=r"row 2 has label 'Creak'.* would be lost"):
+        with_corrections(folder / "labels.csv", [])
+
+
 def test_a_table_that_is_none_is_left_as_it_is(folder):
     (folder / "labels.csv").write_text("x,y\n1,2\n")
     with pytest.raises(RecordingError, match="no label table"):
@@ -228,7 +245,7 @@ def test_a_table_that_cannot_be_written_leaves_all_as_it_was(tabled, monkeypatch
         next(calls)
         raise ParameterError("the disk is full")
 
-    monkeypatch.setattr("noise.app.labels.table_cache.write_table", fail)
+    monkeypatch.setattr("noise.labels.table.write_table", fail)
     with pytest.raises(ParameterError, match="full"):
         correct(labels, 0, [Correction(0.0, 2.0, "creak")])
     assert labels.rows(0)[0]["label"] == "none"

@@ -14,7 +14,8 @@ from noise.base.progress import note, say
 from noise.base.readable import readable
 from noise.base.tables import read_table, write_table
 from noise.cli import main
-from noise.labels.table import read_label_table, with_corrections
+from noise.labels.kept_corrections import with_corrections
+from noise.labels.table import read_label_table
 from noise.recordings import find_recordings, read_recording
 
 NO_UTF8 = os.fsdecode(b"caf\xe9.wav")

@@ -134,6 +134,16 @@ def test_a_recording_named_twice_is_a_row_once(runs, labelled):
     assert [row["file"] for row in read_table("t.csv")] == ["a.wav"]
 
 
+def test_a_remark_in_a_column_of_ones_own_stays_when_recordings_are_labelled_again(runs, labelled):
+    assert main(["label", "runs", "--out", "labels.csv"]) == 1
+    rows = read_label_table(Path("labels.csv"))
+    LabelTable(row | {"remark": f"of {row['file']}"} for row in rows).write("labels.csv")
+    assert main(["label", "runs", "--out", "labels.csv", "--fresh"]) == 1
+    assert [(r["file"], r["remark"]) for r in read_table("labels.csv")] == [
+        (row["file"], f"of {row['file']}") for row in rows
+    ]
+
+
 @pytest.mark.parametrize("ending", [".csv", ".xlsx", ".jsonl", ".parquet"])
 @pytest.mark.parametrize("again", [[], ["--fresh"]])
 def test_what_somebody_corrected_stays_when_recordings_are_labelled_again(

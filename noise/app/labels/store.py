@@ -18,8 +18,9 @@ from noise.app.labels.summary import summary
 from noise.app.labels.table_cache import TableCache
 from noise.base.lock import locked
 from noise.batch import JournalReader
+from noise.labels.kept_corrections import with_corrected_rows
 from noise.labels.labelling import COLUMNS, Labelling
-from noise.labels.table import HUMAN, with_corrected_rows
+from noise.labels.table import HUMAN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.base.tables import read_table, write_table
-from noise.labels.labelling import COLUMNS
-from noise.labels.table import read_label_table
+from noise.labels.table import LabelTable, read_label_table
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,7 +30,6 @@ class TableCache:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._seen: tuple[int, ...] | None = None
-        self._more: tuple[str, ...] = ()
 
     def changed(self) -> bool:
         """Whether it is another than was last read or written."""
@@ -49,15 +46,7 @@ class TableCache:
         self._seen = self._state()  # before: what is written meanwhile is read again
         if self._seen is None:
             return []
-        rows = read_label_table(self.path)
-        _, raw = read_table(self.path)
-        self._more = tuple(
-            dict.fromkeys(name for row in raw for name in row if name not in COLUMNS)
-        )
-        if self._more:
-            for row, full in zip(rows, raw, strict=True):
-                row |= {name: full.get(name) for name in self._more}
-        return rows
+        return read_label_table(self.path)
 
     def write(self, rows: list[Row]) -> None:
         """Write it, whole or not at all.
@@ -67,7 +56,7 @@ class TableCache:
         ParameterError
             It cannot be written.
         """
-        write_table(self.path, (*COLUMNS, *self._more), rows)
+        LabelTable(rows).write(self.path)
         self._seen = self._state()
 
     def _state(self) -> tuple[int, ...] | None:

@@ -1,0 +1,130 @@
+"""What somebody has written into a label table stays in it when recordings are labelled again.
+
+That is what was corrected, and what stands in columns of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from models.errors import ParameterError, RecordingError
+from noise.base.tables import table_columns
+from noise.labels.table import HUMAN, NEEDED, own_columns, read_label_table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+__all__ = ["with_corrected_rows", "with_corrections"]
+
+
+def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
+    """Return new rows of a table, with those recordings as they were that somebody has corrected.
+
+    Parameters
+    ----------
+    path : Path or None
+        The label table that the rows are for; there need be none yet.
+    rows : list of dict
+        By `COLUMNS`.
+
+    Returns
+    -------
+    list of dict
+        Where some row of a recording's track is by a human in the table that is there, all rows of
+        that track are those of that table: whoever moves a border changes both sides of it. Tracks
+        that the new rows do not have come last. What the table has in columns of its own stays with
+        the stretch of time that it is beside.
+
+    Raises
+    ------
+    ParameterError
+        What is there has the columns of a label table, and cannot be read as one or has a row that
+        cannot be used.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from noise.labels.table import LabelTable
+    >>> row = {"file": "run07.wav", "channel": "all", "label": "squeal", "label_source": "human"}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     LabelTable([row]).write(Path(folder) / "labels.csv")
+    ...     new = [row | {"label": "creak", "label_source": "classifier"}]
+    ...     with_corrections(Path(folder) / "labels.csv", new)[0]["label"]
+    'squeal'
+    """
+    if path is None or not path.exists():
+        return rows
+    try:
+        before = read_label_table(path)
+    except RecordingError as error:
+        if table_columns(path) >= set(NEEDED):
+            raise ParameterError(
+                f"{error}; what was corrected in it would be lost: mend it, move it away, or name "
+                "another table"
+            ) from None
+        return rows
+    return with_corrected_rows(before, rows)
+
+
+def with_corrected_rows(
+    before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
+) -> list[dict[str, object]]:
+    """Return new rows, with those tracks as they were `before` that somebody has corrected.
+
+    Parameters
+    ----------
+    before, rows : iterable of dict
+        By `COLUMNS`.
+
+    Returns
+    -------
+    list of dict
+        As `with_corrections` does.
+
+    Examples
+    --------
+    >>> row = {"file": "run07.wav", "channel": "all", "label": "squeal", "label_source": "human"}
+    >>> with_corrected_rows([row], [row | {"label": "creak"}])[0]["label"]
+    'squeal'
+    """
+    before = list(before)
+    own = own_columns(before)
+    corrected = {_track(row) for row in before if row["label_source"] == HUMAN}
+    beside: dict[tuple[object, object], list[dict[str, object]]] = {}
+    for row in before if own else ():
+        beside.setdefault(_track(row), []).append(row)
+    kept: dict[tuple[object, object], list[dict[str, object]]] = {}
+    for row in before:
+        if _track(row) in corrected:
+            kept.setdefault(_track(row), []).append(row)
+    merged: list[dict[str, object]] = []
+    for row in rows:
+        if _track(row) in corrected:
+            merged += kept.pop(_track(row), [])
+        else:
+            merged.append(row | _own(row, beside.get(_track(row), []), own))
+    return merged + [row for of_one in kept.values() for row in of_one]
+
+
+def _track(row: Mapping[str, object]) -> tuple[object, object]:
+    return row.get("file"), row.get("channel")
+
+
+def _own(
+    row: Mapping[str, object], before: list[dict[str, object]], own: tuple[str, ...]
+) -> dict[str, object]:
+    """Return the columns of its own that a table had for the time of a new row."""
+    nearest = max(before, key=lambda one: _common(one, row), default={})
+    return {name: nearest.get(name) for name in own}
+
+
+def _common(one: Mapping[str, object], other: Mapping[str, object]) -> float:
+    """Time that two rows have in common, less the farther apart; all of it without times [s]."""
+    start, end = (
+        [float(row[name]) for row in (one, other) if isinstance(row.get(name), float)]  # type: ignore[arg-type]
+        for name in ("start_s", "end_s")
+    )
+    return min(end, default=math.inf) - max(start, default=0.0)
