@@ -176,7 +176,7 @@ class RecordingList {
     this.pages = new Map(answers.map(([number, answer]) => [number, answer.rows]));
     const { total, counts, state, place, open } = answers[0][1];
     this.total = total;
-    await this.#stay(place);
+    await this.#stay(on, place);
     if (turn !== this.asked) return;
     if (open) this.onSeen(open);
     this.space.style.height = `${total * ROW}px`;
@@ -185,11 +185,12 @@ class RecordingList {
   }
 
   // The keyboard stays on its recording. Where a correction took that away or elsewhere, it is before the one after it.
-  async #stay(place) {
+  async #stay(on, place) {
+    if (on !== this.on) return; // it has been moved meanwhile
     if (place === this.at) this.gone = false;
-    else if (this.on !== null && !this.gone) {
-      const { on, next } = this, after = next === null ? null : await this.#placeOf(next);
-      if (on !== this.on) return; // it has been moved meanwhile
+    else if (on !== null && !this.gone) {
+      const { next } = this, after = next === null ? null : await this.#placeOf(next);
+      if (on !== this.on) return;
       if (place !== null && (after === null || after === place + 1)) this.at = place;
       else [this.at, this.gone] = [after ?? this.at, true];
     }
