@@ -145,3 +145,19 @@ def test_a_label_before_the_classifier_names_each_track_of_a_plain_file(browser,
         opened.close()
     found = [(row["channel"], row["label"], row["label_source"]) for row in rows]
     assert found == [("1", "creak", "human"), ("2", "creak", "human")]
+
+
+def test_the_browser_asks_before_it_leaves_what_is_not_in_the_table_yet(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    go_on = opened.holding("segments")
+    opened.press("1", "]", "2")
+    with opened.page.expect_event("dialog") as asked:
+        opened.page.evaluate("setTimeout(() => location.reload())")
+    assert asked.value.type == "beforeunload"
+    asked.value.dismiss()
+    opened.complaints.clear()  # of the question
+    go_on()
+    opened.page.locator(".strip .squawk").wait_for()
+    opened.saved()
+    assert [label for label, _ in said(folder)] == ["creak", "squawk", "none"]
+    opened.close()

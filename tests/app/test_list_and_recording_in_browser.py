@@ -67,3 +67,43 @@ def test_a_double_click_on_next_to_check_opens_one(browser, app):
     opened.page.get_by_role("heading", name=ODD).wait_for()
     assert sum("/next" in url for url in asked) == 1
     opened.close()
+
+
+def test_what_is_chosen_while_the_next_to_check_is_sought_stays_open(browser, app):
+    opened = OpenPage(browser, app).open(TONE)
+    go_on = opened.holding("next*")
+    opened.press("n")
+    opened.page.get_by_role("option").filter(has_text=HALF).first.click()
+    opened.page.get_by_role("heading", name=HALF).wait_for()
+    with opened.page.expect_response("**/next*"):
+        go_on()
+    opened.page.locator(".strip .squeal").wait_for()
+    assert HALF in opened.page.locator("[role=option][aria-selected=true]").inner_text()
+    assert opened.page.get_by_role("heading", name=HALF).is_visible()
+    opened.close()
+
+
+def test_the_next_is_not_split_where_the_pointer_was_on_the_one_before(browser, app):
+    opened = OpenPage(browser, app).open(TONE)
+    opened.page.mouse.move(*opened.at(1.2))
+    opened.press("n")
+    opened.page.get_by_role("heading", name=ODD).wait_for()
+    opened.page.locator(".strip .unknown").wait_for()
+    opened.press("s")
+    opened.page.locator("#status").filter(has_text="split inside it").wait_for()
+    assert len(opened.segments()) == 1
+    opened.close()
+
+
+def test_of_a_recording_that_cannot_be_read_the_reason_is_shown_and_nothing_of_another(
+    browser, folder
+):
+    (folder / "bad.wav").write_bytes(b"RIFF")
+    with opened_app(folder) as app:
+        opened = OpenPage(browser, app).open(TONE)
+        opened.page.get_by_role("option").filter(has_text="bad.wav").first.click()
+        opened.page.locator(".page > p").filter(has_text="bad.wav").wait_for()
+        assert not opened.page.locator(".recording").is_visible()
+        opened.open(TONE)
+        assert not opened.page.locator(".page > p").is_visible()
+        opened.page.close()

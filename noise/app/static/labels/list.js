@@ -27,7 +27,9 @@ export function openRecording(id) { list.open(id); }
 
 // Open the recording that is best checked next; where there is none, say so.
 export async function openNext(after) {
+  const { marked } = list;
   const { id, ...segment } = await api(`next${after === undefined || after === null ? "" : `?after=${after}`}`);
+  if (list.marked !== marked) return id; // another one was opened meanwhile
   if (id === null) told("Nothing is left to check.");
   else { list.open(id, segment); await list.reveal(id); }
   return id;

@@ -43,11 +43,11 @@ export class RecordingPage {
     this.#keys();
   }
 
-  // Of the segments the first is chosen, or one that is named.
+  // Of the segments the first is chosen, or one that is named. Why it cannot be shown is thrown.
   async open(id, segment = null) {
     const { parts } = this;
     this.id = id;
-    this.sound = null; // nothing is done to one that is not there
+    this.sound = this.pointed = null; // nothing is done to one that is not there, nor where the pointer was on another
     this.corrections.leave(id);
     clearTimeout(this.timer);
     for (const said of [parts.saved, parts.readout, parts.levelRead]) said.textContent = ""; // it was of another recording

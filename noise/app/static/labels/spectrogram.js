@@ -22,7 +22,7 @@ export class Spectrogram {
   async load(id, channel) {
     Object.assign(this, { id, channel, whole: null, fine: null, top: null, cursor: null });
     const turn = ++this.turn;
-    clearTimeout(this.timer);
+    for (const timer of [this.timer, this.rest]) clearTimeout(timer);
     const found = await this.#part(0, null);
     if (turn !== this.turn) return;
     this.whole = this.#picture(found);

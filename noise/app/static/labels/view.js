@@ -11,10 +11,17 @@ export function mount(panel) {
   const open = async (id, segment) => {
     page.hidden = false;
     empty.hidden = true;
-    recording.open(id, segment);
+    try { await recording.open(id, segment); } catch (error) {
+      if (id !== recording.id || recording.sound) throw error;
+      recording.player.stop();
+      page.hidden = true; // what it shows is of another one
+      empty.hidden = false;
+      empty.textContent = error.message;
+    }
   };
   const recording = new RecordingPage(page, openRecording);
   mountList(list, { onOpen: open, onSeen: (seen) => recording.corrections.seen(seen) });
+  addEventListener("beforeunload", (event) => { if (recording.corrections.working) event.preventDefault(); }); // it is not in the table yet
   document.addEventListener("view-shown", ({ detail }) => { if (detail !== "labels" && recording.player.playing) recording.player.stop(); });
   return { recording };
 }
