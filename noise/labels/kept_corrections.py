@@ -9,6 +9,7 @@ import math
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
+from noise.base.label_names import LABELS
 from noise.base.tables import table_columns
 from noise.labels.table import HUMAN, NEEDED, own_columns, read_label_table
 
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 __all__ = ["with_corrected_rows", "with_corrections"]
+
+_WHOLE = "all"
+"""What is said of it is said of each track."""
 
 
 def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
@@ -33,7 +37,8 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
     -------
     list of dict
         Where some row of a recording's track is by a human in the table that is there, all rows of
-        that track are those of that table: whoever moves a border changes both sides of it. Tracks
+        that track are those of that table: whoever moves a border changes both sides of it. So are
+        labels of a table of one's own, which says of none that a classifier gave it. Tracks
         that the new rows do not have come last. What the table has in columns of its own stays with
         the stretch of time that it is beside.
 
@@ -92,7 +97,7 @@ def with_corrected_rows(
     """
     before = list(before)
     own = own_columns(before)
-    corrected = {_track(row) for row in before if row["label_source"] == HUMAN}
+    corrected = {_track(row) for row in before if _is_by_a_person(row)}
     beside: dict[tuple[object, object], list[dict[str, object]]] = {}
     for row in before if own else ():
         beside.setdefault(_track(row), []).append(row)
@@ -102,15 +107,23 @@ def with_corrected_rows(
             kept.setdefault(_track(row), []).append(row)
     merged: list[dict[str, object]] = []
     for row in rows:
-        if _track(row) in corrected:
-            merged += kept.pop(_track(row), [])
+        track, whole = _track(row), (row.get("file"), _WHOLE)
+        if track in corrected or whole in corrected:
+            merged += kept.pop(track if track in corrected else whole, [])
         else:
-            merged.append(row | _own(row, beside.get(_track(row), []), own))
+            merged.append(row | _own(row, beside.get(track, []), own))
     return merged + [row for of_one in kept.values() for row in of_one]
 
 
 def _track(row: Mapping[str, object]) -> tuple[object, object]:
-    return row.get("file"), row.get("channel")
+    return row.get("file"), row.get("channel") or _WHOLE
+
+
+def _is_by_a_person(row: Mapping[str, object]) -> bool:
+    """Whether a person has named a row: it says so, or nothing of it is a classifier's."""
+    if row.get("label_source") is not None or row.get("label") is None:
+        return row.get("label_source") == HUMAN
+    return all(row.get(f"p_{label}") is None for label in LABELS)
 
 
 def _own(

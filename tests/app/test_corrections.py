@@ -202,6 +202,20 @@ def test_columns_of_ones_own_stay_beside_their_time_when_all_is_labelled_again(f
     assert [r["remark"] for r in found] == ["right", "left", "sold", None]
 
 
+def test_labels_of_a_table_made_by_hand_outlive_the_labelling(folder):
+    (folder / "labels.csv").write_text("file,label\na.wav,squeal\n")
+    new = [row("a.wav", "creak"), row("b.wav", "creak")]
+    found = with_corrections(folder / "labels.csv", new)
+    assert [(r["file"], r["label"]) for r in found] == [("a.wav", "squeal"), ("b.wav", "creak")]
+
+
+def test_what_a_person_has_said_of_all_of_a_file_stands_for_its_tracks(folder):
+    write_table(folder / "labels.csv", COLUMNS, [row("a.wav", "squeal", label_source="human")])
+    new = [row("a.wav", "creak", channel=track) for track in "12"]
+    found = with_corrections(folder / "labels.csv", new)
+    assert [(r["channel"], r["label"]) for r in found] == [("all", "squeal")]
+
+
 def test_a_row_that_cannot_be_used_is_told_before_corrections_are_lost_by_it(folder):
     rows = [row("a.wav", "creak", label_source="human"), row("b.wav") | {"label": "Creak"}]
     write_table(folder / "labels.csv", COLUMNS, rows)
