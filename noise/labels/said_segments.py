@@ -45,7 +45,7 @@ def said_rows(
     full_scale : float or tuple of float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     new : sequence of (str, float, float, str), optional
-        Those of the segments that are measured where the recording is longer than
+        As in `segments`: those that are measured where the recording is longer than
         `LONGEST_MEASURED`, the shortest of them up to that; by default all segments.
 
     Returns

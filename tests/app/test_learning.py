@@ -10,6 +10,7 @@ import pytest
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.app.labels.corrections import Correction
+from noise.app.labels.row_places import version
 from noise.app.labels.store import Labels
 from noise.app.labels.training_run import TrainingRun, own_classifier
 from noise.app.opened import open_paths
@@ -81,7 +82,8 @@ def test_what_a_person_has_said_is_learned_and_nothing_else(learning, folder, mo
         return replace(load_classifier(), card={"own": own_card(added, before, before)})
 
     monkeypatch.setattr("noise.training.classifier.fit.train", train)
-    labels.correct(1, [Correction(0.0, 0.75, "squeal"), Correction(0.75, 1.5, "none")])
+    said = [Correction(0.0, 0.75, "squeal"), Correction(0.75, 1.5, "none")]
+    labels.correct(1, said, version(labels.rows(1)))
     training.start()
     assert [sample.label for sample in learned] == ["squeal", "none"]
     assert {sample.name for sample in learned} == {str((folder / "b.wav").resolve())}
@@ -104,7 +106,7 @@ def test_a_training_that_fails_says_so_and_labels_nothing(learning, monkeypatch)
         raise ParameterError("50 training samples hold no creak; draw more of them")
 
     monkeypatch.setattr("noise.training.classifier.fit.train", train)
-    labels.correct(1, [Correction(0.0, 1.5, "squeal")])
+    labels.correct(1, [Correction(0.0, 1.5, "squeal")], version(labels.rows(1)))
     training.start()
     assert labelled.by == []
     assert training.state()["message"].startswith("Nothing was learned")

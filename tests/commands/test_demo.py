@@ -64,6 +64,7 @@ def test_sounds_never_clip_and_silence_stays_quiet(folder):
     assert peaks["none"].max() < 0.2 * scales["none"]
 
 
+@pytest.mark.slow
 def test_the_same_seed_makes_the_same_recordings(folder, tmp_path):
     run_demo(tmp_path, seed=0)
     for name in NAMES:

@@ -69,7 +69,10 @@ def test_a_label_table_that_cannot_be_read_is_not_written_over(folder, tmp_path,
     assert main(["label", run, "--out", str(table)]) == 0
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(one, marks=[pytest.mark.slow] * (one == "simulate")) for one in COMMANDS],
+)
 def test_no_number_of_a_table_is_infinite(command, folder, monkeypatch):
     monkeypatch.chdir(folder)
     call, table = COMMANDS[command]

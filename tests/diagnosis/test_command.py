@@ -111,6 +111,7 @@ def test_the_same_call_gives_the_same_answer(plain, tmp_path, capsys):
     assert one | {"seconds": 0} == other | {"seconds": 0}
 
 
+@pytest.mark.slow
 def test_the_order_of_files_does_not_count(plain, tmp_path, capsys):
     data, rig = write_case(tmp_path, plain)
     files = sorted(data.glob("*.wav"))
@@ -139,6 +140,7 @@ def test_fewer_signals_are_answered_to_the_end(tmp_path, capsys, kinds):
     assert told["next_measurement"].startswith("record ") or not told["verdict"]
 
 
+@pytest.mark.slow
 def test_one_recording_is_answered_to_the_end(tmp_path, capsys):
     ill = _recordings(
         ("velocity_weakening", {"share": 0.4, "speed": 5.0}), conditions=CONDITIONS[3:]

@@ -163,6 +163,7 @@ def test_a_weakening_is_fitted_in_some_form_and_closes_the_gap_held_out(weakenin
     assert after < _gap(weakening, start, [1])
 
 
+@pytest.mark.slow
 def test_an_effect_leaves_hardly_more_than_the_parameters_where_these_are_what_is_off():
     stiff = with_offsets(RIG, {"elastomer_stiffness": 1.15})
     comparison = _comparison(

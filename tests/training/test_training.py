@@ -49,6 +49,7 @@ def test_the_same_seed_gives_the_same_bytes_of_predictions(small, samples):
     assert small.card == again.card
 
 
+@pytest.mark.slow
 def test_a_sample_is_the_same_again_whoever_draws_it(samples):
     (seed,) = np.random.SeedSequence(6).spawn(1)
     again = draw_sample(seed)

@@ -70,7 +70,7 @@ def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
     Returns
     -------
     float or tuple of float or None
-        One for each track of several; None where their levels do not tell it.
+        One for each track of several [Pa]; None where their levels do not tell it.
 
     Examples
     --------

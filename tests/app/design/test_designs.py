@@ -21,6 +21,10 @@ from sim.friction import LAWS
 from sim.live import LiveRun
 
 MATERIALS = bases_of(open_paths([]))
+ONE_AND_ALL = [
+    pytest.param(name, marks=[pytest.mark.slow] * (name not in ("fluorocarbon", "PDMS")))
+    for name in MATERIALS
+]
 
 CHANGED = [
     {},
@@ -135,7 +139,7 @@ def others(control, value):
     return [near if control.least <= near <= control.most else value / factor]
 
 
-@pytest.mark.parametrize("base", MATERIALS)
+@pytest.mark.parametrize("base", ONE_AND_ALL)
 def test_each_control_acts_with_all_effects_on_and_what_is_saved_is_read_as_such(base, tmp_path):
     every = {f"effect.{name}": True for name in EFFECTS}
     for control in controls_of(MATERIALS[base].rig):
@@ -221,6 +225,6 @@ def test_the_condition_is_told_as_options_that_the_command_reads():
         assert (options.speed is None) == (motion == "swing")
 
 
-def test_every_base_is_heard():
-    for base in MATERIALS:
-        assert LiveRun(design({}, base).setting).block().pressure.shape == (960,)
+@pytest.mark.parametrize("base", ONE_AND_ALL)
+def test_every_base_is_heard(base):
+    assert LiveRun(design({}, base).setting).block().pressure.shape == (960,)
