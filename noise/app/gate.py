@@ -3,7 +3,8 @@
 Any page that a browser shows may send requests to the loopback address, and a name on the network
 may be made to point there (DNS rebinding). So a request needs the token that only the printed
 address has, or the cookie that this address sets; its Host is the loopback address itself; and what
-changes something comes from the app's own pages.
+changes something comes from the app's own pages. Each of these tells the token of its address: the
+cookie may be that of a program which came after it at the same port.
 """
 
 from __future__ import annotations
@@ -92,6 +93,7 @@ class Gate:
             return "wrong origin"
         # Of several, each has to be right: none is passed on to be read in another way.
         said = parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
+        said += headers.getlist("page-token")
         if not said:
             # Other programs on this machine set cookies here as well, of whatever form.
             pairs = (one.strip().partition("=") for one in headers.get("cookie", "").split(";"))

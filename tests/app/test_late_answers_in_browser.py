@@ -25,6 +25,18 @@ def app(browser, folder):
         yield running
 
 
+def is_read(request):
+    return request.method == "GET" and request.url.endswith("segments")
+
+
+def open_without_labels(page):
+    """Open the tone, until it is known that it has none: then they are asked for again."""
+    with page.expect_request_finished(is_read):
+        page.get_by_role("option").filter(has_text=TONE).first.click()
+    with page.expect_request(is_read):
+        pass
+
+
 def said(folder):
     """Label of each segment, and who gave it."""
     return [row[2:] for row in in_table(folder)]
@@ -95,12 +107,8 @@ def test_what_was_read_before_a_label_was_given_is_not_shown_after_it(browser, a
     rows = read_label_table(folder / "labels.csv")
     write_table(folder / "labels.csv", COLUMNS, [row for row in rows if row["file"] != TONE])
     opened = OpenPage(browser, app)
-    opened.page.get_by_role("option").filter(has_text=TONE).first.click()
-    opened.page.locator(".recording").get_by_text("No label yet").wait_for()
+    open_without_labels(opened.page)
     old = []
-
-    def is_read(request):
-        return request.method == "GET" and request.url.endswith("segments")
 
     def hold(route):
         if is_read(route.request) and not old:
@@ -137,8 +145,7 @@ def test_a_label_before_the_classifier_names_each_track_of_a_plain_file(browser,
     soundfile.write(tmp_path / TONE, np.stack([tone, tone], axis=1), 8000)
     with opened_app(tmp_path) as app:
         opened = OpenPage(browser, app)
-        opened.page.get_by_role("option").filter(has_text=TONE).first.click()
-        opened.page.locator(".recording").get_by_text("No label yet").wait_for()
+        open_without_labels(opened.page)
         opened.press("1")
         opened.saved()
         rows = read_label_table(tmp_path / "labels.csv")
@@ -161,3 +168,23 @@ def test_the_browser_asks_before_it_leaves_what_is_not_in_the_table_yet(browser,
     opened.saved()
     assert [label for label, _ in said(folder)] == ["creak", "squawk", "none"]
     opened.close()
+
+
+def test_a_page_of_a_program_that_has_ended_changes_nothing_in_the_next_at_its_port(
+    browser, app, folder
+):
+    opened = OpenPage(browser, app).open(TONE)
+    app.kill()
+    before = (folder / "labels.csv").read_bytes()
+    (folder / "a.wav").write_bytes((folder / TONE).read_bytes())  # which takes another's number
+    with opened_app(folder, "--port", app.base.rpartition(":")[2]) as anew:
+        with opened.page.expect_popup() as popup:  # which gets the cookie of both
+            opened.page.evaluate("(address) => { open(address); }", anew.address)
+        other = popup.value
+        other.get_by_role("option").filter(has_text=TONE).first.wait_for()
+        opened.press("1")
+        told = opened.page.locator(".saved").filter(has_text="not saved")
+        told.filter(has_text="open the address").wait_for()
+    assert (folder / "labels.csv").read_bytes() == before
+    assert opened.segments()[0] == "none, 0.00 to 0.50 s"
+    opened.page.close()

@@ -52,6 +52,7 @@ def listed(app, query):
         {"Origin": "null"},
         {"Sec-Fetch-Site": "cross-site"},
         {"Cookie": "bushing-noise=x", "token": ""},
+        {"Page-Token": "x"},
     ],
 )
 def test_what_does_not_come_from_the_printed_address_gets_nothing(app, path, said):

@@ -1,6 +1,9 @@
 // Requests to the server, and the line that tells what happened.
 
 export const GONE = "The program does not answer any more; start it again by `bushing-noise open`.";
+const ENDED = "The program that this page is of has ended; open the address that it prints now.";
+// The cookie is that of the page that was opened last, which may be of another folder at the same port.
+const TOKEN = new URLSearchParams(location.search).get("token");
 
 // GET without a body, POST of JSON with one; an error is thrown, and told unless the caller does that.
 export async function api(path, body, tell = told) {
@@ -14,7 +17,8 @@ export async function bytes(path, body) {
 }
 
 async function request(path, body, tell = told) {
-  const how = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  const headers = TOKEN === null ? {} : { "Page-Token": TOKEN };
+  const how = body === undefined ? { headers } : { method: "POST", headers: { ...headers, "Content-Type": "application/json" }, body: JSON.stringify(body) };
   let answer;
   try {
     answer = await fetch(`api/${path}`, how);
@@ -24,8 +28,8 @@ async function request(path, body, tell = told) {
   }
   if (!answer.ok) {
     const said = await answer.text();
-    let reason = said;
-    try { reason = JSON.parse(said).error; } catch { /* plain text */ }
+    let reason;
+    try { reason = JSON.parse(said).error; } catch { reason = answer.status === 403 ? ENDED : said; }
     tell(reason);
     throw new Error(reason);
   }
