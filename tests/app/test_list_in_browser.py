@@ -218,6 +218,7 @@ def test_of_a_long_path_the_file_is_seen_and_on_a_narrow_screen_nothing_lies_ove
     long = f"{'a-folder-with-a-long-name/' * 3}run07.wav"
     (tmp_path / long).parent.mkdir(parents=True)
     folder = write_folder(tmp_path, [long], many_rows([long], np.random.default_rng(0)))
+    write_recording(folder / long, Recording(np.zeros((1, 8000)), 8000.0, (Channel("pressure"),)))
     with opened_app(folder) as app:
         page = browser.new_page(viewport={"width": 390, "height": 844})
         page.goto(app.address)
