@@ -202,6 +202,25 @@ def test_columns_of_ones_own_stay_beside_their_time_when_all_is_labelled_again(f
     assert [r["remark"] for r in found] == ["right", "left", "sold", None]
 
 
+def test_times_with_more_decimals_than_are_told_apart_leave_a_segment_as_it_was(folder):
+    third, rest = (
+        row("a.wav", end=2 / 3, p_none=0.9),
+        row("a.wav", "creak", start=2 / 3, p_none=0.1),
+    )
+    write_table(folder / "labels.csv", COLUMNS, [third, rest])
+    said = read_corrections(
+        [
+            {"start_s": 0.0, "end_s": 2 / 3, "label": "none"},
+            {"start_s": 2 / 3, "end_s": 2.0, "label": "squeal"},
+        ]
+    )
+    found = correct(labels_of(folder), 0, said)
+    assert [(r["label_source"], r["p_none"]) for r in found] == [
+        ("classifier", 0.9),
+        ("human", None),
+    ]
+
+
 def test_labels_of_a_table_made_by_hand_outlive_the_labelling(folder):
     (folder / "labels.csv").write_text("file,label\na.wav,squeal\n")
     new = [row("a.wav", "creak"), row("b.wav", "creak")]

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 __all__ = ["place", "track", "version"]
 
+_DECIMALS = 6
+"""Of times that are told apart, as `label` writes them."""
+
 
 def track(row: Row) -> str:
     """Return the track that a row is of; ``all`` where the table does not say.
@@ -36,8 +39,8 @@ def place(row: Row) -> tuple[str, float, float]:
     start, end = row.get("start_s"), row.get("end_s")
     return (
         track(row),
-        start if isinstance(start, float) else 0.0,
-        end if isinstance(end, float) else math.inf,
+        round(start, _DECIMALS) if isinstance(start, float) else 0.0,
+        round(end, _DECIMALS) if isinstance(end, float) else math.inf,
     )
 
 
