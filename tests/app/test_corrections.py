@@ -221,6 +221,19 @@ def test_times_with_more_decimals_than_are_told_apart_leave_a_segment_as_it_was(
     ]
 
 
+def test_a_table_that_has_become_none_is_not_written_over_however_often_it_is_read(tabled):
+    labels = labels_of(tabled)
+    seen = version(labels.rows(0))
+    broken = (tabled / "labels.csv").read_bytes().replace(b"a.wav", b"t\xfcr.wav")
+    (tabled / "labels.csv").write_bytes(broken)
+    for _ in range(2):
+        with pytest.raises(RecordingError):
+            labels.rows(0)
+    with pytest.raises(RecordingError):
+        labels.correct(0, [Correction(0.0, 2.0, "creak")], seen)
+    assert (tabled / "labels.csv").read_bytes() == broken
+
+
 def test_labels_of_a_table_made_by_hand_outlive_the_labelling(folder):
     (folder / "labels.csv").write_text("file,label\na.wav,squeal\n")
     new = [row("a.wav", "creak"), row("b.wav", "creak")]

@@ -43,10 +43,10 @@ class TableCache:
         RecordingError
             It is no label table, or has a row that cannot be used.
         """
-        self._seen = self._state()  # before: what is written meanwhile is read again
-        if self._seen is None:
-            return []
-        return read_label_table(self.path)
+        state = self._state()  # before: what is written meanwhile is read again
+        rows = [] if state is None else read_label_table(self.path)
+        self._seen = state  # after: what could not be read is not taken for what was
+        return rows
 
     def write(self, rows: list[Row]) -> None:
         """Write it, whole or not at all.
