@@ -5,29 +5,19 @@ from __future__ import annotations
 import csv
 from itertools import count
 
-import numpy as np
 import pytest
-import soundfile
 
 from models.errors import ParameterError, RecordingError
-from models.recording import Channel, Recording
 from noise.app.labels.corrections import Correction, read_corrections
 from noise.app.labels.row_places import version
-from noise.app.labels.split_rows import NOT_MEASURED
-from noise.app.labels.store import Labels
 from noise.base.tables import write_table
 from noise.batch import find_jobs, open_journal
 from noise.batch.identity import file_identity
 from noise.batch.work import Done
-from noise.labels.files import label
 from noise.labels.kept_corrections import with_corrections
-from noise.labels.label_display import ASSUMED
 from noise.labels.labelling import COLUMNS, Labelling
-from noise.labels.table import read_label_table
-from noise.recordings import write_recording
+from tests.helpers.corrected_table import NAMES, correct, in_table, labels_of
 from tests.helpers.labelled_folder import made_row as row, write_folder
-
-NAMES = ("a.wav", "b.wav", "c.wav")
 
 
 @pytest.fixture
@@ -38,20 +28,6 @@ def folder(tmp_path):
 @pytest.fixture
 def tabled(folder):
     return write_folder(folder, NAMES, [row(name) for name in NAMES])
-
-
-def labels_of(folder):
-    return Labels(find_jobs([folder]), folder / "labels.csv", Labelling())
-
-
-def correct(labels, index, said):
-    """Say it of what is shown now."""
-    return labels.correct(index, said, version(labels.rows(index)))
-
-
-def in_table(folder):
-    rows = read_label_table(folder / "labels.csv")
-    return [(r["file"], r["start_s"], r["end_s"], r["label"], r["label_source"]) for r in rows]
 
 
 def test_a_correction_is_in_the_table_and_all_else_stays(tabled):
@@ -86,75 +62,6 @@ def test_a_track_without_times_stays_as_it_was_beside_one_that_is_corrected(fold
     said = [Correction(0.0, 2.0, "squeal", "1", confirmed=True), Correction(0.0, 2.0, "none", "2")]
     found = correct(labels_of(folder), 0, said)
     assert [(r["label"], r["label_source"]) for r in found] == [("squeal", "human"), ("none", None)]
-
-
-def test_undo_goes_back_one_correction_at_a_time(tabled):
-    before = in_table(tabled)
-    labels = labels_of(tabled)
-    correct(labels, 0, [Correction(0.0, 2.0, "creak")])
-    after_one = in_table(tabled)
-    correct(labels, 2, [Correction(0.0, 2.0, "squeal")])
-    labels.undo()
-    assert in_table(tabled) == after_one
-    labels.undo()
-    assert in_table(tabled) == before
-    with pytest.raises(ParameterError, match="no correction"):
-        labels.undo()
-
-
-def test_what_was_said_of_other_labels_than_those_of_the_table_is_refused(tabled):
-    labels = labels_of(tabled)
-    seen = version(labels.rows(0))
-    write_table(tabled / "labels.csv", COLUMNS, [row(name, "creak") for name in NAMES])
-    with pytest.raises(ParameterError, match=r"a\.wav: .*changed elsewhere"):
-        labels.correct(0, [Correction(0.0, 1.0, "none"), Correction(1.0, 2.0, "squeal")], seen)
-    assert in_table(tabled)[0] == ("a.wav", 0.0, 2.0, "creak", "classifier")
-    with pytest.raises(ParameterError, match="no correction"):
-        labels.undo()
-
-
-def test_the_same_labels_written_anew_are_those_that_were_seen(tabled):
-    labels = labels_of(tabled)
-    seen = version(labels.rows(0))
-    write_table(tabled / "labels.csv", COLUMNS, [row(n, p_none=0.5) for n in NAMES])
-    labels.correct(0, [Correction(0.0, 2.0, "squeal")], seen)
-    assert in_table(tabled)[0][3] == "squeal"
-
-
-def test_who_names_a_recording_before_the_classifier_has_is_heard_and_not_over_another(folder):
-    labels, other = labels_of(folder), labels_of(folder)
-    seen = version(labels.rows(0))
-    write_table(folder / "labels.csv", COLUMNS, [row("a.wav", "creak")])
-    labels.correct(0, [Correction(0.0, 2.0, "squeal")], seen)
-    with pytest.raises(ParameterError, match="changed elsewhere"):
-        other.correct(0, [Correction(0.0, 2.0, "squawk")], seen)
-    assert in_table(folder)[0][3:] == ("squeal", "human")
-
-
-def test_undo_leaves_what_somebody_has_changed_since(tabled):
-    labels = labels_of(tabled)
-    correct(labels, 0, [Correction(0.0, 2.0, "creak")])
-    correct(labels, 1, [Correction(0.0, 2.0, "creak")])
-    correct(labels_of(tabled), 1, [Correction(0.0, 2.0, "squeal")])
-    with pytest.raises(ParameterError, match=r"b\.wav: .*changed since"):
-        labels.undo()
-    assert in_table(tabled)[1][3:] == ("squeal", "human")
-    assert labels.undo()[0] == 0
-    assert [label for *_, label, _ in in_table(tabled)] == ["none", "squeal", "none"]
-
-
-def test_undo_of_one_track_leaves_the_other_as_the_classifier_has_named_it_since(folder):
-    def rows(second):
-        return [row("a.wav", channel="1"), row("a.wav", second, channel="2")]
-
-    write_table(folder / "labels.csv", COLUMNS, rows("none"))
-    labels = labels_of(folder)
-    said = [Correction(0.0, 2.0, "creak", "1"), Correction(0.0, 2.0, "none", "2")]
-    correct(labels, 0, said)
-    new = with_corrections(folder / "labels.csv", rows("squeal"))
-    write_table(folder / "labels.csv", COLUMNS, new)
-    labels.undo()
-    assert [label for *_, label, _ in in_table(folder)] == ["none", "squeal"]
 
 
 def test_a_correction_before_there_is_a_table_outlives_the_labelling(folder):
@@ -296,83 +203,3 @@ def test_a_table_that_cannot_be_written_leaves_all_as_it_was(tabled, monkeypatch
         correct(labels, 0, [Correction(0.0, 2.0, "creak")])
     assert labels.rows(0)[0]["label"] == "none"
     assert next(calls) == 1
-
-
-def test_a_segment_with_new_borders_has_the_numbers_that_label_would_give_it(tmp_path):
-    time = np.arange(48_000) / 16_000.0
-    tone = np.where(time < 1.5, 0.01, 1.0) * np.sin(2.0 * np.pi * 800.0 * time)
-    write_recording(tmp_path / "a.wav", Recording(tone[None], 16_000.0, (Channel("pressure"),)))
-    write_folder(tmp_path, (), [row("a.wav", end=3.0, level_db=88.0, frequency_hz=None)])
-    quiet, loud = correct(
-        labels_of(tmp_path), 0, [Correction(0.0, 1.5, "none"), Correction(1.5, 3.0, "squeal")]
-    )
-    assert loud["level_db"] - quiet["level_db"] == pytest.approx(40.0, abs=0.1)
-    assert loud["level_db"] == pytest.approx(90.97, abs=0.02)
-    assert loud["frequency_hz"] == pytest.approx(800.0, rel=0.01)
-
-
-def logged_run(path, seconds):
-    """A tone that grows twentyfold in its middle, and hiss beside it."""
-    time = np.arange(int(8000 * seconds)) / 8000.0
-    tone = np.where(time < 0.5 * seconds, 0.002, 0.04) * np.sin(2.0 * np.pi * 800.0 * time)
-    hiss = 1e-4 * np.random.default_rng(0).normal(size=time.size)
-    return write_recording(path, Recording((tone + hiss)[None], 8000.0, (Channel("pressure"),)))
-
-
-LOGGED = {
-    "speed_rad_s": 5.0, "speed_rad_s_source": "logged", "interference_mm": 0.2,
-    "interference_mm_source": "logged", "material": "EPDM", "material_source": "logged",
-    "note": "heard at the left rear", "calibrated": True,
-}  # fmt: skip
-
-
-def test_a_segment_that_is_split_keeps_what_was_logged_and_is_measured(tmp_path):
-    logged_run(tmp_path / "a.wav", 20.0)
-    write_table(tmp_path / "labels.csv", COLUMNS, [row("a.wav", end=20.0, level_db=50.0, **LOGGED)])
-    found = correct(
-        labels_of(tmp_path), 0, [Correction(0.0, 10.0, "none"), Correction(10.0, 20.0, "squeal")]
-    )
-    assert [{name: one[name] for name in LOGGED} for one in found] == [LOGGED] * 2
-    quiet, loud = found
-    assert loud["level_dba"] - quiet["level_dba"] == pytest.approx(26.0, abs=0.2)
-    assert loud["snr_dba"] == pytest.approx(26.0, abs=0.5)
-    assert loud["frequency_hz"] == pytest.approx(800.0, rel=0.01)
-
-
-def test_of_a_long_recording_what_is_new_is_measured_and_the_rest_says_that_it_is_not(tmp_path):
-    logged_run(tmp_path / "a.wav", 150.0)
-    numbers = {"level_db": 50.0, "level_dba": 50.0, "snr_dba": 3.0}
-    before = row("a.wav", end=150.0, **numbers, **LOGGED)
-    write_table(tmp_path / "labels.csv", COLUMNS, [before])
-    rest, piece = correct(
-        labels_of(tmp_path), 0, [Correction(0.0, 140.0, "none"), Correction(140.0, 150.0, "squeal")]
-    )
-    kept = LOGGED | {"note": f"{LOGGED['note']}; {NOT_MEASURED}"}
-    assert {name: rest[name] for name in LOGGED} == kept
-    assert rest["level_db"] is rest["snr_dba"] is None
-    assert {name: piece[name] for name in LOGGED} == LOGGED
-    assert piece["level_db"] == pytest.approx(20.0 * np.log10(0.04 / np.sqrt(2.0) / 2e-5), abs=0.1)
-    assert piece["snr_dba"] == pytest.approx(piece["level_dba"] - 47.0, abs=0.02)
-
-
-def test_a_split_segment_is_as_calibrated_as_its_table(tmp_path):
-    tone = 0.1 * np.sin(2.0 * np.pi * 800.0 * np.arange(32_000) / 16_000.0)
-    soundfile.write(tmp_path / "a.wav", tone, 16_000)
-    (before,) = label([tmp_path], out=tmp_path / "labels.csv", full_scale=2.0)
-    found = correct(
-        labels_of(tmp_path), 0, [Correction(0.0, 1.0, "squeal"), Correction(1.0, 2.0, "none")]
-    )
-    for one in found:
-        assert one["calibrated"] is True
-        for name in ("level_db", "level_dbfs", "level_dba"):
-            assert one[name] == pytest.approx(before[name], abs=0.05), name
-
-
-def test_another_label_ends_what_was_inferred_by_the_one_before(tabled):
-    inferred = {"speed_rad_s": 5.0, "speed_rad_s_low": 4.0, "speed_rad_s_high": 6.0}
-    inferred |= {"speed_rad_s_source": "inferred", "loudness_n5_sone": 7.5}
-    inferred["note"] = f"left door; conditions inferred {ASSUMED}"
-    write_table(tabled / "labels.csv", COLUMNS, [row("a.wav", "creak", **inferred)])
-    (found,) = correct(labels_of(tabled), 0, [Correction(0.0, 2.0, "none")])
-    assert (found["speed_rad_s"], found["speed_rad_s_source"]) == (None, "missing")
-    assert (found["note"], found["loudness_n5_sone"]) == ("left door", 7.5)

@@ -230,3 +230,18 @@ def test_a_save_says_of_which_recording_it_is_and_leaves_the_mark_on_the_open_on
     assert TONE in corrected.inner_text()
     assert HALF in opened.page.locator("[role=option][aria-selected=true]").inner_text()
     opened.close()
+
+
+def test_a_page_that_is_loaded_again_undoes_its_own_correction_and_no_others(browser, app, folder):
+    one, other = (OpenPage(browser, app).open(name) for name in (TONE, HALF))
+    one.press("1")
+    one.saved()
+    other.press("1")
+    other.saved()
+    one.page.reload()
+    one.open(TONE)
+    one.undo()
+    assert in_table(folder)[0][2:] == ("none", "classifier")
+    assert in_table(folder, HALF)[0][2:] == ("creak", "human")
+    for opened in (one, other):
+        opened.close()

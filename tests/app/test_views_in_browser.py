@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.helpers.browser import chromium, styled
+from tests.helpers.browser import styled
 from tests.helpers.jury_sounds import write_tones
 from tests.helpers.opened_app import opened_app
 
@@ -17,8 +17,8 @@ ROWS = {"design": ".design-view .row", "jury": ".jury .sounds li"}
 
 
 @pytest.mark.parametrize("view", ROWS)
-def test_a_view_looks_the_same_whichever_was_open_before(view, tmp_path):
-    with chromium() as browser, opened_app(write_tones(tmp_path)) as app:
+def test_a_view_looks_the_same_whichever_was_open_before(browser, view, tmp_path):
+    with opened_app(write_tones(tmp_path)) as app:
         page = browser.new_page()
         page.goto(f"{app.address}#{view}")
         page.locator(ROWS[view]).first.wait_for()

@@ -175,6 +175,7 @@ def test_an_effect_leaves_hardly_more_than_the_parameters_where_these_are_what_i
     assert after < alone + 0.5
 
 
+@pytest.mark.slow
 def test_a_pair_begun_with_one_of_it_keeps_that_one(weakening):
     known = LawSpec("velocity_weakening", WEAK)
     fitted = fit_effect(

@@ -74,6 +74,7 @@ def test_a_diagnosis_that_is_not_there_is_said_in_one_line(tmp_path):
         main(["score", str(tmp_path), "--sealed", "--baseline", "none", "--out", str(tmp_path)])
 
 
+@pytest.mark.slow
 def test_each_opening_of_the_sealed_set_is_logged_with_commit_and_figures(tmp_path):
     log = tmp_path / "log.jsonl"
     asked = Asked("", baseline="none")

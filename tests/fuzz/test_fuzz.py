@@ -14,7 +14,7 @@ from tests.fuzz.valid_files import write_valid_files
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="memory is counted as Linux does")
 
-SEED, N = 20, 2000
+SEED, N = 20, 1000
 
 
 def findings(inputs):

@@ -120,6 +120,7 @@ def identified(folder, tmp_path_factory):
     return noise.identify(folder, folder / "known.toml", numbers=table)
 
 
+@pytest.mark.slow
 def test_a_notebook_gets_the_same(identified):
     assert identified.law
     stiffness = identified.number("elastomer_stiffness")

@@ -46,22 +46,26 @@ def computed_rows():
 # The page
 
 
+@pytest.mark.slow
 def test_the_page_is_what_the_program_writes(computed_rows):
     assert PAGE.read_text(encoding="utf-8") == page.thesis_page(computed_rows), STALE
 
 
+@pytest.mark.slow
 def test_what_was_measured_and_missed_says_why_and_nothing_else_does(computed_rows):
     missed = {(r.item, r.condition) for r in computed_rows if r.misses}
     assert missed == {(r.item, r.condition) for r in computed_rows if r.why}
     assert missed == set(WHY)
 
 
+@pytest.mark.slow
 def test_what_a_verdict_says_to_fail_a_measurement_is_missed(computed_rows):
     for found in computed_rows:
         if found.measured and "fails" in found.verdict:
             assert found.misses
 
 
+@pytest.mark.slow
 def test_a_measured_fact_is_counted_by_what_ships(computed_rows):
     for found in computed_rows:
         if found.measured and found.counted and np.isnan(found.calibrated):

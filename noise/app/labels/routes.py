@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 __all__ = ["routes"]
 
+_LONGEST_NAME = 80
+"""Characters by which pages are told from each other."""
+
 
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
@@ -64,10 +67,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
         corrections = read_corrections(said.get("rows"))
         if not isinstance(of := said.get("version"), str):
             raise ParameterError("version: must be that of the segments which are corrected")
-        return JSONResponse(_segments(job.index, labels.correct(job.index, corrections, of)))
+        return JSONResponse(
+            _segments(job.index, labels.correct(job.index, corrections, of, _page(said)))
+        )
 
-    def undone(_: Request, __: object) -> Response:
-        index, rows = labels.undo()
+    def undone(_: Request, said: object) -> Response:
+        index, rows = labels.undo(_page(said))
         return JSONResponse(_segments(index, rows))
 
     def labelled(_: Request, __: object) -> Response:
@@ -109,6 +114,11 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route("/api/train", body(trained), methods=["POST"]),
         Route("/api/label", body(labelled), methods=["POST"]),
     ]
+
+
+def _page(said: object) -> str:
+    """Return the page that a request comes from, as it calls itself."""
+    return str(said.get("page", ""))[:_LONGEST_NAME] if isinstance(said, dict) else ""
 
 
 def _nothing(request: Request) -> Response:

@@ -34,13 +34,14 @@ if TYPE_CHECKING:
 __all__ = ["Labels"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Correction:
     """Rows of the tracks of a recording that a correction changed, before and after it."""
 
     index: int
     before: list[Row]
     after: list[Row]
+    by: str
 
 
 class Labels:
@@ -126,7 +127,7 @@ class Labels:
             self.refresh()
             return list(self._rows)
 
-    def correct(self, index: int, said: Sequence[Correction], of: str) -> list[Row]:
+    def correct(self, index: int, said: Sequence[Correction], of: str, by: str = "") -> list[Row]:
         """Put what a person says in place of a recording's segments, and write the table.
 
         Parameters
@@ -136,6 +137,8 @@ class Labels:
         said : sequence of Correction
         of : str
             `noise.app.labels.row_places.version` of the rows that the person saw.
+        by : str
+            The page that it was said on.
 
         Raises
         ------
@@ -155,12 +158,12 @@ class Labels:
             after = as_rows(said, job.name, before, measured)
             self._write(index, after)
             changed = _changed_tracks(before, after)
-            parts = ([row for row in rows if track(row) in changed] for rows in (before, after))
-            self._undo.append(_Correction(index, *parts))
+            was, now = ([row for row in rows if track(row) in changed] for rows in (before, after))
+            self._undo.append(_Correction(index, was, now, by))
             return after
 
-    def undo(self) -> tuple[int, list[Row]]:
-        """Put back what the last correction replaced, and write the table.
+    def undo(self, by: str = "") -> tuple[int, list[Row]]:
+        """Put back what the last correction of a page replaced, and write the table.
 
         Raises
         ------
@@ -168,14 +171,14 @@ class Labels:
             There is none, somebody has changed the same since, or the table cannot be written.
         """
         with self._lock, locked(self.path):
-            if not self._undo:
+            last = next((one for one in reversed(self._undo) if one.by == by), None)
+            if last is None:
                 raise ParameterError("there is no correction to undo")
             self.refresh()
-            last = self._undo[-1]
             rows = self._rows[last.index]
             tracks = {track(row) for row in (*last.before, *last.after)}
             if version([row for row in rows if track(row) in tracks]) != version(last.after):
-                self._undo.pop()
+                self._undo.remove(last)
                 name = self._jobs[last.index].name
                 raise ParameterError(f"{name}: what was corrected last has been changed since then")
             # What the classifier has found since then is better than nothing.
@@ -183,7 +186,7 @@ class Labels:
             back = last.before or [row for row in found if track(row) in tracks]
             rows = [*(row for row in rows if track(row) not in tracks), *back]
             self._write(last.index, sorted(rows, key=_order))
-            self._undo.pop()
+            self._undo.remove(last)
             return last.index, self._rows[last.index]
 
     def _check_seen(self, index: int, of: str, rows: Sequence[Row]) -> None:

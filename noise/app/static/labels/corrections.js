@@ -1,6 +1,9 @@
 // Segments of the recording that is open: each change is written at once, in the order of the keys, and goes back where it cannot be.
 import { api } from "../api.js";
 
+// Undo takes back what was said on this page, and on the same before it was loaded again.
+const PAGE = (sessionStorage.page ??= crypto.randomUUID());
+
 export class Corrections extends EventTarget {
   // `tell` says what has become of the last change.
   constructor(tell) {
@@ -125,7 +128,7 @@ export class Corrections extends EventTarget {
     this.#say(id, name, "saving ...");
     try {
       const said = rows.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
-      const answer = await api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id) });
+      const answer = await api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id), page: PAGE });
       this.#say(id, name, `saved ${clock()}`);
       this.#take(answer);
     } catch (error) {
@@ -146,7 +149,7 @@ export class Corrections extends EventTarget {
 
   async #undo({ undone }) {
     try {
-      const answer = await api("undo", {});
+      const answer = await api("undo", { page: PAGE });
       this.#say(answer.id, answer.name, `undone, saved ${clock()}`);
       this.#take(answer);
       undone(answer.id);
