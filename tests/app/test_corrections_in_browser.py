@@ -245,3 +245,17 @@ def test_a_page_that_is_loaded_again_undoes_its_own_correction_and_no_others(bro
     assert in_table(folder, HALF)[0][2:] == ("creak", "human")
     for opened in (one, other):
         opened.close()
+
+
+def test_the_program_is_not_stopped_while_a_correction_is_saved(browser, app, folder):
+    opened = OpenPage(browser, app).open(TONE)
+    go_on = opened.holding("segments")
+    opened.press("1")
+    opened.page.locator("#stop").click()
+    opened.page.locator("#status").filter(has_text="Not stopped").wait_for()
+    go_on()
+    opened.saved()
+    opened.page.locator("#stop").click()
+    opened.page.get_by_text("Stopped.").wait_for()
+    assert in_table(folder)[0][2:] == ("creak", "human")
+    opened.close()

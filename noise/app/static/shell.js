@@ -61,6 +61,7 @@ for (const [at, tab] of tabs.entries()) {
 }
 
 document.getElementById("stop").addEventListener("click", async () => {
+  if (!dispatchEvent(new Event("beforeunload", { cancelable: true }))) return told("Not stopped: a correction is still being saved.");
   await api("stop", {});
   document.body.replaceChildren(Object.assign(document.createElement("p"), { textContent: "Stopped. This window can be closed." }));
 });
