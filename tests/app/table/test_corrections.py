@@ -17,17 +17,7 @@ from noise.batch.work import Done
 from noise.labels.kept_corrections import with_corrections
 from noise.labels.labelling import COLUMNS, Labelling
 from tests.helpers.corrected_table import NAMES, correct, in_table, labels_of
-from tests.helpers.labelled_folder import made_row as row, write_folder
-
-
-@pytest.fixture
-def folder(tmp_path):
-    return write_folder(tmp_path, NAMES)
-
-
-@pytest.fixture
-def tabled(folder):
-    return write_folder(folder, NAMES, [row(name) for name in NAMES])
+from tests.helpers.labelled_folder import made_row as row
 
 
 def test_a_correction_is_in_the_table_and_all_else_stays(tabled):

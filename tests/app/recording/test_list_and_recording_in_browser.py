@@ -5,18 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.helpers.opened_app import opened_app
-from tests.helpers.recording_page import HALF, ODD, TONE, OpenPage, write_sounds
-
-
-@pytest.fixture
-def folder(tmp_path):
-    return write_sounds(tmp_path)
-
-
-@pytest.fixture
-def app(browser, folder):
-    with opened_app(folder) as running:
-        yield running
+from tests.helpers.recording_page import HALF, ODD, TONE, OpenPage
 
 
 def test_what_is_checked_next_is_opened_at_the_segment_in_doubt(browser, app):

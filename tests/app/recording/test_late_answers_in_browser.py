@@ -11,18 +11,7 @@ from noise.labels.labelling import COLUMNS
 from noise.labels.table import read_label_table
 from tests.helpers.browser import until
 from tests.helpers.opened_app import opened_app
-from tests.helpers.recording_page import TONE, OpenPage, in_table, write_sounds
-
-
-@pytest.fixture
-def folder(tmp_path):
-    return write_sounds(tmp_path)
-
-
-@pytest.fixture
-def app(browser, folder):
-    with opened_app(folder) as running:
-        yield running
+from tests.helpers.recording_page import TONE, OpenPage, in_table
 
 
 def is_read(request):

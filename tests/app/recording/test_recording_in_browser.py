@@ -25,11 +25,6 @@ def shown(browser, tmp_path_factory):
         yield app
 
 
-@pytest.fixture
-def folder(tmp_path):
-    return write_sounds(tmp_path)
-
-
 def test_the_cursor_reads_time_frequency_and_level_of_a_known_tone(browser, shown):
     opened = OpenPage(browser, shown).open(TONE)
     share = np.log(20e3 / 1010.0) / np.log(400.0)

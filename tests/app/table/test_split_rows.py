@@ -14,18 +14,8 @@ from noise.labels.files import label
 from noise.labels.label_display import ASSUMED
 from noise.labels.labelling import COLUMNS
 from noise.recordings import write_recording
-from tests.helpers.corrected_table import NAMES, correct, labels_of
+from tests.helpers.corrected_table import correct, labels_of
 from tests.helpers.labelled_folder import made_row as row, write_folder
-
-
-@pytest.fixture
-def folder(tmp_path):
-    return write_folder(tmp_path, NAMES)
-
-
-@pytest.fixture
-def tabled(folder):
-    return write_folder(folder, NAMES, [row(name) for name in NAMES])
 
 
 def test_a_segment_with_new_borders_has_the_numbers_that_label_would_give_it(tmp_path):
