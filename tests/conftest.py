@@ -1,6 +1,7 @@
 """Settings of the whole test run."""
 
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -12,10 +13,15 @@ settings.register_profile("desk", deadline=None)
 settings.load_profile("server" if os.environ.get("CI") else "desk")
 
 
+MAINTENANCE = [Path(__file__).parent / folder for folder in ("exam", "training")]
+
+
 @pytest.hookimpl(tryfirst=True)  # before those are left out that were not asked for
 def pytest_collection_modifyitems(items):
-    """Mark what drives a browser."""
+    """Mark what drives a browser, and what only maintainers run."""
     for item in items:
+        if any(item.path.is_relative_to(folder) for folder in MAINTENANCE):
+            item.add_marker(pytest.mark.maintenance)
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)
 
