@@ -5,12 +5,12 @@ That is what was corrected, and what stands in columns of its own.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
 from noise.base.label_names import LABELS
 from noise.base.tables import table_columns
+from noise.labels.row_places import WHOLE, common_time, place, track
 from noise.labels.table import HUMAN, NEEDED, own_columns, read_label_table
 
 if TYPE_CHECKING:
@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 __all__ = ["with_corrected_rows", "with_corrections"]
-
-_WHOLE = "all"
-"""What is said of it is said of each track."""
 
 
 def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
@@ -107,16 +104,17 @@ def with_corrected_rows(
             kept.setdefault(_track(row), []).append(row)
     merged: list[dict[str, object]] = []
     for row in rows:
-        track, whole = _track(row), (row.get("file"), _WHOLE)
-        if track in corrected or whole in corrected:
-            merged += kept.pop(track if track in corrected else whole, [])
+        # What is said of all of a file is said of each track.
+        at, whole = _track(row), (row.get("file"), WHOLE)
+        if at in corrected or whole in corrected:
+            merged += kept.pop(at if at in corrected else whole, [])
         else:
-            merged.append(row | _own(row, beside.get(track, []), own))
+            merged.append(row | _own(row, beside.get(at, []), own))
     return merged + [row for of_one in kept.values() for row in of_one]
 
 
 def _track(row: Mapping[str, object]) -> tuple[object, object]:
-    return row.get("file"), row.get("channel") or _WHOLE
+    return row.get("file"), track(row)
 
 
 def _is_by_a_person(row: Mapping[str, object]) -> bool:
@@ -130,14 +128,5 @@ def _own(
     row: Mapping[str, object], before: list[dict[str, object]], own: tuple[str, ...]
 ) -> dict[str, object]:
     """Return the columns of its own that a table had for the time of a new row."""
-    nearest = max(before, key=lambda one: _common(one, row), default={})
+    nearest = max(before, key=lambda one: common_time(place(one), place(row)), default={})
     return {name: nearest.get(name) for name in own}
-
-
-def _common(one: Mapping[str, object], other: Mapping[str, object]) -> float:
-    """Time that two rows have in common, less the farther apart; all of it without times [s]."""
-    start, end = (
-        [float(row[name]) for row in (one, other) if isinstance(row.get(name), float)]  # type: ignore[arg-type]
-        for name in ("start_s", "end_s")
-    )
-    return min(end, default=math.inf) - max(start, default=0.0)

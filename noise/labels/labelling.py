@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "COLUMNS",
+    "CONDITIONS",
     "SEGMENT_COLUMNS",
     "Labelling",
     "label_rows",
@@ -47,7 +48,7 @@ __all__ = [
 _DIGITS = 4
 """Of what is inferred, which is known to far fewer."""
 
-_CONDITIONS = {
+CONDITIONS = {
     "speed_rad_s": "speed",
     "interference_mm": "interference",
     "support_stiffness_Nm_rad": "support_stiffness",
@@ -64,7 +65,7 @@ SEGMENT_COLUMNS = (
 
 COLUMNS = (
     "file", *SEGMENT_COLUMNS, "calibrated",
-    *(f"{name}{part}" for name in _CONDITIONS for part in ("", "_low", "_high", "_source")),
+    *(f"{name}{part}" for name in CONDITIONS for part in ("", "_low", "_high", "_source")),
     "material", "material_source", "label_source", "note", "error",
 )  # fmt: skip
 """Columns of the table, all of them always there."""
@@ -270,7 +271,7 @@ def _row(
         "label_source": "classifier",
     }
     inferred = _inferred(blocks, segment, condition, inference)
-    for column, field in _CONDITIONS.items():
+    for column, field in CONDITIONS.items():
         value = _in_unit(column, getattr(condition, field))
         row[column] = value
         row[f"{column}_source"] = "missing" if value is None else "logged"
@@ -290,7 +291,7 @@ def _inferred(
     blocks: RecordingBlocks, segment: Segment, logged: Condition, inference: Inference | None
 ) -> dict[str, Interval]:
     """Infer what is not logged of a segment whose label tells of it."""
-    unknown = any(getattr(logged, field) is None for field in _CONDITIONS.values())
+    unknown = any(getattr(logged, field) is None for field in CONDITIONS.values())
     if not unknown or segment.label not in NAMED:
         return {}
     # Who names a model says by it which rig the recordings are of.

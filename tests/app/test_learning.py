@@ -10,7 +10,6 @@ import pytest
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.app.labels.corrections import Correction
-from noise.app.labels.row_places import version
 from noise.app.labels.store import Labels
 from noise.app.labels.training_run import TrainingRun, own_classifier
 from noise.app.opened import open_paths
@@ -18,6 +17,7 @@ from noise.base.label_names import LABELS
 from noise.classifier import load_classifier
 from noise.cli import main
 from noise.labels.labelling import Labelling
+from noise.labels.row_places import version
 from noise.recordings import write_recording
 from noise.training.classifier.own_samples import own_card
 from tests.helpers.labelled_folder import made_row, write_folder

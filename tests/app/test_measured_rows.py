@@ -7,11 +7,11 @@ import pytest
 import soundfile
 
 from noise.app.labels.corrections import Correction
-from noise.app.labels.row_places import version
 from noise.app.labels.store import Labels
 from noise.base.tables import write_table
 from noise.batch import find_jobs
 from noise.labels.labelling import COLUMNS, Labelling
+from noise.labels.row_places import version
 from tests.helpers.labelled_folder import made_row
 
 RATE = 8000

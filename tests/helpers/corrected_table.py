@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from noise.app.labels.row_places import version
 from noise.app.labels.store import Labels
 from noise.batch import find_jobs
 from noise.labels.labelling import Labelling
+from noise.labels.row_places import version
 from noise.labels.table import read_label_table
 
 NAMES = ("a.wav", "b.wav", "c.wav")

@@ -8,9 +8,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.app.labels.row_places import place
 from noise.app.labels.split_rows import row_of_piece, with_measured, without_opinion
 from noise.base.label_names import LABELS
+from noise.labels.row_places import place
 from noise.labels.table import HUMAN
 
 if TYPE_CHECKING:
@@ -141,9 +141,8 @@ def as_rows(
     for one in said:
         at = (one.channel, one.start, one.end)
         old = there.get(at)
-        if (
-            old is None and not one.confirmed
-        ):  # what no table gives an end to ends with the recording
+        # What no table gives an end to ends with the recording.
+        if old is None and not one.confirmed:
             old = there.get((one.channel, one.start, math.inf))
         if old is not None and old["label"] == one.label:
             rows.append(old | ({"label_source": HUMAN} if one.confirmed else {}))

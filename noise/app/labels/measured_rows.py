@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from models.errors import BushingNoiseError
 from models.recording import REFERENCE_PRESSURE
 from noise.app.labels.corrections import news
-from noise.app.labels.row_places import track
+from noise.labels.row_places import track
 from noise.labels.said_segments import said_rows
 
 if TYPE_CHECKING:

@@ -12,13 +12,13 @@ from noise.app.labels.corrections import read_corrections
 from noise.app.labels.labelling_run import LabellingRun
 from noise.app.labels.list_query import read_list_query, whole_number
 from noise.app.labels.next_check import NextCheck
-from noise.app.labels.row_places import version
 from noise.app.labels.segment_features import SegmentFeatures
 from noise.app.labels.store import Labels
 from noise.app.labels.summary import conditions, plain
 from noise.app.labels.training_run import TrainingRun, own_classifier
 from noise.app.requests import body
 from noise.labels.labelling import Labelling
+from noise.labels.row_places import version
 
 if TYPE_CHECKING:
     from starlette.requests import Request

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from noise.app.labels.row_places import place, track
 from noise.base.label_names import LABELS
 from noise.labels.label_display import ASSUMED
-from noise.labels.labelling import COLUMNS
+from noise.labels.labelling import COLUMNS, CONDITIONS
+from noise.labels.row_places import common_time, place, track
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 __all__ = ["NOT_MEASURED", "row_of_piece", "with_measured", "without_opinion"]
 
 _OF_LABEL = (*(f"p_{label}" for label in LABELS), "frequency_hz")
-
-_CONDITIONS = ("speed_rad_s", "interference_mm", "support_stiffness_Nm_rad")
 
 _PARTS = ("", "_low", "_high", "_source")
 
@@ -45,7 +43,7 @@ def without_opinion(row: Row) -> Row:
     (60.0, None, 'missing', None)
     """
     left = row | dict.fromkeys(_OF_LABEL)
-    for name in _CONDITIONS:
+    for name in CONDITIONS:
         if row.get(f"{name}_source") == "inferred":
             left |= dict.fromkeys(f"{name}{part}" for part in _PARTS)
             left[f"{name}_source"] = "missing"
@@ -79,18 +77,16 @@ def row_of_piece(at: tuple[str, float, float], before: Sequence[Row]) -> Row:
     """
     kin = [row for row in before if row["label"] is not None]
     if not kin:
-        sources = (*(f"{name}_source" for name in _CONDITIONS), "material_source")
+        sources = (*(f"{name}_source" for name in CONDITIONS), "material_source")
         return dict.fromkeys(COLUMNS) | dict.fromkeys(sources, "missing")
-    nearest = max(kin, key=lambda row: (track(row) == at[0], _common(place(row), at)))
+    nearest = max(kin, key=lambda row: (track(row) == at[0], common_time(place(row), at)))
     left = without_opinion(nearest)
-    kept = {*_OF_RECORDING, *(f"{name}{part}" for name in _CONDITIONS for part in _PARTS)}
+    kept = {*_OF_RECORDING, *(f"{name}{part}" for name in CONDITIONS for part in _PARTS)}
     piece = {name: None if name in COLUMNS and name not in kept else left[name] for name in left}
     note = _without(piece.get("note"), NOT_MEASURED)
-    levels = any(nearest.get(name) is not None for name in _LEVELS)
-    piece["note"] = (
-        f"{note}; {NOT_MEASURED}" if note and levels else NOT_MEASURED if levels else note
-    )
-    return piece
+    if any(nearest.get(name) is not None for name in _LEVELS):
+        note = "; ".join(filter(None, (note, NOT_MEASURED)))
+    return piece | {"note": note}
 
 
 def with_measured(row: Row, measured: Row) -> Row:
@@ -108,7 +104,7 @@ def with_measured(row: Row, measured: Row) -> Row:
         for name, value in measured.items()
         if value not in (None, "missing") or name in _MAY_END
     }
-    for name in _CONDITIONS:
+    for name in CONDITIONS:
         source = f"{name}_source"
         if row.get(source) == "logged" and new.get(source) != "logged":
             for part in _PARTS:
@@ -122,8 +118,3 @@ def _without(note: object, ending: str) -> str | None:
     """Return a note without the remarks that end so; None where nothing is left."""
     remarks = str(note or "").split("; ")
     return "; ".join(one for one in remarks if not one.endswith(ending)) or None
-
-
-def _common(one: tuple[str, float, float], other: tuple[str, float, float]) -> float:
-    """Time that two segments have in common; where they have none, less the farther apart [s]."""
-    return min(one[2], other[2]) - max(one[1], other[1])

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.app.labels.corrections import as_rows
 from noise.app.labels.measured_rows import measured_rows
-from noise.app.labels.row_places import track, version
 from noise.app.labels.summary import summary
 from noise.app.labels.table_cache import TableCache
 from noise.base.lock import locked
 from noise.batch import JournalReader
 from noise.labels.kept_corrections import with_corrected_rows
 from noise.labels.labelling import COLUMNS, Labelling
+from noise.labels.row_places import track, version
 from noise.labels.table import HUMAN
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ class Labels:
             Of the recording.
         said : sequence of Correction
         of : str
-            `noise.app.labels.row_places.version` of the rows that the person saw.
+            `noise.labels.row_places.version` of the rows that the person saw.
         by : str
             The page that it was said on.
 
@@ -149,8 +149,9 @@ class Labels:
             Somebody else has made something of the table that is none.
         """
         job = self._jobs[index]
-        self._check_seen(index, of, self.rows(index))
-        measured = measured_rows(job, said, self.rows(index))
+        before = self.rows(index)
+        self._check_seen(index, of, before)
+        measured = measured_rows(job, said, before)
         with self._lock, locked(self.path):
             self.refresh()
             before = self._rows[index]

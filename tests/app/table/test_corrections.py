@@ -9,13 +9,13 @@ import pytest
 
 from models.errors import ParameterError, RecordingError
 from noise.app.labels.corrections import Correction, read_corrections
-from noise.app.labels.row_places import version
 from noise.base.tables import write_table
 from noise.batch import find_jobs, open_journal
 from noise.batch.identity import file_identity
 from noise.batch.work import Done
 from noise.labels.kept_corrections import with_corrections
 from noise.labels.labelling import COLUMNS, Labelling
+from noise.labels.row_places import version
 from tests.helpers.corrected_table import NAMES, correct, in_table, labels_of
 from tests.helpers.labelled_folder import made_row as row
 

@@ -7,11 +7,15 @@ from hashlib import blake2b
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    Row = dict[str, object]
+    Row = Mapping[str, object]
+    Place = tuple[str, float, float]
 
-__all__ = ["place", "track", "version"]
+__all__ = ["WHOLE", "common_time", "place", "track", "version"]
+
+WHOLE = "all"
+"""The track of what holds for all channels."""
 
 _DECIMALS = 6
 """Of times that are told apart, as `label` writes them."""
@@ -25,10 +29,10 @@ def track(row: Row) -> str:
     >>> track({"channel": None}), track({"channel": "2"})
     ('all', '2')
     """
-    return str(row.get("channel") or "all")
+    return str(row.get("channel") or WHOLE)
 
 
-def place(row: Row) -> tuple[str, float, float]:
+def place(row: Row) -> Place:
     """Return track, start and end [s] of a row; all of the recording where the table has no times.
 
     Examples
@@ -42,6 +46,17 @@ def place(row: Row) -> tuple[str, float, float]:
         round(start, _DECIMALS) if isinstance(start, float) else 0.0,
         round(end, _DECIMALS) if isinstance(end, float) else math.inf,
     )
+
+
+def common_time(one: Place, other: Place) -> float:
+    """Return the time that two places have in common; below zero how far they are apart [s].
+
+    Examples
+    --------
+    >>> common_time(("all", 0.0, 2.0), ("all", 1.5, 4.0)), common_time(place({}), ("all", 1.5, 4.0))
+    (0.5, 2.5)
+    """
+    return min(one[2], other[2]) - max(one[1], other[1])
 
 
 def version(rows: Sequence[Row]) -> str:
