@@ -26,6 +26,15 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.browser)
 
 
+@pytest.fixture(scope="module")
+def browser():
+    """Start a browser for the tests of a file; they skip where there is none."""
+    from tests.helpers.browser import chromium
+
+    with chromium() as started:
+        yield started
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _cache_of_its_own(tmp_path_factory):
     """Neither use what the user's diagnoses have kept, nor leave anything there."""

@@ -11,7 +11,6 @@ import pytest
 
 from noise.base.label_names import LABELS
 from noise.cli import main
-from tests.helpers.browser import chromium
 from tests.helpers.labelled_folder import made_row, write_folder
 from tests.helpers.opened_app import opened_app
 
@@ -35,12 +34,6 @@ def title(name):
     by_length = sorted(ROWS[name], key=lambda row: row["start_s"] - row["end_s"])
     ordered = list(dict.fromkeys(row["label"] for row in by_length))
     return [label for label in ordered if label != "none"] + ["none"] * ("none" in ordered)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 @pytest.fixture(scope="module")

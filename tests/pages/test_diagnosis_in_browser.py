@@ -6,19 +6,13 @@ import pytest
 
 from noise.diagnosis.text.verdict_sentences import headline, verdict_sentence
 from noise.pages.diagnosis.page import write_diagnosis
-from tests.helpers.browser import chromium, refuses_other_sources
+from tests.helpers.browser import refuses_other_sources
 from tests.helpers.made_diagnoses import KINDS
 
 SHOWN = ("none", "one effect", "pair", "triple", "pressure alone")
 """Kinds that are laid out differently."""
 
 WIDTHS = (320, 390, 720, 960, 961, 1280, 1920)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 class Opened:

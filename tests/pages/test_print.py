@@ -13,7 +13,6 @@ from noise.identification.law_candidates import CANDIDATES
 from noise.pages.diagnosis.page import write_diagnosis
 from noise.recordings import write_recording
 from tests.blind.identify.rigs import make_rig, write_rig
-from tests.helpers.browser import chromium
 from tests.helpers.made_diagnoses import KINDS
 from tests.helpers.made_reviews import recording, screen_rows, write_campaign, write_screen
 
@@ -81,12 +80,6 @@ KINDS_OF_PAGE = (
     review, diagnosis,
     *(pytest.param(made, marks=pytest.mark.slow) for made in (demo, screen, identification)),
 )  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 @pytest.fixture(scope="module", params=KINDS_OF_PAGE)

@@ -10,7 +10,7 @@ from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.labels.segments import Segment
 from noise.pages.report import ReportEntry, write_report
-from tests.helpers.browser import chromium, refuses_other_sources
+from tests.helpers.browser import refuses_other_sources
 
 RATE = 30_000
 TIME = np.arange(RATE) / RATE
@@ -44,12 +44,6 @@ def page_file(tmp_path_factory):
     ]
     write_report(path, entries, title="Review of three recordings")
     return path
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 class Opened:

@@ -7,7 +7,7 @@ import pytest
 
 from noise.pages.diagnosis.page import write_diagnosis
 from noise.pages.review.build import review
-from tests.helpers.browser import OpenedPage, chromium, refuses_other_sources
+from tests.helpers.browser import OpenedPage, refuses_other_sources
 from tests.helpers.made_diagnoses import one_effect
 from tests.helpers.made_reviews import screen_rows, write_campaign, write_screen
 
@@ -24,12 +24,6 @@ def page_file(tmp_path_factory):
     (folder / "day1" / "recordings" / "broken.wav").write_bytes(b"RIFF no more")
     review(folder, folder / "out" / "review.html", title="A review & more", simulated=4)
     return folder / "out" / "review.html"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 class Opened(OpenedPage):

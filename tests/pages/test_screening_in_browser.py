@@ -11,7 +11,7 @@ from models.rig_files.rig_file import load_material_rig
 from noise.pages.screening.page import write_screening
 from noise.screening.design.design import Design, Use
 from noise.screening.screen import screen
-from tests.helpers.browser import OpenedPage, chromium
+from tests.helpers.browser import OpenedPage
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 OLD, NEW, QUIET = "old <b>", "new & damped", "PDMS"
@@ -38,12 +38,6 @@ def page_file(found, tmp_path_factory):
     path = tmp_path_factory.mktemp("screen") / "report.html"
     write_screening(path, found, sounds=9, workers=2)
     return path
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 @pytest.fixture

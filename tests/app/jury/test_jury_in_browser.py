@@ -6,18 +6,12 @@ import numpy as np
 import pytest
 
 from noise.base.tables import read_table
-from tests.helpers.browser import chromium, until
+from tests.helpers.browser import until
 from tests.helpers.jury_page import JuryPage, pairs, votes
 from tests.helpers.jury_sounds import NAMES, write_tones
 from tests.helpers.opened_app import opened_app
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 @pytest.fixture

@@ -4,16 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.helpers.browser import chromium, until
+from tests.helpers.browser import until
 from tests.helpers.jury_page import JuryPage, rows, votes
 from tests.helpers.jury_sounds import NAMES, write_tones
 from tests.helpers.opened_app import opened_app
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
 
 
 @pytest.fixture
