@@ -27,7 +27,8 @@ from models.transfer_functions.uff import (
     read_uff_functions,
     write_uff_functions,
 )
-from models.transfer_functions.validation import check_transfer_function, same_unit
+from models.transfer_functions.validation import check_transfer_function
+from models.units import same_unit
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,7 +21,7 @@ from models.rig_files.rig_plate import HIGHEST_PLATE_FREQUENCY
 from models.short_repr import short_repr
 from models.transfer_functions.causal import causal_impulse_response
 from models.transfer_functions.coherence import trusted_band
-from models.transfer_functions.validation import same_unit
+from models.units import same_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
+from models.units import same_unit
 
 if TYPE_CHECKING:
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["check_transfer_function", "check_units", "same_unit"]
+__all__ = ["check_transfer_function", "check_units"]
 
 FEWEST_LINES = 8
 """Fewer lines describe no resonance."""
@@ -111,19 +112,3 @@ def check_units(transfer: TransferFunction, input_unit: str, output_unit: str) -
     ):
         if not same_unit(found, wanted):
             raise ParameterError(f"{transfer.name}: {key} is {found!r}; it must be {wanted!r}")
-
-
-def same_unit(one: str, other: str) -> bool:
-    """Whether two texts spell the same unit.
-
-    Examples
-    --------
-    >>> same_unit("N·m", "N m"), same_unit("m/s**2", "m/s²"), same_unit("mN", "N m")
-    (True, True, False)
-    """
-    return _spelling(one) == _spelling(other)
-
-
-def _spelling(unit: str) -> str:
-    plain = unit.replace("²", "2").replace("**", "")
-    return plain.translate({ord(sign): None for sign in " ^·⋅*.()"})

@@ -20,10 +20,10 @@ import numpy as np
 
 from models.errors import RecordingError
 from models.recording import CHANNEL_UNITS, Channel
+from models.units import kind_of_unit, known_units
 from noise.recordings.files import RawSamples
 from noise.recordings.formats.sampling import SAME_RATE
 from noise.recordings.formats.stated_condition import stated_condition
-from noise.recordings.formats.units import kind_of_unit, known_units
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -15,8 +15,8 @@ import numpy as np
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel
 from models.transfer_functions.uff import TIME_RESPONSE, UffFunction, read_uff_functions
+from models.units import kind_of_unit, known_units
 from noise.recordings.files import RawSamples
-from noise.recordings.formats.units import kind_of_unit, known_units
 
 if TYPE_CHECKING:
     from pathlib import Path
