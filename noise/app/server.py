@@ -63,7 +63,7 @@ def create_app(
     stop : callable
         Called when somebody asks it to stop.
     """
-    environment = Environment(loader=PackageLoader("noise.app", "static"), autoescape=True)
+    environment = Environment(loader=PackageLoader("noise.app"), autoescape=True)
     first = "design" if opened.rigs and not opened.jobs else "labels"
     page = environment.get_template("page.html.j2").render(
         views=VIEWS, looks=LABEL_LOOKS, first=first
@@ -133,11 +133,14 @@ def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
         server = uvicorn.Server(
             uvicorn.Config(app, log_level="critical", ws="none", timeout_graceful_shutdown=2)
         )
-        # Its own handlers would end the process before what runs beside it is told to end.
-        server.capture_signals = contextlib.nullcontext  # type: ignore[method-assign, assignment]
+        # In a thread of its own it leaves signals alone; its handlers would end the process before
+        # what runs beside it is told to end.
+        serving = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
         with _ended_by_signals(stop):
             ready(f"http://127.0.0.1:{port}/?token={token}")
-            server.run(sockets=[listening])
+            serving.start()
+            while serving.is_alive():
+                serving.join(0.2)  # without a limit Windows hears no Ctrl-C
 
 
 @contextlib.contextmanager

@@ -42,7 +42,7 @@ def configure(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--port",
-        type=int,
+        type=opt.whole_number(0, most=65535),
         default=0,
         help="to listen on (default: one that is free)",
     )
@@ -61,17 +61,9 @@ def configure(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Serve until somebody asks it to stop."""
-    try:
-        from noise.app.opened import open_paths
-        from noise.app.server import serve
-    except ImportError as error:
-        if error.name not in {"starlette", "uvicorn", "anyio"}:
-            raise
-        raise ParameterError(
-            f'open needs {error.name}; run: pip install "bushing-noise[app]"'
-        ) from None
-    if not 0 <= options.port <= 65535:  # what a port can be
-        raise ParameterError(f"--port {options.port}: must be from 0 to 65535")
+    from noise.app.opened import open_paths
+    from noise.app.server import serve
+
     opened = open_paths(options.paths, options.out, options.samples, options.seed)
 
     def ready(address: str) -> None:

@@ -71,7 +71,7 @@ def configure(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--simulated",
-        type=opt.number(least=0.0, most=1000.0),
+        type=opt.whole_number(0, most=1000),
         default=48,
         metavar="N",
         help="sounds simulated for the maps of screens, of all maps together (default: 48)",
@@ -99,7 +99,7 @@ def run(options: Namespace) -> int:
         pascal_per_full_scale=options.pascal_per_full_scale,
         seconds=options.seconds,
         megabytes=options.megabytes,
-        simulated=round(options.simulated),
+        simulated=options.simulated,
         classify=not options.no_labelling,
         seed=options.seed,
     )

@@ -52,7 +52,6 @@ def test_nothing_may_be_opened_for_a_design_alone():
         (["runs/labels.csv", "--out", "other.csv"], "corrections go into the label table"),
         (["runs", "--out", "labels.xls"], "tables end in"),
         (["runs", "--out", "runs/a.wav/labels.csv"], "is a file, not a folder"),
-        (["runs", "--port", "70000"], "must be from 0 to 65535"),
         (["empty"], "there are no recordings in it"),
         (["bad"], "is no label table"),
     ],
@@ -69,6 +68,14 @@ def test_what_cannot_be_opened_is_said_in_one_line(
     said = capsys.readouterr().err.strip().splitlines()
     assert len(said) == 1
     assert reason in said[0]
+
+
+@pytest.mark.parametrize("port", ["99999", "-1", "80.5", "http"])
+def test_a_port_that_is_none_is_refused_at_once(capsys, port):
+    assert main(["open", "gone", f"--port={port}"]) == 2
+    said = capsys.readouterr().err
+    assert "--port" in said
+    assert "from 0 to 65535" in said
 
 
 def test_a_port_that_is_taken_is_said(folder, capsys):

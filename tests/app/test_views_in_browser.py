@@ -31,3 +31,15 @@ def test_a_view_looks_the_same_whichever_was_open_before(browser, view, tmp_path
         page.locator(ROWS[view]).first.wait_for()
         styled(page)
         assert page.evaluate(STYLES, ROWS[view]) == alone
+
+
+def test_the_token_stays_in_the_tab_and_not_in_its_address(browser, tmp_path):
+    with opened_app(write_tones(tmp_path)) as app:
+        page = browser.new_page()
+        page.goto(app.address)
+        page.locator(".recording-list .row").first.wait_for()
+        assert page.url == f"{app.base}/#labels"
+        page.reload()
+        page.locator(".recording-list .row").first.wait_for()
+        page.go_back()
+        assert "token" not in page.url

@@ -17,6 +17,7 @@ from noise.audio.gain import loudness
 from noise.base.label_looks import LABEL_LOOKS
 from noise.cli import main
 from noise.pages.diagnosis.page import write_diagnosis
+from noise.pages.engine.clips import Gain, common_gain, make_clips
 from noise.pages.engine.entry import Entry
 from noise.pages.engine.entry_display import facts_of
 from noise.pages.engine.equal_loudness import equal_factors
@@ -34,6 +35,8 @@ from tests.helpers.made_reviews import (
     write_campaign,
     write_screen,
 )
+
+TONE_48 = np.sin(2.0 * np.pi * TONE * np.arange(RATE) / RATE).astype(np.float32)
 
 
 class Page:
@@ -336,3 +339,40 @@ def test_inferred_bounds_stand_in_plain_digits_and_say_what_is_assumed():
     facts = facts_of(Entry("run.wav", (told,)))
     assert facts["stiffness"].words == "2700 to 12000 Nm/rad (inferred)"
     assert facts["material"].words == "assuming a fluorocarbon bushing like the shipped one"
+
+
+def test_two_sounds_of_one_title_neither_clip_nor_wrap_whichever_is_louder():
+    quiet, loud = (Entry("run", duration=1.0, sound=np.float32(a) * TONE_48) for a in (0.01, 3.0))
+    for entries in ({"s1": loud, "s2": quiet}, {"s1": quiet, "s2": loud}):
+        gain = common_gain(entries.values())
+        clips, _ = make_clips(entries, gain)
+        for key, entry in entries.items():
+            heard, _ = soundfile.read(io.BytesIO(clips[key].flac))
+            assert gain.calibrated * heard == pytest.approx(
+                entry.sound, abs=gain.calibrated / 2**15
+            )
+        with pytest.raises(ParameterError, match="run: would clip at 1 Pa"):
+            common_gain(entries.values(), 1.0)
+
+
+def test_a_sound_beyond_full_scale_is_clipped_and_does_not_wrap():
+    clips, _ = make_clips({"s1": Entry("run", duration=1.0, sound=2.0 * TONE_48)}, Gain(1.0, None))
+    heard, _ = soundfile.read(io.BytesIO(clips["s1"].flac))
+    assert np.abs(heard - np.clip(2.0 * TONE_48, -1.0, 1.0)).max() < 2.0**-14
+
+
+def test_recordings_of_two_tables_are_told_apart_by_their_folders(tmp_path):
+    for day in ("monday", "tuesday"):
+        write_recording(tmp_path / day / "run01", recording("squeal"))
+        (tmp_path / day / "labels.csv").write_text("file,label\nrun01.wav,creak\n")
+    tables = [tmp_path / day / "labels.csv" for day in ("monday", "tuesday")]
+    page = Page(review(tables, tmp_path / "page.html").path)
+    assert {one["title"] for one in page.about.values()} == {
+        "monday/run01.wav", "tuesday/run01.wav"
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("number", ["2.5", "-1", "1001", "many"])
+def test_a_number_of_sounds_that_is_none_is_refused(tmp_path, capsys, number):
+    assert main(["review", str(tmp_path), "--out", "page", f"--simulated={number}"]) == 2
+    assert "--simulated" in capsys.readouterr().err

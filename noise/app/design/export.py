@@ -60,7 +60,8 @@ class DesignExport:
             Something of it cannot be, or a set is being kept.
         """
         name = name_of(said)
-        assert isinstance(said, dict)
+        if not isinstance(said, dict):
+            raise ParameterError("set: must be an object with name and designs")
         stated, seconds = said.get("designs"), said.get("seconds", 4.0)
         if not isinstance(stated, dict) or not stated or not set(stated) <= set(_SLOTS):
             raise ParameterError("set: designs must be A, B or both")

@@ -113,8 +113,8 @@ class LiveSounds:
             Something of it cannot be.
         """
         number, serial = (_whole(said, key) for key in ("run", "serial"))
-        assert isinstance(said, dict)
-        return number, serial, design_of(said.get("design"), self._bases)
+        stated = said.get("design") if isinstance(said, dict) else None
+        return number, serial, design_of(stated, self._bases)
 
     async def stream(self, number: int, serial: int, design: Design) -> AsyncIterator[bytes]:
         """Give what `noise.app.design.player.Player.block` makes, until nobody listens."""

@@ -2,8 +2,11 @@
 
 export const GONE = "The program does not answer any more; start it again by `bushing-noise open`.";
 const ENDED = "The program that this page is of has ended; open the address that it prints now.";
-// The cookie is that of the page that was opened last, which may be of another folder at the same port.
-const TOKEN = new URLSearchParams(location.search).get("token");
+// Kept by the tab, not by its address and history. The cookie is that of the page that was opened last,
+// which may be of another folder at the same port.
+const TOKEN = new URLSearchParams(location.search).get("token") ?? sessionStorage.token ?? null;
+if (TOKEN !== null) sessionStorage.token = TOKEN;
+history.replaceState(null, "", `${location.pathname}${location.hash}`);
 
 // GET without a body, POST of JSON with one; an error is thrown, and told unless the caller does that.
 export async function api(path, body, tell = told) {

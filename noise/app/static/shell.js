@@ -35,7 +35,7 @@ async function show(name) {
     panelOf(tab.dataset.view).hidden = !chosen;
   }
   bringBack(name);
-  history.replaceState(null, "", `${location.pathname}${location.search}#${name}`);
+  history.replaceState(null, "", `${location.pathname}#${name}`);
   if (!mounted[name]) {
     mounted[name] = import(`./${name}/view.js`).then((view) => view.mount(panelOf(name)));
     mounted[name].catch((error) => told(`this view does not start: ${error.message}`));

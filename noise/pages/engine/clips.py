@@ -21,7 +21,7 @@ from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.gain import full_scale_without_clipping, true_peak
 from noise.audio.sound import FADE
-from noise.audio.wav import integers
+from noise.audio.wav import integers, largest_sample
 from noise.pages.engine.entry import RATE, stretch_start
 
 if TYPE_CHECKING:
@@ -141,21 +141,20 @@ def common_gain(entries: Iterable[Entry], pascal: float | None = None) -> Gain:
     ParameterError
         A sound would clip at the full scale given.
     """
-    peaks: dict[bool, dict[str, float]] = {True: {}, False: {}}
+    peaks: dict[bool, list[tuple[float, str]]] = {True: [], False: []}  # titles may be alike
     for entry, largest in _that_may_be_loudest(list(entries)):
         peak = true_peak(largest.astype(np.float64), RATE)
-        peaks[entry.calibrated][entry.title] = peak
+        peaks[entry.calibrated].append((peak, entry.title))
     least = {
-        calibrated: full_scale_without_clipping(max(of.values())) or 1.0 if of else None
+        calibrated: full_scale_without_clipping(max(of)[0]) or 1.0 if of else None
         for calibrated, of in peaks.items()
     }
     if pascal is None:
         return Gain(least[True], least[False])
     if (needed := least[True]) is not None and pascal < needed:
-        loudest = max(peaks[True], key=peaks[True].__getitem__)
         raise ParameterError(
-            f"{loudest}: would clip at {pascal:g} Pa per full scale; {needed:g} Pa is the least "
-            "that holds all sounds"
+            f"{max(peaks[True])[1]}: would clip at {pascal:g} Pa per full scale; "
+            f"{needed:g} Pa is the least that holds all sounds"
         )
     return Gain(pascal if peaks[True] else None, least[False], stated=True)
 
@@ -258,7 +257,8 @@ def _clip(
         samples[:n] *= flank
         samples[samples.size - n :] *= flank[::-1]
     full_scale = gain.of(entry)
-    fractions = (samples / full_scale).astype(np.float64)
+    largest = largest_sample(_BITS)  # a sample beyond would wrap round
+    fractions = np.clip((samples / full_scale).astype(np.float64), -largest, largest)
     dither = None if seed is None else np.random.default_rng(seed)
     steps = np.frombuffer(integers(fractions, _BITS, dither), "<i2")
     flac = io.BytesIO()

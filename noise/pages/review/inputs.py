@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-__all__ = ["DIAGNOSIS", "Inputs", "LabelTable", "Refusal", "sort_inputs"]
+__all__ = ["DIAGNOSIS", "Inputs", "LabelTable", "Refusal", "sort_inputs", "told_apart"]
 
 DIAGNOSIS = "diagnosis.json"
 """What a folder of a diagnosis holds."""
@@ -149,7 +149,7 @@ def sort_inputs(paths: Iterable[Path]) -> Inputs:
             kinds[kind].append(path)
     tables, refused = _read_tables(kinds["table"])
     inputs = Inputs(
-        _told_apart(list(recordings.values())),
+        told_apart(list(recordings.values())),
         tuple(tables),
         _each_once(kinds["screen"]),
         _each_once(kinds["diagnosis"]),
@@ -202,8 +202,21 @@ def _originals(found: Sequence[tuple[Path, str]]) -> Iterator[tuple[Path, str]]:
             yield path, name
 
 
-def _told_apart(found: list[tuple[Path, str]]) -> tuple[tuple[Path, str], ...]:
-    """Name the folder above as well where two recordings have the same name."""
+def told_apart(found: list[tuple[Path, str]]) -> tuple[tuple[Path, str], ...]:
+    """Name the folder above as well where two recordings have the same name.
+
+    Parameters
+    ----------
+    found : list of (Path, str)
+        Recordings and their names.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> named = told_apart([(Path("/a/run.wav"), "run.wav"), (Path("/b/run.wav"), "run.wav")])
+    >>> [name for _, name in named]
+    ['a/run.wav', 'b/run.wav']
+    """
     for _ in range(_MOST_FOLDERS):
         counts = Counter(name for _, name in found)
         if max(counts.values(), default=0) < 2:

@@ -17,7 +17,7 @@ from noise.labels.labelling import label_rows
 from noise.labels.segments import label_recording
 from noise.pages.engine.clips import BYTES_A_SECOND, SHORTEST
 from noise.pages.engine.entry import RATE, Entry, stretch_start
-from noise.pages.review.inputs import Refusal
+from noise.pages.review.inputs import Refusal, told_apart
 from noise.pictures.recorded import recorded_levels, recorded_orders
 from noise.recordings import read_recording
 from noise.recordings.blocks import RecordingBlocks, open_blocks
@@ -75,7 +75,8 @@ def recorded_entries(
     files = list(inputs.recordings)
     known = {path.resolve() for path, _ in files}
     named = _named_by_tables(inputs.tables, [path for path, _ in files])
-    files += [found for found in named if found[0].resolve() not in known]
+    new = [found for found in named if found[0].resolve() not in known]
+    files = list(told_apart([*files, *new]))
     needs = classify and any(not _labelled(path, inputs.tables) for path, _ in files)
     classifier = load_classifier() if needs else None
     # What could never fit is not read at all.
