@@ -36,24 +36,6 @@ they are first used, so that ``import noise`` itself is quick.
 
 from __future__ import annotations
 
-import os
-import sys
-from _signal import (  # type: ignore[import-not-found]  # `signal` itself takes milliseconds
-    SIGINT,
-    signal,
-)
-
-if (sys.argv[0] == "-m" and "noise" in sys.orig_argv) or sys.argv[0].removesuffix(".exe").endswith(
-    "bushing-noise"
-):
-
-    def _end(*_: object) -> None:
-        """End a command that is interrupted while it is loaded, when there is nothing to lose."""
-        os.write(2, b"bushing-noise: interrupted\n")
-        os._exit(130)  # 128 + SIGINT
-
-    signal(SIGINT, _end)
-
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path

@@ -1,10 +1,10 @@
 """The command line of ``bushing-noise``: it finds the command, runs it, and reports errors.
 
-What a user can cause ends in one line on standard error and an exit code, never in a traceback:
-0 all done, 1 done but inputs were refused, 2 the call cannot be used. Beyond these a program that
-is interrupted (130) or whose reader goes away (141) ends as the shell has it. An error that nobody
-foresaw is told in one line as well, with the place in the code; ``python -X dev -m noise`` shows
-the whole traceback.
+Every command ends with an exit code and, where something went wrong, one line on standard error,
+never with a traceback: 0 all done; 1 done, but inputs were refused; 2 the call cannot be used; 3
+the program itself could not go on, for a defect, a full disk or too little memory. A program that
+is interrupted (130) or whose reader goes away (141) ends as the shell has it. A defect is shown
+with its traceback by ``python -X dev -m noise``.
 
 Only the command that is called is imported, so that help is there at once.
 """
@@ -12,7 +12,7 @@ Only the command that is called is imported, so that help is there at once.
 from __future__ import annotations
 
 import argparse
-import gc
+import errno
 import re
 import sys
 import traceback
@@ -32,12 +32,16 @@ __all__ = ["main"]
 _NAME = "bushing-noise"
 _REFUSED = 1
 _USAGE_ERROR = 2
+_CANNOT_GO_ON = 3
 _INTERRUPTED = 130  # 128 + SIGINT
 _CLOSED_PIPE = 141  # 128 + SIGPIPE
 
-_NEW_OBJECTS = 100_000
-"""After which garbage is looked for: libraries and compiled functions, which stay, are most of what
-there is, and looking through them as often as by default takes a tenth of a command's time."""
+_OF_THE_MACHINE = {
+    getattr(errno, name)
+    for name in ("ENOSPC", "EDQUOT", "EFBIG", "EMFILE", "ENFILE", "ENOMEM")
+    if hasattr(errno, name)
+}
+"""Numbers of errors that no other call would avoid: no room, no memory, too many files open."""
 
 _NEGATIVE = re.compile(r"-(\.?\d|inf|nan)", re.IGNORECASE)
 
@@ -62,8 +66,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     0
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if argv is None:  # who calls from a program of their own keeps their settings
-        gc.set_threshold(_NEW_OBJECTS, 20, 50)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # names of files that the terminal cannot show
             stream.reconfigure(errors="backslashreplace")
@@ -74,9 +76,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         except BrokenPipeError:
             discard(sys.stdout)
             return _CLOSED_PIPE
-        finally:
-            if argv is None:  # the process ends: to look through what it leaves takes 0.3 s
-                gc.freeze()
 
 
 def _report_errors(arguments: list[str]) -> int:
@@ -86,13 +85,16 @@ def _report_errors(arguments: list[str]) -> int:
         if sys.stdout is not None:
             sys.stdout.flush()
         return code
-    except RecordingError as error:  # the only input that there was
-        say(f"{_NAME}: refused: {error}")
-        return _REFUSED
     except BushingNoiseError as error:
+        if _is_of_the_machine(error):
+            return _failed(str(error), _CANNOT_GO_ON)
+        if isinstance(error, RecordingError):  # the only input that there was
+            say(f"{_NAME}: refused: {error}")
+            return _REFUSED
         return _failed(str(error))
     except MemoryError:
-        return _failed("this needs more memory than there is; try a shorter recording")
+        message = "this needs more memory than there is; try a shorter recording"
+        return _failed(message, _CANNOT_GO_ON)
     except KeyboardInterrupt:
         say(f"{_NAME}: interrupted")
         return _INTERRUPTED
@@ -100,13 +102,28 @@ def _report_errors(arguments: list[str]) -> int:
         raise
     except OSError as error:
         discard(sys.stdout)
-        return _failed(f"{error.filename or 'output'}: {error.strerror or error}")
+        message = f"{error.filename or 'output'}: {error.strerror or error}"
+        return _failed(message, _USAGE_ERROR if _is_of_the_path(error) else _CANNOT_GO_ON)
     except Exception as error:
         if sys.flags.dev_mode:
             raise
         place = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{Path(place.filename).name}, line {place.lineno}"
-        return _failed(f"unexpected, please report: {type(error).__name__}: {error} ({where})")
+        message = f"unexpected, please report: {type(error).__name__}: {error} ({where})"
+        return _failed(message, _CANNOT_GO_ON)
+
+
+def _is_of_the_machine(error: BaseException | None) -> bool:
+    """Whether an error was raised because of a full disk or the like."""
+    while error is not None:
+        if isinstance(error, OSError) and error.errno in _OF_THE_MACHINE:
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def _is_of_the_path(error: OSError) -> bool:
+    return error.filename is not None and error.errno not in _OF_THE_MACHINE
 
 
 def _run(arguments: list[str]) -> int:
@@ -124,9 +141,9 @@ def _run(arguments: list[str]) -> int:
     return load_command(options.command).run(options)
 
 
-def _failed(message: str) -> int:
+def _failed(message: str, code: int = _USAGE_ERROR) -> int:
     say(f"{_NAME}: error: {message}")
-    return _USAGE_ERROR
+    return code
 
 
 def _path(text: str) -> Path:
@@ -171,7 +188,8 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
         description="Simulate, hear, label and explain the creak, squawk and squeal of a rubber "
         "bushing.",
         epilog=f"{_NAME} COMMAND --help explains each command. Exit code 0: all done; 1: done, "
-        "but some inputs were refused; 2: the call cannot be used.",
+        "but some inputs were refused; 2: the call cannot be used; 3: the program could not go "
+        "on, for a defect or a full disk.",
         allow_abbrev=False,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and stop")

@@ -114,10 +114,11 @@ def failing(error):
     ("error", "code", "said"),
     [
         (RecordingError("run07.wav: is\nempty"), 1, "bushing-noise: refused: run07.wav: is empty"),
-        (MemoryError(), 2, "bushing-noise: error: this needs more memory than there is"),
+        (MemoryError(), 3, "bushing-noise: error: this needs more memory than there is"),
         (KeyboardInterrupt(), 130, "bushing-noise: interrupted"),
-        (ZeroDivisionError("x"), 2, "bushing-noise: error: unexpected, please report: ZeroDiv"),
-        (OSError(28, "No space left"), 2, "bushing-noise: error: output: No space left"),
+        (ZeroDivisionError("x"), 3, "bushing-noise: error: unexpected, please report: ZeroDiv"),
+        (OSError(28, "No space left"), 3, "bushing-noise: error: output: No space left"),
+        (OSError(13, "Not allowed", "a.csv"), 2, "bushing-noise: error: a.csv: Not allowed"),
     ],
 )
 def test_whatever_goes_wrong_is_one_line_and_a_code(monkeypatch, capsys, error, code, said):
@@ -127,3 +128,32 @@ def test_whatever_goes_wrong_is_one_line_and_a_code(monkeypatch, capsys, error, 
     err = capsys.readouterr().err.splitlines()
     assert err[-2] == "bushing-noise: note: the rig is warm"
     assert err[-1].startswith(said)
+
+
+WITHOUT_ROOM = """
+import resource, sys
+from noise.cli import main
+main(["simulate", "--speed", "5"])  # the compiler keeps its results in files, too
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="limits the size of files as Unix does")
+@pytest.mark.parametrize(
+    "call",
+    [
+        ["--out", "run"],
+        ["--plot", "run.png"],
+        ["--rate", "1000", "--seconds", "61", "--out", "run"],
+    ],
+)
+def test_a_full_disk_is_one_line_and_a_code_of_its_own_and_leaves_nothing(tmp_path, call):
+    run = ["simulate", "--speed", "5", "--seconds", "0.5", *call]
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_ROOM, *run], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.returncode == 3
+    assert "cannot be written" in done.stderr.splitlines()[-1]
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []
