@@ -10,7 +10,7 @@ the beams are taken to pass nothing else on to the plate. With the clamp bolted 
 is neither beam nor joint: the torque is a moment on the plate, the pulse is without effect, and the
 acceleration is that of the plate at the clamp's edge.
 
-Beams and clamp are heard as well where the rig says so (`models.structure.beams_sound`). Only
+Beams and clamp are heard as well where the rig says so (`models.structure.beams`). Only
 direct sound is modelled, and the plate does not act back on the beams.
 """
 
@@ -31,10 +31,10 @@ from models.structure.beams import (
     ANCHOR_MOMENT,
     PULSE,
     TORQUE,
+    beam_length,
     beam_structure,
+    beams_pressure,
 )
-from models.structure.beams_sound import beams_pressure
-from models.structure.beams_stiffness import beam_length
 from models.structure.plate import (
     acceleration_model,
     plate_modes,

@@ -12,7 +12,7 @@ from features.kernels.bands import NOMINAL_THIRD_OCTAVES, a_weighting
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sim.analysis.sound_power import PlateSoundPower
+    from models.radiation.sound_power import BandPower
 
 __all__ = ["COLUMNS", "TOTAL", "sound_power_rows"]
 
@@ -20,33 +20,28 @@ COLUMNS = (
     "band_hz",
     "power_level_db",
     "power_level_dba",
-    "free_power_level_db",
-    "free_power_level_dba",
 )
-"""Nominal middle of the band, sound power levels [dB re 1 pW] in a baffle and standing free."""
+"""Nominal middle of the band, sound power levels [dB re 1 pW] of the plate in a rigid baffle."""
 
 TOTAL = "total"
 """What stands for the band in the last row, the sum of all bands."""
 
 
-def sound_power_rows(power: PlateSoundPower) -> list[dict[str, object]]:
+def sound_power_rows(power: BandPower) -> list[dict[str, object]]:
     """Rows by `COLUMNS`, one a band and one of their sum.
 
     Parameters
     ----------
-    power : PlateSoundPower
+    power : BandPower
 
     Returns
     -------
     list of dict
         Levels in dB re 1 pW to 0.01 dB; None for a band without power.
     """
-    level, free = power.baffled.level, power.baffled.level.copy()
-    free[: power.free.level.size] = power.free.level
-    weighting = a_weighting(power.baffled.centre)
-    levels = [level, level + weighting, free, free + weighting]
-    first = NOMINAL_THIRD_OCTAVES.index(f"{power.baffled.centre[0]:.0f}")
-    bands = (*NOMINAL_THIRD_OCTAVES[first : first + level.size], TOTAL)
+    levels = [power.level, power.level + a_weighting(power.centre)]
+    first = NOMINAL_THIRD_OCTAVES.index(f"{power.centre[0]:.0f}")
+    bands = (*NOMINAL_THIRD_OCTAVES[first : first + power.level.size], TOTAL)
     columns = [[*map(_level, column), _level(_sum(column))] for column in levels]
     return [dict(zip(COLUMNS, row, strict=True)) for row in zip(bands, *columns, strict=True)]
 

@@ -194,11 +194,11 @@ def _write_sound_power(
     )
     rows = sound_power_rows(power)
     write_table(path, COLUMNS, rows, excel)
-    total, free = rows[-1]["power_level_dba"], rows[-1]["free_power_level_dba"]
+    total = rows[-1]["power_level_dba"]
     if total is None:
         say("the plate radiates no sound")
     else:
-        say(f"sound power {total:.1f} dB(A) re 1 pW in a baffle, {free:.1f} standing free")
+        say(f"sound power {total:.1f} dB(A) re 1 pW in a baffle")
 
 
 def _check_plot(path: Path) -> None:

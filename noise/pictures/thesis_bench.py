@@ -12,10 +12,7 @@ from scipy.fft import rfft, rfftfreq
 
 from models.condition import FIXED
 from models.drawing import BLUE, GREEN, GREY, VERMILION
-from models.heating import RUBBER, STEEL, contact_area, heat_shares, temperature_rise
 from models.radiation.rig_response import impulse_responses
-from models.structure.beams_exact import natural_frequencies
-from models.structure.beams_waves import RootMotion, boundary_conditions, wavenumber, waves_at
 from noise.pictures.axes import MODEL_COLOURS
 from noise.pictures.model_traces import model_traces
 from noise.pictures.panels import Curve, Panel
@@ -27,6 +24,14 @@ from noise.thesis.calibrations import (
     TORQUE_CELL_TORQUES,
     regression,
 )
+from noise.thesis.exact_beams import (
+    RootMotion,
+    boundary_conditions,
+    natural_frequencies,
+    wavenumber,
+    waves_at,
+)
+from noise.thesis.heat import RUBBER, STEEL, contact_area, heat_shares, temperature_rise
 from noise.thesis.modes import clamp_on_beams, rigidly_anchored
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of
 from noise.thesis.stiffness import LENGTHS, MEASURED
@@ -36,8 +41,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.heating import HalfSpace
-    from models.structure.beams_waves import ClampOnBeams
+    from noise.thesis.exact_beams import ClampOnBeams
+    from noise.thesis.heat import HalfSpace
 
 __all__ = [
     "acoustic_responses", "mode_shapes", "potentiometer_line", "static_tests",

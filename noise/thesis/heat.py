@@ -1,21 +1,177 @@
-"""Frictional heat (6.1, Appendix G)."""
+"""Frictional heat (6.1, Appendix G): temperature of the contact between two half-spaces.
+
+Runs of a quarter of a second heat a layer thinner than a millimetre, so shaft and bushing are
+half-spaces, and the friction's power divides such that both surfaces are equally warm. The thesis
+leaves out the paint between them; `interface_rise` takes a layer, which after the few hundredths of
+a second that heat takes through paint is a mere resistance.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from models.heating import (
-    RUBBER,
-    STEEL,
-    Layer,
-    contact_area,
-    heat_shares,
-    interface_rise,
-    temperature_rise,
-)
+from models.errors import ParameterError
 from noise.thesis.row import Row, number
 
-__all__ = ["heating"]
+
+@dataclass(frozen=True)
+class HalfSpace:
+    """Thermal properties.
+
+    Parameters
+    ----------
+    diffusivity : float
+        [m2/s]
+    conductivity : float
+        [W/m/K]
+    """
+
+    diffusivity: float
+    conductivity: float
+
+    def resistance(self, seconds: float) -> float:
+        """Rise of the surface for a unit of flux held for `seconds` [K m2/W], (G3) at x = 0."""
+        return 2.0 / self.conductivity * math.sqrt(self.diffusivity * seconds / math.pi)
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A thin layer without heat capacity.
+
+    Parameters
+    ----------
+    thickness : float
+        [m]
+    conductivity : float
+        [W/m/K]
+    """
+
+    thickness: float
+    conductivity: float
+
+
+STEEL = HalfSpace(3.95e-6, 14.9)
+"""304 stainless (Table G1)."""
+
+RUBBER = HalfSpace(6.69e-8, 0.16)
+"""(Table G1)"""
+
+
+def heat_shares(first: HalfSpace, second: HalfSpace) -> tuple[float, float]:
+    """Shares of the heat that two bodies in contact take, equation (G5).
+
+    Examples
+    --------
+    >>> steel, rubber = heat_shares(STEEL, RUBBER)
+    >>> round(steel, 3), round(rubber, 3)
+    (0.924, 0.076)
+    """
+    a, b = first.resistance(1.0), second.resistance(1.0)
+    return b / (a + b), a / (a + b)
+
+
+def temperature_rise(body: HalfSpace, flux: float, seconds: float, depth: float = 0.0) -> float:
+    """Rise of temperature in a half-space under a constant flux, equation (G3).
+
+    Parameters
+    ----------
+    body : HalfSpace
+    flux : float
+        Into its surface [W/m2].
+    seconds : float
+        Since the flux began [s].
+    depth : float
+        Below the surface [m].
+
+    Returns
+    -------
+    float
+        [K]
+
+    Raises
+    ------
+    ParameterError
+        If the time is not positive, or the depth negative.
+
+    Notes
+    -----
+    The print of (G3) has alpha t / pi without its power 1/2.
+
+    Examples
+    --------
+    >>> rubber_flux = 0.0759 * 300.0 / 7.69e-4
+    >>> round(temperature_rise(RUBBER, rubber_flux, 0.23), 1)
+    25.9
+    """
+    if not (seconds > 0.0 and depth >= 0.0):
+        raise ParameterError(
+            f"heating: seconds = {seconds:g} must be positive, depth = {depth:g} m not negative"
+        )
+    reach = 2.0 * math.sqrt(body.diffusivity * seconds)
+    surface = body.resistance(seconds) * math.exp(-((depth / reach) ** 2))
+    return flux * (surface - depth / body.conductivity * math.erfc(depth / reach))
+
+
+def interface_rise(
+    power: float,
+    area: float,
+    seconds: float,
+    shaft: HalfSpace = STEEL,
+    bushing: HalfSpace = RUBBER,
+    layer: Layer | None = None,
+) -> float:
+    """Rise of the temperature where a bushing rubs on a shaft.
+
+    Parameters
+    ----------
+    power : float
+        Torque times sliding speed [W].
+    area : float
+        Of contact [m2].
+    seconds : float
+        Since sliding began [s].
+    shaft, bushing : HalfSpace
+    layer : Layer, optional
+        On the shaft, such as paint.
+
+    Returns
+    -------
+    float
+        [K]
+
+    Raises
+    ------
+    ParameterError
+        If area or time is not positive.
+
+    Examples
+    --------
+    >>> round(interface_rise(300.0, 7.69e-4, 0.23))
+    26
+    >>> round(interface_rise(300.0, 7.69e-4, 0.23, layer=Layer(50e-6, 0.2)))
+    92
+    """
+    if not (area > 0.0 and seconds > 0.0):
+        raise ParameterError(
+            f"heating: area = {area:g} m2 and seconds = {seconds:g} must be positive"
+        )
+    a, b = shaft.resistance(seconds), bushing.resistance(seconds)
+    if layer is not None:
+        a += layer.thickness / layer.conductivity
+    return power / area * a * b / (a + b)
+
+
+def contact_area(power: float, rise: float, seconds: float) -> float:
+    """Area of contact [m2] at which steel without paint and rubber warm by `rise` [K].
+
+    Examples
+    --------
+    >>> round(1e4 * contact_area(300.0, 26.0, 0.23), 2)
+    7.69
+    """
+    return interface_rise(power, 1.0, seconds) / rise
+
 
 _POWER = 30.0 * 10.0
 """30 Nm at 10 rad/s [W]."""

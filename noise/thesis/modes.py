@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.structure.beams_exact import natural_frequencies
-from models.structure.beams_waves import ClampOnBeams, RootMotion
+from noise.thesis.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 from noise.thesis.row import Row, number
 from noise.thesis.runs import CALIBRATED, LONG, SHORT, THESIS, Case, rig_of, strongest_line
 from sim.bushing import lumped_bushing

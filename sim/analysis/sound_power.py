@@ -3,17 +3,16 @@
 The torque in the bushing, and the pulses of the anchors where there are some, become forces and
 moments of the anchors on the plate, as they do for the sound at the microphone
 (`models.radiation.rig_response`). Their cross-spectra, means over the run, drive the plate's modes,
-and `models.radiation` gives the power of its upper side, twice over: in a rigid baffle, as the
-microphone's sound is computed too, which below the critical frequency is too loud by 2 to 17 dB in
-a band; and standing free. A plate on a bench or in a frame lies between the two. A single
-line of the torque beside a resonance of the plate may come out 1 dB off. Not in it are the sound
-of beams and clamp, the room, responses that were measured, and effects on the path of sound.
+and `models.radiation.sound_power` gives the power of its upper side in a rigid baffle, as the
+microphone's sound is computed too. A plate that stands free is quieter below its critical
+frequency, by 2 to 17 dB in a band. A single line of the torque beside a resonance of the plate may
+come out 1 dB off. Not in it are the sound of beams and clamp, the room, responses that were
+measured, and effects on the path of sound.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,12 +20,10 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.signal import csd
 
 from models.errors import ParameterError
-from models.radiation.rayleigh import SOUND_SPEED
 from models.radiation.rig_response import anchor_drives, first_mode_damping
-from models.radiation.sound_power_bands import third_octave_power
+from models.radiation.sound_power import third_octave_power
 from models.rig import HIGHEST_PLATE_FREQUENCY
-from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
-from models.structure.beams_stiffness import beam_length
+from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes
 from sim.effects import EFFECTS
 from sim.effects.effect import activated
@@ -37,12 +34,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from models.radiation.sound_power_bands import BandPower
+    from models.radiation.sound_power import BandPower
     from models.rig import Rig
     from sim.effects.effect import Effect
     from sim.motion import Motion
-
-__all__ = ["PlateSoundPower", "motion_sound_power"]
 
 LOWEST, HIGHEST = 50.0, 10e3
 """Middles of the lowest and the highest band [Hz]."""
@@ -54,23 +49,6 @@ SEGMENT = 1.0
 """Length of the parts whose spectra are averaged over the run [s]."""
 
 
-@dataclass(frozen=True, eq=False)
-class PlateSoundPower:
-    """Sound power of the plate's upper side, mean over a run.
-
-    Parameters
-    ----------
-    baffled : BandPower
-        Of the plate in a rigid baffle, bands from 50 Hz to 10 kHz.
-    free : BandPower
-        Of the plate standing free, through the band of its critical frequency; above, a baffle
-        makes no difference.
-    """
-
-    baffled: BandPower
-    free: BandPower
-
-
 def motion_sound_power(
     rig: Rig,
     motion: Motion,
@@ -78,7 +56,7 @@ def motion_sound_power(
     interference: float,
     support_stiffness: float,
     library: Mapping[str, Effect] | None = None,
-) -> PlateSoundPower:
+) -> BandPower:
     """Return the sound power that the rig's plate radiates during a motion.
 
     Parameters
@@ -96,7 +74,8 @@ def motion_sound_power(
 
     Returns
     -------
-    PlateSoundPower
+    BandPower
+        Mean over the run, bands from 50 Hz to 10 kHz.
 
     Raises
     ------
@@ -110,7 +89,7 @@ def motion_sound_power(
     >>> rig, fit = load_material_rig("fluorocarbon"), 0.279e-3
     >>> run = simulate(rig, 10.0, interference=fit, support_stiffness=3745.0, seconds=0.3)
     >>> power = motion_sound_power(rig, run.motion, interference=fit, support_stiffness=3745.0)
-    >>> float(power.baffled.centre[power.baffled.level.argmax()].round())
+    >>> float(power.centre[power.level.argmax()].round())
     1000.0
     """
     if motion.torque.size < SHORTEST * motion.rate:
@@ -144,18 +123,7 @@ def motion_sound_power(
     def density(middle: NDArray[np.float64]) -> NDArray[np.complex128]:
         return _sets(frequency, spectra, middle)
 
-    critical = SOUND_SPEED**2 / (2.0 * np.pi * math.sqrt(rig.plate.stiffness_per_mass))
-    return PlateSoundPower(
-        third_octave_power(modes, drives, density, low=LOWEST, high=HIGHEST),
-        third_octave_power(
-            modes,
-            drives,
-            density,
-            low=LOWEST,
-            high=min(max(critical, LOWEST), HIGHEST),
-            baffled=False,
-        ),
-    )
+    return third_octave_power(modes, drives, density, low=LOWEST, high=HIGHEST)
 
 
 def _cross_spectra(

@@ -19,7 +19,7 @@ from scipy.signal import lfilter
 
 from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import impulse_responses
-from models.radiation.sound_power_bands import third_octave_power
+from models.radiation.sound_power import third_octave_power
 from models.rig import HIGHEST_PLATE_FREQUENCY
 from models.rig_files.rig_file import load_material_rig
 from models.structure.modal import acceleration_section

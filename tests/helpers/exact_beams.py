@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.structure.beams_stiffness import bending_stiffness
-from models.structure.beams_waves import RootMotion, boundary_conditions, wavenumber, waves_at
+from models.structure.beams import bending_stiffness
+from noise.thesis.exact_beams import RootMotion, boundary_conditions, wavenumber, waves_at
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from models.structure.beams_waves import ClampOnBeams
+    from noise.thesis.exact_beams import ClampOnBeams
 
 
 @dataclass(frozen=True, eq=False)

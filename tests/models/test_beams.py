@@ -15,10 +15,11 @@ from models.structure.beams import (
     ANCHOR_MOMENT,
     PULSE,
     TORQUE,
+    beam_length,
     beam_structure,
     rigid_clamp_inertia,
+    torsional_stiffness,
 )
-from models.structure.beams_stiffness import beam_length, torsional_stiffness
 
 STEEL = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.005, 0.4)
 J_C = 1 / 1200

@@ -14,9 +14,14 @@ from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.rig_response import impulse_responses
 from models.rig import Beams, Microphone
 from models.rig_files.rig_file import load_material_rig, load_rig
-from models.structure.beams import PULSE, TORQUE, beam_structure
-from models.structure.beams_sound import beams_pressure, strip_section
-from models.structure.beams_stiffness import beam_length
+from models.structure.beams import (
+    PULSE,
+    TORQUE,
+    beam_length,
+    beam_structure,
+    beams_pressure,
+    strip_section,
+)
 from models.transfer_functions.filtering import convolve
 from sim.effects import EFFECTS
 from sim.motion import simulate_motion

@@ -11,8 +11,7 @@ from models.errors import ParameterError
 from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import impulse_responses
 from models.rig import Beams, Fit, LawSpec, Microphone, Plate, Rig
-from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_structure
-from models.structure.beams_stiffness import beam_length
+from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes, pressure_response
 from tests.helpers.spectra import path_spectra
 

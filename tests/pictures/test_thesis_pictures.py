@@ -6,7 +6,6 @@ from matplotlib.figure import Figure
 
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
-from models.heating import RUBBER, STEEL, contact_area, heat_shares, temperature_rise
 from models.radiation.rig_response import impulse_responses
 from models.rig_files.rig_file import load_material_rig
 from noise.cli import main
@@ -25,6 +24,7 @@ from noise.pictures.thesis_bench import (
     torque_cell_line,
 )
 from noise.pictures.thesis_recordings import channels, torque_over_speed
+from noise.thesis.heat import RUBBER, STEEL, contact_area, heat_shares, temperature_rise
 from noise.thesis.modes import clamp_modes, rigidly_anchored
 from noise.thesis.runs import CALIBRATED, LONG, RATE, SHORT, THESIS, Case, motion, rig_of
 from noise.thesis.stiffness import MEASURED

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.heating import RUBBER, STEEL, Layer, heat_shares, interface_rise, temperature_rise
 from models.rig_files.rig_file import load_material_rig
-from models.structure.shaft import fixed_free_frequencies, free_free_frequencies
 from noise.cli import main
 from noise.thesis import page, row, table
 from noise.thesis.explanations import WHY
+from noise.thesis.heat import RUBBER, STEEL, Layer, heat_shares, interface_rise, temperature_rise
 from noise.thesis.repetition import repetition_rate
+from noise.thesis.stiffness import fixed_free_frequencies, free_free_frequencies
 from sim.analysis.critical_damping import critical_damping, largest_sticking
 from sim.analysis.critical_speeds import critical_speeds, regime_at
 from sim.analysis.regime import Regime
