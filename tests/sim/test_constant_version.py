@@ -16,7 +16,7 @@ from sim.constant_version import constant_version
 from sim.motion import simulate_motion
 from sim.run import simulate
 from sim.shaft import ConstantSpeed
-from tests.studies.rig_measures import creak_measures
+from tests.helpers.rig_measures import creak_measures
 
 TIGHT = {"interference": 0.381e-3, "support_stiffness": 2214.0}
 

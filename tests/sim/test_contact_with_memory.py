@@ -11,7 +11,7 @@ from models.rig_files.rig_file import load_material_rig
 from sim.contact import CRITICAL, KINETIC, N_CONTACT
 from sim.friction.contact_with_memory import LAW
 from sim.parameters import resolve
-from tests.studies.rig_measures import slip_rates
+from tests.helpers.rig_measures import slip_rates
 
 T_CRIT, T_KIN = 12.0, 8.0
 STEP = 2e-6

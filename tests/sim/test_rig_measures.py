@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.studies.rig_measures import NOISE_CELLS, creak_measures
+from tests.helpers.rig_measures import creak_measures
 
 RATE = 48e3
 
@@ -31,7 +31,3 @@ def test_noise_is_flatter_than_a_creak_and_a_tone_less_flat():
     sounds = rng.standard_normal(time.size), clicks(0.0, rng), np.sin(2.0 * np.pi * 700.0 * time)
     noise, creak, tone = (creak_measures(sound, RATE)[2] for sound in sounds)
     assert noise > creak > tone
-
-
-def test_the_thesis_names_the_noise_of_26_cells():
-    assert len(set(NOISE_CELLS)) == 26

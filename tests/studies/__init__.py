@@ -1,1 +1,0 @@
-"""Evidence that no command reaches: what was measured on records of other rigs, and how."""
