@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     import numpy as np

@@ -2,28 +2,26 @@
 
 Every reader goes through here. What is no plain file (a pipe, a device, a folder) is refused
 without being opened, since opening it may wait forever. Sizes are bounded before anything is set
-aside for them: of the file, and of how deep its lists lie in one another; for arrays see
-`models.foreign_arrays`. And whatever a library raises over a damaged file becomes one error of one
-line that names the file.
+aside for them: of the file, of how deep its lists lie in one another, of what an archive inflates
+to and an array's header announces. Nothing is unpickled. And whatever a library raises over a
+damaged file becomes one error of one line that names the file.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import stat
+import zipfile
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
 
 from models.errors import BushingNoiseError, ParameterError
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-__all__ = [
-    "LARGEST_JSON", "LARGEST_TEXT", "LARGEST_TOML", "ExcessError", "check_inflation",
-    "check_plain_file", "one_line", "parse_json", "parse_toml", "reading", "refusing",
-]  # fmt: skip
+if TYPE_CHECKING:  # most files need no arrays
+    from numpy.typing import NDArray
 
 LARGEST_TEXT = 1 << 30
 """Of a table in text, which is read line by line [byte]."""
@@ -85,7 +83,6 @@ def reading(
 
     Examples
     --------
-    >>> from pathlib import Path
     >>> with reading(Path("nowhere.npz"), "NPZ file"):
     ...     raise AssertionError
     Traceback (most recent call last):
@@ -166,7 +163,6 @@ def check_plain_file(
 
     Examples
     --------
-    >>> from pathlib import Path
     >>> check_plain_file(Path("/dev"))
     Traceback (most recent call last):
     models.errors.ParameterError: /dev: is a folder, not a file
@@ -188,8 +184,6 @@ def check_inflation(path: Path) -> None:
     ValueError
         They would. What the library raises over no archive is left to `reading`.
     """
-    import zipfile
-
     size = path.stat().st_size
     with zipfile.ZipFile(path) as archive:
         total = sum(member.file_size for member in archive.infolist())
@@ -286,3 +280,93 @@ def _reason(raised: Exception) -> str:
     if said and isinstance(raised, ValueError):
         return said
     return f"{type(raised).__name__}: {said}" if said else type(raised).__name__
+
+
+def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
+    """Read the arrays of an NPZ file, within `models.foreign_file.reading`.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    dict of str to ndarray
+        Of any shape and unit, by name.
+
+    Raises
+    ------
+    ValueError
+        It is damaged, holds something else than arrays of numbers and texts, or would inflate
+        beyond measure. What the libraries raise on top of that is left to `reading`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import numpy as np
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     np.savez(Path(folder) / "a.npz", torque=np.ones(3))
+    ...     read_arrays(Path(folder) / "a.npz")
+    {'torque': array([1., 1., 1.])}
+    """
+    check_inflation(path)
+    arrays: dict[str, NDArray[Any]] = {}
+    with zipfile.ZipFile(path) as archive:
+        for member in archive.infolist():
+            if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise ValueError(f"{member.filename} is compressed in a way that is not known")
+            with archive.open(member) as file:
+                name = member.filename.removesuffix(".npy")
+                arrays[name] = _array(file, member.file_size, member.filename)
+    return arrays
+
+
+def read_array(path: Path) -> NDArray[Any]:
+    """Read the array of an NPY file, within `models.foreign_file.reading`.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    ndarray, shape (...)
+        In any unit, such as [Nm].
+
+    Raises
+    ------
+    ValueError
+        It is damaged, or its header announces more than there is.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import numpy as np
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     np.save(Path(folder) / "hit.npy", np.ones((3, 2)))
+    ...     read_array(Path(folder) / "hit.npy").shape
+    (3, 2)
+    """
+    with path.open("rb") as file:
+        return _array(file, path.stat().st_size, "its header")
+
+
+def _array(file: IO[bytes], size: int, name: str) -> NDArray[Any]:
+    """Read an array of which so many bytes are there."""
+    import numpy as np
+    from numpy.lib import format as npy
+
+    headers = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+    version = npy.read_magic(file)
+    if version not in headers:
+        raise ValueError(f"{name} has version {version}")
+    shape, fortran_order, dtype = headers[version](file)
+    if dtype.hasobject:
+        raise ValueError(f"{name} is of objects, expected numbers or texts")
+    n = math.prod(shape) * dtype.itemsize
+    if n > size or min(shape, default=0) < 0:
+        raise ExcessError(f"{name} announces {n} bytes, of which {size} are there")
+    values = np.frombuffer(file.read(n), dtype) if n else np.empty(0, dtype)
+    if n and values.nbytes != n:
+        raise ValueError(f"{name} is cut short")
+    return values.reshape(shape, order="F" if fortran_order else "C").copy(order="A")

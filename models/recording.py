@@ -8,27 +8,16 @@ from typing import TYPE_CHECKING
 
 from models.condition import Condition
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
+from models.units import CHANNEL_UNITS
 
 if TYPE_CHECKING:
     import numpy as np
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-__all__ = ["CHANNEL_UNITS", "REFERENCE_PRESSURE", "Channel", "Recording"]
-
 REFERENCE_PRESSURE = 20e-6
 """Of sound pressure levels [Pa]."""
-
-CHANNEL_UNITS = {
-    "torque": "N m",
-    "acceleration": "m/s^2",
-    "pressure": "Pa",
-    "angle": "rad",
-    "speed": "rad/s",
-    "force": "N",
-}
-"""The kinds of channel and the SI unit that each is kept in."""
 
 
 @short_repr
@@ -192,11 +181,22 @@ class Recording:
         >>> tone.plot(ax=Figure().subplots()).get_ylabel()
         'Sound pressure [Pa]'
         """
-        from models.recording_display import draw_channel
+        import numpy as np
 
-        return draw_channel(self, channel, ax)
+        from models.drawing import CHANNEL_LOOKS, axes_or_new, thinned
 
-    def _repr_html_(self) -> str:
-        from models.recording_display import recording_html
-
-        return recording_html(self)
+        if not self.samples.size:
+            raise ParameterError(f"recording {self.name!r} holds nothing that could be drawn")
+        name = channel or self.channel_names[self.first("pressure") or 0]
+        samples, kind = self[name], name.partition("_")[0]
+        look, number = CHANNEL_LOOKS[kind], name.removeprefix(kind).replace("_", " ")
+        unit = look.unit if self.calibrated else "full scale"
+        time = np.arange(samples.size) / self.rate
+        with axes_or_new(ax) as axes:
+            axes.plot(*thinned(time, samples), color=look.colour, linewidth=0.9)
+            axes.set_xlabel("Time [s]")
+            axes.set_ylabel(f"{look.name}{number} [{unit}]")
+            title = ", ".join(filter(None, [self.name, *self.condition.words]))
+            axes.set_title(title, loc="left")
+            axes.set_xlim(0.0, self.duration)
+        return axes

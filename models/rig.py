@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from models.rig_files.rig_plate import EDGES, HIGHEST_PLATE_FREQUENCY, Floor, Microphone, Plate
 from models.sensors import Sensors
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from models.sleeve import Sleeve
-    from models.temperature import TemperatureDependence
+    from models.bushing import Sleeve, TemperatureDependence
     from models.transfer_functions.measured import MeasuredResponse
 
 __all__ = [

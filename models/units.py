@@ -9,9 +9,8 @@ from __future__ import annotations
 import math
 import re
 
-from models.recording import CHANNEL_UNITS
-
-__all__ = ["SI_UNITS", "kind_of_unit", "known_units", "quantity_of_unit", "same_unit", "split_unit"]
+ABSOLUTE_ZERO = -273.15
+"""[degree Celsius]"""
 
 STANDARD_GRAVITY = 9.80665
 """By definition [m/s^2]."""
@@ -19,6 +18,16 @@ STANDARD_GRAVITY = 9.80665
 _DEGREE = math.pi / 180.0
 _TURN = 2.0 * math.pi
 _POUND_FORCE, _INCH = 4.4482216152605, 0.0254
+
+CHANNEL_UNITS = {
+    "torque": "N m",
+    "acceleration": "m/s^2",
+    "pressure": "Pa",
+    "angle": "rad",
+    "speed": "rad/s",
+    "force": "N",
+}
+"""The kinds of channel and the SI unit of the samples of each."""
 
 SI_UNITS = {
     **CHANNEL_UNITS,

@@ -27,7 +27,7 @@ from scipy.signal import butter, firwin, sosfilt, sosfilt_zi
 
 from models.compilation import COMPILED
 from models.sensors import Sensor, Sensors
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated

@@ -11,7 +11,7 @@ import numpy as np
 from models.errors import ParameterError
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
-from models.short_repr import short_repr
+from models.show import short_repr
 from sim.acquisition import Acquisition, sample
 from sim.chain import changed_chain
 from sim.effects import EFFECTS

@@ -67,7 +67,7 @@ def run_html(run: Run) -> str:
         ["computed", f"at {motion.rate:g} Hz, after {run.settling:g} s of settling"],
     ]
     caption = ", ".join(["Simulated run", *run.recording.condition.words])
-    return html_table(caption, rows) + run.recording._repr_html_()
+    return html_table(caption, rows)
 
 
 def draw_torques(

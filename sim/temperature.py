@@ -1,6 +1,6 @@
 # mypy: allow-untyped-defs, allow-untyped-decorators, allow-untyped-calls
 # ruff: noqa: ANN001, ANN202
-"""A rig at an ambient temperature: its stiffness, damping and friction by `models.temperature`.
+"""A rig at an ambient temperature: its stiffness, damping and friction by `models.bushing`.
 
 A simulated condition calls `at_temperature` once. Friction acts through the contact, as effects do,
 so that it holds with any law; a law that is a master curve itself has its speeds shifted instead.
@@ -25,8 +25,8 @@ from sim.parameters import Parameter, resolve
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from models.bushing import TemperatureDependence
     from models.rig import Fit, Rig
-    from models.temperature import TemperatureDependence
     from sim.effects.effect import Values
 
 __all__ = ["FRICTION_SHIFT", "at_temperature"]

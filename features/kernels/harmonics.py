@@ -36,7 +36,7 @@ from features.kernels.lines import (
 from features.kernels.periodicity import Period, strongest_period
 from features.kernels.spectra import welch
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -22,7 +22,7 @@ from features.kernels.bands import a_weighting, band_levels, fine_third_octaves
 from features.kernels.conditioning import checked_signal
 from models.compilation import COMPILED
 from models.recording import REFERENCE_PRESSURE
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -18,7 +18,7 @@ import numpy as np
 from scipy import ndimage, special
 
 from features.kernels.spectra import DEFAULT_RESOLUTION
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,7 +15,7 @@ import numpy as np
 from features.kernels.conditioning import checked_signal
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Callable

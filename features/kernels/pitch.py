@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.kernels.conditioning import checked_signal, usable_limit
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

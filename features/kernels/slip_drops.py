@@ -18,7 +18,7 @@ from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from features.kernels.conditioning import NOTHING, checked_signal
 from features.kernels.lines import interpolated
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -20,7 +20,7 @@ from scipy.ndimage import gaussian_filter1d
 from features.kernels.conditioning import (
     WORKING_LIMIT,
 )
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -19,7 +19,7 @@ import numpy as np
 from features.kernels.conditioning import checked_signal
 from features.kernels.segments import segment_powers
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

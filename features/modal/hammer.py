@@ -22,7 +22,7 @@ import numpy as np
 from scipy.signal import csd, find_peaks, welch
 
 from models.errors import ParameterError, RecordingError
-from models.short_repr import short_repr
+from models.show import short_repr
 from models.transfer_functions.transfer_function import TransferFunction
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,7 +94,7 @@ class Modes:
         ParameterError
             pandas is not installed.
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
 
         columns = ("frequency_hz", "damping_ratio", "orders")
         values = zip(self.frequency, self.damping_ratio, self.orders, strict=True)

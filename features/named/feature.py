@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from features.named.prepared import ACOUSTIC_KINDS
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -38,7 +38,7 @@ from features.kernels.levels import a_weighted_level
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.slip_drops import TorqueSlips, torque_slips
 from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

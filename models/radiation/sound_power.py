@@ -33,7 +33,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
-from models.short_repr import short_repr
+from models.show import short_repr
 from models.single_thread import single_thread
 from models.structure.plate import PlateModes
 

@@ -9,7 +9,7 @@ parameter that is called alike, such as ``room_reflections.length``.
 
 Size and modulus of the rubber, ``wall_mm``, ``length_mm``, ``youngs_modulus_MPa`` or
 ``hardness_shore_A``, take the bushing along: its torques go with contact pressure, area and
-radius, as `models.sleeve` has them, its stiffness and inertia with those of the sleeve. Damping
+radius, as `models.bushing` has them, its stiffness and inertia with those of the sleeve. Damping
 and friction law stay.
 """
 

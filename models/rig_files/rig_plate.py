@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 
 __all__ = ["EDGES", "HIGHEST_PLATE_FREQUENCY", "Floor", "Microphone", "Plate"]
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
-from models.recording import CHANNEL_UNITS
 from models.rig_files.calibration_file import calibration_text, read_calibration
 from models.sensors import Sensor, Sensors
+from models.units import CHANNEL_UNITS
 
 if TYPE_CHECKING:
     from pathlib import Path

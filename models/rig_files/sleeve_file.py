@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from models.bushing import Sleeve, shore_modulus
 from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
-from models.sleeve import Sleeve, shore_modulus
 
 __all__ = ["modulus_of", "read_sleeve"]
 

@@ -1,6 +1,6 @@
 """The temperature's table of a rig or material file, read, checked and written.
 
-Two keys are enough; the others have values that `models.temperature` gives reasons for.
+Two keys are enough; the others have values that `models.bushing` gives reasons for.
 """
 
 from __future__ import annotations
@@ -9,9 +9,10 @@ import math
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
+from models.bushing import TemperatureDependence
 from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
-from models.temperature import ABSOLUTE_ZERO, TemperatureDependence
+from models.units import ABSOLUTE_ZERO
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

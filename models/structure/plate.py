@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from models.radiation.rayleigh import rectangle_integral
 from models.rig import Microphone, Plate
-from models.short_repr import short_repr
+from models.show import short_repr
 from models.structure.modal import ModalModel, add_ringing
 from models.structure.plate_ritz import ritz_modes
 

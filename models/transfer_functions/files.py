@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from models.errors import ParameterError
-from models.foreign_arrays import read_arrays
-from models.foreign_file import LARGEST_TEXT, reading
+from models.foreign_file import LARGEST_TEXT, read_arrays, reading
 from models.transfer_functions.transfer_function import TransferFunction
 from models.transfer_functions.uff import (
     COHERENCE,

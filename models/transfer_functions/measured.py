@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from models.condition import same_support
 from models.errors import ParameterError
 from models.rig_files.rig_plate import HIGHEST_PLATE_FREQUENCY
-from models.short_repr import short_repr
+from models.show import short_repr
 from models.transfer_functions.causal import causal_impulse_response
 from models.transfer_functions.coherence import trusted_band
 from models.units import same_unit

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -151,7 +151,7 @@ class TransferFunction:
         >>> if find_spec("pandas"):
         ...     assert TransferFunction(f, 1j * f).to_pandas()["imag"].tolist() == [1.0, 2.0]
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
 
         columns = {
             "frequency_hz": self.frequencies,

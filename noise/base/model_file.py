@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from models.errors import ParameterError
-from models.foreign_arrays import read_arrays
-from models.foreign_file import ExcessError, parse_json, reading
+from models.foreign_file import ExcessError, parse_json, read_arrays, reading
 from noise.base.atomic import atomic
 
 if TYPE_CHECKING:

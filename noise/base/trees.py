@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from models.compilation import COMPILED, PART
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.base.label_names import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees

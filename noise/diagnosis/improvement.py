@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

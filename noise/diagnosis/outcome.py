@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -145,7 +145,7 @@ class Diagnosis:
         ParameterError
             pandas is not installed.
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
         from noise.diagnosis.outcome_json import as_json
 
         effects = as_json(self)["effects"]

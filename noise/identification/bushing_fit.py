@@ -19,7 +19,7 @@ import numpy as np
 from scipy.ndimage import binary_erosion
 from scipy.optimize import least_squares
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.identification.motion import torque_spectrum
 from sim.bushing import LumpedBushing
 

@@ -27,8 +27,8 @@ from noise.identification.table_rig import identify_from_table
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from models.bushing import TemperatureDependence
     from models.rig import Rig
-    from models.temperature import TemperatureDependence
     from noise.identification.known import Beforehand
     from noise.identification.law_choice import Choice
     from noise.identification.measured import Measurements

@@ -10,7 +10,7 @@ from scipy.fft import irfft, rfft, rfftfreq
 
 from models.condition import KnownCondition
 from models.errors import BushingNoiseError, ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.diagnosis.bench.conditions import speed_words
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 from noise.identification.static_test import static_test

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.ndimage import uniform_filter1d
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL, closed_loop
 
 if TYPE_CHECKING:

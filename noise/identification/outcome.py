@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from models.condition import FIXED
-from models.short_repr import short_repr
+from models.show import short_repr
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -227,7 +227,7 @@ class Identification:
         ParameterError
             pandas is not installed.
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
 
         return data_frame(_NUMBER_COLUMNS, map(_number, self.numbers))
 

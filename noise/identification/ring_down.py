@@ -14,7 +14,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.identification.evidence import Evidence
 
 if TYPE_CHECKING:

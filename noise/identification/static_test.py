@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.identification.evidence import Evidence, elastomer_stiffness
 from noise.identification.ring_down import find_ring_down, ring_evidence
 

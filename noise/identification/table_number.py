@@ -11,7 +11,7 @@ import numpy as np
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.foreign_file import refusing
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.base.tables import read_table
 from noise.identification.quantities import QUANTITIES
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from features.registry import recording_features
 from models.html_table import html_table
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import QuantileForest
 from noise.inference.inputs import (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.base.label_names import LABELS
 from noise.labels.classified import at_a_condition, classified
 from noise.labels.frequencies import segment_frequency
@@ -136,7 +136,7 @@ class Segments(list[Segment]):
         ParameterError
             pandas is not installed.
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
         from noise.labels.labelling import SEGMENT_COLUMNS, segment_cells
 
         return data_frame(SEGMENT_COLUMNS, map(segment_cells, self))

@@ -125,7 +125,7 @@ class LabelTable(list[dict[str, object]]):
         ParameterError
             pandas is not installed.
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
 
         return data_frame(COLUMNS, self)
 

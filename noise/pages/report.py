@@ -16,7 +16,7 @@ import numpy as np
 import soundfile
 
 from models.errors import ParameterError, RecordingError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.audio.sound import resampled
 from noise.base.label_names import LABELS
 from noise.diagnosis.text.words import percent

@@ -14,7 +14,7 @@ import numpy as np
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.pictures.window import oscillates
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.slips import find_slips

@@ -13,9 +13,9 @@ import numpy as np
 
 from features.modal.hammer import Hit
 from models.errors import ParameterError, RecordingError
-from models.foreign_arrays import read_array
-from models.foreign_file import LARGEST_TEXT, reading, refusing
-from models.recording import CHANNEL_UNITS, Channel
+from models.foreign_file import LARGEST_TEXT, read_array, reading, refusing
+from models.recording import Channel
+from models.units import CHANNEL_UNITS
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import MIN_SAMPLES, READERS
 from noise.recordings.formats.sampling import check_rate

@@ -26,7 +26,8 @@ from models.calibration import READING_UNITS
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import LARGEST_JSON, one_line, parse_json, reading
-from models.recording import CHANNEL_UNITS, Channel
+from models.recording import Channel
+from models.units import CHANNEL_UNITS
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.design.environments import DRY
 
 if TYPE_CHECKING:
@@ -179,7 +179,7 @@ class Screening:
         ParameterError
             There is no such table, or pandas is not installed.
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
         from noise.screening.tables.tables import screening_tables
 
         tables = screening_tables(self)

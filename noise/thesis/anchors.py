@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from models.structure.beams import beam_structure, torsional_stiffness
 from noise.thesis.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 from noise.thesis.modes import clamp_on_beams, rigidly_anchored

@@ -16,7 +16,7 @@ from noise.thesis.runs import THESIS, rig_of
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from models.sleeve import Sleeve
+    from models.bushing import Sleeve
 
 __all__ = ["stiffness", "torques"]
 

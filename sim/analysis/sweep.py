@@ -18,7 +18,7 @@ from joblib import Parallel, delayed
 
 from models.errors import ParameterError
 from models.rig import Rig
-from models.short_repr import short_repr
+from models.show import short_repr
 from sim.acquisition import Acquisition, sample
 from sim.analysis.sweep_features import FEATURES, motion_features, plain_features
 from sim.analysis.sweep_systems import packed_systems

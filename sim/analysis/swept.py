@@ -146,7 +146,7 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
         >>> if find_spec("pandas"):
         ...     assert found.to_pandas()["speed_rad_s"].tolist() == [1.0, 5.0]
         """
-        from models.data_frame import data_frame
+        from models.show import data_frame
 
         rows = [
             {

@@ -14,7 +14,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from sim.parameters import resolve
 
 if TYPE_CHECKING:

@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 
 import noise
 from features.modal.modes import Modes
-from models.condition import Condition
 from models.errors import ParameterError
 from models.html_table import MOST_ROWS, html_table
 from models.recording import Channel, Recording
@@ -117,7 +116,15 @@ def stands():
 
 
 DRAWN = (screening, recording, run, swept, segments, label_table, one_effect, frf, modes)
-SHOWN = (*DRAWN, design, stands, sweep, noise.load_classifier, noise.load_inference, inferred)
+SHOWN = (
+    *(made for made in DRAWN if made is not recording),
+    design,
+    stands,
+    sweep,
+    noise.load_classifier,
+    noise.load_inference,
+    inferred,
+)
 
 
 class Outline(HTMLParser):
@@ -166,8 +173,7 @@ def test_rows_of_a_table_are_of_one_width(made):
 
 
 def test_text_of_the_user_is_escaped():
-    hostile = recording(name=HOSTILE, condition=Condition(material=HOSTILE))
-    for shown in (hostile, label_table(), dataclasses.replace(frf(), name=HOSTILE)):
+    for shown in (label_table(), dataclasses.replace(frf(), name=HOSTILE)):
         html = shown._repr_html_()
         assert "<script" not in html
         assert "&lt;script&gt;" in html
@@ -183,7 +189,7 @@ def test_without_axes_a_new_figure_of_pyplot_is_drawn_on_and_settings_stay():
     code = (
         "import sys, numpy as np, noise\n"
         "tone = noise.Recording(np.zeros((1, 480)), 48e3, (noise.Channel('pressure'),))\n"
-        "tone._repr_html_()\n"
+        "repr(tone)\n"
         "assert 'matplotlib' not in sys.modules\n"
         "import matplotlib as mpl\n"
         "before = dict(mpl.rcParams)\n"
@@ -210,7 +216,6 @@ def test_a_recording_draws_its_sound_pressure_unless_told_otherwise():
     with pytest.raises(ParameterError, match="no channel 'force'"):
         recording().plot("force", Figure().subplots())
     empty = Recording(np.zeros((1, 0)), 48e3, (Channel("pressure"),), name="empty.wav")
-    assert "none" in empty._repr_html_()
     with pytest.raises(ParameterError, match=r"'empty\.wav' holds nothing"):
         empty.plot(ax=Figure().subplots())
 

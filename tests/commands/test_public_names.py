@@ -11,7 +11,7 @@ import noise
 
 PUBLIC = [
     (package, name)
-    for package in ("noise", "models", "sim", "features")
+    for package in ("noise", "sim", "features")
     for name in importlib.import_module(package).__all__
 ]
 SECTION = r"^{}\n-+$"

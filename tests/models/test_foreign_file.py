@@ -14,8 +14,15 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError, RecordingError
-from models.foreign_arrays import read_array, read_arrays
-from models.foreign_file import check_plain_file, parse_json, parse_toml, reading, refusing
+from models.foreign_file import (
+    check_plain_file,
+    parse_json,
+    parse_toml,
+    read_array,
+    read_arrays,
+    reading,
+    refusing,
+)
 
 
 def refusal(path, read=read_arrays, what="NPZ file"):

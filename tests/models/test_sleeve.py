@@ -9,9 +9,9 @@ from hypothesis import given, strategies as st
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
+from models.bushing import Sleeve, shore_modulus
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig, load_rig
-from models.sleeve import Sleeve, shore_modulus
 
 RIG = load_material_rig("fluorocarbon")
 FIT = """

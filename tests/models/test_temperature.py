@@ -5,10 +5,10 @@ import math
 import pytest
 from hypothesis import given, strategies as st
 
+from models.bushing import TemperatureDependence
 from models.errors import ParameterError
 from models.rig_files.rig_file import load_material_rig, load_rig, rig_from
 from models.rig_files.rig_text import rig_text
-from models.temperature import TemperatureDependence
 
 GLASS = st.floats(-120.0, 20.0)
 ABOVE = st.floats(0.5, 200.0)

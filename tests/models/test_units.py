@@ -4,8 +4,7 @@ import math
 
 import pytest
 
-from models.recording import CHANNEL_UNITS
-from models.units import SI_UNITS, kind_of_unit, quantity_of_unit, split_unit
+from models.units import CHANNEL_UNITS, SI_UNITS, kind_of_unit, quantity_of_unit, split_unit
 
 G = 9.80665
 

@@ -13,7 +13,8 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
-from models.recording import CHANNEL_UNITS, Channel, Recording
+from models.recording import Channel, Recording
+from models.units import CHANNEL_UNITS
 from noise.recordings import find_recordings, read_recording, write_recording
 from noise.recordings.files import READERS
 

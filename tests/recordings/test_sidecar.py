@@ -9,7 +9,8 @@ from hypothesis import given, strategies as st
 
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
-from models.recording import CHANNEL_UNITS, Channel, Recording
+from models.recording import Channel, Recording
+from models.units import CHANNEL_UNITS
 from noise.recordings.sidecar import (
     Sidecar,
     find_sidecar,

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from models.bushing import TemperatureDependence
 from models.rig import LawSpec
 from models.rig_files.rig_file import load_material_rig
-from models.temperature import TemperatureDependence
 from sim.analysis.critical_speeds import critical_speeds, motion_from_rest
 from sim.analysis.stability import steady_sliding
 from sim.friction import LAWS

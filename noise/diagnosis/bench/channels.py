@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.recording import CHANNEL_UNITS
+from models.units import CHANNEL_UNITS
 from noise.diagnosis.bench.units import factor_words, unit_of
 
 if TYPE_CHECKING:

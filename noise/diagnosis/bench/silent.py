@@ -12,7 +12,7 @@ import math
 from typing import TYPE_CHECKING
 
 from models.condition import known_condition
-from models.recording import CHANNEL_UNITS
+from models.units import CHANNEL_UNITS
 from noise.diagnosis.bench.channels import SWINGING, is_told
 from noise.diagnosis.bench.levels import levels_of
 from noise.diagnosis.bench.units import factor_words, unit_of

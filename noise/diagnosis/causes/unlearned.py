@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from models.recording import CHANNEL_UNITS
+from models.units import CHANNEL_UNITS
 from noise.diagnosis.evidence.bands import USABLE
 from noise.diagnosis.evidence.bench_context import lacking_coherence
 from sim.acquisition import THESIS_CONVERTER, Acquisition

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.base.interval import SURE_90
 from noise.diagnosis.evidence.angle_summary import shaft_speed
 from noise.diagnosis.evidence.contact_summary import slip_starts

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from models.recording import CHANNEL_UNITS
+from models.units import CHANNEL_UNITS
 from noise.diagnosis.preparation.converter_step import converter_step
 from noise.diagnosis.preparation.sensor_noise import LOUDEST, estimated_noise
 from sim.acquisition import Acquisition

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError, ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.base.progress import counted
 from noise.pages.engine.clips import common_gain, make_clips
 from noise.pages.engine.entry import label_counts, labels_sentence

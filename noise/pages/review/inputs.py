@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError, ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.base.readable import readable
 from noise.base.tables import TABLE_ENDINGS, table_columns
 from noise.labels.table import read_label_table

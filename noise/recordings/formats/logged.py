@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import RecordingError
-from models.recording import CHANNEL_UNITS, Channel
-from models.units import kind_of_unit, known_units
+from models.recording import Channel
+from models.units import CHANNEL_UNITS, kind_of_unit, known_units
 from noise.recordings.files import RawSamples
 from noise.recordings.formats.sampling import SAME_RATE
 from noise.recordings.formats.stated_condition import stated_condition

@@ -32,7 +32,7 @@ from models.errors import ParameterError
 from models.foreign_file import refusing
 from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
 from models.rig_files.shipped import material_names
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.design.axis_values import (
     FREQUENCY,
     SPEED,

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.condition import FIXED
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.design.axis_values import SPEED_STEP, axis_words, spread
 from noise.screening.design.design import Swinging, Use
 from noise.screening.design.environments import DRY, environment

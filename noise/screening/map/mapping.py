@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.map.batches import LABELS, Batch
 from noise.screening.map.interpolate import interpolate_levels
 from noise.screening.map.point import REGIMES

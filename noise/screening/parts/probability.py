@@ -19,7 +19,7 @@ import numpy as np
 from scipy.stats import beta, chi2
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.parts.estimate import Estimate
 from noise.screening.parts.sampling import parts, sobol_points
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.stats import uniform
 
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.design.tolerances import Tolerance
 from noise.screening.parts.advice import increase_margin, remove_noise
 from noise.screening.parts.design_variable import DesignVariable

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from models.errors import BushingNoiseError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.design.design import Use
 from noise.screening.design.environments import environment, in_environment
 from noise.screening.map.grid import DEFAULT_SPEEDS

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from models.rig import damping_at
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.design.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.design.tolerances import ABSOLUTE_ZERO, PARAMETERS
 from noise.screening.map.grid import grid_of

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.short_repr import short_repr
+from models.show import short_repr
 from noise.screening.map.batches import LABELS
 from noise.screening.parts.advice_words import advice_words
 from noise.screening.parts.estimate import Estimate

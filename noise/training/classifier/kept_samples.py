@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from models.errors import ParameterError
-from models.foreign_arrays import read_arrays
-from models.foreign_file import reading
+from models.foreign_file import read_arrays, reading
 from noise.base.atomic import atomic
 from noise.batch.identity import program_identity
 from noise.training.classifier.described_samples import Sample

@@ -1,15 +1,16 @@
-"""What ``print`` shows of results: one short line, an array by its shape, a table by its length."""
+"""Results shown: one short line for ``print``, a data frame for a table."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeGuard, TypeVar
 
-if TYPE_CHECKING:
-    import numpy as np
+from models.errors import ParameterError, not_installed
 
-__all__ = ["short_repr", "short_words"]
+if TYPE_CHECKING:  # what shows nothing starts without them
+    import numpy as np
+    from pandas import DataFrame
 
 _Class = TypeVar("_Class", bound=type)
 
@@ -85,3 +86,36 @@ def short_words(value: object) -> str:
 def _is_array(value: object) -> TypeGuard[np.ndarray]:
     """Ask without loading numpy: a module that shows nothing starts without it."""
     return hasattr(value, "shape") and hasattr(value, "dtype") and hasattr(value, "item")
+
+
+def data_frame(columns: Sequence[str], rows: Iterable[Mapping[str, object]]) -> DataFrame:
+    """Return a table as a data frame.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        All columns in their order; keys of a row that are not among them are left out.
+    rows : iterable of mapping
+
+    Returns
+    -------
+    pandas.DataFrame
+        What is not there is NaN among numbers, and None elsewhere.
+
+    Raises
+    ------
+    ParameterError
+        pandas is not installed.
+
+    Examples
+    --------
+    >>> from importlib.util import find_spec
+    >>> rows = [{"file": "run07.wav", "level_db": 81.5}, {"file": "bad.wav"}]
+    >>> if find_spec("pandas"):
+    ...     assert data_frame(["file", "level_db"], rows)["level_db"].mean() == 81.5
+    """
+    try:
+        from pandas import DataFrame
+    except ImportError:
+        raise ParameterError(not_installed("a data frame needs", "pandas", "pandas")) from None
+    return DataFrame([[row.get(column) for column in columns] for row in rows], columns=columns)
