@@ -16,12 +16,15 @@ from models.rig_files.rig_file import load_material_rig
 from noise.audio.files import write_audio
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
 from noise.audio.sound import audible
+from noise.base.lock import locked
 from noise.base.progress import say, track
 from noise.base.tables import write_table
 from noise.classifier import load_classifier
 from noise.demo_hits import write_hits
-from noise.labels.labelling import COLUMNS, label_rows
+from noise.labels.kept_corrections import with_corrections
+from noise.labels.labelling import label_rows
 from noise.labels.segments import file_label, label_recording
+from noise.labels.table import LabelTable
 from noise.pages.report import ReportEntry, write_report
 from noise.recordings import read_recording, write_recording
 from sim.run import simulate
@@ -113,7 +116,8 @@ def run_demo(out: Path, *, seed: int = 0) -> None:
         rows += label_rows(file, recording, segments)
         entries.append(_entry(case, recording, segments, out / "audio" / file))
     write_table(out / "features.csv", ("file", *recording_feature_names(), "error"), feature_rows)
-    write_table(out / "labels.csv", COLUMNS, rows)
+    with locked(out / "labels.csv"):
+        LabelTable(with_corrections(out / "labels.csv", rows)).write(out / "labels.csv")
     write_report(
         out / "report.html",
         entries,

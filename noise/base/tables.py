@@ -3,37 +3,45 @@
 One value is written alike in all formats: nothing where there is none (an undefined number is
 none, too, and an infinite one), texts as `noise.base.readable` shows them, ``true`` and ``false``,
 and numbers with as many digits as give the same number back. In CSV and in a workbook the infinite
-stiffness of a bolted clamp is the word ``fixed``; in CSV a text that a spreadsheet would take for a
-formula (it begins with ``=``, ``+``, ``-``, ``@``, a tab or a carriage return) has an apostrophe
-before it, which reading takes away. A table appears whole or not at all, and a target that cannot
-be written is refused before the work whose result it is to hold.
+stiffness of a bolted clamp is the word ``fixed``. CSV that is written over another keeps its form,
+see `noise.base.csv_table`. A table appears whole or not at all, and a target that cannot be written
+is refused before the work whose result it is to hold.
 """
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import numbers
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from datetime import date, time
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
-from models.foreign_file import LARGEST_TEXT, parse_json, reading
+from models.foreign_file import (
+    LARGEST_TEXT,
+    ExcessError,
+    check_inflation,
+    parse_json,
+    reading,
+)
 from noise.base.atomic import atomic
-from noise.base.csv_text import finite_or_fixed, read_csv, signs_there, write_csv
-from noise.base.excel_csv import PLAIN, excel_signs, separator_of
-from noise.base.parquet import finite, read_parquet, write_parquet
+from noise.base.csv_table import (
+    PLAIN,
+    CsvForm,
+    csv_form,
+    csv_lines,
+    decimal_sign,
+    decoded,
+    finite_or_fixed,
+    write_csv,
+)
 from noise.base.readable import readable
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-    from typing import Any, TextIO
-
-    Cell = bool | int | float | str | None
+Cell = bool | int | float | str | None
 
 __all__ = [
     "TABLE_ENDINGS",
@@ -48,8 +56,21 @@ __all__ = [
 TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
 """Endings of the formats that tables are written in."""
 
+_LIBRARIES = {
+    ".xlsx": ("openpyxl", "excel", "an Excel workbook needs"),
+    ".parquet": ("pyarrow", "parquet", "Parquet needs"),
+}
+_OF_LABELS = "label_source"
+"""Column that label tables have."""
+
 _LONGEST_LINE = 1 << 20
-"""Characters of a line that are looked at for the columns."""
+"""Characters of a line of JSON that are looked at for the columns."""
+
+_FEW_CELLS, _MOST_CELLS = 1_000_000, 20
+"""Cells that a workbook or Parquet file may hold: so many, and so many a byte."""
+
+_MOST_ROWS, _LONGEST_TEXT, _WIDEST = 1_048_576, 32_767, 48
+"""Of a sheet; of a cell; and of a column [characters]."""
 
 
 def table_endings(*more: str) -> str:
@@ -64,21 +85,22 @@ def table_endings(*more: str) -> str:
     return f"{', '.join(first)} or {last}"
 
 
-def check_table_path(path: str | Path | None, excel: str | None = None) -> None:
+def check_table_path(path: str | Path | None, columns: Collection[str] = (_OF_LABELS,)) -> None:
     """Refuse a path that no table can be written to, before the work is done.
 
     Parameters
     ----------
     path : path-like or None
         None is standard output.
-    excel : str, optional
-        Language of the Excel that is to open it, as for `write_table`.
+    columns : collection of str
+        Of the table that will be written.
 
     Raises
     ------
     ParameterError
-        The ending is none of `TABLE_ENDINGS`, the path is a folder, or the library that writes the
-        format is not installed; with `excel`, it is no CSV.
+        The ending is none of `TABLE_ENDINGS`, the path is a folder, the library that writes the
+        format is not installed, or what is there would be lost: a label table under another
+        table, or the other sheets of a workbook.
 
     Examples
     --------
@@ -89,31 +111,35 @@ def check_table_path(path: str | Path | None, excel: str | None = None) -> None:
     if path is None:
         return
     path = Path(path)
+    _check_format(path)
+    if path.suffix.lower() == ".xlsx" and path.is_file() and (others := _sheet_names(path)[1:]):
+        raise ParameterError(
+            f"{path}: has more sheets than that of the table ({', '.join(others)}), which would "
+            "be lost; name another file"
+        )
+    there = table_columns(path) if _OF_LABELS not in columns and path.is_file() else ()
+    if _OF_LABELS in {name.strip().casefold() for name in there}:
+        raise ParameterError(
+            f"{path}: is a label table, in which corrections would be lost; name another file"
+        )
+
+
+def _check_format(path: Path) -> None:
     ending = path.suffix.lower()
     if ending not in TABLE_ENDINGS:
         raise ParameterError(f"{path}: tables end in {table_endings()}")
     if path.is_dir():
         raise ParameterError(f"{path}: is a folder; name a file to write")
-    if excel is not None and ending != ".csv":
-        raise ParameterError(f"{path}: --excel says how a .csv is written; leave it out")
-    if ending == ".xlsx":
-        from noise.base.workbook import check_openpyxl
-
-        check_openpyxl(path)
-    if ending == ".parquet":
+    if ending in _LIBRARIES:
+        package, extra, needs = _LIBRARIES[ending]
         try:
-            import pyarrow as pa  # noqa: F401
+            import_module(package)
         except ImportError:
-            raise ParameterError(
-                not_installed(f"{path}: Parquet needs", "pyarrow", "parquet")
-            ) from None
+            raise ParameterError(not_installed(f"{path}: {needs}", package, extra)) from None
 
 
 def write_table(
-    path: str | Path | None,
-    columns: Sequence[str],
-    rows: Iterable[Mapping[str, object]],
-    excel: str | None = None,
+    path: str | Path | None, columns: Sequence[str], rows: Iterable[Mapping[str, object]]
 ) -> None:
     """Write a table.
 
@@ -125,9 +151,6 @@ def write_table(
         All columns in their order; keys of a row that are not among them are left out.
     rows : iterable of mapping
         Column to value: a number, a text, a truth value or None. A missing column is None.
-    excel : str, optional
-        One of `noise.base.excel_csv.EXCEL_LANGUAGES`: CSV as Excel in that language opens it; by
-        default as the one is written that is there, else plain.
 
     Raises
     ------
@@ -142,55 +165,67 @@ def write_table(
     run07.wav,81.5
     bad.wav,
     """
-    cells = _Cells(rows, columns)
+    ending = "" if path is None else Path(path).suffix.lower()
+    cells = _Cells(rows, columns, (date, time) if ending == ".xlsx" else ())
     columns = [readable(column) for column in columns]
-    signs = PLAIN if excel is None else excel_signs(excel)
     if path is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file for the table")
-        write_csv(sys.stdout, columns, cells, signs)
+        write_csv(sys.stdout, columns, cells)
         sys.stdout.flush()
         return
     path = Path(path)
-    check_table_path(path, excel)
-    ending = path.suffix.lower()
-    if excel is None and ending == ".csv":
-        signs = signs_there(path)
+    check_table_path(path, columns)
+    form = _form_there(path) if ending == ".csv" else PLAIN
     with atomic(path) as temporary:
         if ending == ".parquet":
-            write_parquet(temporary, columns, cells)
+            _write_parquet(temporary, columns, cells)
         elif ending == ".xlsx":
-            from noise.base.workbook import write_workbook
-
-            cells.kept = (date, time)
-            finite = [list(map(finite_or_fixed, columns, row)) for row in cells]
-            write_workbook(temporary, columns, finite, path)
-        else:
+            _write_workbook(temporary, columns, cells, path.stem)
+        elif ending == ".jsonl":
             with temporary.open("w", encoding="utf-8", newline="") as file:
-                if ending == ".csv":
-                    write_csv(file, columns, cells, signs)
-                else:
-                    _write_json_lines(file, columns, cells)
+                for row in cells:
+                    named = dict(zip(columns, map(_finite, row), strict=True))
+                    file.write(json.dumps(named, ensure_ascii=False) + "\n")
+        else:
+            try:
+                _write_csv(temporary, columns, cells, form)
+            except UnicodeEncodeError:  # a name that the code page of the file there has not
+                form = form._replace(encoding="utf-8", head=f"\ufeff{form.head}")
+                _write_csv(temporary, columns, cells, form)
 
 
-def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
+def read_table(
+    path: Path,
+    known: Collection[str] = (),
+    numbers: Collection[str] = (),
+    names: Iterable[str] = (),
+) -> tuple[list[str], list[dict[str, object]]]:
     r"""Read a table as it stands: cells of CSV are text.
 
     Parameters
     ----------
     path : Path
         Format by its ending.
+    known : collection of str
+        Columns whose names are understood in capitals and with spaces about them as well.
+    numbers : collection of str
+        Columns of numbers, whose decimal commas become points.
+    names : iterable of str
+        That are likely in it, such as of recordings, by which code pages are told apart.
 
     Returns
     -------
     columns : list of str
         Those that the file names before its rows, which JSON Lines does not.
     rows : list of dict
+        Without those that are empty.
 
     Raises
     ------
     RecordingError
-        It cannot be read, or is no table.
+        It cannot be read, or is no table; two columns have one name, a cell is in no column, or
+        numbers have points and commas.
     ParameterError
         There is no such file, or the library that reads the format is not installed.
 
@@ -199,26 +234,73 @@ def read_table(path: Path) -> tuple[list[str], list[dict[str, object]]]:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "labels.csv"
-    ...     _ = path.write_text("file,label\nrun07.wav,creak\n")
-    ...     read_table(path)
-    (['file', 'label'], [{'file': 'run07.wav', 'label': 'creak'}])
+    ...     _ = path.write_text("sep=;\nFile;p_creak\nrun07.wav;0,75\n")
+    ...     read_table(path, known=["file"], numbers=["p_creak"])
+    (['file', 'p_creak'], [{'file': 'run07.wav', 'p_creak': '0.75'}])
     """
-    check_table_path(path)
+    _check_format(path)
     if not path.exists():
         raise ParameterError(f"{path}: there is no such file")
-    ending = path.suffix.lower()
+    ending, separator = path.suffix.lower(), ""
     with reading(path, "table", error=RecordingError, largest=LARGEST_TEXT):
-        if ending == ".parquet":
-            return read_parquet(path)
-        if ending == ".xlsx":
-            from noise.base.workbook import read_workbook
-
-            return read_workbook(path)
+        if ending == ".jsonl":
+            with path.open(encoding="utf-8-sig") as file:
+                return [], [parse_json(line) for line in file if line.strip()]
         if ending == ".csv":
-            with path.open(encoding="utf-8", newline="") as file:
-                return read_csv(file)
-        with path.open(encoding="utf-8-sig") as file:
-            return [], [parse_json(line) for line in file if line.strip()]
+            text, encoding = decoded(path.read_bytes(), names)
+            form = csv_form(text, encoding)
+            lines: Iterator[Sequence[object]] = csv_lines(text, form)
+            separator = form.separator
+        else:
+            lines = _parquet_lines(path) if ending == ".parquet" else _sheet_lines(path)
+        meant = {name.casefold(): name for name in known}
+        header = [meant.get(name.strip().casefold(), name) for name in map(_text, next(lines, ()))]
+        return [name for name in header if name], _named(header, lines, numbers, separator)
+
+
+def _named(
+    header: Sequence[str],
+    lines: Iterable[Sequence[object]],
+    numbers: Collection[str],
+    separator: str,
+) -> list[dict[str, object]]:
+    twice = {name for name in header if name and header.count(name) > 1}
+    if twice:
+        raise ExcessError(f"has two columns {min(twice)!r}")
+    at = {name: place for place, name in enumerate(header) if name}
+    unnamed = [place for place, name in enumerate(header) if not name]
+    rows: list[dict[str, object]] = []
+    for line in lines:
+        if all(_text(cell) == "" for cell in line):
+            continue
+        beyond = [*(line[place] for place in unnamed if place < len(line)), *line[len(header) :]]
+        if any(_text(cell) for cell in beyond):
+            cell = next(filter(_text, beyond))
+            raise ExcessError(f"row {len(rows) + 1} has {_text(cell)!r} in a column without a name")
+        rows.append(
+            {name: line[place] if place < len(line) else None for name, place in at.items()}
+        )
+    _read_commas(rows, [name for name in numbers if name in at], separator)
+    return rows
+
+
+def _read_commas(rows: Sequence[dict[str, object]], numbers: Sequence[str], separator: str) -> None:
+    """Write points for the decimal commas of numbers, where they are no thousands."""
+    cells = [(row, name, str(row[name])) for row in rows for name in numbers]
+    signs = {sign: cell for _, _, cell in cells if (sign := decimal_sign(cell.strip()))}
+    if "," not in signs:
+        return
+    parts = (cell.partition(",")[2] for _, _, cell in cells if "," in cell)
+    thousands = separator != ";" and all(len(part.strip()) == 3 for part in parts)
+    if "." in signs or thousands:
+        other = f" and {signs['.']!r}" if "." in signs else ""
+        raise ExcessError(
+            f"has numbers such as {signs[',']!r}{other}, in which a comma may be the decimal sign "
+            "or not; write them with a point"
+        )
+    for row, name, cell in cells:
+        if decimal_sign(cell.strip()):
+            row[name] = cell.strip().replace(",", ".")
 
 
 def table_columns(path: Path) -> set[str]:
@@ -240,16 +322,13 @@ def table_columns(path: Path) -> set[str]:
 
                 return set(parquet.read_schema(path).names)
             if ending == ".xlsx":
-                from noise.base.workbook import read_workbook
-
-                return set(read_workbook(path)[0])
-            # Names of columns can be read though cells may not, such as of Excel without Unicode.
-            with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
-                header = file.readline(_LONGEST_LINE)
+                return set(map(_text, next(_sheet_lines(path), ()))) - {""}
             if ending == ".jsonl":
-                first = parse_json(header or "{}")
+                with path.open(encoding="utf-8-sig") as file:
+                    first = parse_json(file.readline(_LONGEST_LINE) or "{}")
                 return set(first) if isinstance(first, dict) else set()
-            return set(next(csv.reader([header], delimiter=separator_of(header)), ()))
+            text, encoding = decoded(path.read_bytes())
+            return set(next(csv_lines(text, csv_form(text, encoding)), ())) - {""}
     except BushingNoiseError:
         return set()
 
@@ -273,6 +352,24 @@ def plain_cell(value: object) -> Cell:
     return float(value) if isinstance(value, numbers.Real) else str(value)
 
 
+class _Cells:
+    """Rows as they are written, each made when it is its turn; to be gone through again."""
+
+    def __init__(
+        self,
+        rows: Iterable[Mapping[str, object]],
+        columns: Sequence[str],
+        as_it_is: tuple[type, ...] = (),
+    ) -> None:
+        self._rows = list(rows) if isinstance(rows, Iterator) else rows
+        self._columns, self._as_it_is = columns, as_it_is
+
+    def __iter__(self) -> Iterator[list[Any]]:
+        for row in self._rows:
+            cells = map(row.get, self._columns)
+            yield [one if isinstance(one, self._as_it_is) else _cell(one) for one in cells]
+
+
 def _cell(value: object) -> Cell:
     plain = plain_cell(value)
     if isinstance(plain, str):  # such as a name, which may hold what no UTF-8 can
@@ -280,22 +377,126 @@ def _cell(value: object) -> Cell:
     return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
-class _Cells:
-    """Rows as they are written, each made when it is its turn; to be gone through again."""
-
-    kept: tuple[type, ...] = ()  # what is written as it is
-
-    def __init__(self, rows: Iterable[Mapping[str, object]], columns: Sequence[str]) -> None:
-        self._rows = list(rows) if isinstance(rows, Iterator) else rows
-        self._columns = columns
-
-    def __iter__(self) -> Iterator[list[Any]]:
-        for row in self._rows:
-            cells = map(row.get, self._columns)
-            yield [one if isinstance(one, self.kept) else _cell(one) for one in cells]
+def _finite(value: Cell) -> Cell:
+    """Return a value as programs read it: an infinite number is none."""
+    return None if isinstance(value, float) and math.isinf(value) else value
 
 
-def _write_json_lines(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    for row in rows:
-        line = json.dumps(dict(zip(columns, map(finite, row), strict=True)), ensure_ascii=False)
-        file.write(line + "\n")
+def _text(cell: object) -> str:
+    return "" if cell is None else str(cell).strip()
+
+
+def _form_there(path: Path) -> CsvForm:
+    """Return the form of the table that is written over; that of programs where it is none."""
+    try:
+        with reading(path, "table", largest=LARGEST_TEXT):
+            return csv_form(*decoded(path.read_bytes()))
+    except BushingNoiseError:
+        return PLAIN
+
+
+def _write_csv(
+    path: Path, columns: Sequence[str], cells: Iterable[Sequence[Cell]], form: CsvForm
+) -> None:
+    with path.open("w", encoding=form.encoding, newline="") as file:
+        write_csv(file, columns, cells, form)
+
+
+def _parquet_lines(path: Path) -> Iterator[Sequence[object]]:
+    from pyarrow import parquet
+
+    with parquet.ParquetFile(path) as file:
+        _check_size(path, file.metadata.num_rows * file.metadata.num_columns)
+        table = file.read()
+    yield table.column_names
+    yield from zip(*(column.to_pylist() for column in table.columns), strict=True)
+
+
+def _write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    cells = [list(map(_finite, row)) for row in rows]
+    arrays = {}
+    for place, column in enumerate(columns):
+        values = [row[place] for row in cells]
+        try:
+            arrays[column] = pa.array(values)
+        except (pa.ArrowInvalid, pa.ArrowTypeError):  # texts and numbers in one column
+            arrays[column] = pa.array([None if one is None else str(one) for one in values])
+    parquet.write_table(pa.table(arrays), path)
+
+
+def _sheet_names(path: Path) -> list[str]:
+    from openpyxl import load_workbook
+
+    try:
+        with reading(path, "workbook"), path.open("rb") as file:
+            check_inflation(path)
+            return list(load_workbook(file, read_only=True).sheetnames)
+    except BushingNoiseError:  # whoever reads it says so
+        return []
+
+
+def _sheet_lines(path: Path) -> Iterator[Sequence[object]]:
+    """Yield the rows of the first sheet, from the first that is no comment."""
+    from openpyxl import load_workbook
+
+    check_inflation(path)
+    with path.open("rb") as file:
+        book = load_workbook(file, read_only=True, data_only=True)
+        cells, begun = 0, False
+        for line in book.worksheets[0].iter_rows(max_row=_MOST_ROWS, values_only=True):
+            cells += 1 + len(line)  # a sheet may claim to hold any number
+            _check_size(path, cells)
+            first = next(filter(None, map(_text, line)), "")
+            begun = begun or (bool(first) and not first.startswith("#"))
+            if begun:
+                yield line
+
+
+def _write_workbook(
+    path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]], name: str
+) -> None:
+    """Write one sheet: its header frozen, numbers as numbers, no text ever a formula."""
+    from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.styles import Font
+    from openpyxl.utils import get_column_letter
+
+    lines = [list(map(finite_or_fixed, columns, row)) for row in rows]
+    if len(lines) >= _MOST_ROWS:
+        raise ParameterError(
+            f"{len(lines)} rows are more than an Excel sheet has ({_MOST_ROWS}); name a .csv or "
+            ".parquet"
+        )
+    book = Workbook(write_only=True)
+    title = "".join("_" if letter in r"[]:*?/\'" else letter for letter in readable(name))[:31]
+    sheet = book.create_sheet(title or "table")
+    sheet.freeze_panes = "A2"
+    for place, column in enumerate(columns):
+        longest = max(len(str(cell)) for cell in (column, *(line[place] for line in lines[:200])))
+        width = min(longest, _WIDEST) + 2
+        sheet.column_dimensions[get_column_letter(place + 1)].width = width
+
+    def cell(value: Cell, *, bold: bool = False) -> Any:
+        of_text: Any = WriteOnlyCell(sheet)
+        of_text.value = value[:_LONGEST_TEXT] if isinstance(value, str) else value
+        if isinstance(value, str):
+            of_text.data_type = "s"  # what begins like a formula is none
+        if bold:
+            of_text.font = Font(bold=True)
+        return of_text
+
+    sheet.append([cell(column, bold=True) for column in columns])
+    for line in lines:
+        sheet.append([cell(value) if isinstance(value, str) else value for value in line])
+    if columns:
+        sheet.auto_filter.ref = f"A1:{get_column_letter(len(columns))}{len(lines) + 1}"
+    book.properties.creator = "bushing-noise"
+    book.save(path)
+
+
+def _check_size(path: Path, n_cells: int) -> None:
+    if n_cells > _FEW_CELLS + _MOST_CELLS * path.stat().st_size:
+        raise ExcessError(f"claims {n_cells} cells, more than a file of its size holds")

@@ -17,7 +17,7 @@ from noise.base.atomic import check_target
 from noise.base.lock import locked
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands.options import MOST_WORKERS, add_excel, refuse, whole_number
+from noise.commands.options import MOST_WORKERS, refuse, whole_number
 
 if TYPE_CHECKING:
     from argparse import ArgumentParser, Namespace
@@ -55,7 +55,6 @@ def add_batch(parser: ArgumentParser) -> None:
         action="store_true",
         help="do all recordings again, whatever earlier calls with the same --out did",
     )
-    add_excel(parser)
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
@@ -74,7 +73,7 @@ def add_batch(parser: ArgumentParser) -> None:
 
 def check_batch(options: Namespace) -> None:
     """Refuse what could not be done, before anything is read."""
-    check_table_path(options.out, options.excel)
+    check_table_path(options.out)
     if options.out is not None:
         check_target(options.out)
     if options.scheduler is not None:
@@ -120,6 +119,7 @@ def run_batch(
     out = options.out
     # Nobody reads a table of forty columns on a terminal; whoever wants it pipes or names it.
     to_read = out is None and lines is not None and sys.stdout is not None and sys.stdout.isatty()
+    check_table_path(out, work.columns)
     work.prepare()
     outcomes: list[Done | None] = [None] * len(jobs)
     stopped = 0
@@ -212,7 +212,7 @@ def _write(
         if table:
             kept = () if rows is made else (name for row in rows for name in row)
             columns = tuple(dict.fromkeys((*columns, *kept)))
-            write_table(out, columns, rows, options.excel)
+            write_table(out, columns, rows)
     return rows, [*([] if out is None else [out]), *also(rows)]
 
 

@@ -107,7 +107,6 @@ def configure(parser: ArgumentParser) -> None:
         help="tell the bands in which the coherence is lower than this (default: "
         f"{_DEFAULT_COHERENCE:g})",
     )
-    opt.add_excel(parser)
     opt.add_seed(parser, "accepted as by every command; nothing here is random")
 
 
@@ -153,7 +152,7 @@ def _check(options: Namespace) -> None:
         check_transfer_function_path(options.out)
         check_target(options.out)
     if options.modes is not None:
-        check_table_path(options.modes, options.excel)
+        check_table_path(options.modes)
         check_target(options.modes)
     elif options.band is not None:
         raise ParameterError("--band is given without --modes, for which it is")
@@ -222,7 +221,7 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
             write_transfer_function(outputs.enter_context(atomic(options.out)), transfer)
         if modes is not None:
             table = outputs.enter_context(atomic(options.modes))
-            write_table(table, _MODE_COLUMNS, _mode_rows(modes, transfer), options.excel)
+            write_table(table, _MODE_COLUMNS, _mode_rows(modes, transfer))
     if options.out is None and options.modes is None:
         if sys.stdout is None:
             raise ParameterError("standard output is closed; name a file with --out")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from models.errors import ParameterError
 from noise.base.atomic import check_target
 from noise.base.exports import export_paths
+from noise.base.lock import locked
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
 from noise.commands import options as opt
@@ -108,7 +109,8 @@ def run(options: Namespace) -> int:
     from noise.labels.label_display import result_lines
     from noise.labels.labelling import Labelling
 
-    with_corrections(options.out, [])  # or its corrections could not be kept after all the work
+    # Or its corrections could not be kept after all the work.
+    with_corrections(options.out, [], [job.name for job in jobs])
 
     def keep(out: Path | None, rows: Iterable[dict[str, object]]) -> list[dict[str, object]]:
         return with_corrections(out, list(rows))
@@ -195,6 +197,7 @@ def _check_exports(options: Namespace) -> None:
 
 def _from_tables(options: Namespace) -> int:
     """Join label tables, and write what was asked for."""
+    from noise.labels.kept_corrections import with_corrections
     from noise.labels.labelling import COLUMNS
     from noise.labels.table import own_columns, read_label_table
 
@@ -206,7 +209,10 @@ def _from_tables(options: Namespace) -> int:
         raise ParameterError("--plot draws recordings; name them in place of the table")
     rows = [row for path in options.paths for row in read_label_table(path)]
     if options.out is not None:
-        write_table(options.out, (*COLUMNS, *own_columns(rows)), rows, options.excel)
+        with locked(options.out):
+            if options.out.absolute() not in [path.absolute() for path in options.paths]:
+                rows = with_corrections(options.out, rows)
+            write_table(options.out, (*COLUMNS, *own_columns(rows)), rows)
         print(options.out)
     for path in _export(options, rows):
         print(path)
@@ -234,6 +240,6 @@ def _export(options: Namespace, rows: list[dict[str, object]]) -> list[Path]:
         title = f"Labels by condition: {counted(number, 'recording')}"
         write_picture(options.map, plot_conditions(places, title=title))
         table = options.map.with_suffix(".csv")
-        write_table(table, MAP_COLUMNS, map_rows(places), options.excel)
+        write_table(table, MAP_COLUMNS, map_rows(places))
         written += [options.map, table]
     return written

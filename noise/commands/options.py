@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from noise.recordings.meaning import PascalPerFullScale
 
 __all__ = [
-    "add_calibration", "add_change", "add_excel", "add_seed", "band", "changed", "check_folder",
+    "add_calibration", "add_change", "add_seed", "band", "changed", "check_folder",
     "full_scale_of", "number", "number_or_none", "refuse", "whole_number",
 ]  # fmt: skip
 
@@ -133,24 +133,6 @@ def add_seed(parser: ArgumentParser, use: str) -> None:
         default=0,
         metavar="N",
         help=f"{use} (a whole number; default: 0)",
-    )
-
-
-def add_excel(parser: ArgumentParser) -> None:
-    """Add ``--excel``, for every command that writes a table."""
-    from noise.base.excel_csv import EXCEL_LANGUAGES
-
-    parser.add_argument(
-        "--excel",
-        type=str.lower,
-        choices=EXCEL_LANGUAGES,
-        nargs="?",
-        const="system",
-        metavar="LANGUAGE",
-        help="write .csv as Excel in a language opens it at a double click, with a byte-order "
-        "mark: de has a semicolon between cells and a decimal comma, en comma and point, de-ch "
-        "semicolon and point; without a LANGUAGE, or with system, what this computer is set to "
-        "(default: as the .csv is written that is there, else plain; .xlsx needs none of this)",
     )
 
 

@@ -138,7 +138,6 @@ def configure(parser: ArgumentParser) -> None:
         help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
         "needs the extra sound-quality, and some seconds a second of sound; 10 minutes at most",
     )
-    opt.add_excel(parser)
     opt.add_calibration(parser)
     add_condition(parser)
     opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
@@ -300,7 +299,6 @@ def _rendered(
             folder / "levels.csv",
             ("file", *COLUMNS, "filter", "note", "error"),
             rows,
-            options.excel,
         )
         print(folder / "levels.csv")
     return 1 if refused else 0

@@ -134,7 +134,6 @@ def configure(parser: ArgumentParser) -> None:
     shared.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
     )
-    opt.add_excel(parser)
     opt.add_seed(parser, "of the parts within tolerances")
 
 
@@ -247,7 +246,7 @@ def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
     written: list[Path] = []
     tell("drawing the maps")
     for name, (columns, rows) in screening_tables(found).items():
-        write_table(folder / name, columns, rows, options.excel)
+        write_table(folder / name, columns, rows)
         written.append(folder / name)
     for name, path in found.files:
         try:

@@ -83,7 +83,6 @@ def configure(parser: ArgumentParser) -> None:
         "the same; of runs from "
         f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s",
     )
-    opt.add_excel(parser)
     opt.add_seed(parser, "seed of the sensors' noise")
 
 
@@ -94,7 +93,7 @@ def run(options: Namespace) -> int:
     if options.plot is not None:
         _check_plot(options.plot)
     if options.sound_power is not None:
-        check_table_path(options.sound_power, options.excel)
+        check_table_path(options.sound_power)
         check_target(options.sound_power, "--sound-power")
     for option in ("plot", "sound_power"):
         if getattr(options, option) is not None:
@@ -123,7 +122,7 @@ def run(options: Namespace) -> int:
         write_picture(options.plot, plot_run(simulated))
         print(options.plot)
     if options.sound_power is not None:
-        _write_sound_power(options.sound_power, simulated, arguments, options.excel)
+        _write_sound_power(options.sound_power, simulated, arguments)
         print(options.sound_power)
     return 0
 
@@ -178,9 +177,7 @@ def _write_in_blocks(path: Path, arguments: Mapping[str, Any], notes: tuple[str,
     return 0
 
 
-def _write_sound_power(
-    path: Path, simulated: Run, arguments: Mapping[str, Any], excel: str | None
-) -> None:
+def _write_sound_power(path: Path, simulated: Run, arguments: Mapping[str, Any]) -> None:
     """Write the table, and tell its last row."""
     from noise.audio.sound_power_table import COLUMNS, sound_power_rows
     from sim.analysis.sound_power import motion_sound_power
@@ -193,7 +190,7 @@ def _write_sound_power(
         arguments["rig"], simulated.motion, **{name: arguments[name] for name in given}
     )
     rows = sound_power_rows(power)
-    write_table(path, COLUMNS, rows, excel)
+    write_table(path, COLUMNS, rows)
     total = rows[-1]["power_level_dba"]
     if total is None:
         say("the plate radiates no sound")

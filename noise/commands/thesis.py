@@ -42,7 +42,6 @@ def configure(parser: ArgumentParser) -> None:
         "(3.3, 5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, B1, C1, G3, H1), and torque and frequency "
         "against speed for each fit, speeds-0.279mm.png and so on; their names are printed",
     )
-    opt.add_excel(parser)
     opt.add_seed(parser, "accepted as by every command; nothing here is random")
 
 
@@ -51,16 +50,16 @@ def run(options: Namespace) -> int:
     if options.plots is not None:
         opt.check_folder(options.plots, "--plots", file="figure-5.3.png")
     if options.out is not None or options.plots is None:
-        _write_table(options.out, options.excel)
+        _write_table(options.out)
     if options.plots is not None:
         _draw(options.plots)
     return 0
 
 
-def _write_table(out: Path | None, excel: str | None) -> None:
+def _write_table(out: Path | None) -> None:
     """Compute, write, and tell how many rows hold."""
     is_page = out is not None and out.suffix.lower() == _PAGE_ENDING
-    _check(out, excel, is_page=is_page)
+    _check(out, is_page=is_page)
     say("preparing")
     from noise.thesis.page import thesis_page, verdict_counts
     from noise.thesis.row import COLUMNS
@@ -72,7 +71,7 @@ def _write_table(out: Path | None, excel: str | None) -> None:
         with atomic(out) as temporary:
             temporary.write_text(thesis_page(rows), encoding="utf-8", newline="\n")
     else:
-        write_table(out, COLUMNS, (row.cells() for row in rows), excel)
+        write_table(out, COLUMNS, (row.cells() for row in rows))
     counts = ", ".join(f"{word} {count}" for word, count in verdict_counts(rows).items())
     say(f"{len(rows)} rows: {counts}")
     say(constant_note())
@@ -91,7 +90,7 @@ def _draw(folder: Path) -> None:
         print(path)
 
 
-def _check(out: Path | None, excel: str | None, *, is_page: bool) -> None:
+def _check(out: Path | None, *, is_page: bool) -> None:
     """Refuse a file that the table cannot be written to."""
     if out is None:
         return
@@ -101,5 +100,5 @@ def _check(out: Path | None, excel: str | None, *, is_page: bool) -> None:
     elif out.suffix.lower() not in TABLE_ENDINGS:
         raise ParameterError(f"{out}: this table ends in {table_endings(_PAGE_ENDING)}")
     else:
-        check_table_path(out, excel)
+        check_table_path(out)
     check_target(out)

@@ -89,7 +89,8 @@ def label(
     jobs = find_jobs([Path(path) for path in given])
     work = Labelling(_absolute(classifier), _absolute(inference), full_scale, loudness=loudness)
     work.prepare()
-    with_corrections(None if out is None else Path(out), [])  # refused before the work
+    # Refused before the work.
+    with_corrections(None if out is None else Path(out), [], [job.name for job in jobs])
     kept = nullcontext() if out is None else open_journal(Path(out), work, fresh=fresh)
     with kept as journal:
         outcomes = {} if journal is None else journal.known(jobs)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError, RecordingError
 from noise.base.label_names import LABELS
-from noise.base.tables import table_columns
+from noise.base.readable import readable
 from noise.labels.row_places import WHOLE, common_time, place, track
-from noise.labels.table import HUMAN, NEEDED, own_columns, read_label_table
+from noise.labels.table import HUMAN, own_columns, read_label_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 __all__ = ["with_corrected_rows", "with_corrections"]
 
 
-def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[dict[str, object]]:
+def with_corrections(
+    path: Path | None, rows: list[dict[str, object]], names: Iterable[str] = ()
+) -> list[dict[str, object]]:
     """Return new rows of a table, with those recordings as they were that somebody has corrected.
 
     Parameters
@@ -29,6 +31,8 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
         The label table that the rows are for; there need be none yet.
     rows : list of dict
         By `COLUMNS`.
+    names : iterable of str
+        Recordings that rows will be of, where there are none yet.
 
     Returns
     -------
@@ -42,8 +46,8 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
     Raises
     ------
     ParameterError
-        What is there has the columns of a label table, and cannot be read as one or has a row that
-        cannot be used.
+        What is there cannot be read as a label table or has a row that cannot be used, so that it
+        must not be written over.
 
     Examples
     --------
@@ -57,18 +61,33 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
     ...     with_corrections(Path(folder) / "labels.csv", new)[0]["label"]
     'squeal'
     """
-    if path is None or not path.exists():
+    if path is None or not path.exists() or not path.stat().st_size:
         return rows
+    known = {readable(str(name)) for name in (*names, *(row.get("file") for row in rows))}
     try:
-        before = read_label_table(path)
+        before = read_label_table(path, names=known)
     except RecordingError as error:
-        if table_columns(path) >= set(NEEDED):
-            raise ParameterError(
-                f"{error}; what was corrected in it would be lost: mend it, move it away, or name "
-                "another table"
-            ) from None
-        return rows
+        raise ParameterError(
+            f"{error}; what was corrected in it would be lost: mend it, move it away, or name "
+            "another table"
+        ) from None
+    _check_names(path, before, known)
     return with_corrected_rows(before, rows)
+
+
+def _check_names(path: Path, before: Iterable[dict[str, object]], known: set[str]) -> None:
+    """Refuse corrections of recordings whose names were saved in letters that say others."""
+    plain = {_ascii(name): name for name in known if not name.isascii()}
+    for name in {str(row["file"]) for row in before if _is_by_a_person(row)} - known:
+        if not name.isascii() and _ascii(name) in plain:
+            raise ParameterError(
+                f"{path}: has {name!r}, by which {plain[_ascii(name)]!r} may be meant, so that "
+                "what was corrected would be lost: save it as UTF-8, or name another table"
+            )
+
+
+def _ascii(name: str) -> str:
+    return name.encode("ascii", "ignore").decode()
 
 
 def with_corrected_rows(
@@ -104,8 +123,8 @@ def with_corrected_rows(
             kept.setdefault(_track(row), []).append(row)
     merged: list[dict[str, object]] = []
     for row in rows:
-        # What is said of all of a file is said of each track.
-        at, whole = _track(row), (row.get("file"), WHOLE)
+        at = _track(row)  # what is said of all of a file is said of each track
+        whole = at[0], WHOLE
         if at in corrected or whole in corrected:
             merged += kept.pop(at if at in corrected else whole, [])
         else:
@@ -114,7 +133,7 @@ def with_corrected_rows(
 
 
 def _track(row: Mapping[str, object]) -> tuple[object, object]:
-    return row.get("file"), track(row)
+    return readable(str(row.get("file"))), track(row)
 
 
 def _is_by_a_person(row: Mapping[str, object]) -> bool:

@@ -35,15 +35,20 @@ __all__ = [
     "read_label_table",
 ]
 
-HUMAN = "human"
-"""The `label_source` of what somebody has said."""
+HUMAN, CLASSIFIER = "human", "classifier"
+"""The `label_source` of what somebody has said, and of all else."""
 
 _TEXTS = {
     "file", "channel", "label", "material", "note", "error",
     *(column for column in COLUMNS if column.endswith("_source")),
 }  # fmt: skip
+_NUMBERS = [column for column in COLUMNS if column not in {*_TEXTS, "calibrated"}]
 NEEDED = ("file", "label")
 """Columns without which a table is none of labels."""
+
+_TRUE = {"true", "1", "1.0", "wahr", "vrai", "verdadero", "verdadeiro", "vero", "waar", "prawda"}
+_FALSE = {"false", "0", "0.0", "falsch", "faux", "falso", "onwaar", "fałsz"}
+"""As spreadsheets in the languages of Europe write them, in capitals."""
 
 _LARGEST = 1e12  # number in a cell, of any unit
 _SUPPORT = "support_stiffness_Nm_rad"
@@ -152,7 +157,9 @@ def own_columns(rows: Iterable[Mapping[str, object]]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for row in rows for name in row if name not in COLUMNS))
 
 
-def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict[str, object]]:
+def read_label_table(
+    path: Path, refusals: list[str] | None = None, names: Iterable[str] = ()
+) -> list[dict[str, object]]:
     r"""Read a label table.
 
     Parameters
@@ -162,6 +169,8 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     refusals : list of str, optional
         Takes one line for each row that cannot be used, which is left out; without it, such a row
         is an error.
+    names : iterable of str
+        Recordings that are likely in it, by which code pages are told apart.
 
     Returns
     -------
@@ -187,9 +196,9 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     >>> row["label"], row["speed_rad_s"], row["material"]
     ('creak', 5.0, None)
     """
-    columns, rows = read_table(path)
+    columns, rows = read_table(path, known=COLUMNS, numbers=_NUMBERS, names=names)
     missing = [column for column in NEEDED if column not in columns]
-    if missing and path.suffix.lower() == ".csv":
+    if missing and path.suffix.lower() != ".jsonl":
         raise RecordingError(f"{path}: has no column {missing[0]!r}, so is no label table")
     checked = []
     for number, row in enumerate(rows, 1):
@@ -227,11 +236,22 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
     value = row.get(column)
     if value is None or value == "":
         return None
-    if column in _TEXTS:
+    if column == "file":
         return str(value)
+    if isinstance(value, float) and value.is_integer():  # a track, as some spreadsheets have it
+        value = int(value)
+    text = str(value).strip()
+    if column == "label_source":  # whoever signs with a name is somebody
+        return text.lower() if text.lower() == CLASSIFIER else HUMAN
+    if column == "label":
+        return text.lower() or None
+    if column in _TEXTS:
+        return text or None
     if column == "calibrated":
-        return str(value).lower() == "true"  # Excel writes it in capitals
-    if value in ("fixed", math.inf) and column.startswith(_SUPPORT):
+        if text.lower() not in _TRUE | _FALSE:
+            raise RecordingError(f"{where} has {column} {text!r}, expected true or false")
+        return text.lower() in _TRUE
+    if text in ("fixed", "inf") and column.startswith(_SUPPORT):
         return math.inf
     return cell_number(row, column, where)
 

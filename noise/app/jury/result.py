@@ -10,7 +10,7 @@ import numpy as np
 
 from noise.app.jury.consistency import consistency
 from noise.app.jury.scale import scale
-from noise.base.csv_text import write_csv
+from noise.base.csv_table import write_csv
 
 if TYPE_CHECKING:
     from noise.app.jury.store import Jury

@@ -108,7 +108,9 @@ def test_columns_of_ones_own_stay(votes):
 def test_votes_are_written_as_excel_opens_the_table(votes):
     votes.vote(1, 0, "first", 1.5)
     rows = read_table(votes.path)[1]
-    write_table(votes.path, (*COLUMNS, "own"), [row | {"own": -2.5} for row in rows], "de")
+    votes.path.write_bytes("\ufefffile;x\r\n1;0,5\r\n".encode())
+    rows = [row | {"own": -2.5, "seconds": float(row["seconds"] or 0)} for row in rows]
+    write_table(votes.path, (*COLUMNS, "own"), rows)
     before = votes.path.read_text(encoding="utf-8").splitlines()
     votes.vote(1, 1, "equal", 3.25)
     after = votes.path.read_text(encoding="utf-8").splitlines()
