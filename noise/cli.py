@@ -18,11 +18,12 @@ import sys
 import traceback
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from models.errors import BushingNoiseError, RecordingError
 from noise.base.progress import discard, note, say
 from noise.commands import COMMANDS, load_command
+from noise.commands.options import add_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -146,17 +147,7 @@ def _failed(message: str, code: int = _USAGE_ERROR) -> int:
     return code
 
 
-def _path(text: str) -> Path:
-    if not text:
-        raise argparse.ArgumentTypeError("is '', expected a path ('.' is the current folder)")
-    return Path(text)
-
-
 class _Parser(argparse.ArgumentParser):
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self.register("type", Path, _path)
-
     def error(self, message: str) -> NoReturn:
         """Tell an error of the call in one line."""
         _failed(f"{_plain(message)} (see {self.prog} --help)")
@@ -196,10 +187,13 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         dest="command", metavar="COMMAND", required=True, title="commands"
     )
-    for name, entry in COMMANDS.items():
-        command = commands.add_parser(name, help=entry.line, allow_abbrev=False)
+    for name, line in COMMANDS.items():
+        command = commands.add_parser(name, help=line, allow_abbrev=False)
         if name in arguments:
-            load_command(name).configure(command)
+            module = load_command(name)
+            command.description = module.DESCRIPTION
+            command.epilog = getattr(module, "EPILOG", None)
+            add_options(command, module.OPTIONS)
     return parser
 
 

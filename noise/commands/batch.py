@@ -17,58 +17,43 @@ from noise.base.atomic import check_target
 from noise.base.lock import locked
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands.options import MOST_WORKERS, refuse, whole_number
+from noise.commands.options import MOST_WORKERS, OneOf, Option, refuse, whole_number
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
     from noise.batch import Done, Job, Journal, Work
 
     Rows = Collection[dict[str, object]]
 
-__all__ = ["add_batch", "check_batch", "run_batch"]
 
 _INTERRUPTED = 130  # 128 + SIGINT
 _TERMINATED = 143  # 128 + SIGTERM
 
 
-def add_batch(parser: ArgumentParser) -> None:
-    """Add the recordings, the table, and who does the work."""
-    parser.add_argument(
-        "paths",
-        nargs="+",
-        type=Path,
-        metavar="PATH",
-        help="recording, or folder that is searched for recordings at any depth",
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="TABLE",
-        help=f"file for the table: {table_endings()} (default: CSV on standard output). The "
+BATCH = (
+    Option("paths PATH", Path, count="+").help(
+        "recording, or folder that is searched for recordings at any depth"
+    ),
+    Option("--out TABLE", Path).help(
+        f"file for the table: {table_endings()} (default: CSV on standard output). The "
         "same call again goes on where the last one ended, and later does only what is new, "
-        "changed or was refused",
-    )
-    parser.add_argument(
-        "--fresh",
-        action="store_true",
-        help="do all recordings again, whatever earlier calls with the same --out did",
-    )
-    where = parser.add_mutually_exclusive_group()
-    where.add_argument(
-        "--workers",
-        type=whole_number(1, most=MOST_WORKERS),
-        default=1,
-        metavar="N",
-        help="processes that share the work (default: 1); the table is the same",
-    )
-    where.add_argument(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="Dask cluster that does the work, such as tcp://10.0.0.1:8786; its machines read the "
-        "recordings under the same paths and have the same bushing-noise installed",
-    )
+        "changed or was refused"
+    ),
+    Option("--fresh").help(
+        "do all recordings again, whatever earlier calls with the same --out did"
+    ),
+    OneOf(
+        Option("--workers N", whole_number(1, most=MOST_WORKERS), 1).help(
+            "processes that share the work (default: 1); the table is the same"
+        ),
+        Option("--scheduler ADDRESS", str).help(
+            "Dask cluster that does the work, such as tcp://10.0.0.1:8786; its machines read the "
+            "recordings under the same paths and have the same bushing-noise installed"
+        ),
+    ),
+)
 
 
 def check_batch(options: Namespace) -> None:

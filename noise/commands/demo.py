@@ -6,37 +6,31 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import say
-from noise.commands import options as opt
+from noise.commands.options import Option, check_folder, seed
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
 
-__all__ = ["configure", "run"]
 
 _DEFAULT_OUT = "bushing-noise-demo"
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Run the whole chain: simulate a creak, a squawk, a squeal and a silent run, make them "
-        "audible, compute their features, label them, and write a report. The folder then holds "
-        "recordings/, audio/, features.csv, labels.csv, report.html, and hits/, blows of a hammer "
-        "on the modelled clamp for `bushing-noise frf`."
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=Path(_DEFAULT_OUT),
-        metavar="FOLDER",
-        help=f"folder for the results (default: {_DEFAULT_OUT})",
-    )
-    opt.add_seed(parser, "seed of the sensors' noise")
+DESCRIPTION = (
+    "Run the whole chain: simulate a creak, a squawk, a squeal and a silent run, make them "
+    "audible, compute their features, label them, and write a report. The folder then holds "
+    "recordings/, audio/, features.csv, labels.csv, report.html, and hits/, blows of a hammer "
+    "on the modelled clamp for `bushing-noise frf`."
+)
+
+OPTIONS = (
+    Option("--out FOLDER", Path, Path(_DEFAULT_OUT)).help("folder for the results"),
+    seed("seed of the sensors' noise"),
+)
 
 
 def run(options: Namespace) -> int:
     """Run the demonstration."""
-    opt.check_folder(options.out)
+    check_folder(options.out)
     say(f"writing the demonstration into {options.out}")
     from noise.demo import run_demo
 

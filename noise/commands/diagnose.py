@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from noise.base.progress import note, say, steps
-from noise.commands import options as opt
+from noise.commands.options import CHANGE, Option, changed, check_folder, seed
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
     from collections.abc import Mapping
     from contextlib import AbstractContextManager
 
@@ -20,55 +20,42 @@ if TYPE_CHECKING:
     from noise.diagnosis.outcome import Diagnosis
     from sim.effects.effect import Effect
 
-__all__ = ["configure", "run"]
 
 _QUICK_STEPS, _STEPS = 5, 12
 """That a diagnosis takes, without fits and with those of some five hypotheses."""
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Compare recordings of a rig with the simulator: where the simulation goes wrong, which "
-        "effect that it lacks is the cause, how sure that is, how far the gap closes when the "
-        "effect is put in, and what to measure next. Recordings need a sidecar with speed, "
-        "interference and support stiffness; with torque, acceleration, sound and angle the answer "
-        "is surest, with fewer it still comes and says what is missing. Conditions recorded twice "
-        "tell how much repeats differ."
-    )
-    parser.epilog = "example: bushing-noise diagnose recordings --rig rig.toml --out diagnosis"
-    parser.add_argument(
-        "data", type=Path, nargs="+", metavar="DATA", help="recordings, or folders of them"
-    )
-    parser.add_argument(
-        "--rig",
-        type=Path,
-        required=True,
-        metavar="RIG.toml",
-        help="what is known of the rig, or the name of a material",
-    )
-    opt.add_change(parser)
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="FOLDER",
-        help="folder for report.html, diagnosis.json and, where the gap closes, improved.toml, the "
-        "rig file with what closes it (default: JSON on standard output)",
-    )
-    parser.add_argument(
-        "--effects",
-        type=Path,
-        metavar="FILE.py",
-        help="effects of your own, fitted beside the probable ones",
-    )
-    parser.add_argument("--quick", action="store_true", help="the first answer alone, without fits")
-    opt.add_seed(parser, "of simulated repeats and bootstraps")
+DESCRIPTION = (
+    "Compare recordings of a rig with the simulator: where the simulation goes wrong, which "
+    "effect that it lacks is the cause, how sure that is, how far the gap closes when the "
+    "effect is put in, and what to measure next. Recordings need a sidecar with speed, "
+    "interference and support stiffness; with torque, acceleration, sound and angle the answer "
+    "is surest, with fewer it still comes and says what is missing. Conditions recorded twice "
+    "tell how much repeats differ."
+)
+
+EPILOG = "example: bushing-noise diagnose recordings --rig rig.toml --out diagnosis"
+
+OPTIONS = (
+    Option("data DATA", Path, count="+").help("recordings, or folders of them"),
+    Option("--rig RIG.toml", Path, required=True).help(
+        "what is known of the rig, or the name of a material"
+    ),
+    CHANGE,
+    Option("--out FOLDER", Path).help(
+        "folder for report.html, diagnosis.json and, where the gap closes, improved.toml, the "
+        "rig file with what closes it (default: JSON on standard output)"
+    ),
+    Option("--effects FILE.py", Path).help("effects of your own, fitted beside the probable ones"),
+    Option("--quick").help("the first answer alone, without fits"),
+    seed("of simulated repeats and bootstraps"),
+)
 
 
 def run(options: Namespace) -> int:
     """Diagnose and write."""
     if options.out is not None:
-        opt.check_folder(options.out, file="report.html")
+        check_folder(options.out, file="report.html")
     with steps("diagnosing", _QUICK_STEPS if options.quick else _STEPS) as tell:
         case, library, told = _read(options, tell)
         with _keeping(options, case) as kept:
@@ -96,7 +83,7 @@ def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], 
     from noise.base.user_effects import effect_library
     from noise.diagnosis.improved_file import check_base
 
-    rig = opt.changed(load_rig(options.rig), options.change)
+    rig = changed(load_rig(options.rig), options.change)
     if options.out is not None:
         check_base(options.rig, options.out)
     library = effect_library(options.effects)

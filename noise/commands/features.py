@@ -7,19 +7,18 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from noise.commands import options as opt
-from noise.commands.batch import add_batch, check_batch, run_batch
-from noise.commands.plots import add_plots, check_plots, draw_recordings
+from noise.commands.batch import BATCH, check_batch, run_batch
+from noise.commands.options import CALIBRATION, OneOf, Option, full_scale_of, seed
+from noise.commands.plots import PLOT, check_plots, draw_recordings
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from noise.recordings.blocks import RecordingBlocks
     from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = ["Featuring", "configure", "run"]
 
 _PITCH_PIECE = 1 << 19
 """About how many samples of a sound are followed at once: 11 s at 48 kHz."""
@@ -27,31 +26,29 @@ _PITCH_PIECE = 1 << 19
 _PITCH_COLUMNS = ("pressure_pitch", "pressure_pitch_range", "pressure_voiced_share")
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Compute the features of recordings: one row a recording, in SI units, levels in dB. "
-        "What a recording cannot tell is empty; a file that cannot be read has the reason in the "
-        "column error."
-    )
-    add_batch(parser)
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument(
-        "--pitch",
-        action="store_true",
-        help="add the pitch over time: median [Hz], range [octaves] and share of the time that has "
-        "one, of the first pressure channel (about one second a second of sound)",
-    )
-    what.add_argument(
-        "--windows",
-        action="store_true",
-        help="one row a window of half a second, every quarter of a second, with start and end in "
-        "seconds and what the classifier of `bushing-noise label` is given of it, in the units "
-        "that features.WINDOW_FEATURES and, for the torque, features.FEATURES state",
-    )
-    add_plots(parser)
-    opt.add_calibration(parser)
-    opt.add_seed(parser, "taken by all commands; features use no random numbers")
+DESCRIPTION = (
+    "Compute the features of recordings: one row a recording, in SI units, levels in dB. "
+    "What a recording cannot tell is empty; a file that cannot be read has the reason in the "
+    "column error."
+)
+
+OPTIONS = (
+    *BATCH,
+    OneOf(
+        Option("--pitch").help(
+            "add the pitch over time: median [Hz], range [octaves] and share of the time that has "
+            "one, of the first pressure channel (about one second a second of sound)"
+        ),
+        Option("--windows").help(
+            "one row a window of half a second, every quarter of a second, with start and end in "
+            "seconds and what the classifier of `bushing-noise label` is given of it, in the units "
+            "that features.WINDOW_FEATURES and, for the torque, features.FEATURES state"
+        ),
+    ),
+    PLOT,
+    *CALIBRATION,
+    seed("taken by all commands; features use no random numbers"),
+)
 
 
 def run(options: Namespace) -> int:
@@ -59,7 +56,7 @@ def run(options: Namespace) -> int:
     check_batch(options)
     from noise.batch import find_jobs
 
-    work = Featuring(opt.full_scale_of(options), options.pitch, options.windows)
+    work = Featuring(full_scale_of(options), options.pitch, options.windows)
     jobs = find_jobs(options.paths)
     if options.plot is None:
         return run_batch(options, work, jobs)

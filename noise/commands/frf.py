@@ -13,16 +13,15 @@ from models.errors import ParameterError, RecordingError
 from noise.base.atomic import atomic, check_target
 from noise.base.progress import counted, note, say, track
 from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands import options as opt
+from noise.commands.options import Option, band, number, one_of, refuse, seed
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
 
     from features.modal.hammer import Hit
     from features.modal.modal_fit import Modes
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["configure", "run"]
 
 _DEFAULT_COHERENCE = 0.8
 _MOST_BANDS = 8
@@ -38,76 +37,57 @@ _MODE_COLUMNS = (
 )
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Estimate the frequency response function and the coherence from hammer hits, each one "
-        "boxcar segment, and fit modes to it. Hits that are double or clipped are refused, and it "
-        "is told where the coherence is low. A response to a torque, with --arm, can stand in for "
-        "the modelled one in a rig file."
-    )
-    parser.epilog = (
-        "example: bushing-noise frf hits --arm 0.05 --out torque_to_acceleration_2214.uff "
-        "--modes modes.csv; columns of the modes: natural frequency, fraction of critical damping, "
-        "residue (in the response's unit times rad/s), its peak, the coherence there, and through "
-        "how many orders of the fit the pole stayed"
-    )
-    parser.add_argument(
-        "hits",
-        nargs="+",
-        type=Path,
-        metavar="HIT",
-        help="one hit a file, or a folder of them: a recording with a force channel, or .npy or "
-        ".csv whose rows or columns are time in s, force in N, response",
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="FILE",
-        help="file for the response function: .uff, .unv, .npz or .csv (default: CSV on standard "
-        "output, unless only --modes is given)",
-    )
-    parser.add_argument(
-        "--modes",
-        type=Path,
-        metavar="TABLE",
-        help=f"fit modes and write them: {table_endings()}",
-    )
-    parser.add_argument(
-        "--arm",
-        type=opt.number(above=0.0, most=100.0),
-        metavar="M",
-        help="lever in m at which the hammer hits; makes a torque in N m of the force",
-    )
-    parser.add_argument(
-        "--estimator",
-        type=_estimator,
-        default="H1",
-        metavar="H1|H2|Hv",
-        help="H1 for noise in the response, H2 for noise in the force, Hv for both (default: H1)",
-    )
-    parser.add_argument(
-        "--response",
-        type=_channel,
-        metavar="NAME",
-        help="channel to take for the response, or for a table what its response is, such as "
-        "pressure (default: acceleration, else pressure)",
-    )
-    parser.add_argument(
-        "--band",
-        type=opt.band,
-        metavar="LOW..HIGH",
-        help="band in Hz in which modes are fitted (default: where the coherence can be trusted)",
-    )
-    parser.add_argument(
-        "--coherence",
-        type=opt.number(least=0.0, most=1.0),
-        default=_DEFAULT_COHERENCE,
-        metavar="C",
-        help="tell the bands in which the coherence is lower than this (default: "
-        f"{_DEFAULT_COHERENCE:g})",
-    )
-    opt.add_seed(parser, "accepted as by every command; nothing here is random")
+def _channel(text: str) -> str:
+    from models.recording import Channel
+
+    try:
+        return Channel(text).name
+    except ParameterError as error:
+        raise ArgumentTypeError(f"is {text!r}: {error}") from None
+
+
+DESCRIPTION = (
+    "Estimate the frequency response function and the coherence from hammer hits, each one "
+    "boxcar segment, and fit modes to it. Hits that are double or clipped are refused, and it "
+    "is told where the coherence is low. A response to a torque, with --arm, can stand in for "
+    "the modelled one in a rig file."
+)
+
+EPILOG = (
+    "example: bushing-noise frf hits --arm 0.05 --out torque_to_acceleration_2214.uff "
+    "--modes modes.csv; columns of the modes: natural frequency, fraction of critical damping, "
+    "residue (in the response's unit times rad/s), its peak, the coherence there, and through "
+    "how many orders of the fit the pole stayed"
+)
+
+OPTIONS = (
+    Option("hits HIT", Path, count="+").help(
+        "one hit a file, or a folder of them: a recording with a force channel, or .npy or "
+        ".csv whose rows or columns are time in s, force in N, response"
+    ),
+    Option("--out FILE", Path).help(
+        "file for the response function: .uff, .unv, .npz or .csv (default: CSV on standard "
+        "output, unless only --modes is given)"
+    ),
+    Option("--modes TABLE", Path).help(f"fit modes and write them: {table_endings()}"),
+    Option("--arm M", number(above=0.0, most=100.0)).help(
+        "lever in m at which the hammer hits; makes a torque in N m of the force"
+    ),
+    Option("--estimator H1|H2|Hv", one_of("H1", "H2", "Hv"), "H1").help(
+        "H1 for noise in the response, H2 for noise in the force, Hv for both"
+    ),
+    Option("--response NAME", _channel).help(
+        "channel to take for the response, or for a table what its response is, such as "
+        "pressure (default: acceleration, else pressure)"
+    ),
+    Option("--band LOW..HIGH", band).help(
+        "band in Hz in which modes are fitted (default: where the coherence can be trusted)"
+    ),
+    Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE).help(
+        "tell the bands in which the coherence is lower than this"
+    ),
+    seed("accepted as by every command; nothing here is random"),
+)
 
 
 def run(options: Namespace) -> int:
@@ -179,7 +159,7 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
                     f"{path}: its response is in {unit}, that of {hits[0].name} in {units[0]}"
                 )
         except RecordingError as error:
-            opt.refuse(error)
+            refuse(error)
             refused += 1
             continue
         hits.append(hit)
@@ -280,21 +260,3 @@ def _mode_rows(modes: Modes, transfer: TransferFunction) -> list[dict[str, objec
             strict=True,
         )
     ]
-
-
-def _estimator(text: str) -> str:
-    from features.modal.hammer import ESTIMATORS
-
-    for known in ESTIMATORS:
-        if text.lower() == known.lower():
-            return known
-    raise ArgumentTypeError(f"is {text!r}, expected {', '.join(ESTIMATORS)}")
-
-
-def _channel(text: str) -> str:
-    from models.recording import Channel
-
-    try:
-        return Channel(text).name
-    except ParameterError as error:
-        raise ArgumentTypeError(f"is {text!r}: {error}") from None

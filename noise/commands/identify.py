@@ -6,58 +6,48 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.base.atomic import check_target
 from noise.base.progress import note, say, steps
-from noise.commands import options as opt
+from noise.commands.options import CHANGE, Option, change_table, check_folder, seed
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
 
     from noise.base.progress import Steps
     from noise.identification.outcome import Identification
 
-__all__ = ["configure", "run"]
 
+DESCRIPTION = (
+    "Identify a rig from recordings: stiffness and damping of the bushing, critical and "
+    "kinetic torque by interference, and the law of friction, each with its 90 % interval. "
+    "Recordings need torque and shaft angle, and a sidecar with interference and support "
+    "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
+    "law, a condition recorded twice tells how much repeats differ. A static test, slow motion "
+    "to and fro below any slip, tells the stiffness best, a shaft held after that the damping."
+)
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Identify a rig from recordings: stiffness and damping of the bushing, critical and "
-        "kinetic torque by interference, and the law of friction, each with its 90 % interval. "
-        "Recordings need torque and shaft angle, and a sidecar with interference and support "
-        "stiffness; slow rotation with clear stick and slip says most, several speeds tell the "
-        "law, a condition recorded twice tells how much repeats differ. A static test, slow motion "
-        "to and fro below any slip, tells the stiffness best, a shaft held after that the damping."
-    )
-    parser.epilog = "example: bushing-noise identify recordings --rig known.toml --out mine"
-    parser.add_argument(
-        "data", type=Path, nargs="*", metavar="DATA", help="recordings, or folders of them"
-    )
-    parser.add_argument(
-        "--numbers", type=Path, metavar="TABLE.csv",
-        help="measured numbers beside or instead of recordings: item, value, unit, "
+EPILOG = "example: bushing-noise identify recordings --rig known.toml --out mine"
+
+OPTIONS = (
+    Option("data DATA", Path, count="*").help("recordings, or folders of them"),
+    Option("--numbers TABLE.csv", Path).help(
+        "measured numbers beside or instead of recordings: item, value, unit, "
         "interference_mm, support_stiffness_Nm_rad, speed_rad_s, error_percent; items as the "
-        "table of `bushing-noise thesis` names them, such as slip_frequency or effective_stiffness",
-    )  # fmt: skip
-    parser.add_argument(
-        "--rig", type=Path, metavar="RIG.toml",
-        help="what is known of the rig: the two inertias, if possible",
-    )  # fmt: skip
-    parser.add_argument(
-        "--out", type=Path, metavar="FOLDER",
-        help="folder for rig.toml, identification.json and report.html (default: the rig file on "
-        "standard output)",
-    )  # fmt: skip
-    opt.add_change(parser)
-    opt.add_seed(parser, "of simulated repeats")
+        "table of `bushing-noise thesis` names them, such as slip_frequency or effective_stiffness"
+    ),
+    Option("--rig RIG.toml", Path).help("what is known of the rig: the two inertias, if possible"),
+    Option("--out FOLDER", Path).help(
+        "folder for rig.toml, identification.json and report.html (default: the rig file on "
+        "standard output)"
+    ),
+    CHANGE,
+    seed("of simulated repeats"),
+)
 
 
 def run(options: Namespace) -> int:
     """Identify and write."""
     if options.out is not None:
-        if options.out.is_file():
-            raise ParameterError(f"--out {options.out}: is a file; name a folder")
-        check_target(options.out / "report.html")
+        check_folder(options.out, file="report.html")
     if not options.data and options.numbers is None:
         raise ParameterError("identify: name recordings, or --numbers TABLE.csv")
     with steps("identifying", 1) as tell:
@@ -86,7 +76,7 @@ def _identified(options: Namespace, tell: Steps) -> tuple[Identification | None,
     from noise.identification.measured import Measurements, read_measurements
     from noise.identification.table_number import read_numbers
 
-    beforehand = known_beforehand(options.rig, opt.change_table(options.change or ()))
+    beforehand = known_beforehand(options.rig, change_table(options.change or ()))
     table = () if options.numbers is None else read_numbers(options.numbers)
     calibrations = beforehand.rig.sensors.calibrations
     measurements = (

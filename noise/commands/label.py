@@ -16,80 +16,61 @@ from noise.base.exports import export_paths
 from noise.base.lock import locked
 from noise.base.progress import counted, note
 from noise.base.tables import TABLE_ENDINGS, write_table
-from noise.commands import options as opt
-from noise.commands.batch import add_batch, check_batch, run_batch
-from noise.commands.plots import add_plots, check_plots, draw_recordings
+from noise.commands.batch import BATCH, check_batch, run_batch
+from noise.commands.options import CALIBRATION, Option, full_scale_of, number, seed
+from noise.commands.plots import PLOT, check_plots, draw_recordings
 from noise.pictures.files import check_picture_path
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
     from collections.abc import Iterable
 
     from noise.labels.labelling import Labelling
 
-__all__ = ["configure", "run"]
 
+DESCRIPTION = (
+    "Label recordings: one row a segment with the label creak, squawk, squeal, none or "
+    "unknown, its probability, frequency in Hz and level in dB re 20 uPa (dBFS where not "
+    "calibrated), A-weighted and over the background, and the operating condition it belongs "
+    "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "
+    "fluorocarbon bushing like the shipped one, or missing. A file that cannot be read has the "
+    "reason in the column error. On a terminal, and beside --out, there is one line a "
+    "recording. Label tables in place of recordings are joined, for --map and "
+    "--audacity."
+)
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Label recordings: one row a segment with the label creak, squawk, squeal, none or "
-        "unknown, its probability, frequency in Hz and level in dB re 20 uPa (dBFS where not "
-        "calibrated), A-weighted and over the background, and the operating condition it belongs "
-        "to: logged, or inferred from a creak, squawk or squeal with bounds of 90 %, assuming a "
-        "fluorocarbon bushing like the shipped one, or missing. A file that cannot be read has the "
-        "reason in the column error. On a terminal, and beside --out, there is one line a "
-        "recording. Label tables in place of recordings are joined, for --map and "
-        "--audacity."
-    )
-    add_batch(parser)
-    parser.add_argument(
-        "--map",
-        type=Path,
-        metavar="PICTURE",
-        help="picture of which label is where in speed, interference and support stiffness, as "
-        "far as they were logged (.png, .svg or .pdf); the numbers go into a .csv of the same name",
-    )
-    parser.add_argument(
-        "--audacity",
-        type=Path,
-        metavar="FOLDER",
-        help="folder for label tracks, one .txt a recording, for Audacity to import; or the .txt "
-        "itself where there is one recording",
-    )
-    parser.add_argument(
-        "--classifier",
-        type=Path,
-        metavar="FILE.npz",
-        help="classifier that `bushing-noise train` made (default: the one that is shipped)",
-    )
-    parser.add_argument(
-        "--sensitivity",
-        type=opt.number(least=0.1, most=10.0),
-        default=1.0,
-        metavar="RATIO",
-        help="how readily a noise is named, a ratio of odds from 0.1 to 10 (default: 1): 2 names a "
+OPTIONS = (
+    *BATCH,
+    Option("--map PICTURE", Path).help(
+        "picture of which label is where in speed, interference and support stiffness, as "
+        "far as they were logged (.png, .svg or .pdf); the numbers go into a .csv of the same name"
+    ),
+    Option("--audacity FOLDER", Path).help(
+        "folder for label tracks, one .txt a recording, for Audacity to import; or the .txt "
+        "itself where there is one recording"
+    ),
+    Option("--classifier FILE.npz", Path).help(
+        "classifier that `bushing-noise train` made (default: the one that is shipped)"
+    ),
+    Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0).help(
+        "how readily a noise is named, a ratio of odds from 0.1 to 10 (default: 1): 2 names a "
         "noise at half the odds, so fainter ones and more that are none. How many false names were "
         "counted is told for any but 1. Nothing changes where an operating condition is logged: "
-        "there the likeliest label is said",
-    )
-    parser.add_argument(
-        "--loudness",
-        action="store_true",
-        help="tell the loudness N5 of calibrated segments as well (ISO 532-1), in the column "
+        "there the likeliest label is said"
+    ),
+    Option("--loudness").help(
+        "tell the loudness N5 of calibrated segments as well (ISO 532-1), in the column "
         "loudness_n5_sone, of those from half a second to ten minutes; takes a second a second of "
-        'sound, and needs pip install "bushing-noise[sound-quality]"',
-    )
-    parser.add_argument(
-        "--inference",
-        type=Path,
-        metavar="FILE.npz",
-        help="model that infers conditions which were not logged, made by `bushing-noise train` "
-        "(default: the one that is shipped)",
-    )
-    add_plots(parser)
-    opt.add_calibration(parser)
-    opt.add_seed(parser, "taken by all commands; labelling uses no random numbers")
+        'sound, and needs pip install "bushing-noise[sound-quality]"'
+    ),
+    Option("--inference FILE.npz", Path).help(
+        "model that infers conditions which were not logged, made by `bushing-noise train` "
+        "(default: the one that is shipped)"
+    ),
+    PLOT,
+    *CALIBRATION,
+    seed("taken by all commands; labelling uses no random numbers"),
+)
 
 
 def run(options: Namespace) -> int:
@@ -129,7 +110,7 @@ def run(options: Namespace) -> int:
         models = tuple(path and path.absolute() for path in models)
     work = Labelling(
         *models,
-        full_scale=opt.full_scale_of(options),
+        full_scale=full_scale_of(options),
         sensitivity=options.sensitivity,
         loudness=options.loudness,
     )

@@ -6,57 +6,42 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from noise.commands import options as opt
+from noise.commands.options import Option, seed, whole_number
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
-
-__all__ = ["configure", "run"]
+    from argparse import Namespace
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Open recordings, a label table or a rig in a local app: listen, see, correct labels, hear "
-        "a design while it is changed, compare sounds blind. Its address is the first line on "
-        "standard output; only this machine reaches it, and only by that address. It stops by the "
-        "button Stop, or by Ctrl-C here. Corrections and votes are written at once."
-    )
-    parser.epilog = (
-        "examples: bushing-noise open recordings; bushing-noise open labels.csv; "
-        "bushing-noise open RIG.toml"
-    )
-    parser.add_argument(
-        "paths",
-        nargs="*",
-        type=Path,
-        metavar="PATH",
-        help="recording; folder that is searched for recordings at any depth; label table (.csv, "
-        ".jsonl, .parquet) with its recordings beside it; rig file (.toml)",
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="TABLE",
-        help="label table to write (default: the one that is named, or labels.csv in the folder)",
-    )
-    parser.add_argument(
-        "--port",
-        type=opt.whole_number(0, most=65535),
-        default=0,
-        help="to listen on (default: one that is free)",
-    )
-    parser.add_argument(
-        "--no-browser", action="store_true", help="print the address and open no browser"
-    )
-    parser.add_argument(
-        "--samples",
-        type=opt.whole_number(1),
-        metavar="N",
-        help="simulated samples that it learns from beside corrections, as of `bushing-noise "
-        "train`; fewer are quicker and know less",
-    )
-    opt.add_seed(parser, "seed of simulated sounds and of random orders")
+DESCRIPTION = (
+    "Open recordings, a label table or a rig in a local app: listen, see, correct labels, hear "
+    "a design while it is changed, compare sounds blind. Its address is the first line on "
+    "standard output; only this machine reaches it, and only by that address. It stops by the "
+    "button Stop, or by Ctrl-C here. Corrections and votes are written at once."
+)
+
+EPILOG = (
+    "examples: bushing-noise open recordings; bushing-noise open labels.csv; "
+    "bushing-noise open RIG.toml"
+)
+
+OPTIONS = (
+    Option("paths PATH", Path, count="*").help(
+        "recording; folder that is searched for recordings at any depth; label table (.csv, "
+        ".jsonl, .parquet) with its recordings beside it; rig file (.toml)"
+    ),
+    Option("--out TABLE", Path).help(
+        "label table to write (default: the one that is named, or labels.csv in the folder)"
+    ),
+    Option("--port PORT", whole_number(0, most=65535), 0).help(
+        "to listen on (default: one that is free)"
+    ),
+    Option("--no-browser").help("print the address and open no browser"),
+    Option("--samples N", whole_number(1)).help(
+        "simulated samples that it learns from beside corrections, as of `bushing-noise "
+        "train`; fewer are quicker and know less"
+    ),
+    seed("seed of simulated sounds and of random orders"),
+)
 
 
 def run(options: Namespace) -> int:

@@ -1,30 +1,156 @@
-"""Options that several commands share, and the texts that they take.
+"""Options: the rows of a command's table, the values that they take, and those that many share.
 
-A text that cannot be used is refused while the call is read, by a message that names the option.
+A command states its options as rows, `add_options` makes a parser of them. A text that cannot be
+used is refused while the call is read, by a message that names the option.
 """
 
 from __future__ import annotations
 
+import argparse
 import math
 from argparse import ArgumentTypeError
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import say
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace, _ArgumentGroup
-    from collections.abc import Callable, Sequence
-
     from models.rig import Rig
     from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = [
-    "add_calibration", "add_change", "add_seed", "band", "changed", "check_folder",
-    "full_scale_of", "number", "number_or_none", "refuse", "whole_number",
-]  # fmt: skip
+
+@dataclass(frozen=True)
+class Option:
+    """One row of a table of options; `help` ends it.
+
+    Parameters
+    ----------
+    name : str
+        As the help shows it: ``--gap S`` takes a value, ``--ab`` is a switch, ``paths PATH`` is
+        given by its place.
+    kind : callable
+        From the text of the value to the value; raises ArgumentTypeError where it cannot be used.
+    default : object
+        Of an option that is not given.
+    count : str, optional
+        How many values it takes: ``*``, ``+`` or ``?``.
+    repeated : bool
+        Whether it may be given several times, which makes a list.
+    required : bool
+    text : str
+        For the help, without the default.
+
+    Examples
+    --------
+    >>> Option("--gap S", number(least=0.0), 0.5).help("silence between two sounds in s").text
+    'silence between two sounds in s'
+    """
+
+    name: str
+    kind: Callable[[str], Any] = str
+    default: object = None
+    count: str | None = None
+    repeated: bool = False
+    required: bool = False
+    text: str = ""
+
+    def help(self, text: str) -> Option:
+        """Return the row with its text."""
+        return replace(self, text=text)
+
+    @property
+    def attribute(self) -> str:
+        """Its name in what the parser returns."""
+        return self.name.partition(" ")[0].removeprefix("--").replace("-", "_")
+
+
+class OneOf(tuple[Option, ...]):
+    """Rows of which a call may have one."""
+
+    __slots__ = ()
+
+    def __new__(cls, *rows: Option) -> OneOf:
+        """Take the rows."""
+        return super().__new__(cls, rows)
+
+
+class Group(NamedTuple):
+    """Rows under a title of their own."""
+
+    title: str
+    text: str
+    rows: Sequence[Option]
+
+
+Row = Option | OneOf | Group
+
+
+def add_options(parser: argparse._ActionsContainer, rows: Iterable[Row]) -> None:
+    """Add the rows of a table to a parser.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Or a group of one.
+    rows : iterable of Option, OneOf or Group
+
+    Examples
+    --------
+    >>> parser = argparse.ArgumentParser()
+    >>> add_options(parser, [Option("--gap S", number(least=0.0), 0.5).help("silence in s")])
+    >>> parser.parse_args(["--gap", "2"]).gap
+    2.0
+    """
+    for row in rows:
+        if isinstance(row, Group):
+            add_options(parser.add_argument_group(row.title, row.text), row.rows)
+        elif isinstance(row, OneOf):
+            add_options(parser.add_mutually_exclusive_group(), row)
+        else:
+            _add(parser, row)
+
+
+def _add(parser: argparse._ActionsContainer, row: Option) -> None:
+    name, _, metavar = row.name.partition(" ")
+    text = row.text.replace("%", "%%") + " (required)" * row.required
+    if not metavar:
+        parser.add_argument(name, action="store_true", default=row.default or False, help=text)
+        return
+    if row.default is not None and "default: " not in text:
+        shown = f"{row.default:g}" if isinstance(row.default, float) else row.default
+        text += f" (default: {shown})"
+    more: dict[str, Any] = {"required": True} if row.required else {}
+    parser.add_argument(
+        name,
+        metavar=metavar,
+        type=_path if row.kind is Path else row.kind,
+        default=row.default,
+        nargs=row.count,
+        action="append" if row.repeated else "store",
+        help=text,
+        **more,
+    )
+
+
+# What an option takes -----------------------------------------------------------------------------
+
+
+def number_or_none(text: str) -> float | None:
+    """Read a number, which may be infinite [-]; None where the text is none.
+
+    Examples
+    --------
+    >>> number_or_none("0.279"), number_or_none("fast")
+    (0.279, None)
+    """
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def number(
@@ -49,7 +175,9 @@ def number(
     """
 
     def parse(text: str) -> float:
-        value = _finite(text)
+        value = number_or_none(text)
+        if value is None or not math.isfinite(value):
+            raise ArgumentTypeError(f"is {text!r}, expected a number")
         if not (value > above and least <= value <= most):
             limits = [f"above {above:g}"] * math.isfinite(above)
             limits += [f"at least {least:g}"] * math.isfinite(least)
@@ -86,6 +214,26 @@ def whole_number(least: int, *, most: int | None = None, more: str = "") -> Call
     return parse
 
 
+def one_of(*values: str | int) -> Callable[[str], str | int]:
+    """Return a parser of one of several values, of words in either case.
+
+    Examples
+    --------
+    >>> one_of("H1", "H2", "Hv")("hv")
+    'Hv'
+    """
+    known = {str(value).lower(): value for value in values}
+
+    def parse(text: str) -> str | int:
+        value = known.get(text.strip().lower())
+        if value is None:
+            *others, last = map(str, values)
+            raise ArgumentTypeError(f"is {text!r}, expected {', '.join(others)} or {last}")
+        return value
+
+    return parse
+
+
 def band(text: str) -> tuple[float, float]:
     """Read a band of frequencies [Hz].
 
@@ -95,74 +243,62 @@ def band(text: str) -> tuple[float, float]:
     (200.0, 2000.0)
     """
     low, dots, high = text.partition("..")
-    try:
-        ends = float(low), float(high)
-    except ValueError:
-        ends = 0.0, 0.0
-    if not dots or not 0.0 <= ends[0] < ends[1] < float("inf"):
+    first, last = number_or_none(low), number_or_none(high)
+    if not dots or first is None or last is None or not 0.0 <= first < last < math.inf:
         raise ArgumentTypeError(f"is {text!r}, expected LOW..HIGH in Hz, such as 100..5000")
-    return ends
+    return first, last
 
 
-def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
-    """Refuse a folder of results that cannot be made, or `file` not in it, before the work.
-
-    Raises
-    ------
-    ParameterError
-        It is a file or a link to nothing, or cannot be written to.
-    """
-    if folder.exists() and not folder.is_dir():
-        raise ParameterError(f"{option} {folder}: is a file; name a folder")
-    if folder.is_symlink() and not folder.exists():
-        raise ParameterError(f"{option} {folder}: links to nothing; name a folder")
-    check_target(folder / file, option)
+def _path(text: str) -> Path:
+    if not text:
+        raise ArgumentTypeError("is '', expected a path ('.' is the current folder)")
+    return Path(text)
 
 
-def refuse(error: object, name: str | Path = "") -> None:
-    """Say that an input is refused, and why; `name` stands before what does not name it."""
-    named = f"{name}: " if Path(name).name not in str(error) else ""
-    say(f"bushing-noise: refused: {named}{error}")
+def _change(text: str) -> tuple[str, str | float]:
+    name, equals, amount = (part.strip() for part in text.partition("="))
+    if not (name and equals and amount):
+        raise ArgumentTypeError(f"is {text!r}, expected NAME=AMOUNT, such as damping=x2")
+    number = number_or_none(amount)
+    return name, amount if number is None else number
 
 
-def add_seed(parser: ArgumentParser, use: str) -> None:
-    """Add ``--seed``, which all commands take; `use` says what it is for."""
-    parser.add_argument(
-        "--seed",
-        type=whole_number(0),
-        default=0,
-        metavar="N",
-        help=f"{use} (a whole number; default: 0)",
-    )
+# What several commands share ----------------------------------------------------------------------
 
 
-def add_calibration(parser: ArgumentParser) -> None:
-    """Add the calibration of plain sound files, of which `full_scale_of` makes a number."""
-    calibration = parser.add_mutually_exclusive_group()
-    calibration.add_argument(
-        "--full-scale",
-        type=number(above=0.0),
-        metavar="PA",
-        help="sound pressure in Pa that a full-scale sample of the input stands for; wins over "
-        "what sidecar and file say (default: what they say, else levels in dBFS only)",
-    )
-    calibration.add_argument(
-        "--calibrator",
-        type=Path,
-        metavar="TONE",
-        help="recording of a sound calibrator at 250 Hz or 1 kHz, made with the gain of the "
-        "inputs, in place of --full-scale: one track for all of theirs, or as many as they have",
-    )
-    parser.add_argument(
-        "--level",
-        type=number(least=40.0, most=170.0),
-        metavar="DB",
-        help="of the calibrator in dB re 20 uPa, such as 94 or 114; needed with --calibrator",
-    )
+def seed(use: str) -> Option:
+    """Return the row of ``--seed``, which all commands take; `use` says what it is for."""
+    return Option("--seed N", whole_number(0), 0).help(f"{use} (a whole number; default: 0)")
 
 
-def full_scale_of(options: Namespace) -> PascalPerFullScale | None:
-    """Return what the options of `add_calibration` make a full-scale sample worth [Pa].
+CHANGE = Option("--change NAME=AMOUNT", _change, repeated=True).help(
+    "change the rig as [change] in its file does: damping=x2, critical_torque=-20%, "
+    "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; wall_mm, length_mm, "
+    "youngs_modulus_MPa and hardness_shore_A of the rubber take torques and stiffness along, "
+    "wall_mm=6; may be given several times (default: none)"
+)
+"""``--change``, of every command that takes a rig."""
+
+CALIBRATION = (
+    OneOf(
+        Option("--full-scale PA", number(above=0.0)).help(
+            "sound pressure in Pa that a full-scale sample of the input stands for; wins over what "
+            "sidecar and file say (default: what they say, else levels in dBFS only)"
+        ),
+        Option("--calibrator TONE", Path).help(
+            "recording of a sound calibrator at 250 Hz or 1 kHz, made with the gain of the inputs, "
+            "in place of --full-scale: one track for all of theirs, or as many as they have"
+        ),
+    ),
+    Option("--level DB", number(least=40.0, most=170.0)).help(
+        "of the calibrator in dB re 20 uPa, such as 94 or 114; needed with --calibrator"
+    ),
+)
+"""Calibration of plain sound files, of which `full_scale_of` makes a number."""
+
+
+def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
+    """Return what the options of `CALIBRATION` make a full-scale sample worth [Pa].
 
     Raises
     ------
@@ -189,20 +325,6 @@ def full_scale_of(options: Namespace) -> PascalPerFullScale | None:
         )
     values = tuple(tone.full_scale for tone in tones)
     return values[0] if len(values) == 1 else values
-
-
-def add_change(parser: ArgumentParser | _ArgumentGroup) -> None:
-    """Add ``--change``, for every command that takes a rig."""
-    parser.add_argument(
-        "--change",
-        type=_change,
-        action="append",
-        metavar="NAME=AMOUNT",
-        help="change the rig as [change] in its file does: damping=x2, critical_torque=-20%%, "
-        "damping_Nms_rad=0.09, ageing_time=x2 or slip_pulse.amplitude=x0.5; wall_mm, length_mm, "
-        "youngs_modulus_MPa and hardness_shore_A of the rubber take torques and stiffness along, "
-        "wall_mm=6; may be given several times (default: none)",
-    )
 
 
 def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
@@ -234,30 +356,22 @@ def change_table(changes: Sequence[tuple[str, str | float]]) -> dict[str, str | 
     return table
 
 
-def _change(text: str) -> tuple[str, str | float]:
-    name, equals, amount = (part.strip() for part in text.partition("="))
-    if not (name and equals and amount):
-        raise ArgumentTypeError(f"is {text!r}, expected NAME=AMOUNT, such as damping=x2")
-    number = number_or_none(amount)
-    return name, amount if number is None else number
+def check_folder(folder: Path, option: str = "--out", *, file: str = "") -> None:
+    """Refuse a folder of results that cannot be made, or `file` not in it, before the work.
 
-
-def _finite(text: str) -> float:
-    value = number_or_none(text)
-    if value is None or not math.isfinite(value):
-        raise ArgumentTypeError(f"is {text!r}, expected a number")
-    return value
-
-
-def number_or_none(text: str) -> float | None:
-    """Read a number, which may be infinite [-]; None where the text is none.
-
-    Examples
-    --------
-    >>> number_or_none("0.279"), number_or_none("fast")
-    (0.279, None)
+    Raises
+    ------
+    ParameterError
+        It is a file or a link to nothing, or cannot be written to.
     """
-    try:
-        return float(text)
-    except ValueError:
-        return None
+    if folder.exists() and not folder.is_dir():
+        raise ParameterError(f"{option} {folder}: is a file; name a folder")
+    if folder.is_symlink() and not folder.exists():
+        raise ParameterError(f"{option} {folder}: links to nothing; name a folder")
+    check_target(folder / file, option)
+
+
+def refuse(error: object, name: str | Path = "") -> None:
+    """Say that an input is refused, and why; `name` stands before what does not name it."""
+    named = f"{name}: " if Path(name).name not in str(error) else ""
+    say(f"bushing-noise: refused: {named}{error}")

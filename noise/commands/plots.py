@@ -9,32 +9,26 @@ from models.errors import BushingNoiseError, ParameterError
 from noise.base.atomic import check_target
 from noise.base.exports import export_paths
 from noise.base.progress import note, track
+from noise.commands.options import Option
 from noise.pictures.files import PICTURE_ENDINGS
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser
     from collections.abc import Mapping, Sequence
 
     from noise.batch import Job
     from noise.recordings.meaning import PascalPerFullScale
 
-__all__ = ["add_plots", "check_plots", "draw_recordings"]
 
 _LONGEST = 600.0
 """Of a picture [s]; a longer recording is drawn as far as that."""
 
 
-def add_plots(parser: ArgumentParser) -> None:
-    """Add ``--plot``."""
-    parser.add_argument(
-        "--plot",
-        type=Path,
-        metavar="FOLDER|PICTURE",
-        help="draw each recording: spectrogram, A-weighted level over time (F), speed of the "
-        "shaft and, where that was recorded and changes slowly, order map; .png files in a folder, "
-        "or the one picture (.png, .svg or .pdf) where there is one recording; of the first "
-        f"{_LONGEST / 60.0:g} minutes of each",
-    )
+PLOT = Option("--plot FOLDER|PICTURE", Path).help(
+    "draw each recording: spectrogram, A-weighted level over time (F), speed of the "
+    "shaft and, where that was recorded and changes slowly, order map; .png files in a folder, "
+    "or the one picture (.png, .svg or .pdf) where there is one recording; of the first "
+    f"{_LONGEST / 60.0:g} minutes of each"
+)
 
 
 def check_plots(target: Path, jobs: Sequence[Job]) -> None:

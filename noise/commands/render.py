@@ -9,155 +9,111 @@ from typing import TYPE_CHECKING
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say, track
-from noise.commands import options as opt
-from noise.commands.condition_options import add_condition
+from noise.commands.condition import CONDITION
+from noise.commands.options import (
+    CALIBRATION,
+    OneOf,
+    Option,
+    band,
+    check_folder,
+    number,
+    one_of,
+    refuse,
+    seed,
+    whole_number,
+)
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
 
     from noise.audio.rendering import Survey
     from noise.batch.lines import Results
     from noise.commands.render_plans import Plan
     from noise.commands.render_sources import Source
 
-__all__ = ["configure", "run"]
 
-_RATES = (44100, 48000)
-_BITS = (16, 24, 32)
 _LOWEST, _NARROWEST = 1.0, 1.01  # Hz, and upper over lower end of a band: filters of it hold
 _LONG_ENOUGH = 2.0  # s, to be judged by ear
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Make the sound pressure of recordings, or of runs simulated for the purpose, audible: "
-        "WAV files for headphones or a listening room, without offset, faded in and out, never "
-        "clipped, not even between two samples. Several inputs make a set in a folder, at one "
-        "gain, so that the louder one stays louder. A sidecar beside each keeps its calibration "
-        "and its levels: overall, A-weighted, largest fast level, one-third octaves. Repeated "
-        "strokes and run-ups are simulated for as long as --seconds says, never looped."
-    )
-    parser.epilog = (
-        "examples: bushing-noise render run07.wav --out run07-audio.wav; "
-        "bushing-noise render --speed 0..10 --seconds 8 --out run-up.wav; "
-        "bushing-noise render old.toml new.toml --speed 5 --seconds 4 --ab --out old-new.wav; "
-        'bushing-noise render "--interference 0.279" "--interference 0.381" --speed 5 --out set'
-    )
-    parser.add_argument(
-        "inputs",
-        nargs="*",
-        metavar="INPUT",
-        help="recording, folder of recordings, rig file (RIG.toml) to simulate, or options of a "
-        'condition to simulate in quotes, such as "--speed 5 --interference 0.381"; what the '
-        "last two leave out is as the other options say",
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        required=True,
-        metavar="AUDIO.wav|FOLDER",
-        help="WAV file to write; for several sounds a folder, which gets a table levels.csv as "
-        "well (required)",
-    )
-    parser.add_argument(
-        "--ab",
-        action="store_true",
-        help="put the inputs behind one another into one file, at the same gain",
-    )
-    parser.add_argument(
-        "--gap",
-        type=opt.number(least=0.0, most=60.0),
-        default=0.5,
-        metavar="S",
-        help="silence between two of them in s (default: 0.5)",
-    )
-    parser.add_argument(
-        "--repeats",
-        type=_repeats,
-        default=1,
-        metavar="N",
-        help="simulate each run N times, with random numbers of its own, one behind the other; "
-        "with --ab: A B A B ... (default: 1, at most 20)",
-    )
-    parser.add_argument(
-        "--rate",
-        type=int,
-        choices=_RATES,
-        default=48000,
-        help="sampling rate of the sound in Hz (default: 48000)",
-    )
-    parser.add_argument(
-        "--bits",
-        type=int,
-        choices=_BITS,
-        default=24,
-        help="size of a sample in bit; 16 is dithered, 32 is floating point (default: 24)",
-    )
-    parser.add_argument(
-        "--fade",
-        type=opt.number(least=0.0, most=60.0),
-        default=0.010,
-        metavar="S",
-        help="length of the fades in and out in s (default: 0.01)",
-    )
-    gain = parser.add_mutually_exclusive_group()
-    gain.add_argument(
-        "--pascal-per-full-scale",
-        type=opt.number(above=0.0, most=1e9),
-        metavar="PA",
-        help="sound pressure in Pa of a full-scale sample of the output, for a listening room "
-        "that is calibrated to it (default: what puts the largest peak of all 3 dB below full "
-        "scale)",
-    )
-    gain.add_argument(
-        "--match-loudness",
-        action="store_true",
-        help="give each sound the same loudness instead (ITU-R BS.1770): -23 LUFS, or what its "
-        "peaks allow below -1 dB true peak (EBU R 128)",
-    )
-    parser.add_argument(
-        "--band",
-        type=_band,
-        metavar="LOW..HIGH",
-        help="listen to these frequencies in Hz alone, such as 200..2000; zero-phase, 6 dB down at "
-        "the ends and 48 dB an octave beyond; levels are then those of the band, and how far they "
-        "lie below the whole sound is told (default: all)",
-    )
-    parser.add_argument(
-        "--notch",
-        type=opt.number(least=10.0, most=200e3),
-        action="append",
-        metavar="HZ",
-        help="take a tone of this frequency out, and what lies 3 %% beside it; zero-phase; may be "
-        "given several times (default: none)",
-    )
-    parser.add_argument(
-        "--sound-quality",
-        action="store_true",
-        help="tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
-        "needs the extra sound-quality, and some seconds a second of sound; 10 minutes at most",
-    )
-    opt.add_calibration(parser)
-    add_condition(parser)
-    opt.add_seed(parser, "seed of the sensors' noise in a simulated run, and of the dither")
-
-
-def _repeats(text: str) -> int:
-    value = opt.number(least=1.0, most=20.0)(text)
-    if not value.is_integer():
-        raise ArgumentTypeError(f"is {text!r}, expected a whole number from 1 to 20")
-    return int(value)
-
-
 def _band(text: str) -> tuple[float, float]:
-    low, high = opt.band(text)
+    low, high = band(text)
     if low < _LOWEST or high < low * _NARROWEST:
         raise ArgumentTypeError(
             f"is {text!r}, expected a band that begins at {_LOWEST:g} Hz or above and is at least "
             f"{_NARROWEST - 1.0:.0%} wide"
         )
     return low, high
+
+
+DESCRIPTION = (
+    "Make the sound pressure of recordings, or of runs simulated for the purpose, audible: "
+    "WAV files for headphones or a listening room, without offset, faded in and out, never "
+    "clipped, not even between two samples. Several inputs make a set in a folder, at one "
+    "gain, so that the louder one stays louder. A sidecar beside each keeps its calibration "
+    "and its levels: overall, A-weighted, largest fast level, one-third octaves. Repeated "
+    "strokes and run-ups are simulated for as long as --seconds says, never looped."
+)
+
+EPILOG = (
+    "examples: bushing-noise render run07.wav --out run07-audio.wav; "
+    "bushing-noise render --speed 0..10 --seconds 8 --out run-up.wav; "
+    "bushing-noise render old.toml new.toml --speed 5 --seconds 4 --ab --out old-new.wav; "
+    'bushing-noise render "--interference 0.279" "--interference 0.381" --speed 5 --out set'
+)
+
+OPTIONS = (
+    Option("inputs INPUT", str, count="*").help(
+        "recording, folder of recordings, rig file (RIG.toml) to simulate, or options of a "
+        'condition to simulate in quotes, such as "--speed 5 --interference 0.381"; what the '
+        "last two leave out is as the other options say"
+    ),
+    Option("--out AUDIO.wav|FOLDER", Path, required=True).help(
+        "WAV file to write; for several sounds a folder, which gets a table levels.csv as well"
+    ),
+    Option("--ab").help("put the inputs behind one another into one file, at the same gain"),
+    Option("--gap S", number(least=0.0, most=60.0), 0.5).help("silence between two of them in s"),
+    Option("--repeats N", whole_number(1, most=20), 1).help(
+        "simulate each run N times, with random numbers of its own, one behind the other; "
+        "with --ab: A B A B ... (default: 1, at most 20)"
+    ),
+    Option("--rate 44100|48000", one_of(44100, 48000), 48000).help(
+        "sampling rate of the sound in Hz"
+    ),
+    Option("--bits 16|24|32", one_of(16, 24, 32), 24).help(
+        "size of a sample in bit; 16 is dithered, 32 is floating point"
+    ),
+    Option("--fade S", number(least=0.0, most=60.0), 0.010).help(
+        "length of the fades in and out in s"
+    ),
+    OneOf(
+        Option("--pascal-per-full-scale PA", number(above=0.0, most=1e9)).help(
+            "sound pressure in Pa of a full-scale sample of the output, for a listening room "
+            "that is calibrated to it (default: what puts the largest peak of all 3 dB below full "
+            "scale)"
+        ),
+        Option("--match-loudness").help(
+            "give each sound the same loudness instead (ITU-R BS.1770): -23 LUFS, or what its "
+            "peaks allow below -1 dB true peak (EBU R 128)"
+        ),
+    ),
+    Option("--band LOW..HIGH", _band).help(
+        "listen to these frequencies in Hz alone, such as 200..2000; zero-phase, 6 dB down at "
+        "the ends and 48 dB an octave beyond; levels are then those of the band, and how far they "
+        "lie below the whole sound is told (default: all)"
+    ),
+    Option("--notch HZ", number(least=10.0, most=200e3), repeated=True).help(
+        "take a tone of this frequency out, and what lies 3 % beside it; zero-phase; may be "
+        "given several times (default: none)"
+    ),
+    Option("--sound-quality").help(
+        "tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
+        "needs the extra sound-quality, and some seconds a second of sound; 10 minutes at most"
+    ),
+    *CALIBRATION,
+    CONDITION,
+    seed("seed of the sensors' noise in a simulated run, and of the dither"),
+)
 
 
 def run(options: Namespace) -> int:
@@ -195,7 +151,7 @@ def _folder(options: Namespace, sources: list[Source]) -> Path | None:
             f"--out {named}: {counted(len(sources), 'sound')} are no single file; name a folder, "
             "or put them into one with --ab"
         )
-    opt.check_folder(named)
+    check_folder(named)
     return named
 
 
@@ -255,7 +211,7 @@ def _rendered(
             if folder is None and not isinstance(error, RecordingError):
                 raise
             refused[plan.name] = str(error)
-            opt.refuse(error, plan.name)
+            refuse(error, plan.name)
             continue
         if plan.through:
             filters[plan.name] = [one[-1].removeprefix("filtered: ") for one in notes]

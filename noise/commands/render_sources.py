@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from models.errors import ParameterError
 from noise.base.progress import note
-from noise.commands.condition_options import CONDITION_OPTIONS, add_condition, given_options
-from noise.commands.operating import run_arguments, with_notes
-from noise.commands.options import full_scale_of
+from noise.commands.condition import CONDITION, given_options, run_arguments, with_notes
+from noise.commands.options import add_options, full_scale_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -102,7 +101,7 @@ def sources_of(options: Namespace) -> list[Source]:
     ParameterError
         An input does not exist or does not go with the options.
     """
-    given = given_options(options)
+    given = ["--" + name.replace("_", "-") for name in given_options(options)]
     simulated = [text for text in options.inputs if _is_condition(text) or _is_rig(text)]
     recorded = [text for text in options.inputs if text not in simulated]
     if not options.inputs and not given:
@@ -173,18 +172,19 @@ def _simulated(text: str, options: Namespace) -> Source:
             raise ParameterError(f"--rig {options.rig} and {text} are both rig files; give one")
         return _source(Path(text).stem, _over(options, {"rig": Path(text)}))
     parser = _ConditionParser(text)
-    add_condition(parser)
+    add_options(parser, [CONDITION])
     try:
         words = shlex.split(text)
     except ValueError as error:
         raise ParameterError(f"condition {text!r}: {error}") from None
-    values = vars(parser.parse_args(words))
+    values = given_options(parser.parse_args(words))
     name = re.sub(r"[^\w.]+", "-", text).strip("-.")
-    return _source(name, _over(options, {k: v for k, v in values.items() if v is not None}))
+    return _source(name, _over(options, values))
 
 
 def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
-    merged = {name: getattr(options, name) for name in (*CONDITION_OPTIONS, "seed", "rate")}
+    names = [row.attribute for row in CONDITION.rows]
+    merged = {name: getattr(options, name) for name in (*names, "seed", "rate")}
     for name in values:
         if name in _ALONE:
             merged[_ALONE[name]] = None

@@ -7,82 +7,63 @@ from typing import TYPE_CHECKING
 
 from noise.base.atomic import check_target
 from noise.base.progress import counted, note, say
-from noise.commands import options as opt
+from noise.commands.options import (
+    CALIBRATION,
+    Option,
+    full_scale_of,
+    number,
+    refuse,
+    seed,
+    whole_number,
+)
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
-
-__all__ = ["configure", "run"]
+    from argparse import Namespace
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Put recordings, labels, screens and diagnoses on one page that needs nothing else: to be "
-        "mailed, projected and printed. Sounds at one gain that is stated, spectrograms under a "
-        "moving cursor, labels in time, maps of conditions that play what is clicked, and two "
-        "sounds side by side, changed over without a gap. Press ? on the page for its keys. What "
-        "cannot be used is named on the page, and the exit code is then 1."
-    )
-    parser.epilog = (
-        "examples: bushing-noise review recordings labels.csv --out review.html; "
-        "bushing-noise review screen old.toml new.toml --out review; "
-        "bushing-noise review recordings diagnosis --seconds 5 --out review"
-    )
-    parser.add_argument(
-        "paths",
-        nargs="+",
-        type=Path,
-        metavar="PATH",
-        help="recording; label table (.csv, .xlsx, .jsonl, .parquet); map.csv of a screen; "
+DESCRIPTION = (
+    "Put recordings, labels, screens and diagnoses on one page that needs nothing else: to be "
+    "mailed, projected and printed. Sounds at one gain that is stated, spectrograms under a "
+    "moving cursor, labels in time, maps of conditions that play what is clicked, and two "
+    "sounds side by side, changed over without a gap. Press ? on the page for its keys. What "
+    "cannot be used is named on the page, and the exit code is then 1."
+)
+
+EPILOG = (
+    "examples: bushing-noise review recordings labels.csv --out review.html; "
+    "bushing-noise review screen old.toml new.toml --out review; "
+    "bushing-noise review recordings diagnosis --seconds 5 --out review"
+)
+
+OPTIONS = (
+    Option("paths PATH", Path, count="+").help(
+        "recording; label table (.csv, .xlsx, .jsonl, .parquet); map.csv of a screen; "
         "diagnosis.json; rig file of a screen's design (DESIGN.toml), for its sounds; or a folder "
-        "that is searched for all of these at any depth",
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        required=True,
-        metavar="DIR|PAGE.html",
-        help="page to write, or folder for its report.html (required)",
-    )
-    parser.add_argument("--title", default="Review", help="of the page (default: Review)")
-    parser.add_argument(
-        "--seconds",
-        type=opt.number(least=1.0, most=600.0),
-        default=10.0,
-        metavar="S",
-        help="longest stretch of a recording that is played, about what gave it its label "
-        "(default: 10)",
-    )
-    parser.add_argument(
-        "--megabytes",
-        type=opt.number(least=1.0, most=2000.0),
-        default=25.0,
-        metavar="MB",
-        help="size of the page; sounds are shortened to keep to it, which the page says "
-        "(default: 25)",
-    )
-    parser.add_argument(
-        "--pascal-per-full-scale",
-        type=opt.number(above=0.0),
-        metavar="PA",
-        help="sound pressure in Pa of a full-scale sample on the page, for a listening room that "
-        "is calibrated to it (default: what the loudest calibrated sound needs)",
-    )
-    parser.add_argument(
-        "--simulated",
-        type=opt.whole_number(0, most=1000),
-        default=48,
-        metavar="N",
-        help="sounds simulated for the maps of screens, of all maps together (default: 48)",
-    )
-    parser.add_argument(
-        "--no-labelling",
-        action="store_true",
-        help="leave recordings without a label that no table labels (default: label them)",
-    )
-    opt.add_calibration(parser)
-    opt.add_seed(parser, "seed of simulated sounds and of the dither")
+        "that is searched for all of these at any depth"
+    ),
+    Option("--out DIR|PAGE.html", Path, required=True).help(
+        "page to write, or folder for its report.html"
+    ),
+    Option("--title TEXT", str, "Review").help("of the page"),
+    Option("--seconds S", number(least=1.0, most=600.0), 10.0).help(
+        "longest stretch of a recording that is played, about what gave it its label"
+    ),
+    Option("--megabytes MB", number(least=1.0, most=2000.0), 25.0).help(
+        "size of the page; sounds are shortened to keep to it, which the page says"
+    ),
+    Option("--pascal-per-full-scale PA", number(above=0.0)).help(
+        "sound pressure in Pa of a full-scale sample on the page, for a listening room that "
+        "is calibrated to it (default: what the loudest calibrated sound needs)"
+    ),
+    Option("--simulated N", whole_number(0, most=1000), 48).help(
+        "sounds simulated for the maps of screens, of all maps together"
+    ),
+    Option("--no-labelling").help(
+        "leave recordings without a label that no table labels (default: label them)"
+    ),
+    *CALIBRATION,
+    seed("seed of simulated sounds and of the dither"),
+)
 
 
 def run(options: Namespace) -> int:
@@ -95,7 +76,7 @@ def run(options: Namespace) -> int:
         options.paths,
         options.out,
         title=options.title,
-        full_scale=opt.full_scale_of(options),
+        full_scale=full_scale_of(options),
         pascal_per_full_scale=options.pascal_per_full_scale,
         seconds=options.seconds,
         megabytes=options.megabytes,
@@ -104,7 +85,7 @@ def run(options: Namespace) -> int:
         seed=options.seed,
     )
     for refusal in made.refused:
-        opt.refuse(f"{refusal.name}: {refusal.reason}")
+        refuse(f"{refusal.name}: {refusal.reason}")
     if made.shortened is not None:
         note(
             f"sounds are cut to {made.shortened:.3g} s to keep to {options.megabytes:g} MB; "

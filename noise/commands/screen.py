@@ -8,10 +8,21 @@ from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.progress import say, steps
-from noise.commands import options as opt
+from noise.commands.options import (
+    CHANGE,
+    MOST_WORKERS,
+    Group,
+    OneOf,
+    Option,
+    changed,
+    check_folder,
+    number,
+    seed,
+    whole_number,
+)
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
     from collections.abc import Callable
 
     from models.rig import Rig
@@ -20,127 +31,99 @@ if TYPE_CHECKING:
     from noise.screening.design.design import Swinging, Use
     from noise.screening.outcome import Screening
 
-__all__ = ["configure", "run"]
+
+from noise.screening.design.environments import environment_names
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    from noise.screening.design.environments import environment_names
+def _simulations(text: str) -> float:
+    if text.strip().lower() == "all":
+        return math.inf
+    return whole_number(1, more=", or all")(text)
 
-    parser.description = (
-        "Screen bushing designs before tooling: map which noise occurs where over speed, "
-        "interference, support and temperature, with its level; critical speeds by simulation and "
-        "by stability with their margins to the use; grade each design's risk from 1 to 10; tell "
-        "what its tolerances do and which change helps; and rank the designs, the quietest first. "
-        "Only boundaries are simulated finely; the output says how each point is known. A design "
-        "is a rig file with the tables [design] and [tolerances], or the name of a material. The "
-        "ranking is printed."
-    )
-    parser.epilog = (
-        "example: bushing-noise screen design-a.toml design-b.toml --environment dry,hot "
-        "--out screen"
-    )
-    parser.add_argument(
-        "designs", nargs="+", metavar="DESIGN", help="design file, or name of a material"
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="FOLDER",
-        help="folder for report.html, a page to read and to listen to; map.csv, "
+
+DESCRIPTION = (
+    "Screen bushing designs before tooling: map which noise occurs where over speed, "
+    "interference, support and temperature, with its level; critical speeds by simulation and "
+    "by stability with their margins to the use; grade each design's risk from 1 to 10; tell "
+    "what its tolerances do and which change helps; and rank the designs, the quietest first. "
+    "Only boundaries are simulated finely; the output says how each point is known. A design "
+    "is a rig file with the tables [design] and [tolerances], or the name of a material. The "
+    "ranking is printed."
+)
+
+EPILOG = (
+    "example: bushing-noise screen design-a.toml design-b.toml --environment dry,hot --out screen"
+)
+
+OPTIONS = (
+    Option("designs DESIGN", str, count="+").help("design file, or name of a material"),
+    Option("--out FOLDER", Path).help(
+        "folder for report.html, a page to read and to listen to; map.csv, "
         "critical_speeds.csv, designs.csv, sensitivities.csv and advice.csv where tolerances are "
-        "looked at, a picture of each map, and copies of the design files for a review",
-    )
-    parser.add_argument(
-        "--sounds",
-        type=opt.whole_number(0),
-        default=24,
-        metavar="N",
-        help="simulated for report.html, at the same conditions of each design; 0 for none, which "
-        "saves a sixth of a second each (default: 24)",
-    )
-    parser.add_argument(
-        "--megabytes",
-        type=opt.number(above=0.0),
-        default=10.0,
-        metavar="MB",
-        help="size of report.html; sounds are shortened and left out to keep to it (default: 10)",
-    )
-    opt.add_change(parser)
-    group = parser.add_argument_group(
+        "looked at, a picture of each map, and copies of the design files for a review"
+    ),
+    Option("--sounds N", whole_number(0), 24).help(
+        "simulated for report.html, at the same conditions of each design; 0 for none, which "
+        "saves a sixth of a second each"
+    ),
+    Option("--megabytes MB", number(above=0.0), 10.0).help(
+        "size of report.html; sounds are shortened and left out to keep to it"
+    ),
+    CHANGE,
+    Group(
         "conditions",
         "In place of the designs' own. Each is a number, a list 1,2.5,5 or a range LOW..HIGH, "
         "with LOW..HIGH/N of N points.",
-    )
-    group.add_argument("--speed", metavar="V", help="in rad/s (default: the designs', or 0.25..13)")
-    group.add_argument(
-        "--oscillate",
-        metavar="DEG,HZ",
-        help="the shaft swings by +-DEG degrees, HZ times a second, which may be a range such as "
-        "15,0.5..4; without --speed instead of turning",
-    )
-    group.add_argument("--interference", metavar="MM", help="in mm (default: the designs' fits)")
-    group.add_argument(
-        "--support-stiffness",
-        metavar="K",
-        help="in Nm/rad, or fixed (default: those that the damping is given for)",
-    )
-    group.add_argument(
-        "--temperature", metavar="C", help="in degree Celsius (default: the designs', or 23)"
-    )
-    group.add_argument(
-        "--environment",
-        metavar="NAME",
-        default="dry",
-        help=f"one or several of {', '.join(environment_names())}; all but dry are assumed sets of "
-        "friction parameters, with a temperature of their own (default: dry)",
-    )
-    parser.add_argument(
-        "--loudness",
-        action="store_true",
-        help="tell loudness N5 as well (ISO 532-1): heard at the loudest point of each region, "
-        'carried on by level; needs pip install "bushing-noise[sound-quality]"',
-    )
-    parts = parser.add_mutually_exclusive_group()
-    parts.add_argument(
-        "--tolerances",
-        action="store_true",
-        default=None,
-        help="tell of all designs how probable each noise is among parts, which tolerance matters "
-        "most and which change helps, with assumed tolerances where none are stated; takes some "
-        "seconds a design and environment (default: of designs that state [tolerances])",
-    )
-    parts.add_argument(
-        "--no-tolerances",
-        dest="tolerances",
-        action="store_false",
-        default=None,
-        help="tell it of none; the risk number is of all designs either way",
-    )
-    parser.add_argument(
-        "--simulations",
-        type=_simulations,
-        metavar="N",
-        help="of each map, more or less, or all for every boundary to the end (default: 500)",
-    )
-    shared = parser.add_mutually_exclusive_group()
-    shared.add_argument(
-        "--workers",
-        type=opt.whole_number(1, most=opt.MOST_WORKERS),
-        default=-1,
-        metavar="N",
-        help="threads (default: one a core)",
-    )
-    shared.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of a Dask cluster that simulates the maps instead"
-    )
-    opt.add_seed(parser, "of the parts within tolerances")
+        (
+            Option("--speed V", str).help("in rad/s (default: the designs', or 0.25..13)"),
+            Option("--oscillate DEG,HZ", str).help(
+                "the shaft swings by +-DEG degrees, HZ times a second, which may be a range such "
+                "as 15,0.5..4; without --speed instead of turning"
+            ),
+            Option("--interference MM", str).help("in mm (default: the designs' fits)"),
+            Option("--support-stiffness K", str).help(
+                "in Nm/rad, or fixed (default: those that the damping is given for)"
+            ),
+            Option("--temperature C", str).help("in degree Celsius (default: the designs', or 23)"),
+            Option("--environment NAME", str, "dry").help(
+                f"one or several of {', '.join(environment_names())}; all but dry are assumed sets "
+                "of friction parameters, with a temperature of their own (default: dry)"
+            ),
+        ),
+    ),
+    Option("--loudness").help(
+        "tell loudness N5 as well (ISO 532-1): heard at the loudest point of each region, "
+        'carried on by level; needs pip install "bushing-noise[sound-quality]"'
+    ),
+    OneOf(
+        Option("--tolerances").help(
+            "tell of all designs how probable each noise is among parts, which tolerance matters "
+            "most and which change helps, with assumed tolerances where none are stated; takes "
+            "some seconds a design and environment (default: of designs that state [tolerances])"
+        ),
+        Option("--no-tolerances").help(
+            "tell it of none; the risk number is of all designs either way"
+        ),
+    ),
+    Option("--simulations N", _simulations).help(
+        "of each map, more or less, or all for every boundary to the end (default: 500)"
+    ),
+    OneOf(
+        Option("--workers N", whole_number(1, most=MOST_WORKERS), -1).help(
+            "threads (default: one a core)"
+        ),
+        Option("--scheduler ADDRESS", str).help(
+            "of a Dask cluster that simulates the maps instead"
+        ),
+    ),
+    seed("of the parts within tolerances"),
+)
 
 
 def run(options: Namespace) -> int:
     """Screen; print the ranking, write tables and pictures."""
     if options.out is not None:
-        opt.check_folder(options.out, file="map.csv")
+        check_folder(options.out, file="map.csv")
     from noise.batch.identity import call_identity
     from noise.batch.lines import kept_results
     from noise.screening.design.environments import environment
@@ -151,11 +134,11 @@ def run(options: Namespace) -> int:
     for name in environments:
         environment(name)
     load_designs(options.designs, _change(options))  # refused before everything is imported
-    of_each = 2 if options.tolerances is False else 3  # map, grade, parts
-    number = 1 + of_each * len(options.designs) * len(environments)
+    of_each = 2 if options.no_tolerances else 3  # map, grade, parts
+    n_steps = 1 + of_each * len(options.designs) * len(environments)
     table = None if options.out is None else options.out / "map.csv"
     with kept_results(table, call_identity("screening")) as kept:
-        with steps("screening", number) as tell:
+        with steps("screening", n_steps) as tell:
             found = _screened(options, given, environments, tell, kept)
         from noise.screening.tables.summary import summary_lines
 
@@ -189,7 +172,7 @@ def _screened(
         given,
         environments=environments,
         loudness=options.loudness,
-        tolerances=options.tolerances,
+        tolerances=True if options.tolerances else False if options.no_tolerances else None,
         rng=np.random.default_rng(options.seed or 0),
         change=_change(options),
         simulations=None if math.isinf(simulations) else int(simulations),
@@ -201,7 +184,7 @@ def _screened(
 
 
 def _change(options: Namespace) -> Callable[[Rig], Rig] | None:
-    return (lambda rig: opt.changed(rig, options.change)) if options.change else None
+    return (lambda rig: changed(rig, options.change)) if options.change else None
 
 
 def _given(options: Namespace) -> Use:
@@ -254,8 +237,8 @@ def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
         except ParameterError as error:
             say(str(error))
     single = len(found.maps) == 1
-    for number, mapped in enumerate(found.maps, start=1):
-        path = folder / ("map.png" if single else f"map-{number}.png")
+    for index, mapped in enumerate(found.maps, start=1):
+        path = folder / ("map.png" if single else f"map-{index}.png")
         write_picture(path, plot_screen(mapped))
         written.append(path)
     tell("making the sounds of the report")
@@ -264,9 +247,3 @@ def _write(options: Namespace, found: Screening, tell: Steps) -> list[Path]:
         seed=options.seed or 0, workers=options.workers,
     )  # fmt: skip
     return [*written, folder / "report.html"]
-
-
-def _simulations(text: str) -> float:
-    if text.strip().lower() == "all":
-        return math.inf
-    return opt.whole_number(1, more=", or all")(text)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 from dataclasses import replace
@@ -13,19 +12,17 @@ from models.errors import ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import note, say
 from noise.base.tables import check_table_path, table_endings, write_table
-from noise.commands import options as opt
-from noise.commands.condition_options import add_condition
-from noise.commands.operating import is_long, run_arguments, with_notes
+from noise.commands.condition import CONDITION, is_long, run_arguments, with_notes
+from noise.commands.options import Option, seed, whole_number
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
     from collections.abc import Mapping
 
     from models.recording import Recording
     from sim.run import Run
 
-__all__ = ["configure", "run"]
 
 _DEFAULT_RATE = 30000
 _MOST_AT_ONCE = 60.0
@@ -35,55 +32,42 @@ _LEAST_OF_POWER = 0.25
 """Shortest run of which the sound power is told: `sim.analysis.sound_power` [s]."""
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Simulate one run of the rig and record torque [N m], acceleration [m/s^2], pressure [Pa] "
-        "and angle [rad], or draw it. The names of the files are printed; without --out, --plot "
-        "and --sound-power a summary as one line of JSON: conditions, mean of the torque and its "
-        "rms about the mean, peak and level (dB re 20 uPa) of the sound pressure. With --rig "
-        "suspension, or a file of your own with a [suspension] table, a car's stabilizer bar in "
-        "two bushings is simulated: --oscillate or --speed then is the wheels' travel as the angle "
-        "that it asks of an arm, and each bushing has its own channels."
-    )
-    parser.epilog = (
-        "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07; effects: "
-        f"{', '.join(EFFECTS)}"
-    )
-    add_condition(parser)
-    parser.add_argument(
-        "--rate",
-        type=_rate,
-        default=_DEFAULT_RATE,
-        metavar="HZ",
-        help=f"sampling rate in Hz, a whole number from 1000 to 400000 (default: {_DEFAULT_RATE})",
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="RUN",
-        help="write RUN.wav (32-bit float, in the units above) and RUN.json",
-    )
-    parser.add_argument(
-        "--plot",
-        type=Path,
-        metavar="FILE",
-        help="draw the run into FILE, .png, .svg or .pdf: torque, displacement and sliding speed "
-        "over time, phase plane, torque against sliding speed, autospectra; of runs up to 60 s",
-    )
-    parser.add_argument(
-        "--sound-power",
-        type=Path,
-        metavar="TABLE",
-        help="write the sound power that the plate's upper side radiates, as "
+DESCRIPTION = (
+    "Simulate one run of the rig and record torque [N m], acceleration [m/s^2], pressure [Pa] "
+    "and angle [rad], or draw it. The names of the files are printed; without --out, --plot "
+    "and --sound-power a summary as one line of JSON: conditions, mean of the torque and its "
+    "rms about the mean, peak and level (dB re 20 uPa) of the sound pressure. With --rig "
+    "suspension, or a file of your own with a [suspension] table, a car's stabilizer bar in "
+    "two bushings is simulated: --oscillate or --speed then is the wheels' travel as the angle "
+    "that it asks of an arm, and each bushing has its own channels."
+)
+
+EPILOG = (
+    "example: bushing-noise simulate --speed 5 --interference 0.279 --out run07; effects: "
+    f"{', '.join(EFFECTS)}"
+)
+
+OPTIONS = (
+    CONDITION,
+    Option("--rate HZ", whole_number(1000, most=400_000), _DEFAULT_RATE).help(
+        "sampling rate in Hz, a whole number from 1000 to 400000"
+    ),
+    Option("--out RUN", Path).help("write RUN.wav (32-bit float, in the units above) and RUN.json"),
+    Option("--plot FILE", Path).help(
+        "draw the run into FILE, .png, .svg or .pdf: torque, displacement and sliding speed "
+        "over time, phase plane, torque against sliding speed, autospectra; of runs up to 60 s"
+    ),
+    Option("--sound-power TABLE", Path).help(
+        "write the sound power that the plate's upper side radiates, as "
         f"{table_endings()}: one-third octaves from 50 Hz to 10 kHz and their sum, in dB and "
         "dB(A) re 1 pW; power_level_db is of the plate in a rigid baffle, as the sound pressure "
         "is, free_power_level_db of the plate standing free; below the critical frequency (shipped "
         "plate: 1.2 kHz) they lie 2 to 17 dB apart, and a rig's plate between them, above they are "
         "the same; of runs from "
-        f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s",
-    )
-    opt.add_seed(parser, "seed of the sensors' noise")
+        f"{_LEAST_OF_POWER:g} to {_MOST_AT_ONCE:g} s"
+    ),
+    seed("seed of the sensors' noise"),
+)
 
 
 def run(options: Namespace) -> int:
@@ -228,13 +212,6 @@ def _print_names(path: Path) -> None:
     print(path.with_suffix(".json"))
 
 
-def _rate(text: str) -> int:
-    value = opt.number(least=1000.0, most=400e3)(text)
-    if not value.is_integer():
-        raise argparse.ArgumentTypeError(f"is {text!r}, expected a whole number of Hz")
-    return int(value)
-
-
 def _summary(recording: Recording) -> dict[str, object]:
     import numpy as np
 
@@ -244,20 +221,18 @@ def _summary(recording: Recording) -> dict[str, object]:
     pressure = recording["pressure"]
     rms = float(pressure.std())
     level = 20.0 * math.log10(rms / REFERENCE_PRESSURE) if rms > 0.0 else None
-    found: dict[str, object] = {
+    summary: dict[str, object] = {
         "conditions": json.loads(sidecar_text(recording))["conditions"],
         "seconds": recording.duration,
         "rate_hz": recording.rate,
-        **{
-            f"{name}_{found}": _short(float(of(recording[name])))
-            for name in recording.channel_names
-            if name.partition("_")[0] == "torque"
-            for found, of in (("mean_Nm", np.mean), ("rms_about_mean_Nm", np.std))
-        },
-        "peak_pressure_Pa": _short(float(abs(pressure).max())),
-        "level_db": None if level is None else round(level, 2),
     }
-    return found | ({"notes": list(recording.notes)} if recording.notes else {})
+    for name in recording.channel_names:
+        if name.partition("_")[0] == "torque":
+            summary[f"{name}_mean_Nm"] = _short(float(np.mean(recording[name])))
+            summary[f"{name}_rms_about_mean_Nm"] = _short(float(np.std(recording[name])))
+    summary["peak_pressure_Pa"] = _short(float(abs(pressure).max()))
+    summary["level_db"] = None if level is None else round(level, 2)
+    return summary | ({"notes": list(recording.notes)} if recording.notes else {})
 
 
 def _short(value: float) -> float:

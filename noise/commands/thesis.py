@@ -9,46 +9,41 @@ from models.errors import ParameterError
 from noise.base.atomic import atomic, check_target
 from noise.base.progress import say, track
 from noise.base.tables import TABLE_ENDINGS, check_table_path, table_endings, write_table
-from noise.commands import options as opt
+from noise.commands.options import Option, check_folder, seed
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
 
-__all__ = ["configure", "run"]
 
 _PAGE_ENDING = ".md"
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Compute every checkable number of the thesis: from its program as it is listed, from its "
-        "equations exactly, and with the calibrated material; with a verdict each. With --plots, "
-        "draw its figures instead, with --out as well. Each takes less than a minute."
-    )
-    parser.epilog = "example: bushing-noise thesis --out thesis.csv"
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="TABLE",
-        help=f"file for the table, {table_endings()}, or .md for a page to read (default: CSV "
-        "on standard output)",
-    )
-    parser.add_argument(
-        "--plots",
-        type=Path,
-        metavar="FOLDER",
-        help="folder for the figures that show data, as computed here, figure-5.3.png and so on "
+DESCRIPTION = (
+    "Compute every checkable number of the thesis: from its program as it is listed, from its "
+    "equations exactly, and with the calibrated material; with a verdict each. With --plots, "
+    "draw its figures instead, with --out as well. Each takes less than a minute."
+)
+
+EPILOG = "example: bushing-noise thesis --out thesis.csv"
+
+OPTIONS = (
+    Option("--out TABLE", Path).help(
+        f"file for the table, {table_endings()}, or .md for a page to read (default: CSV "
+        "on standard output)"
+    ),
+    Option("--plots FOLDER", Path).help(
+        "folder for the figures that show data, as computed here, figure-5.3.png and so on "
         "(3.3, 5.1 to 5.9, 5.13 to 5.26, 6.1 to 6.10, B1, C1, G3, H1), and torque and frequency "
-        "against speed for each fit, speeds-0.279mm.png and so on; their names are printed",
-    )
-    opt.add_seed(parser, "accepted as by every command; nothing here is random")
+        "against speed for each fit, speeds-0.279mm.png and so on; their names are printed"
+    ),
+    seed("accepted as by every command; nothing here is random"),
+)
 
 
 def run(options: Namespace) -> int:
     """Compute and write the table, or draw the figures, or both."""
     if options.plots is not None:
-        opt.check_folder(options.plots, "--plots", file="figure-5.3.png")
+        check_folder(options.plots, "--plots", file="figure-5.3.png")
     if options.out is not None or options.plots is None:
         _write_table(options.out)
     if options.plots is not None:

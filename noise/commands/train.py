@@ -10,10 +10,10 @@ from models.errors import ParameterError
 from noise.base.atomic import check_target
 from noise.base.progress import counted, say, steps, track
 from noise.base.tables import TABLE_ENDINGS
-from noise.commands import options as opt
+from noise.commands.options import Option, one_of, refuse, seed, whole_number
 
 if TYPE_CHECKING:
-    from argparse import ArgumentParser, Namespace
+    from argparse import Namespace
     from collections.abc import Iterable, Mapping, Sequence
 
     from noise.base.progress import Steps
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     _Sample = TypeVar("_Sample")
 
-__all__ = ["configure", "run"]
 
 _PART_TO_SCORE = 5
 """With --samples N, one for so many of them is drawn to score."""
@@ -32,65 +31,44 @@ _TOLD = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_n
 """Scores that are told."""
 
 
-def configure(parser: ArgumentParser) -> None:
-    """Declare description and options."""
-    parser.description = (
-        "Build the classifier again from simulated runs, made-up sounds that are none of the "
-        "three noises and the features of some real sounds, and from labelled recordings of your "
-        "own if --add names some; the same call gives the same classifier. It takes some twenty "
-        "minutes, of which --keep saves most the next time. Use it with `bushing-noise label "
-        "--classifier FILE.npz`."
-    )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        required=True,
-        metavar="FILE.npz",
-        help="file for the classifier (required)",
-    )
-    parser.add_argument(
-        "--add",
-        type=Path,
-        action="append",
-        metavar="DIR|TABLE",
-        help="folder of labelled recordings to learn from as well (may be given several times): "
+DESCRIPTION = (
+    "Build the classifier again from simulated runs, made-up sounds that are none of the "
+    "three noises and the features of some real sounds, and from labelled recordings of your "
+    "own if --add names some; the same call gives the same classifier. It takes some twenty "
+    "minutes, of which --keep saves most the next time. Use it with `bushing-noise label "
+    "--classifier FILE.npz`."
+)
+
+OPTIONS = (
+    Option("--out FILE.npz", Path, required=True).help("file for the classifier"),
+    Option("--add DIR|TABLE", Path, repeated=True).help(
+        "folder of labelled recordings to learn from as well (may be given several times): "
         "labelled by the name of the folder they lie in (creak, squawk, squeal, none, unknown), by "
         "a label table, or by Audacity's label tracks (run07.txt beside run07.wav); or the label "
         "table itself. Of a table that somebody has corrected (label_source is human) the "
         "corrections count alone. All are learned from. What is said of them, which probability "
         "that means, from which on a noise is named (of those in none and unknown), and the score "
-        "that is told, come from trees that were grown without their file",
-    )
-    parser.add_argument(
-        "--surroundings",
-        choices=("any", "car", "rig"),
-        default="any",
-        help="where the classifier is to be used: what cannot sound there, such as animals and "
+        "that is told, come from trees that were grown without their file"
+    ),
+    Option("--surroundings any|car|rig", one_of("any", "car", "rig"), "any").help(
+        "where the classifier is to be used: what cannot sound there, such as animals and "
         "keyboards in a car or at a rig, is not learned, so that less has to be told apart "
-        "(default: any); your own recordings are learned in any case",
-    )
-    parser.add_argument(
-        "--samples",
-        type=opt.whole_number(1),
-        metavar="N",
-        help="simulated bushings and other bodies to learn from (default: 4300), beside which 0.6 "
-        "as many made-up sounds are drawn; fewer are quicker and know less",
-    )
-    parser.add_argument(
-        "--keep",
-        type=Path,
-        metavar="FILE.npz",
-        help="keep what was simulated in this file; where it holds the same of an earlier call, "
-        "nothing is simulated again",
-    )
-    parser.add_argument(
-        "--inference",
-        type=Path,
-        metavar="FILE.npz",
-        help="also train the model that infers conditions which were not logged, into this file; "
-        "use it with `bushing-noise label --inference FILE.npz`",
-    )
-    opt.add_seed(parser, "seed of the training samples and of the trees")
+        "(default: any); your own recordings are learned in any case"
+    ),
+    Option("--samples N", whole_number(1)).help(
+        "simulated bushings and other bodies to learn from (default: 4300), beside which 0.6 "
+        "as many made-up sounds are drawn; fewer are quicker and know less"
+    ),
+    Option("--keep FILE.npz", Path).help(
+        "keep what was simulated in this file; where it holds the same of an earlier call, "
+        "nothing is simulated again"
+    ),
+    Option("--inference FILE.npz", Path).help(
+        "also train the model that infers conditions which were not logged, into this file; "
+        "use it with `bushing-noise label --inference FILE.npz`"
+    ),
+    seed("seed of the training samples and of the trees"),
+)
 
 
 def run(options: Namespace) -> int:
@@ -164,7 +142,8 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
     from noise.training.classifier.own_samples import own_samples
 
     for folder in folders:
-        if not folder.is_dir() and not (folder.is_file() and folder.suffix in TABLE_ENDINGS):
+        is_table = folder.is_file() and folder.suffix.lower() in TABLE_ENDINGS
+        if not folder.is_dir() and not is_table:
             raise ParameterError(f"--add {folder}: there is no such folder, nor label table")
     samples: list[OwnSample] = []
     refusals: list[str] = []
@@ -174,7 +153,7 @@ def _own(folders: Sequence[Path]) -> tuple[list[OwnSample], bool]:
         samples += found
         refusals += [*unread, *unlearned]
     for line in refusals:
-        opt.refuse(line)
+        refuse(line)
     if not samples:
         raise ParameterError(
             f"--add {', '.join(map(str, folders))}: holds no recording with a label that can be "

@@ -283,9 +283,9 @@ def test_a_target_below_a_file_is_refused_before_the_work(simulated, capsys, tmp
 
 
 def test_a_long_run_is_written_in_blocks(tmp_path, monkeypatch):
-    from noise.commands import operating
+    from noise.commands import condition
 
-    monkeypatch.setattr(operating, "_LONG", 0.1)
+    monkeypatch.setattr(condition, "_LONG", 0.1)
     monkeypatch.setattr("sim.run.simulate", None)  # held in memory it would be
     run = ["simulate", "--speed", "5", "--seconds", "0.3", "--out", str(tmp_path / "run")]
     assert main(run) == 0

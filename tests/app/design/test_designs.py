@@ -14,7 +14,8 @@ from noise.app.design.controls import controls_of
 from noise.app.design.design import design_of
 from noise.app.design.rig_saving import save_rig
 from noise.app.opened import open_paths
-from noise.commands.condition_options import add_condition
+from noise.commands.condition import CONDITION
+from noise.commands.options import add_options
 from noise.screening.design.design import Use, load_design
 from sim.effects import EFFECTS
 from sim.friction import LAWS
@@ -217,7 +218,7 @@ def test_the_condition_is_told_as_options_that_the_command_reads():
     from argparse import ArgumentParser
 
     parser = ArgumentParser()
-    add_condition(parser)
+    add_options(parser, [CONDITION])
     for motion in ("constant", "run_up", "swing"):
         of = design({"motion": motion, "fixed": motion == "swing", "temperature": 40.0})
         options = parser.parse_args(of.options.split())

@@ -1,15 +1,24 @@
-"""Operating condition from the options of a command, as arguments of the simulation."""
+"""Operating condition of a command: its options, and the arguments of the simulation from them.
+
+An option that is not given is None: whether it was given matters where two sources of the same
+value meet, such as ``--rig`` and ``--material``.
+"""
 
 from __future__ import annotations
 
 import csv
 import math
+from argparse import ArgumentTypeError
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from models.condition import FIXED
 from models.errors import ParameterError
 from models.foreign_file import LARGEST_TEXT, reading
+from models.rig_files.rig_parts import parse_spec
+from models.rig_files.shipped import material_names
+from models.units import ABSOLUTE_ZERO
 from noise.base.progress import note, say
 from noise.base.remarks import (
     NEVER_SLIPS,
@@ -20,8 +29,7 @@ from noise.base.remarks import (
     use_remarks,
 )
 from noise.base.user_effects import effect_library
-from noise.commands import condition_options as opt
-from noise.commands.options import changed, number_or_none
+from noise.commands.options import CHANGE, Group, Option, changed, number, number_or_none
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -33,7 +41,111 @@ if TYPE_CHECKING:
     from sim.run import Run
     from sim.shaft import LoggedSpeed, ShaftMotion
 
-__all__ = ["is_long", "run_arguments", "with_notes"]
+DEFAULT_INTERFERENCE_MM = 0.279
+DEFAULT_SUPPORT_STIFFNESS = 2214.0  # Nm/rad
+DEFAULT_MATERIAL = "fluorocarbon"
+DEFAULT_TEMPERATURE = 23.0  # degree Celsius
+DEFAULT_SECONDS = 1.0
+
+
+def _speed(text: str) -> float | tuple[float, float] | Path:
+    start, dots, end = text.partition("..")
+    if dots and number_or_none(start) is not None and number_or_none(end) is not None:
+        return number()(start), number()(end)
+    if number_or_none(text) is not None:
+        return number()(text)
+    if not Path(text).is_file():
+        raise ArgumentTypeError(
+            f"is {text!r}, expected a number in rad/s, a ramp such as 0..10, or a CSV file that "
+            "exists"
+        )
+    return Path(text)
+
+
+def _swing(text: str) -> tuple[float, float]:
+    try:
+        degrees, frequency = (number(above=0.0)(part) for part in text.split(","))
+    except (ArgumentTypeError, ValueError):
+        raise ArgumentTypeError(
+            f"is {text!r}, expected degrees and Hz, both above 0, such as 15,2"
+        ) from None
+    return degrees, frequency
+
+
+def _support_stiffness(text: str) -> float:
+    if text.strip().lower() == "fixed":
+        return FIXED
+    try:
+        return number(above=0.0)(text)
+    except ArgumentTypeError:
+        raise ArgumentTypeError(
+            f"is {text!r}, expected a number above 0 in Nm/rad, or fixed"
+        ) from None
+
+
+def _effect(text: str) -> LawSpec:
+    try:
+        return parse_spec(text)
+    except ParameterError:
+        raise ArgumentTypeError(f"is {text!r}, expected NAME or NAME:key=value,key=value") from None
+
+
+CONDITION = Group(
+    "operating condition",
+    "Exactly one of --speed and --oscillate is needed.",
+    (
+        Option("--speed V", _speed).help(
+            "speed of the shaft in rad/s, of either sign; A..B is a ramp from A to B over the "
+            "run; the name of a CSV file is a log with the columns time_s, speed_rad_s"
+        ),
+        Option("--oscillate DEG,HZ", _swing).help(
+            "the shaft swings by +-DEG degrees, HZ times a second, instead of turning"
+        ),
+        Option("--interference MM", number(above=0.0, most=10.0)).help(
+            f"interference fit in mm (default: {DEFAULT_INTERFERENCE_MM:g}, or the nearest that "
+            "--rig gives)"
+        ),
+        Option("--support-stiffness K", _support_stiffness).help(
+            "torsional stiffness of the beams in Nm/rad, or fixed for the clamp bolted to the "
+            f"baseplate (default: {DEFAULT_SUPPORT_STIFFNESS:g})"
+        ),
+        Option("--material NAME", str).help(
+            f"elastomer, one of {', '.join(material_names())}; case does not matter "
+            f"(default: that of --rig, else {DEFAULT_MATERIAL})"
+        ),
+        Option("--temperature C", number(least=ABSOLUTE_ZERO)).help(
+            "ambient temperature in degree Celsius; friction, stiffness and damping follow "
+            "it where the material's file says how, under [temperature]; else it is only recorded "
+            f"(default: {DEFAULT_TEMPERATURE:g})"
+        ),
+        Option("--seconds S", number(above=0.0, most=20000.0)).help(
+            f"length of the recording in s (default: {DEFAULT_SECONDS:g})"
+        ),
+        Option("--effect NAME[:KEY=VALUE,...]", _effect, repeated=True).help(
+            "what the model includes beyond its friction law, such as slip_pulse:amplitude=20 "
+            "(in N); replaces the rig's effect of the same name; may be given several times "
+            "(default: the effects of rig and material)"
+        ),
+        Option("--effects FILE.py", Path).help(
+            "Python file that defines effects of your own, for --effect and the rig file to "
+            "name; the file is run"
+        ),
+        Option("--rig RIG.toml", Path).help("rig file to use instead of the rig that is shipped"),
+        CHANGE,
+        Option("--converter").help(
+            "pass the samples through the thesis's 12-bit converter, which hides quiet sounds and "
+            "clips loud ones (default: the range and bits that [sensors] of the rig file states)"
+        ),
+    ),
+)
+
+
+def given_options(options: Namespace) -> dict[str, Any]:
+    """Return the options of a condition that were given, by attribute."""
+    found = {row.attribute: getattr(options, row.attribute) for row in CONDITION.rows}
+    return {
+        name: value for name, value in found.items() if value is not None and value is not False
+    }
 
 
 def is_long(arguments: Mapping[str, Any]) -> bool:
@@ -61,7 +173,7 @@ def run_arguments(
     Parameters
     ----------
     options : argparse.Namespace
-        With the attributes of `CONDITION_OPTIONS` and ``seed``.
+        With the attributes of `CONDITION` and ``seed``.
     rate : float
         Sampling rate of the recording [Hz].
     rig : Rig, optional
@@ -75,8 +187,8 @@ def run_arguments(
     if (options.speed is None) == (options.oscillate is None):
         asked = "is needed" if options.speed is None else "can be given, not both"
         raise ParameterError(f"exactly one of --speed and --oscillate {asked}")
-    seconds = _or(options.seconds, opt.DEFAULT_SECONDS)
-    stiffness = _or(options.support_stiffness, opt.DEFAULT_SUPPORT_STIFFNESS)
+    seconds = _or(options.seconds, DEFAULT_SECONDS)
+    stiffness = _or(options.support_stiffness, DEFAULT_SUPPORT_STIFFNESS)
     if round(seconds * rate) < _LEAST_SAMPLES:
         raise ParameterError(
             f"--seconds {seconds:g} is too short at {rate:g} Hz; a recording holds "
@@ -85,7 +197,7 @@ def run_arguments(
     library = effect_library(options.effects)
     rig = _rig(options, library, rig)
     low, high = (1e3 * limit for limit in rig.interference_range)
-    nearest = min(max(opt.DEFAULT_INTERFERENCE_MM, low), high)
+    nearest = min(max(DEFAULT_INTERFERENCE_MM, low), high)
     interference_mm = _or(options.interference, nearest)
     _note_idle(options.effects, rig, library)
     shaft, turning = _shaft(options, seconds)
@@ -104,7 +216,7 @@ def run_arguments(
         "shaft": shaft,
         "interference": interference_mm / 1e3,
         "support_stiffness": stiffness,
-        "temperature": _or(options.temperature, opt.DEFAULT_TEMPERATURE),
+        "temperature": _or(options.temperature, DEFAULT_TEMPERATURE),
         "seconds": seconds,
         "acquisition": Acquisition(
             rate=rate, sensors=THESIS_CONVERTER if options.converter else Sensors()
@@ -162,10 +274,10 @@ def _remarks(
         )
     found += use_remarks(
         rig,
-        speed=[_fastest(shaft, _or(options.seconds, opt.DEFAULT_SECONDS))],
+        speed=[_fastest(shaft, _or(options.seconds, DEFAULT_SECONDS))],
         interference=[interference_mm / 1e3],
         support_stiffness=[stiffness],
-        temperature=[_or(options.temperature, opt.DEFAULT_TEMPERATURE)],
+        temperature=[_or(options.temperature, DEFAULT_TEMPERATURE)],
     )
     found += effect_remarks(rig, library)
     found.append(temperature_remark(rig, options.temperature))
@@ -193,7 +305,7 @@ def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) ->
     if options.rig is None:
         try:
             rig = load_material_rig(
-                opt.DEFAULT_MATERIAL if options.material is None else options.material
+                DEFAULT_MATERIAL if options.material is None else options.material
             )
         except ParameterError as error:
             raise ParameterError(f"--material: {error}") from None
@@ -246,11 +358,11 @@ def _shaft(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:
     from sim.shaft import ConstantSpeed, Oscillation, SpeedRamp
 
     if options.oscillate is not None:
-        degrees, frequency = options.oscillate.amplitude, options.oscillate.frequency
+        degrees, frequency = options.oscillate
         words = f"swinging +-{degrees:g} degrees at {frequency:g} Hz"
         return Oscillation(math.radians(degrees), frequency), words
-    if isinstance(options.speed, opt.Ramp):
-        start, end = options.speed.start, options.speed.end
+    if isinstance(options.speed, tuple):
+        start, end = options.speed
         return SpeedRamp(start, end, seconds), f"{start:g} to {end:g} rad/s"
     if isinstance(options.speed, Path):
         return _logged_speed(options.speed, seconds), f"speed as logged in {options.speed.name}"
