@@ -197,3 +197,19 @@ def split_unit(heading: str) -> tuple[str, str]:
             return found[1].strip(), found[2].strip()
     name, _, unit = heading.partition("_")
     return (name, unit) if quantity_of_unit(unit) else (heading, "")
+
+
+def split_ratio(unit: str) -> tuple[str, str]:
+    """Part the unit of a response into those of output and input, empty where it has none.
+
+    Examples
+    --------
+    >>> split_ratio("(m/s²)/(N m)"), split_ratio("Pa per N"), split_ratio("m/s^2")
+    (('m/s²', 'N m'), ('Pa', 'N'), ('m/s^2', ''))
+    """
+    if quantity_of_unit(unit) is None:
+        for sign in re.finditer(r"/| per ", unit):
+            output, per = unit[: sign.start()], unit[sign.end() :]
+            if quantity_of_unit(output) and quantity_of_unit(per):
+                return output.strip(" ()"), per.strip(" ()")
+    return unit, ""

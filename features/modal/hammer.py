@@ -1,12 +1,14 @@
 """Hits with an impulse hammer: which can be used, and the transfer function that they give.
 
 Each hit is one segment under a boxcar window: the force is over before the segment ends and the
-response has died away, so a window could only add damping that is not there. Cross- and
-autospectra are averaged over the hits. H1 takes noise to be in the response alone, H2 in the force
-alone, Hv in both in proportion to their power, which puts it half-way (geometrically) between.
+response has died away, so a window could only add damping that is not there. Where it has not died
+away, an exponential window over force and response ends it; as both decay alike, it moves each pole
+by its own rate and nothing else, which is taken off the modes again. Cross- and autospectra are
+averaged over the hits. H1 takes noise to be in the response alone, H2 in the force alone, Hv in
+both in proportion to their power, which puts it half-way (geometrically) between.
 
-A second contact of the hammer makes notches in the spectrum of the force, and a clipped one is
-not the force; neither can be mended, so such hits are refused.
+A second contact of the hammer makes notches in the spectrum of the force, a clipped force is not
+the force, and one that drifts hides its lowest lines; none can be mended, so such hits are refused.
 
 J. S. Bendat, A. G. Piersol, Random Data, chapters 6 and 9; for Hv G. T. Rocklin, J. Crowley,
 H. Vold, A comparison of the H1, H2, and Hv frequency response functions, Proc. IMAC 3 (1985).
@@ -15,7 +17,7 @@ H. Vold, A comparison of the H1, H2, and Hv frequency response functions, Proc. 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,7 +32,15 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["ESTIMATORS", "Hit", "check_hit", "estimate_transfer_function"]
+__all__ = [
+    "ESTIMATORS",
+    "Hit",
+    "check_hit",
+    "estimate_transfer_function",
+    "force_nulls",
+    "remaining_response",
+    "windowed_hits",
+]
 
 ESTIMATORS = ("H1", "H2", "Hv")
 """For noise in the response, for noise in the force, for noise in both."""
@@ -45,6 +55,22 @@ FLAT, NEAR = 3.0, 0.03
 LEAST_CREST = 10.0
 """Largest force over the rms of the rest, below which there is no hit to be seen."""
 
+LONGEST_BLOW = 0.2
+"""No hammer touches for longer [s]; what seems to has its time in another unit."""
+
+LARGEST_DRIFT = 0.01
+"""Change of the force beside the blow, as a share of the largest force."""
+
+WINDOW_END = 0.01
+"""Value of the exponential window at the end of a hit; at the blow it is 1."""
+
+NULL = 0.01
+"""Power of the force at a null, relative to that on either side of it."""
+
+_SURE = 12.0  # times the median deviation of a part over the root of its length
+_PARTS = 8  # of a force, whose medians show a drift and not a short blow
+_LAST = 0.05  # share of a hit that counts as its end
+_BESIDE = 1.5  # frequency ratio within which a null has neighbours
 _FINE = 1e-3  # steps of a converter, relative to the peak, that leave two neighbours unlike
 _EVEN = 1e-4  # flanks of a top that is sampled evenly about its middle differ by less
 _DIGITS = 9  # to which levels of a converter agree
@@ -102,33 +128,163 @@ def check_hit(hit: Hit) -> None:
     Traceback (most recent call last):
     models.errors.RecordingError: hit_3.npy: double hit; the force rises again 4 ms after ...
     """
+    problem = _problem(hit)
+    if problem and not _problem(replace(hit, force=hit.response, response=hit.force)):
+        problem = "force and response are swapped; the blow is in the response's place"
+    if problem:
+        raise RecordingError(f"{hit.name}: {problem}")
+
+
+def _problem(hit: Hit) -> str:
+    """Why a hit cannot be used, empty where it can."""
     if not hit.response.any():
-        raise RecordingError(f"{hit.name}: the response is zero throughout")
-    top = int(np.argmax(np.abs(hit.force)))
-    force = hit.force * math.copysign(1.0, hit.force[top])
+        return "the response is zero throughout"
+    force, top = _upright(hit.force)
     peak = float(force[top])
     start, end = _lobe(force, top, DOUBLE_HIT)
     rest = np.concatenate([force[:start], force[end:]])
-    if not (peak > 0.0 and rest.size and peak > LEAST_CREST * math.sqrt(np.mean(rest**2))):
-        raise RecordingError(
-            f"{hit.name}: no hit; the force has no peak that stands {LEAST_CREST:g} times above "
-            "the rest"
+    parts = [part for part in np.array_split(force, _PARTS) if part.size]
+    levels = np.array([np.median(part) for part in parts])
+    scatter = max(
+        float(np.median(np.abs(part - level))) / math.sqrt(part.size)
+        for part, level in zip(parts, levels, strict=True)
+    )
+    if peak > 0.0 and float(np.ptp(levels)) > max(LARGEST_DRIFT * peak, _SURE * scatter):
+        return (
+            f"the force drifts beside the blow, from {levels[0]:.4g} to {levels[-1]:.4g} at a peak "
+            f"of {peak:.4g}; the force of a hammer is zero there"
         )
+    if not (peak > 0.0 and rest.size and peak > LEAST_CREST * math.sqrt(np.mean(rest**2))):
+        return f"no hit; the force has no peak that stands {LEAST_CREST:g} times above the rest"
     response = hit.response
     for channel, signal in (("force", force), ("response", response), ("response", -response)):
         if flat := _flat_top(signal):
-            raise RecordingError(
-                f"{hit.name}: {channel} is clipped; {flat} samples stand at its limit of "
+            return (
+                f"{channel} is clipped; {flat} samples stand at its limit of "
                 f"{float(signal.max()):.4g}"
             )
     height = DOUBLE_HIT * peak
     contacts, _ = find_peaks(np.concatenate([[0.0], force, [0.0]]), height, prominence=height)
     if contacts.size > 1:
         first, second = (contacts - 1)[:2] / hit.rate
-        raise RecordingError(
-            f"{hit.name}: double hit; the force rises again {1e3 * (second - first):.3g} ms after "
-            f"the peak at {first:.5g} s"
+        return (
+            f"double hit; the force rises again {1e3 * (second - first):.3g} ms after the peak at "
+            f"{first:.5g} s"
         )
+    if end - start > LONGEST_BLOW * hit.rate:
+        return f"the blow lasts {(end - start) / hit.rate:.3g} s; times must be in s"
+    return ""
+
+
+def remaining_response(hits: Sequence[Hit]) -> float:
+    """How far responses have died away at the end of their hits.
+
+    Parameters
+    ----------
+    hits : sequence of Hit
+
+    Returns
+    -------
+    float
+        Largest amplitude at an end, above the noise before the blow, relative to that after the
+        blow [-].
+
+    Examples
+    --------
+    >>> force, t = np.zeros(1000), np.arange(1000) / 1e3
+    >>> force[100] = 1.0
+    >>> ringing = np.where(t < 0.1, 0.0, np.exp(0.2 - 2 * t) * np.sin(300 * t))
+    >>> round(remaining_response([Hit(force, ringing, 1e3)]), 2)
+    0.18
+    """
+    remaining = 0.0
+    for hit in hits:
+        force, top = _upright(hit.force)
+        start, _ = _lobe(force, top, DOUBLE_HIT)
+        length = max(1, round(_LAST * (hit.response.size - start)))
+        power = hit.response**2
+        before = float(power[:start].mean()) if start >= length // 2 and start else 0.0
+        after = float(power[start : start + length].mean()) - before
+        last = float(power[-length:].mean()) - before
+        if last > 0.0:
+            remaining = max(remaining, math.sqrt(last / after) if after > last else 1.0)
+    return remaining
+
+
+def windowed_hits(hits: Sequence[Hit]) -> tuple[list[Hit], float]:
+    """Put a force and exponential window over hits.
+
+    Parameters
+    ----------
+    hits : sequence of Hit
+
+    Returns
+    -------
+    hits : list of Hit
+        The force zero but for the blow; force and response decay from the blow on.
+    rate : float
+        By which each pole decays faster than it does without [1/s].
+
+    Examples
+    --------
+    >>> force = np.zeros(1000)
+    >>> force[0] = 1.0
+    >>> (hit,), rate = windowed_hits([Hit(force, np.ones(1000), 1e3)])
+    >>> round(rate, 2), round(float(hit.response[-1]), 3)
+    (4.61, 0.01)
+    """
+    blows = []
+    for hit in hits:
+        force, top = _upright(hit.force)
+        start, end = _lobe(force, top, DOUBLE_HIT)
+        blows.append((max(0, 2 * start - end), min(force.size, 2 * end - start)))
+    shortest = min(
+        (hit.force.size - start) / hit.rate for hit, (start, _) in zip(hits, blows, strict=True)
+    )
+    rate = -math.log(WINDOW_END) / shortest
+    windowed = []
+    for hit, (start, end) in zip(hits, blows, strict=True):
+        index = np.arange(hit.force.size)
+        decay = np.exp(-rate * np.maximum(index - start, 0) / hit.rate)
+        force = np.where((index >= start) & (index < end), hit.force, 0.0)
+        windowed.append(replace(hit, force=decay * force, response=decay * hit.response))
+    return windowed, rate
+
+
+def force_nulls(
+    hits: Sequence[Hit], frequency: NDArray[np.float64], half_width: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Whether the force holds next to nothing at frequencies, but does on either side of them.
+
+    Parameters
+    ----------
+    hits : sequence of Hit
+        All of one sampling rate and length.
+    frequency, half_width : ndarray, shape (n,)
+        Middle of each band looked at, and its limits' distance from it [Hz]; a line at least.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Examples
+    --------
+    >>> force = np.zeros(1000)
+    >>> force[10:20] = 1.0
+    >>> force_nulls([Hit(force, force, 1e3)], np.array([50.0, 102.0]), np.array([1.0, 3.0]))
+    array([False,  True])
+    """
+    n, rate = hits[0].force.size, hits[0].rate
+    lines, power = welch(
+        np.concatenate([hit.force for hit in hits]), rate, "boxcar", n, 0, detrend=False
+    )
+    nulls = np.zeros(frequency.size, dtype=bool)
+    for number, (f, reach) in enumerate(zip(frequency, half_width, strict=True)):
+        least = float(power[np.abs(lines - f) <= max(reach, lines[1])].min())
+        below = power[(lines >= f / _BESIDE) & (lines <= f)]
+        above = power[(lines >= f) & (lines <= f * _BESIDE)]
+        nulls[number] = all(side.size and least < NULL * side.max() for side in (below, above))
+    return nulls
 
 
 def estimate_transfer_function(
@@ -200,6 +356,12 @@ def estimate_transfer_function(
     return TransferFunction(
         frequencies, found, coherence if len(hits) > 1 else None, input_unit, output_unit, name
     )
+
+
+def _upright(force: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
+    """Return the force with its largest value positive, and where that is."""
+    top = int(np.argmax(np.abs(force)))
+    return force * math.copysign(1.0, force[top]), top
 
 
 def _lobe(signal: NDArray[np.float64], top: int, share: float) -> tuple[int, int]:

@@ -81,6 +81,38 @@ class Modes:
         coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
         return np.asarray(coefficients @ basis)
 
+    def without_window(self, rate: float) -> Modes:
+        """Modes as they are without the exponential window under which they were measured.
+
+        Parameters
+        ----------
+        rate : float
+            By which the window makes each pole decay faster [1/s].
+
+        Returns
+        -------
+        Modes
+            Of those that still decay.
+
+        Examples
+        --------
+        >>> one, none = np.ones(1), np.zeros((1, 4))
+        >>> mode = Modes(100 * one, 0.02 * one, 1j * one[None], none, one.astype(int), 200.0)
+        >>> mode.without_window(2 * np.pi).damping_ratio.round(3)
+        array([0.01])
+        """
+        poles = self.poles + rate
+        decay = poles.real < 0.0
+        natural = np.abs(poles[decay])
+        return Modes(
+            natural / (2 * np.pi),
+            -poles.real[decay] / natural,
+            self.residues[:, decay],
+            self.residuals,
+            self.orders[decay],
+            self.highest,
+        )
+
     def to_pandas(self) -> DataFrame:
         """Return one row a mode as a data frame of pandas.
 

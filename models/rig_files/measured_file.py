@@ -17,7 +17,6 @@ from models.errors import ParameterError
 from models.transfer_functions.coherence import check_band
 from models.transfer_functions.files import read_transfer_function
 from models.transfer_functions.measured import MeasuredResponse, measured_with
-from models.transfer_functions.validation import check_units
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -99,7 +98,6 @@ def _transfer_function(
     path = folder / a_text(table[key], key, where)
     try:
         transfer = read_transfer_function(path, input_unit="N m", output_unit=_OUTPUTS[key])
-        check_units(transfer, "N m", _OUTPUTS[key])
         check_band(transfer, LOWEST, HIGHEST)
     except ParameterError as error:
         raise ParameterError(f"{where}: {key}: {error}") from None

@@ -2,20 +2,22 @@
 
 NPZ: ``frequency_hz``, ``response`` (complex), ``coherence`` (optional), ``input_unit``,
 ``output_unit``. CSV: the columns ``frequency_hz, real, imag``, and ``coherence`` where there is
-one; it names no units, so those that the reader expects are taken. Universal files (dataset 58)
-hold a frequency response, and its coherence as a function of its own; where they label no units,
-the same holds.
+one; units may stand in its headings, ``real (m/s^2/N)``, else those that the reader expects are
+taken. Universal files (dataset 58) hold a frequency response, and its coherence as a function of
+its own.
 """
 
 from __future__ import annotations
 
 import csv
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from models.errors import ParameterError
 from models.foreign_file import LARGEST_TEXT, read_arrays, reading
+from models.foreign_table import read_table
 from models.transfer_functions.transfer_function import TransferFunction
 from models.transfer_functions.uff import (
     COHERENCE,
@@ -26,8 +28,8 @@ from models.transfer_functions.uff import (
     read_uff_functions,
     write_uff_functions,
 )
-from models.transfer_functions.validation import check_transfer_function
-from models.units import same_unit
+from models.transfer_functions.validation import check_transfer_function, in_units
+from models.units import quantity_of_unit, split_ratio
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,12 +82,12 @@ def read_transfer_function(path: Path, *, input_unit: str, output_unit: str) -> 
     ----------
     path : Path
     input_unit, output_unit : str
-        Taken for the units where the file names none.
+        Those wanted; taken for the file's where it states none.
 
     Returns
     -------
     TransferFunction
-        In the units that the file names.
+        In the units wanted, converted from those that the file states.
 
     Raises
     ------
@@ -112,7 +114,7 @@ def read_transfer_function(path: Path, *, input_unit: str, output_unit: str) -> 
             transfer = _read_csv(path, input_unit, output_unit)
         else:
             transfer = _read_uff(path, input_unit, output_unit)
-        return check_transfer_function(transfer)
+        return in_units(check_transfer_function(transfer), input_unit, output_unit)
 
 
 def write_transfer_function(path: Path, transfer: TransferFunction) -> None:
@@ -228,54 +230,59 @@ def _unit(value: NDArray[np.generic], key: str, path: Path) -> str:
 
 
 def _read_csv(path: Path, input_unit: str, output_unit: str) -> TransferFunction:
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    header = [cell.strip() for cell in rows[0]] if rows else []
-    for column in _COLUMNS:
-        if column not in header:
+    table = read_table(path)
+    names = [name.lower() for name in table.names]
+    columns: dict[str, NDArray[np.float64]] = {}
+    units: dict[str, str] = {}
+    for name in ("frequency", "real", "imag", "coherence"):
+        if name in names:
+            number = names.index(name)
+            columns[name], units[name] = table.values[:, number], table.units[number]
+        elif name != "coherence":
             raise ParameterError(
-                f"{path}: has no column {column}; expected {', '.join(_COLUMNS)}, coherence"
+                f"{path}: has no column {name}; expected {', '.join(_COLUMNS)}, coherence"
             )
-    columns = {name: _column(rows, header.index(name), name, path) for name in _COLUMNS}
-    coherence = None
-    if "coherence" in header:
-        position = header.index("coherence")
-        if any(len(row) > position and row[position].strip() for row in rows[1:]):
-            coherence = _column(rows, position, "coherence", path)
+    quantity, in_hz = quantity_of_unit(units["frequency"] or "Hz") or ("", 1.0)
+    if quantity != "frequency" or units["real"] != units["imag"]:
+        raise ParameterError(
+            f"{path}: columns are in {units}, expected Hz and one unit of real, imag"
+        )
+    coherence = columns.get("coherence")
+    if coherence is not None and np.isnan(coherence).all():
+        coherence = None
+    output, per = split_ratio(units["real"])
     return TransferFunction(
-        columns["frequency_hz"],
+        in_hz * columns["frequency"],
         columns["real"] + 1j * columns["imag"],
         coherence,
-        input_unit,
-        output_unit,
+        per or input_unit,
+        output or output_unit,
         str(path),
     )
 
 
-def _column(rows: list[list[str]], position: int, name: str, path: Path) -> NDArray[np.float64]:
-    values = np.empty(len(rows) - 1)
-    for line, row in enumerate(rows[1:]):
-        text = row[position] if position < len(row) else ""
-        try:
-            values[line] = float(text)
-        except ValueError:
-            raise ParameterError(
-                f"{path}: {name} is {text!r} at line {line + 1}; it must be a number"
-            ) from None
-    return values
-
-
 def _read_uff(path: Path, input_unit: str, output_unit: str) -> TransferFunction:
-    functions = read_uff_functions(path)
+    functions = read_uff_functions(path, FREQUENCY_RESPONSE, COHERENCE)
     responses = [function for function in functions if function.kind == FREQUENCY_RESPONSE]
     if len(responses) > 1:
-        responses = [function for function in responses if same_unit(function.unit, output_unit)]
+        wanted = quantity_of_unit(output_unit)
+        responses = [
+            function for function in responses if quantity_of_unit(function.unit) == wanted
+        ]
     if len(responses) != 1:
         raise ParameterError(
             f"{path}: holds {len(responses)} frequency response functions in {output_unit}; "
             "it must be one"
         )
     (found,) = responses
+    if found.unclear:
+        raise ParameterError(f"{path}: function {found.name!r} has unit {found.unclear}")
+    if not found.unit or not found.denominator_unit:
+        warnings.warn(
+            f"{path}: does not state all units; what is missing is taken for {output_unit} per "
+            f"{input_unit}",
+            stacklevel=3,
+        )
     coherences = [
         function.y.real
         for function in functions

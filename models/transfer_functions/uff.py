@@ -1,5 +1,9 @@
 """Functions in universal files (dataset 58), read and written through pyuff.
 
+Values are read in SI. The unit follows from the axis' label and, where it has none, from its
+specific data type in the units of the file (dataset 164). Statements that contradict each other
+are named and not chosen between.
+
 The format keeps the step of an even axis with six digits: 1/51200 s reads back as 51199.87 Hz. A
 step is therefore taken to be that of the whole number of hertz, or the whole fraction of a hertz,
 which rounds to the digits stored, where there is one.
@@ -15,9 +19,10 @@ import numpy as np
 
 from models.errors import ParameterError, not_installed
 from models.foreign_file import LARGEST_TEXT, reading
+from models.units import SI_UNITS, quantity_of_unit, split_ratio
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -51,6 +56,34 @@ _TIME, _FREQUENCY = 17, 18
 _DIGITS = 0.51e-5  # half a unit of the sixth digit, relative to the first
 _ROTATION = 4  # of the reference's direction: about x
 
+_QUANTITIES = {
+    8: ("displacement", "angle"),
+    9: ("force", "torque"),
+    11: ("velocity", "speed"),
+    12: ("acceleration", "angular acceleration"),
+    13: ("force", "torque"),
+    15: ("pressure", "pressure"),
+    _TIME: ("time", "time"),
+    _FREQUENCY: ("frequency", "frequency"),
+}
+"""Quantity of a specific data type along a direction, and about one."""
+
+_LENGTH_AND_FORCE = {
+    "displacement": (1, 0),
+    "velocity": (1, 0),
+    "acceleration": (1, 0),
+    "force": (0, 1),
+    "torque": (1, 1),
+    "pressure": (-2, 1),
+}
+"""Exponents of the units of the file in the unit of a quantity."""
+
+_LOST_SIGNS = "²µ°·"
+"""Signs in labels that a file may hold in another encoding than UTF-8."""
+
+_FILLER = 6
+"""Values that end the last line of a text may be more than the number announced."""
+
 
 @dataclass(frozen=True, eq=False)
 class UffFunction:
@@ -65,11 +98,11 @@ class UffFunction:
     y : ndarray, shape (n,)
         Ordinate, real or complex [`unit`].
     unit, denominator_unit : str
-        Unit labels of the ordinate; empty where there are none.
+        Of the ordinate: in SI, else as the file labels it; empty where nothing states it.
     name : str
         First ID line.
-    data_type : int
-        Specific data type of the ordinate (12 acceleration, 13 excitation force, 15 pressure ...).
+    unclear : str
+        Why the ordinate's unit is not settled where statements of the file contradict each other.
     """
 
     kind: int
@@ -78,7 +111,7 @@ class UffFunction:
     unit: str
     denominator_unit: str = ""
     name: str = ""
-    data_type: int = 0
+    unclear: str = ""
 
 
 def check_uff_library(path: Path) -> None:
@@ -92,31 +125,41 @@ def check_uff_library(path: Path) -> None:
     _pyuff(path)
 
 
-def read_uff_functions(path: Path) -> list[UffFunction]:
-    """Read all functions (dataset 58, text or binary) of a universal file.
+def read_uff_functions(path: Path, *kinds: int) -> list[UffFunction]:
+    """Read functions (dataset 58, text or binary) of a universal file.
 
     Parameters
     ----------
     path : Path
+    *kinds : int
+        Function types to read, others are passed over.
 
     Returns
     -------
     list of UffFunction
-        At least one, in the order of the file.
+        In the order of the file.
 
     Raises
     ------
     ParameterError
-        pyuff is not installed, the file is damaged, or holds no function.
+        pyuff is not installed, the file is damaged or holds no function at all, or what is read
+        goes over something else than time, or for a spectrum frequency.
     """
     pyuff = _pyuff(path)
     with reading(path, "universal file", largest=LARGEST_TEXT):
         file = pyuff.UFF(str(path))
-        wanted = [i for i, kind in enumerate(file.get_set_types()) if kind == 58]
-        sets = [file.read_sets(i) for i in wanted]
-        functions = [_function(data) for data in sets]
-    if not functions:
-        raise ParameterError(f"{path}: is no universal file, or holds no function (dataset 58)")
+        types = [int(kind) for kind in file.get_set_types()]
+        if 58 not in types:
+            raise ParameterError(f"{path}: is no universal file, or holds no function (dataset 58)")
+        units: Mapping[str, float] = {}
+        functions = []
+        for number, kind in enumerate(types):
+            if kind == 164:
+                units = file.read_sets(number)
+            elif kind == 58:
+                data = file.read_sets(number)
+                if int(data["func_type"]) in kinds:
+                    functions.append(_function(data, units, path))
     return functions
 
 
@@ -152,23 +195,71 @@ def _pyuff(path: Path) -> Any:
     return pyuff
 
 
-def _function(data: dict[str, Any]) -> UffFunction:
-    y = np.asarray(data["data"])
-    x: NDArray[np.float64] = np.asarray(data["x"], dtype=np.float64)
+def _function(data: Mapping[str, Any], units: Mapping[str, float], path: Path) -> UffFunction:
+    kind, name = int(data["func_type"]), _label(data["id1"])
+    y, n = np.asarray(data["data"]), int(data["num_pts"])
+    axis = "time" if kind == TIME_RESPONSE else "frequency"
+    unit, factor, unclear = _unit(data, "abscissa", {})
+    if (typed := int(data["abscissa_spec_data_type"])) not in (0, 1, _TIME, _FREQUENCY):
+        unclear = f"data type {typed}"
+    if unclear or (unit or SI_UNITS[axis]) != SI_UNITS[axis]:
+        raise ParameterError(
+            f"{path}: function {name!r} goes over {unclear or unit}, expected {axis} in "
+            f"{SI_UNITS[axis]}"
+        )
+    if not n <= y.size < n + _FILLER:
+        raise ValueError(f"{n} values announced, {y.size} found")
+    y = y[:n]
+    x: NDArray[np.float64] = factor * np.asarray(data["x"], dtype=np.float64)[:n]
     if int(data["abscissa_spacing"]) == 1:
-        start, step = _whole(float(data["abscissa_min"])), _whole(float(data["abscissa_inc"]))
-        x = (start + step * np.arange(y.size)).astype(np.float64)
-    if x.shape != y.shape or y.size != int(data["num_pts"]):
-        raise ValueError(f"{data['num_pts']} values announced, {y.size} found")
+        start, step = factor * data["abscissa_min"], _whole(factor * data["abscissa_inc"])
+        x = (start + step * np.arange(n)).astype(np.float64)
+    unit, factor, unclear = _unit(data, "ordinate", units)
+    per_unit, per_factor, per_unclear = _unit(data, "orddenom", units)
+    output, per = split_ratio(unit)
+    if kind == FREQUENCY_RESPONSE and per:  # both in one label
+        unit, per_unit, per_factor = output, per, 1.0
+    if kind != COHERENCE:
+        y = (factor / per_factor) * y
     return UffFunction(
-        kind=int(data["func_type"]),
+        kind=kind,
         x=x,
         y=y.astype(np.complex128) if np.iscomplexobj(y) else y.astype(np.float64),
-        unit=_label(data["ordinate_axis_units_lab"]),
-        denominator_unit=_label(data["orddenom_axis_units_lab"]),
-        name=_label(data["id1"]),
-        data_type=int(data["ordinate_spec_data_type"]),
+        unit=unit,
+        denominator_unit=per_unit,
+        name=name,
+        unclear=unclear or per_unclear,
     )
+
+
+def _unit(data: Mapping[str, Any], axis: str, units: Mapping[str, float]) -> tuple[str, float, str]:
+    """Return an axis' unit, a value of 1 in it, and what contradicts that.
+
+    The unit is in SI where it is known, else as it is labelled; empty where nothing states it.
+    """
+    label = _label(data[f"{axis}_axis_units_lab"])
+    about = abs(int(data.get("ref_dir" if axis == "orddenom" else "rsp_dir") or 0)) >= _ROTATION
+    typed = _QUANTITIES.get(int(data[f"{axis}_spec_data_type"]), ())
+    spellings = (label.replace("\ufffd", sign) for sign in _LOST_SIGNS)
+    found = next(filter(None, map(quantity_of_unit, spellings)), None)
+    if found is None and (label or not typed):
+        return label, 1.0, ""
+    quantity, factor = found or (typed[about], math.nan)
+    if quantity not in SI_UNITS:
+        return "", 1.0, ""
+    of_file = factor if found else 1.0
+    if units and quantity in _LENGTH_AND_FORCE:
+        length, force = _LENGTH_AND_FORCE[quantity]
+        of_file = float(units["length"]) ** -length * float(units["force"]) ** -force
+    unclear = ""
+    if found and typed and quantity not in typed:
+        unclear = f"{label!r}, but has the data type of {typed[about]}"
+    elif found and not math.isclose(of_file, factor, rel_tol=1e-3):
+        unclear = (
+            f"{label!r}, but by the units of the file (dataset 164) 1 is {of_file:g} "
+            f"{SI_UNITS[quantity]}"
+        )
+    return SI_UNITS[quantity], of_file, unclear
 
 
 def _label(text: object) -> str:

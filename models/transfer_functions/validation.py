@@ -1,26 +1,31 @@
 """Checks of a transfer function that was read from a file.
 
 They are made here once, whatever the format, so that all that follows may trust it: lines rise,
-numbers are finite, units are those of the quantity asked for. Values are never guessed, only
-spellings of the same unit are alike.
+numbers are finite, units are those asked for or are converted to them. Values are never guessed.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from models.errors import ParameterError
-from models.units import same_unit
+from models.units import quantity_of_unit
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from models.transfer_functions.transfer_function import TransferFunction
 
-__all__ = ["check_transfer_function", "check_units"]
+__all__ = ["check_transfer_function", "in_units"]
 
 FEWEST_LINES = 8
 """Fewer lines describe no resonance."""
+
+_MOTION = {"displacement": 0, "velocity": 1, "acceleration": 2}
+"""Times that a motion is differentiated."""
 
 _LARGEST = 1e15
 """Of a response, in any unit, and of a frequency [Hz]."""
@@ -92,23 +97,51 @@ def check_transfer_function(transfer: TransferFunction) -> TransferFunction:
     return transfer
 
 
-def check_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> None:
-    """Refuse a response of other quantities than those asked for.
+def in_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> TransferFunction:
+    """Convert a response to other units of the same quantities; motion becomes acceleration.
+
+    A displacement per force (receptance) becomes an accelerance by the factor -(2 pi f)^2, a
+    velocity (mobility) by 2 pi i f.
+
+    Parameters
+    ----------
+    transfer : TransferFunction
+    input_unit, output_unit : str
+        Those wanted.
+
+    Returns
+    -------
+    TransferFunction
+        With the units as they are spelled here.
 
     Raises
     ------
     ParameterError
-        A unit is another one.
+        A unit is not known, or is that of another quantity.
 
     Examples
     --------
     >>> from models.transfer_functions.transfer_function import TransferFunction
     >>> f = np.arange(9.0)
-    >>> check_units(TransferFunction(f, 1j * f, None, "Nm", "m/s²"), "N m", "m/s^2")
+    >>> mobility = TransferFunction(f, np.ones(9) + 0j, None, "kN", "m/s")
+    >>> in_units(mobility, "N", "m/s^2").response[1].round(5)
+    np.complex128(0.00628j)
     """
+    factors: list[NDArray[np.complex128] | float] = []
     for key, found, wanted in (
         ("input_unit", transfer.input_unit, input_unit),
         ("output_unit", transfer.output_unit, output_unit),
     ):
-        if not same_unit(found, wanted):
+        (have, value), (want, unit) = (quantity_of_unit(u) or ("", 1.0) for u in (found, wanted))
+        times = _MOTION.get(want, 0) - _MOTION.get(have, 0) if key == "output_unit" else 0
+        moved = times > 0 and {have, want} <= set(_MOTION)
+        if not have or (have != want and not moved):
             raise ParameterError(f"{transfer.name}: {key} is {found!r}; it must be {wanted!r}")
+        rise = (2j * np.pi * transfer.frequencies) ** times if moved else 1.0
+        factors.append(value / unit * rise)
+    return replace(
+        transfer,
+        response=np.asarray(factors[1] / factors[0] * transfer.response),
+        input_unit=input_unit,
+        output_unit=output_unit,
+    )

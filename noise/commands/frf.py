@@ -18,6 +18,9 @@ from noise.commands.options import Option, band, number, one_of, refuse, seed
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from features.modal.hammer import Hit
     from features.modal.modal_fit import Modes
     from models.transfer_functions.transfer_function import TransferFunction
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
 
 _DEFAULT_COHERENCE = 0.8
 _MOST_BANDS = 8
+_LEFT = 0.02  # of a response at the end of a hit, from which on a peak is that much too low
 
 _MODE_COLUMNS = (
     "frequency_hz",
@@ -84,7 +88,11 @@ OPTIONS = (
         "band in Hz in which modes are fitted (default: where the coherence can be trusted)"
     ),
     Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE).help(
-        "tell the bands in which the coherence is lower than this"
+        "tell the bands in which the coherence is lower than this, and list no modes there"
+    ),
+    Option("--window").help(
+        "end responses that have not died away by an exponential window, and set the force to "
+        "zero after the blow; the damping of modes is corrected for it"
     ),
     seed("accepted as by every command; nothing here is random"),
 )
@@ -97,8 +105,26 @@ def run(options: Namespace) -> int:
     say(f"{counted(len(hits), 'hit')} averaged, {refused} refused")
     if not hits:
         return 1
-    from features.modal.hammer import estimate_transfer_function
+    from features.modal.hammer import (
+        estimate_transfer_function,
+        remaining_response,
+        windowed_hits,
+    )
 
+    rate = 0.0
+    left = remaining_response(hits)
+    if options.window:
+        hits, rate = windowed_hits(hits)
+        note(
+            f"force and exponential window: the response function decays by {rate:.4g} 1/s faster "
+            "than the structure; this is taken off the damping of modes"
+        )
+    elif left > _LEFT:
+        note(
+            f"a response has not died away at the end of its record, {100 * left:.3g} % is left "
+            "(or is noise): peaks are too low and damping is wrong; record for longer, or use "
+            "--window"
+        )
     transfer = estimate_transfer_function(
         hits,
         estimator=options.estimator,
@@ -118,7 +144,7 @@ def run(options: Namespace) -> int:
             transfer.frequencies, transfer.response,
             low=low, high=high, coherence=transfer.coherence,
         )  # fmt: skip
-        modes = _trusted(modes, transfer, options.coherence)
+        modes = _trusted(modes, transfer, hits, options.coherence).without_window(rate)
         count = counted(modes.frequency.size, "mode")
         say(f"{count}, sought from {low:.5g} to {high:.5g} Hz")
     _write(options, transfer, modes)
@@ -211,26 +237,19 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
             print(path)
 
 
-def _trusted(modes: Modes, transfer: TransferFunction, least: float) -> Modes:
-    """Leave out modes where the coherence says that the response is not to be trusted."""
-    import numpy as np
+def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: float) -> Modes:
+    """Leave out modes where coherence or force say that the response is not to be trusted."""
+    from features.modal.hammer import force_nulls
 
-    if transfer.coherence is None:
-        return modes
-    # A resonance's own dip, or that of the notch beside it, is narrow.
-    lines, coherence = transfer.frequencies, transfer.coherence
-    smooth = np.array(
-        [
-            np.median(coherence[np.abs(lines - f) <= 0.02 * f])
-            if np.any(np.abs(lines - f) <= 0.02 * f)
-            else np.interp(f, lines, coherence)
-            for f in modes.frequency
-        ]
-    )
-    kept = smooth >= least
-    left_out = int(np.count_nonzero(~kept))
-    if left_out:
-        note(f"{counted(left_out, 'mode')} left out, where the coherence is below {least:g}")
+    coherent = ~(_coherence(modes, transfer) < least)  # none is known of a single hit
+    excited = ~force_nulls(hits, modes.frequency, modes.damping_ratio * modes.frequency)
+    for kept, reason in (
+        (coherent, f"the coherence is below {least:g}"),
+        (excited | ~coherent, "the force has next to nothing"),
+    ):
+        if left_out := int((~kept).sum()):
+            note(f"{counted(left_out, 'mode')} left out, where {reason}")
+    kept = coherent & excited
     return replace(
         modes,
         frequency=modes.frequency[kept],
@@ -240,12 +259,25 @@ def _trusted(modes: Modes, transfer: TransferFunction, least: float) -> Modes:
     )
 
 
+def _coherence(modes: Modes, transfer: TransferFunction) -> NDArray[np.float64]:
+    """Median coherence of each mode within its half-power band, of three lines at least."""
+    import numpy as np
+
+    f, coherence = transfer.frequencies, transfer.coherence
+    if coherence is None:
+        return np.full(modes.frequency.size, np.nan)
+    reach = np.maximum(modes.damping_ratio * modes.frequency, 1.5 * transfer.spacing)
+    return np.array(
+        [
+            np.median(coherence[np.abs(f - middle) <= half])
+            for middle, half in zip(modes.frequency, reach, strict=True)
+        ]
+    )
+
+
 def _mode_rows(modes: Modes, transfer: TransferFunction) -> list[dict[str, object]]:
     import numpy as np
 
-    lines, coherence = transfer.frequencies, transfer.coherence
-    if coherence is None:
-        coherence = np.full(lines.size, np.nan)
     (residues,) = modes.residues
     return [
         dict(zip(_MODE_COLUMNS, row, strict=True))
@@ -255,7 +287,7 @@ def _mode_rows(modes: Modes, transfer: TransferFunction) -> list[dict[str, objec
             residues.real,
             residues.imag,
             np.abs(residues) / (2 * np.pi * modes.frequency * modes.damping_ratio),
-            np.interp(modes.frequency, lines, coherence),
+            _coherence(modes, transfer),
             modes.orders,
             strict=True,
         )

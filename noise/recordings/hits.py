@@ -1,12 +1,12 @@
 """Hammer hits from files: recordings with a force channel, or plain tables of numbers.
 
 A table (NPY or CSV) has time [s], force [N] and response as its three rows or its three columns,
-as acquisition programs export them; which of the two is told by its shape.
+as acquisition programs export them; its shape decides which of the two. Headings of a CSV file with
+other units, or another order, are followed.
 """
 
 from __future__ import annotations
 
-import csv
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,8 +14,9 @@ import numpy as np
 from features.modal.hammer import Hit
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import LARGEST_TEXT, read_array, reading, refusing
+from models.foreign_table import read_table
 from models.recording import Channel
-from models.units import CHANNEL_UNITS
+from models.units import CHANNEL_UNITS, quantity_of_unit
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import MIN_SAMPLES, READERS
 from noise.recordings.formats.sampling import check_rate
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from models.foreign_table import ForeignTable
     from models.recording import Recording
 
 __all__ = ["RESPONSES", "find_hits", "read_hit"]
@@ -37,6 +39,15 @@ _TABLES = (".csv", ".npy")
 
 _UNEVEN = 0.1  # of a sampling interval, as left by a time column of few digits
 _ROUNDING = 1e-5  # of a sampling rate that such a column gives
+
+_ROLES = ("time", "force", "response")
+_QUANTITY_OF_NAME = {
+    "time": "time", "zeit": "time", "force": "force", "kraft": "force", "hammer": "force",
+    "acc": "acceleration", "beschl": "acceleration", "press": "pressure", "druck": "pressure",
+    "mic": "pressure", "vel": "velocity", "geschw": "velocity", "disp": "displacement",
+    "weg": "displacement", "torque": "torque", "moment": "torque",
+}  # fmt: skip
+"""What the heading of a column begins with, in lower case, where it states no unit."""
 
 
 def find_hits(paths: Iterable[Path]) -> list[Path]:
@@ -112,9 +123,11 @@ def read_hit(
     wanted = Channel(response or RESPONSES[0])
     if path.suffix.lower() in _TABLES:
         with refusing(str(path), "table of numbers", RecordingError):
-            time, force, answer = _table(path)
+            (time, force, answer), kind = _table(path)
             rate = _rate(path, time)
-        unit = wanted.unit
+        if response is not None and kind not in ("", wanted.kind):
+            raise RecordingError(f"{path}: its response is {kind}, not {wanted.kind}")
+        unit = CHANNEL_UNITS[kind or wanted.kind]
     else:
         recording = read_recording(path)
         force = _channel(path, recording, "force")
@@ -143,14 +156,21 @@ def _channel(path: Path, recording: Recording, name: str) -> NDArray[np.float64]
         raise RecordingError(f"{path}: has no channel {name!r}; it has {have}") from None
 
 
-def _table(path: Path) -> NDArray[np.float64]:
-    """Time, force and response, shape (3, n)."""
+def _table(path: Path) -> tuple[NDArray[np.float64], str]:
+    """Time, force and response in SI, shape (3, n), and the kind of response that is stated."""
+    kind = ""
     with reading(path, "table of numbers", error=RecordingError, largest=LARGEST_TEXT):
-        values = read_array(path) if path.suffix.lower() == ".npy" else _numbers(path)
-    if values.ndim != 2 or 3 not in values.shape:
+        if path.suffix.lower() == ".npy":
+            values = read_array(path)
+        else:
+            table = read_table(path)
+            values = table.values
+            if values.shape[1] == len(_ROLES):
+                values, kind = _in_order(path, table)
+    if values.ndim != 2 or len(_ROLES) not in values.shape:
         raise RecordingError(
             f"{path}: has shape {np.shape(values)}, expected three rows or columns: time, force, "
-            "response"
+            "response; where commas part columns, a number has a decimal point"
         )
     if values.dtype.kind not in "iuf":
         raise RecordingError(f"{path}: holds {values.dtype}, expected real numbers")
@@ -159,37 +179,49 @@ def _table(path: Path) -> NDArray[np.float64]:
         raise RecordingError(
             f"{path}: holds {rows.shape[1]} samples, expected at least {MIN_SAMPLES}"
         )
-    for name, row in zip(("time", "force", "response"), rows, strict=True):
+    for name, row in zip(_ROLES, rows, strict=True):
         if not np.isfinite(row).all():
             first = int(np.argmin(np.isfinite(row)))
             raise RecordingError(
                 f"{path}: {name} is {row[first]} at sample {first}, expected finite numbers"
             )
-    return rows
+    return rows, kind
 
 
-def _numbers(path: Path) -> NDArray[np.float64]:
-    """Cells of a CSV file; a first row of words is a header."""
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    if rows and not _is_number(rows[0][0]):
-        del rows[0]
-    return np.array([[float(cell) for cell in row] for row in rows])
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+def _in_order(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str]:
+    """Columns as time, force and response in SI by their headings, and the kind of response."""
+    kind = ""
+    by_role: dict[str, NDArray[np.float64]] = {}
+    left = []
+    for name, unit, column in zip(table.names, table.units, table.values.T, strict=True):
+        begins = (q for start, q in _QUANTITY_OF_NAME.items() if name.lower().startswith(start))
+        quantity, factor = quantity_of_unit(unit) or ("" if unit else next(begins, ""), 1.0)
+        if (unit and not quantity) or quantity not in ("", "time", "force", *RESPONSES):
+            raise RecordingError(
+                f"{path}: column {name!r} is {quantity or 'in'} {unit!r}, expected time, force and "
+                "acceleration or pressure, in units such as s, N, m/s^2, g, Pa"
+            )
+        kind = quantity if quantity in RESPONSES else kind
+        role = "response" if quantity in RESPONSES else quantity
+        if role in by_role:
+            raise RecordingError(
+                f"{path}: {name!r} is a second column of {role}, expected time, force, response"
+            )
+        if role:
+            by_role[role] = factor * column
+        else:
+            left.append(column)
+    by_role |= zip((role for role in _ROLES if role not in by_role), left, strict=True)
+    return np.column_stack([by_role[role] for role in _ROLES]), kind
 
 
 def _rate(path: Path, time: NDArray[np.float64]) -> float:
     step = (time[-1] - time[0]) / (time.size - 1)
     even = time[0] + step * np.arange(time.size)
     if not step > 0.0 or np.abs(time - even).max() > _UNEVEN * step:
-        raise RecordingError(f"{path}: time does not rise evenly")
+        raise RecordingError(
+            f"{path}: time does not rise evenly; expected time in s, force, response in this order"
+        )
     rate = float(1.0 / step)
     whole = round(rate)
     rate = float(whole) if abs(whole - rate) <= _ROUNDING * rate else rate

@@ -117,6 +117,49 @@ def test_where_every_hit_is_refused_nothing_is_written(hits, capsys):
     assert not Path("modes.csv").exists()
 
 
+def ringing_on(rng, zeta=0.0005, seconds=0.5):
+    """Hit on a mode of 400 Hz and 2 kg that is far from its end when the record is."""
+    n, w0 = int(RATE * seconds), 2 * np.pi * 400.0
+    force = np.zeros(n)
+    force[160:172] = rng.uniform(50, 90) * np.sin(np.pi * (np.arange(12) + 0.5) / 12)
+    w = 2 * np.pi * np.fft.rfftfreq(16 * n, 1 / RATE)
+    h = -(w**2) / 2 / (w0**2 - w**2 + 2j * zeta * w0 * w)
+    response = np.fft.irfft(np.fft.rfft(force, 16 * n) * h, 16 * n)[:n]
+    noise = 1e-4 * np.abs(response).max() * rng.standard_normal(n)
+    return np.stack([np.arange(n) / RATE, force, response + noise])
+
+
+def test_a_response_that_has_not_died_away_is_noted_and_windowed(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    rng = np.random.default_rng(0)
+    for number in range(3):
+        np.save(f"hit-{number}.npy", ringing_on(rng))
+    files = [f"hit-{number}.npy" for number in range(3)]
+    assert main(["frf", *files, "--modes", "modes.csv"]) == 0
+    assert "has not died away" in capsys.readouterr().err
+    assert main(["frf", *files, "--modes", "modes.csv", "--window"]) == 0
+    assert "has not died away" not in capsys.readouterr().err
+    (mode,) = table(Path("modes.csv").read_text())
+    assert float(mode["frequency_hz"]) == pytest.approx(400.0, rel=1e-4)
+    assert float(mode["damping_ratio"]) == pytest.approx(0.0005, rel=0.03)
+    assert float(mode["peak"]) == pytest.approx(1 / (2 * 2 * 0.0005), rel=0.03)
+
+
+@pytest.mark.parametrize("n_hits", [1, 4])
+def test_what_noise_makes_at_a_null_of_the_force_is_no_mode(tmp_path, monkeypatch, n_hits):
+    monkeypatch.chdir(tmp_path)
+    rng = np.random.default_rng(0)
+    for number in range(n_hits):
+        np.save(f"hit-{number}.npy", ringing_on(rng, zeta=0.01))
+    files = [f"hit-{number}.npy" for number in range(n_hits)]
+    assert main(["frf", *files, "--modes", "modes.csv"]) == 0
+    modes = table(Path("modes.csv").read_text())
+    null = 1.5 * RATE / 12
+    assert not [m for m in modes if abs(float(m["frequency_hz"]) / null - 1) < 0.03]
+    assert [m for m in modes if abs(float(m["frequency_hz"]) / 400 - 1) < 0.002]
+    assert all(m["coherence"] in ("", "nan") or float(m["coherence"]) >= 0.8 for m in modes)
+
+
 def test_low_coherence_is_told_with_its_band(hits, capsys):
     assert main(["frf", *hits, "--out", "beam.npz", "--coherence", "1"]) == 0
     assert "coherence below 1, not to be trusted: " in capsys.readouterr().err

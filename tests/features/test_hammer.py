@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from scipy.signal import coherence, csd, welch
 
-from features.modal.hammer import ESTIMATORS, Hit, check_hit, estimate_transfer_function
+from features.modal.hammer import (
+    ESTIMATORS,
+    Hit,
+    check_hit,
+    estimate_transfer_function,
+    remaining_response,
+    windowed_hits,
+)
 from models.errors import ParameterError, RecordingError
 
 RATE = 20e3
@@ -82,6 +89,49 @@ def test_rounding_by_a_converter_is_no_clipping(bits, stretch):
         return step * np.round(signal / step)
 
     check_hit(Hit(rounded(force, 100.0), rounded(response, 40.0), RATE))
+
+
+@pytest.mark.parametrize("curve", ["straight", "slow wave", "step"])
+@pytest.mark.parametrize("size", [0.03, 0.3, 2.0])
+def test_a_force_that_drifts_is_named_so(curve, size):
+    t = np.linspace(0.0, 1.0, 2000)
+    drift = {"straight": t, "slow wave": np.sin(5 * t), "step": (t > 0.4).astype(float)}[curve]
+    noise = 0.05 * np.random.default_rng(0).standard_normal(2000)
+    with pytest.raises(RecordingError, match="the force drifts beside the blow"):
+        check_hit(Hit(pulse() + 80 * size * drift + noise, ringing(), RATE))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_swapped_channels_are_named_so(sign):
+    with pytest.raises(RecordingError, match="force and response are swapped"):
+        check_hit(Hit(sign * ringing(), pulse(), RATE))
+
+
+def test_times_in_milliseconds_taken_for_seconds_are_noticed():
+    with pytest.raises(RecordingError, match=r"the blow lasts .* s; times must be in s"):
+        check_hit(Hit(pulse(), ringing(), RATE / 1e3))
+
+
+@pytest.mark.parametrize("decay", [2.0, 10.0, 40.0])
+def test_what_is_left_of_a_response_is_measured(decay):
+    rng, t = np.random.default_rng(0), (np.arange(2000) - 100) / RATE
+    response = np.where(t > 0, np.exp(-decay * t) * np.sin(4000 * t), 0.0)
+    noisy = response + 0.02 * rng.standard_normal(2000)
+    force = pulse(at=100)
+    left = np.exp(-decay * t[-1] * 0.95)
+    assert remaining_response([Hit(force, noisy, RATE)]) == pytest.approx(left, rel=0.05, abs=0.01)
+
+
+def test_the_exponential_window_moves_poles_by_its_rate_and_nothing_else():
+    decay, w = 3.0, 2 * np.pi * 700.0
+    t = np.arange(2000) / RATE
+    response = np.convolve(pulse(at=100), np.exp(-decay * t) * np.sin(w * t))[:2000]
+    hits, rate = windowed_hits([Hit(pulse(at=100), response, RATE)])
+    h = estimate_transfer_function(hits)
+    s = 2j * np.pi * h.frequencies + decay + rate
+    z = np.exp(-s / RATE)
+    true = z * np.sin(w / RATE) / (1 - 2 * z * np.cos(w / RATE) + z**2)
+    np.testing.assert_allclose(h.response[:300], true[:300], atol=0.011 * np.abs(true).max())
 
 
 def test_noise_alone_is_no_hit():

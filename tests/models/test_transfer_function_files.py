@@ -42,7 +42,7 @@ def test_a_universal_file_keeps_the_sampling_rate(tmp_path, rate):
     path = tmp_path / "run.uff"
     t = np.arange(5000) / rate
     write_uff_functions(path, [UffFunction(TIME_RESPONSE, t, np.sin(t), "Pa")])
-    (back,) = read_uff_functions(path)
+    (back,) = read_uff_functions(path, TIME_RESPONSE)
     assert 1 / back.x[1] == pytest.approx(rate, rel=1e-12)
 
 
@@ -95,10 +95,11 @@ def test_an_npz_that_cannot_be_used_is_refused_by_key(tmp_path, changed, message
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "has no column frequency_hz"),
-        ("frequency_hz,real\n1,2\n", "has no column imag"),
-        ("frequency_hz,real,imag\n1,2,x\n", "imag is 'x' at line 1; it must be a number"),
-        ("frequency_hz,real,imag\n1,2\n", "imag is '' at line 1"),
+        ("", "holds no rows of numbers"),
+        ("frequency_hz,real\n1,2\n", "has no column imag; expected frequency_hz, real, imag"),
+        ("frequency_hz,real,imag\n1,2,x\n", "imag is 'x' in line 2, expected a number"),
+        ("frequency_hz,real,imag\n1,2,3\n1,2\n", "line 3 has 2 columns"),
+        ("frequency_hz,real (V),imag (V)\n" + 9 * "1,2,3\n", "frequency_hz stays at 1"),
         ("frequency_hz,real,imag\n1,2,3\n", "at least 8"),
     ],
 )
@@ -152,3 +153,129 @@ def test_what_does_not_cohere_does_not_count_towards_the_band():
         check_band(frf, 10.0, 300.0)
     with pytest.raises(ParameterError, match=r"starts at 0.78125 Hz; it must reach from 0.5"):
         check_band(TransferFunction(F, H, None, "N m", "Pa"), 0.5, 300.0)
+
+
+W = 2j * np.pi * F
+DATASET_164 = (
+    "    -1\n   164\n{:10}{:20}         2\n{:25.16e}{:25.16e}{:25.16e}\n{:25.16e}\n    -1\n"
+)
+
+
+def universal(path, unit, data_type, *, per="N", axis="Hz", of_axis=18, units=None, direction=3):
+    """Frequency response H as a program writes it, with the units of the file before it."""
+    text = "" if units is None else DATASET_164.format(units[0], "", *units[1:], 1.0, 273.15)
+    text += "    -1\n    58\nNONE\nNONE\n01-Jan-24 10:00:00\nNONE\nNONE\n"
+    text += f"{4:5}{0:10}{0:5}{0:10} {'A':>10}{1:10}{3:4} {'B':>10}{1:10}{direction:4}\n"
+    text += f"{6:10}{F.size:10}{1:10}{0:13.5e}{F[1]:13.5e}{0:13.5e}\n"
+    for kind, label in ((of_axis, axis), (data_type, unit), (13, per), (0, "NONE")):
+        text += f"{kind:10}{0:5}{0:5}{0:5} {'NONE':20} {label:20}\n"
+    values = H.view(float)
+    rows = [values[i : i + 4] for i in range(0, values.size, 4)]
+    text += "".join("".join(f"{v:20.11e}" for v in row) + "\n" for row in rows) + "    -1\n"
+    path.write_bytes(text.encode("latin-1"))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("unit", "data_type", "more", "factor"),
+    [
+        ("m/s^2", 12, {}, 1.0),
+        ("m/s\u00b2", 12, {}, 1.0),
+        ("g", 12, {}, 9.80665),
+        ("m/s", 11, {}, W),
+        ("m", 8, {}, W**2),
+        ("\u00b5m", 8, {}, 1e-6 * W**2),
+        ("NONE", 8, {"per": "NONE"}, W**2),
+        ("NONE", 11, {"per": "kN"}, 1e-3 * W),
+        ("NONE", 12, {"per": "NONE", "units": (5, 1e3, 1e3)}, 1.0),
+        ("NONE", 12, {"units": (5, 1e3, 1.0)}, 1e-3),
+        ("NONE", 8, {"units": (5, 1e3, 1.0)}, 1e-3 * W**2),
+        ("mm/s^2", 12, {"units": (5, 1e3, 1.0)}, 1e-3),
+        ("m/N", 0, {"per": "NONE"}, W**2),
+        ("mm/s^2", 12, {"axis": "NONE"}, 1e-3),
+    ],
+)
+def test_a_universal_response_is_converted_by_what_it_states(
+    tmp_path, unit, data_type, more, factor
+):
+    path = universal(tmp_path / "a.uff", unit, data_type, **more)
+    response = read_transfer_function(path, input_unit="N", output_unit="m/s^2").response
+    np.testing.assert_allclose(response, factor * H, rtol=1e-9, atol=1e-9 * np.abs(H).max())
+
+
+@pytest.mark.parametrize(
+    ("unit", "data_type", "more", "message"),
+    [
+        (
+            "m/s^2",
+            12,
+            {"units": (5, 1e3, 1e3)},
+            "by the units of the file (dataset 164) 1 is",
+        ),
+        ("m/s^2", 15, {}, "'m/s^2', but has the data type of pressure"),
+        ("V", 12, {}, "output_unit is 'V'; it must be 'm/s^2'"),
+        ("Pa", 15, {}, "output_unit is 'Pa'; it must be 'm/s^2'"),
+        ("m/s^2", 12, {"per": "N m"}, "input_unit is 'N m'; it must be 'N'"),
+        ("NONE", 12, {"per": "NONE", "direction": 4}, "input_unit is 'N m'; it must be 'N'"),
+        ("m/s^2", 12, {"axis": "s"}, "goes over 's', but has the data type of frequency"),
+        ("m/s^2", 12, {"axis": "s", "of_axis": 17}, "goes over s, expected frequency in Hz"),
+        ("m/s^2", 12, {"axis": "NONE", "of_axis": 20}, "goes over data type 20"),
+        ("m/s^2", 12, {"axis": "order", "of_axis": 0}, "goes over order"),
+    ],
+)
+def test_a_universal_response_that_is_another_one_is_refused(
+    tmp_path, unit, data_type, more, message
+):
+    path = universal(tmp_path / "a.uff", unit, data_type, **more)
+    with pytest.raises(ParameterError) as refused:
+        read_transfer_function(path, input_unit="N", output_unit="m/s^2")
+    assert message in str(refused.value)
+
+
+def test_a_universal_response_that_states_no_unit_is_read_with_a_warning(tmp_path):
+    path = universal(tmp_path / "a.uff", "NONE", 0)
+    with pytest.warns(UserWarning, match=r"taken for m/s\^2 per N"):
+        read_transfer_function(path, input_unit="N", output_unit="m/s^2")
+
+
+@pytest.mark.parametrize(
+    ("units", "factor"),
+    [
+        (("Nm", "m/s**2"), 1.0),
+        (("kN m", "mm/s^2"), 1e-6),
+        (("N m", "m/s"), W),
+        (("N m", "mm"), 1e-3 * W**2),
+    ],
+)
+def test_an_npz_is_converted_by_its_units(tmp_path, units, factor):
+    path = tmp_path / "a.npz"
+    npz(path, input_unit=units[0], output_unit=units[1])
+    np.testing.assert_allclose(read(path).response, factor * H, rtol=1e-12)
+
+
+@pytest.mark.parametrize("units", [("N", "m/s^2"), ("N m", "Pa"), ("N m", "V"), ("N m", "rad/s")])
+def test_an_npz_of_other_quantities_is_refused(tmp_path, units):
+    path = tmp_path / "a.npz"
+    npz(path, input_unit=units[0], output_unit=units[1])
+    with pytest.raises(ParameterError, match=r"put_unit is .*; it must be"):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    ("header", "separator", "in_file"),
+    [
+        ("frequency_hz,real,imag,coherence", ",", (1.0, 1.0)),
+        ("Frequency (kHz);Real (g/N m);Imag (g/N m);Coherence", ";", (1e-3, 1 / 9.80665)),
+        ("frequency [Hz]\treal [(m/s^2)/kNm]\timag [(m/s^2)/kNm]\tcoherence", "\t", (1.0, 1e3)),
+        ("frequency,real,imag,coherence\nHz,mm/s^2,mm/s^2,-", ",", (1.0, 1e3)),
+    ],
+)
+def test_units_in_the_headings_of_a_csv_are_used(tmp_path, header, separator, in_file):
+    path = tmp_path / "a.csv"
+    columns = (in_file[0] * F, in_file[1] * H.real, in_file[1] * H.imag, np.ones(F.size))
+    rows = (separator.join(f"{value:.12g}" for value in row) for row in zip(*columns, strict=True))
+    text = header + "\n" + "\n".join(rows)
+    path.write_text(text.replace(".", ",") if separator == ";" else text, encoding="utf-8")
+    back = read(path)
+    np.testing.assert_allclose(back.frequencies, F, rtol=1e-9)
+    np.testing.assert_allclose(back.response, H, atol=1e-9 * np.abs(H).max())

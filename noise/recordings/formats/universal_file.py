@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["read_universal_file"]
 
-_UNLABELLED = {12: "acceleration", 13: "force", 15: "pressure"}
-"""Data types that stand in for a missing label, then taken to be in SI."""
-
 
 def read_universal_file(path: Path) -> RawSamples:
     """Read all time functions of a universal file as channels.
@@ -46,7 +43,7 @@ def read_universal_file(path: Path) -> RawSamples:
         The file is damaged, holds no time functions, or these differ in rate or length, or have
         units that are no channel's; or pyuff is not installed.
     """
-    functions = [f for f in _functions(path) if f.kind == TIME_RESPONSE]
+    functions = _functions(path)
     if not functions:
         raise RecordingError(f"{path}: holds no time functions (dataset 58, function type 1)")
     rows, channels = [], []
@@ -72,7 +69,7 @@ def read_universal_file(path: Path) -> RawSamples:
 
 def _functions(path: Path) -> list[UffFunction]:
     try:
-        return read_uff_functions(path)
+        return read_uff_functions(path, TIME_RESPONSE)
     except ParameterError as error:
         raise RecordingError(str(error)) from None
 
@@ -81,8 +78,8 @@ def _kind(function: UffFunction, where: str) -> tuple[str, float]:
     """Kind of channel, and the factor that turns its samples into SI."""
     if np.iscomplexobj(function.y):
         raise RecordingError(f"{where} is complex, expected real samples")
-    if not function.unit and function.data_type in _UNLABELLED:
-        return _UNLABELLED[function.data_type], 1.0
+    if function.unclear:
+        raise RecordingError(f"{where} has unit {function.unclear}")
     found = kind_of_unit(function.unit)
     if found is None:
         raise RecordingError(f"{where} has unit {function.unit!r}, expected {known_units()}")
