@@ -15,8 +15,6 @@ from models.errors import ParameterError
 from models.units import quantity_of_unit
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from models.transfer_functions.transfer_function import TransferFunction
 
 __all__ = ["check_transfer_function", "in_units"]
@@ -127,7 +125,7 @@ def in_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> T
     >>> in_units(mobility, "N", "m/s^2").response[1].round(5)
     np.complex128(0.00628j)
     """
-    factors: list[NDArray[np.complex128] | float] = []
+    factors = []
     for key, found, wanted in (
         ("input_unit", transfer.input_unit, input_unit),
         ("output_unit", transfer.output_unit, output_unit),
@@ -138,7 +136,7 @@ def in_units(transfer: TransferFunction, input_unit: str, output_unit: str) -> T
         if not have or (have != want and not moved):
             raise ParameterError(f"{transfer.name}: {key} is {found!r}; it must be {wanted!r}")
         rise = (2j * np.pi * transfer.frequencies) ** times if moved else 1.0
-        factors.append(value / unit * rise)
+        factors.append(np.asarray(value / unit * rise))
     return replace(
         transfer,
         response=np.asarray(factors[1] / factors[0] * transfer.response),
