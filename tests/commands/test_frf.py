@@ -195,7 +195,7 @@ def test_the_response_may_be_another_channel(hits):
         (["rows.npy", "--out", "beam.mat"], "responses end in"),
         (["rows.npy", "--modes", "modes.ods"], "tables end in"),
         (["rows.npy", "--arm", "0"], "--arm is '0', expected a number above 0"),
-        (["rows.npy", "--estimator", "H3"], "--estimator is 'H3', expected H1, H2, Hv"),
+        (["rows.npy", "--estimator", "H3"], "--estimator is 'H3', expected H1, H2 or Hv"),
         (["rows.npy", "--band", "5..2", "--modes", "m.csv"], "--band is '5..2'"),
         (["rows.npy", "--band", "2..5"], "--band is given without --modes"),
         (["rows.npy", "--response", "sound"], "--response is 'sound'"),
