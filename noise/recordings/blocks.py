@@ -10,21 +10,20 @@ from __future__ import annotations
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import soundfile
 
 from features.long.parts import reader_of
 from models.errors import RecordingError
 from models.foreign_file import refusing
 from models.recording import Channel, Recording
-from noise.recordings.chunks import Chunks, SoundSamples, to_units
+from noise.recordings.chunks import Chunks, to_units
 from noise.recordings.decimation import decimated
-from noise.recordings.files import LOGGER, MIN_SAMPLES, READERS, RawSamples
+from noise.recordings.files import LOGGER, MIN_SAMPLES, READERS
 from noise.recordings.formats.isolated import open_isolated
 from noise.recordings.formats.sampling import HIGHEST_RATE, LOWEST_RATE, check_rate
-from noise.recordings.formats.sound_file import DENSEST, bext_description, missing_bytes, open_sound
+from noise.recordings.formats.sound_file import SoundReader
 from noise.recordings.meaning import chosen_rows, describe
 
 if TYPE_CHECKING:
@@ -173,19 +172,17 @@ def _open(
     sound = _opened(path)
     if sound is None:
         return None
-    stack.enter_context(sound)
-    raw = RawSamples(
-        samples=np.empty((int(sound.channels), 0)),
-        rate=float(sound.samplerate),
-        fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
-        description=bext_description(path),
-        comment=sound.comment,
-    )
+    stack.callback(sound.close)
+    raw = sound.raw
     meaning = describe(path, raw, full_scale)
-    file = Chunks(
-        SoundSamples(path, sound, meaning.channels).read, int(sound.frames), len(meaning.channels)
-    )
-    read, n_samples, rate = decimated(file.read, int(sound.frames), raw.rate)
+
+    def read_chunk(start: int, end: int) -> NDArray[np.float64]:
+        samples = sound.read(start, end)
+        to_units(path, samples, meaning.channels, raw.rate, start)
+        return samples
+
+    chunks = Chunks(read_chunk, sound.n_samples, len(meaning.channels))
+    read, n_samples, rate = decimated(chunks.read, sound.n_samples, raw.rate)
     return RecordingBlocks(
         rate, meaning.channels, meaning.condition, meaning.calibrated, path.name, n_samples, read
     )
@@ -221,23 +218,16 @@ def _open_logged(
     )
 
 
-def _opened(path: Path) -> Any:
+def _opened(path: Path) -> SoundReader | None:
     """Return a large sound file that is sound, opened; None for any other."""
+    if not READERS.get(path.suffix.lower(), "").startswith("noise.recordings.formats.sound_file:"):
+        return None
     try:
-        if not READERS.get(path.suffix.lower(), "").startswith(
-            "noise.recordings.formats.sound_file:"
-        ):
-            return None
-        if not path.is_file() or missing_bytes(path):
-            return None
-        sound = open_sound(path)
-        n = int(sound.frames)
-        size = 8 * n * int(sound.channels)
-        possible = MIN_SAMPLES <= n <= DENSEST * path.stat().st_size
-        possible &= LOWEST_RATE <= sound.samplerate <= HIGHEST_RATE
-        if size >= _LARGE and possible:
-            return sound
-        sound.close()
-    except (OSError, soundfile.LibsndfileError):
-        pass  # whoever reads it whole says what is wrong
+        sound = SoundReader(path)
+    except (OSError, RecordingError):
+        return None  # whoever reads it whole says what is wrong
+    large = 8 * sound.n_samples * len(sound.raw.samples) >= _LARGE
+    if large and sound.n_samples >= MIN_SAMPLES and LOWEST_RATE <= sound.raw.rate <= HIGHEST_RATE:
+        return sound
+    sound.close()
     return None

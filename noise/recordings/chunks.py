@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import soundfile
 
-from models.errors import RecordingError
 from noise.recordings.meaning import check_finite
 
 if TYPE_CHECKING:
@@ -20,13 +18,10 @@ if TYPE_CHECKING:
 
     from models.recording import Channel
 
-__all__ = ["Chunks", "SoundSamples", "to_units"]
+__all__ = ["Chunks", "to_units"]
 
 _CHUNK = 8 << 20
 """What is read at once [byte of 64-bit samples]."""
-
-_EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
-"""Formats of the sound library that can be entered at any sample."""
 
 
 class Chunks:
@@ -62,53 +57,6 @@ class Chunks:
             start = number * self._length
             parts.append(self._chunk(number)[:, max(0, first - start) : last - start])
         return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
-
-
-class SoundSamples:
-    """Samples of a sound file from a place on, in the units of its channels.
-
-    Parameters
-    ----------
-    path : Path
-    sound : soundfile.SoundFile
-    channels : tuple of Channel
-    """
-
-    def __init__(self, path: Path, sound: Any, channels: tuple[Channel, ...]) -> None:
-        self._path, self._sound, self._channels = path, sound, channels
-        self._position = 0
-
-    def read(self, start: int, end: int) -> NDArray[np.float64]:
-        """Return the samples between two, shape (n_channels, n)."""
-        try:
-            if start != self._position:
-                self._go_to(start)
-            block = self._sound.read(end - start, dtype="float64", always_2d=True)
-        except soundfile.LibsndfileError as error:
-            reason = error.error_string.rstrip(".")
-            raise RecordingError(f"{self._path}: is damaged ({reason})") from error
-        self._position = start + len(block)
-        if len(block) < end - start:
-            raise RecordingError(
-                f"{self._path}: is truncated; its header announces {self._sound.frames} samples, "
-                f"{self._position} can be read"
-            )
-        samples = np.ascontiguousarray(block.T)
-        to_units(self._path, samples, self._channels, float(self._sound.samplerate), start)
-        return samples
-
-    def _go_to(self, sample: int) -> None:
-        if self._sound.format in _EXACT:
-            self._sound.seek(sample)
-            return
-        if sample < self._position:
-            self._sound.seek(0)
-            self._position = 0
-        while self._position < sample:
-            passed = len(self._sound.read(min(1 << 16, sample - self._position)))
-            if not passed:
-                return
-            self._position += passed
 
 
 def to_units(

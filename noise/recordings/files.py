@@ -20,6 +20,7 @@ from models.condition import Condition
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import reading, refusing
 from models.recording import Recording
+from noise.base.progress import note
 from noise.base.readable import readable
 from noise.recordings.folders import files_below
 from noise.recordings.formats.sampling import check_rate
@@ -47,6 +48,9 @@ __all__ = [
 MIN_SAMPLES = 16
 """Fewer samples than this are no recording."""
 
+_NAMED = 3
+"""Of what is left out, so many are named."""
+
 _SOUND = "noise.recordings.formats.sound_file:read_sound_file"
 LOGGER = "noise.recordings.formats.isolated:read_isolated"
 """Reader of what loggers write."""
@@ -56,6 +60,8 @@ _UNIVERSAL = "noise.recordings.formats.universal_file:read_universal_file"
 READERS = {
     ".aif": _SOUND,
     ".aiff": _SOUND,
+    ".bw64": _SOUND,
+    ".bwf": _SOUND,
     ".flac": _SOUND,
     ".h5": LOGGER,
     ".hdf5": LOGGER,
@@ -70,8 +76,20 @@ READERS = {
     ".uff": _UNIVERSAL,
     ".unv": _UNIVERSAL,
     ".wav": _SOUND,
+    ".wave": _SOUND,
 }
 """Ending in lower case -> reader, as ``module:function``."""
+
+_CONVERT = "convert to WAV or FLAC, as by: ffmpeg -i {name} {stem}.wav"
+_EXPORT = "export as TDMS, MDF4, HDF5, UFF58 or WAV from the program that wrote it"
+OTHERS = {
+    **dict.fromkeys(
+        (".3gp", ".aac", ".ac3", ".amr", ".ape", ".au", ".caf", ".dsf", ".m4a", ".m4b", ".mka",
+         ".mkv", ".mov", ".mp2", ".mp4", ".snd", ".w64", ".webm", ".wma", ".wv"), _CONVERT
+    ),
+    **dict.fromkeys((".ats", ".d7d", ".dxd", ".hdf", ".mat", ".pti", ".sie", ".tdm"), _EXPORT),
+}  # fmt: skip
+"""Endings of recordings that are not read -> what to do."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +115,8 @@ class RawSamples:
     unclear : str
         Why the file's own words do not settle what it measures, where they do not: the error,
         unless a sidecar names the channels.
+    notes : tuple of str
+        What should be known of the file.
     """
 
     samples: NDArray[np.float64]
@@ -107,6 +127,7 @@ class RawSamples:
     channels: tuple[Channel | None, ...] | None = None
     condition: Condition = field(default_factory=Condition)
     unclear: str = ""
+    notes: tuple[str, ...] = ()
 
 
 def read_recording(
@@ -210,8 +231,8 @@ def find_recordings(
     ----------
     paths : path-like or iterable of path-like
         A file stands for itself, whatever its ending. In a folder hidden files and folders and
-        unknown endings are passed over, links to folders are followed, and what is no file is left
-        out with a note.
+        unknown endings are passed over, links to folders are followed, and what is no file, or a
+        recording of a format that is not read, is left out with a note.
 
     Returns
     -------
@@ -240,10 +261,10 @@ def find_recordings(
     for path in map(Path, named):
         try:
             if path.is_dir():
+                files = files_below(path, tell=True)
+                _note_others(path, [name for _, name in files])
                 found += [
-                    (file, readable(name))
-                    for file, name in files_below(path, tell=True)
-                    if file.suffix.lower() in READERS
+                    (file, readable(name)) for file, name in files if file.suffix.lower() in READERS
                 ]
             elif path.exists():
                 found.append((path, readable(path.name)))
@@ -252,6 +273,20 @@ def find_recordings(
         except OSError as error:
             raise ParameterError(f"{path}: cannot be read ({error.strerror or error})") from error
     return found
+
+
+def _note_others(folder: Path, names: list[str]) -> None:
+    """Name the recordings in a folder that cannot be read, with what to do."""
+    for advice in (_CONVERT, _EXPORT):
+        left = [name for name in names if OTHERS.get(Path(name).suffix.lower()) == advice]
+        if left:
+            more = f" and {len(left) - _NAMED} more" * (len(left) > _NAMED)
+            note(f"{folder}: left out {', '.join(left[:_NAMED])}{more}: {_what_to_do(left[0])}")
+
+
+def _what_to_do(name: str) -> str:
+    path = Path(name)
+    return "not read; " + OTHERS[path.suffix.lower()].format(name=path.name, stem=path.stem)
 
 
 def read_raw(path: Path) -> RawSamples:
@@ -265,6 +300,8 @@ def read_raw(path: Path) -> RawSamples:
     with reading(path, "recording", error=RecordingError):
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: is empty (0 bytes)")
+        if path.suffix.lower() in OTHERS:
+            raise RecordingError(f"{path}: {_what_to_do(path.name)}")
         if path.suffix.lower() not in READERS:
             known = ", ".join(READERS)
             raise RecordingError(f"{path}: has no ending of a recording; known are {known}")

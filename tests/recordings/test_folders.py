@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from noise.recordings import find_recordings
+from models.errors import RecordingError
+from noise.recordings import find_recordings, read_recording
 from noise.recordings.folders import files_below
 
 
@@ -111,3 +112,30 @@ def test_a_folder_that_goes_away_while_it_is_searched_costs_no_other(day, tmp_pa
 
     monkeypatch.setattr(os, "scandir", vanishing)
     assert [name for _, name in files_below(tmp_path)] == ["day1/run07.wav", "day1/run08.wav"]
+
+
+def test_recordings_that_are_not_read_are_named_once_with_what_to_do(day, tmp_path, capsys):
+    for name in (
+        "memo.m4a",
+        "MEMO2.WMA",
+        "day1/a.aac",
+        "day1/b.caf",
+        "x.mat",
+        "notes.txt",
+        "p.pdf",
+    ):
+        (tmp_path / name).touch()
+    assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
+    assert capsys.readouterr().err.splitlines() == [
+        f"bushing-noise: note: {tmp_path}: left out MEMO2.WMA, day1/a.aac, day1/b.caf and 1 more: "
+        "not read; convert to WAV or FLAC, as by: ffmpeg -i MEMO2.WMA MEMO2.wav",
+        f"bushing-noise: note: {tmp_path}: left out x.mat: not read; export as TDMS, MDF4, HDF5, "
+        "UFF58 or WAV from the program that wrote it",
+    ]
+
+
+def test_a_recording_that_is_not_read_is_refused_with_what_to_do(tmp_path):
+    path = tmp_path / "memo.M4A"
+    path.write_bytes(b"ftypM4A ")
+    with pytest.raises(RecordingError, match=r"ffmpeg -i memo.M4A memo.wav"):
+        read_recording(path)

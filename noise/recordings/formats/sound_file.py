@@ -1,50 +1,45 @@
-"""Sound files (WAV, FLAC, AIFF, OGG, MP3) as raw samples.
+"""Sound files (WAV, FLAC, AIFF, OGG, MP3), read to their end at any sample.
 
 The sound library stops quietly where a file breaks off. A measurement cut short is not the
-measurement, so the samples announced are counted against the samples found. Samples are copied
-block by block into the one array that is returned, so that reading takes the memory of the result
-and no more.
-
-Two things the library passes over stand in the list of chunks of a RIFF file: where the samples end
-that its header announces, and the description (``bext`` chunk of a broadcast WAV file, EBU Tech
-3285), in which sound level meters write the value of full scale. The list is walked without trust:
-whatever cannot be followed ends the walk, and judging the file is left to the library.
+measurement, so the samples announced are counted against the samples found. Where a header does not
+state the length, or a file holds sounds one after the other, `noise.recordings.formats.containers`
+makes of it what the library reads whole.
 """
 
 from __future__ import annotations
 
 import os
 import threading
-from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, BinaryIO
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from itertools import accumulate
+from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
 import soundfile
+from numpy.typing import NDArray
 
 from models.errors import RecordingError
 from noise.recordings.files import RawSamples
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-__all__ = [
-    "DENSEST", "Chunk", "bext_description", "chunks", "missing_bytes", "open_sound",
-    "read_sound_file",
-]  # fmt: skip
+from noise.recordings.formats.containers import (
+    Piece,
+    PieceFile,
+    bext_description,
+    flac_length,
+    pieces_of,
+    with_flac_length,
+)
 
 _BLOCK = 1 << 16  # samples a channel
-DENSEST = 8192
-"""Samples a byte at most: FLAC holds silence in about 10 bytes a block of 65535 samples."""
-
-_DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
-_LENGTH_UNKNOWN = 0xFFFFFFFF  # left by programs that could not go back and fill it in
-_SAMPLE_CHUNKS = (b"data", b"SSND")  # RIFF, AIFF
+_DENSEST = 8192  # samples a byte: FLAC holds silence in about 10 bytes a block of 65535 samples
 _OTHERS = (b"RIFF", b"RIFX", b"RF64", b"FORM", b"fLaC", b"OggS")
 """How files begin that are no MP3, whatever they are called."""
+
+_EXACT = ("WAV", "WAVEX", "RF64", "AIFF", "FLAC")
+"""Formats of the sound library that can be entered at any sample; of others, what comes before is
+decoded."""
 
 
 def read_sound_file(path: Path) -> RawSamples:
@@ -75,43 +70,164 @@ def read_sound_file(path: Path) -> RawSamples:
     >>> raw.samples.shape, raw.rate, raw.fractional, float(raw.samples[0, 0])
     ((1, 480), 48000.0, True, 0.5)
     """
-    if missing := missing_bytes(path):
-        raise RecordingError(
-            f"{path}: is truncated; its header announces {missing} bytes of samples more than "
-            f"there are"
+    with SoundReader(path) as sound:
+        return replace(sound.raw, samples=sound.read(0, sound.n_samples))
+
+
+class SoundReader:
+    """A sound file that is open for reading.
+
+    Parameters
+    ----------
+    path : Path
+        An existing file.
+
+    Attributes
+    ----------
+    raw : RawSamples
+        All but the samples.
+    n_samples : int
+        Of each channel.
+
+    Raises
+    ------
+    RecordingError
+        It is none, is damaged, or ends before its header says.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        if path.stat().st_size == 0:
+            raise RecordingError(f"{path}: is empty (0 bytes)")
+        pieces, notes = pieces_of(path)
+        with ExitStack() as stack, _errors(path):
+            self._sounds = [_opened(path, piece, stack) for piece in pieces]
+            self._positions = [0] * len(pieces)
+            self._ends = list(accumulate(int(sound.frames) for sound in self._sounds))
+            self.n_samples = self._ends[-1]
+            self._check()
+            self._closing = stack.pop_all()
+        first = self._sounds[0]
+        self.raw = RawSamples(
+            samples=np.empty((int(first.channels), 0)),
+            rate=float(first.samplerate),
+            fractional=first.subtype not in ("FLOAT", "DOUBLE"),
+            description=bext_description(path),
+            comment=first.comment,
+            notes=tuple(notes),
         )
-    try:
-        with open_sound(path) as sound:
-            return RawSamples(
-                samples=_samples(path, sound),
-                rate=float(sound.samplerate),
-                fractional=sound.subtype not in ("FLOAT", "DOUBLE"),
-                description=bext_description(path),
-                comment=sound.comment,
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._closing.close()
+
+    def _check(self) -> None:
+        first = self._sounds[0]
+        for sound in self._sounds:
+            if (sound.samplerate, sound.channels) != (first.samplerate, first.channels):
+                raise RecordingError(
+                    f"{self._path}: holds sounds one after the other, of {first.channels} tracks "
+                    f"at {first.samplerate} Hz and of {sound.channels} at {sound.samplerate} Hz; "
+                    "save each as a file of its own"
+                )
+        if self.n_samples > _DENSEST * self._path.stat().st_size:
+            raise RecordingError(
+                f"{self._path}: its header announces {self.n_samples} samples, more than a file of "
+                "this size holds"
             )
+
+    def read(self, first: int, last: int) -> NDArray[np.float64]:
+        """Return the samples between two, shape (n_channels, n), as stored.
+
+        Raises
+        ------
+        RecordingError
+            The file breaks off before.
+        """
+        samples = np.empty((len(self.raw.samples), last - first))
+        done = first
+        with _errors(self._path):
+            for i, end in enumerate(self._ends):
+                start = end - int(self._sounds[i].frames)
+                while start <= done < min(end, last):
+                    block = self._block(i, done - start, min(_BLOCK, min(end, last) - done))
+                    if not len(block):
+                        raise RecordingError(
+                            f"{self._path}: is truncated; its header announces {self.n_samples} "
+                            f"samples, {done} can be read"
+                        )
+                    samples[:, done - first : done - first + len(block)] = block.T
+                    done += len(block)
+        return samples
+
+    def _block(self, i: int, start: int, n: int) -> NDArray[np.float64]:
+        """Read `n` samples of one of the sounds."""
+        sound, position = self._sounds[i], self._positions[i]
+        if start != position and sound.format in _EXACT:
+            position = sound.seek(start)
+        elif start < position:
+            position = sound.seek(0)
+        while position < start:
+            passed = len(sound.read(min(_BLOCK, start - position)))
+            if not passed:
+                return np.empty((0, sound.channels))
+            position += passed
+        block: NDArray[np.float64] = sound.read(n, dtype="float64", always_2d=True)
+        self._positions[i] = position + len(block)
+        return block
+
+
+@contextmanager
+def _errors(path: Path) -> Iterator[None]:
+    try:
+        yield
     except soundfile.LibsndfileError as error:
         reason = error.error_string.rstrip(".")
         raise RecordingError(f"{path}: is damaged or no sound file ({reason})") from error
 
 
-def open_sound(path: Path) -> Any:
-    """Open a sound file whatever its name, of which the library takes texts in UTF-8 alone.
+def _opened(path: Path, piece: Piece, stack: ExitStack) -> Any:
+    """Open a piece of a file, whose name the library takes in UTF-8 alone."""
+    if flac_length(path, piece) == 0:
+        with ExitStack() as counting:
+            n = _count(path, _Quiet(counting.enter_context(PieceFile(path, piece))))
+        piece = with_flac_length(path, piece, n)
+    file: Any
+    if piece == Piece(0, path.stat().st_size):
+        file = path if os.name == "nt" else os.fsencode(path)
+    else:
+        file = stack.enter_context(PieceFile(path, piece))
+    with path.open("rb") as start:
+        known = (piece.head or start.read(4))[:4] in _OTHERS
+    return stack.enter_context((soundfile.SoundFile if known else _Quiet)(file))
 
-    Raises
-    ------
-    soundfile.LibsndfileError
-        It is none.
-    """
-    with path.open("rb") as file:
-        known = file.read(4) in _OTHERS
-    kind = soundfile.SoundFile if known else _Quiet
-    return kind(path if os.name == "nt" else os.fsencode(path))
+
+def _count(path: Path, sound: Any) -> int:
+    """Decode a sound to its end."""
+    n = 0
+    try:
+        while passed := len(sound.read(_BLOCK)):
+            n += passed
+    except soundfile.LibsndfileError as error:
+        raise RecordingError(
+            f"{path}: does not say how long it is, and breaks off after {n} samples "
+            f"({n / sound.samplerate:.6g} s; {error.error_string.rstrip('.')})"
+        ) from None
+    finally:
+        sound.close()
+    return n
 
 
 class _Quiet(soundfile.SoundFile):  # type: ignore[misc]  # the library has no types
     """MP3, whose library (mpg123) prints what it thinks of a file: that goes nowhere."""
 
-    def __init__(self, file: str | bytes | Path) -> None:
+    def __init__(self, file: object) -> None:
         with _silence():
             super().__init__(file)
 
@@ -145,88 +261,3 @@ def _silence() -> Iterator[None]:
             os.dup2(kept, 2)
             os.close(kept)
             os.close(nowhere)
-
-
-def _samples(path: Path, sound: Any) -> NDArray[np.float64]:
-    announced = int(sound.frames)
-    if announced > DENSEST * path.stat().st_size:
-        raise RecordingError(
-            f"{path}: its header announces {announced} samples, more than a file of this size holds"
-        )
-    samples = np.empty((int(sound.channels), announced))
-    read = 0
-    while len(samples) == 1 and read < announced:  # without a copy
-        found = len(sound.read(out=samples[0, read : read + _BLOCK]))
-        if not found:
-            break
-        read += found
-    while len(block := sound.read(_BLOCK, dtype="float64", always_2d=True)):
-        samples[:, read : read + len(block)] = block.T
-        read += len(block)
-    if read < announced:
-        raise RecordingError(
-            f"{path}: is truncated; its header announces {announced} samples, {read} can be read"
-        )
-    return samples
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """One chunk: its four-letter name, where its content starts, and its announced size [byte]."""
-
-    name: bytes
-    start: int
-    size: int
-
-
-def chunks(file: BinaryIO) -> Iterator[Chunk]:
-    """Walk the chunks of a RIFF, RIFX, RF64, BW64 or AIFF file; nothing for any other.
-
-    Examples
-    --------
-    >>> import io
-    >>> list(chunks(io.BytesIO(b"RIFF....WAVEfmt " + bytes([2, 0, 0, 0]) + b"xxdata")))
-    [Chunk(name=b'fmt ', start=20, size=2)]
-    """
-    head = file.read(12)
-    if head[:4] not in (b"RIFF", b"RIFX", b"RF64", b"BW64", b"FORM"):
-        return
-    little = head[:4] not in (b"RIFX", b"FORM")
-    long_data: int | None = None
-    position = len(head)
-    while True:
-        file.seek(position)
-        field = file.read(8)
-        name = field[:4]
-        if len(field) < 8 or not all(0x20 <= byte < 0x7F for byte in name):
-            return
-        size = int.from_bytes(field[4:], "little" if little else "big")
-        if name == b"ds64":
-            # A 64-bit file puts the true size of its samples here, and -1 where it belongs.
-            long_data = int.from_bytes(file.read(16)[8:], "little")
-        if name == b"data" and size == _LENGTH_UNKNOWN and long_data is not None:
-            size = long_data
-        yield Chunk(name, position + 8, size)
-        position += 8 + size + size % 2
-
-
-def bext_description(path: Path) -> str:
-    """Read the description in the ``bext`` chunk of a WAV file, empty where it has none."""
-    with path.open("rb") as file:
-        for chunk in chunks(file):
-            if chunk.name == b"bext":
-                file.seek(chunk.start)
-                text = file.read(min(chunk.size, _DESCRIPTION_BYTES))
-                return text.partition(b"\0")[0].decode("latin-1").strip()
-    return ""
-
-
-def missing_bytes(path: Path) -> int:
-    """How many bytes of samples the header announces beyond the end of the file; 0 if complete."""
-    with path.open("rb") as file:
-        end = os.fstat(file.fileno()).st_size
-        for chunk in chunks(file):
-            if chunk.name in _SAMPLE_CHUNKS:
-                known = chunk.size != _LENGTH_UNKNOWN
-                return max(0, chunk.start + chunk.size - end) if known else 0
-    return 0

@@ -1,0 +1,498 @@
+"""Containers of sound: chunks of RIFF, pages of Ogg, streams of FLAC and frames of MPEG audio.
+
+The sound library reads the first sound of a file and takes its length from the header; where that
+has none, it estimates it from the size of the file (MP3), gives up (FLAC) or finds no samples (a
+WAV file whose recorder was switched off before it could fill in the sizes). So each file is cut
+into pieces that the library reads to their end: every piece has a header with the length that was
+counted. Nothing in a file is trusted: a walk ends where it cannot be followed, and judging what is
+left is the library's.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import BinaryIO, NamedTuple
+
+from models.errors import RecordingError
+
+_RIFF = (b"RIFF", b"RF64", b"BW64")
+_SAMPLE_CHUNKS = (b"data", b"SSND")  # RIFF, AIFF
+_NO_SIZE = 0xFFFFFFFF
+_UNFINISHED = (0, _NO_SIZE, 0x7FFFFFFF, 0x80000000, 0x7FFFF000)
+"""Sizes of samples that recorders write before they know better (the last ones: arecord, SoX)."""
+
+_DESCRIPTION_BYTES = 256  # EBU Tech 3285, first field of the chunk
+_FLAC = b"fLaC\x00\x00\x00\x22"  # with the head of the block that always comes first
+_MOST_RUN = 3
+"""Frames of MPEG audio that must follow one another where nothing else says that one begins."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Part of a file that is one sound for the library.
+
+    Parameters
+    ----------
+    start, end : int
+        Of its bytes in the file.
+    head : bytes
+        Stands before them.
+    """
+
+    start: int
+    end: int
+    head: bytes = b""
+
+
+class PieceFile(io.RawIOBase):
+    """A piece as a file to read from.
+
+    Parameters
+    ----------
+    path : Path
+    piece : Piece
+    """
+
+    def __init__(self, path: Path, piece: Piece) -> None:
+        self._file = path.open("rb")
+        self._piece, self._at = piece, 0
+        self._size = len(piece.head) + piece.end - piece.start
+
+    def readable(self) -> bool:
+        """Say yes."""
+        return True
+
+    def seekable(self) -> bool:
+        """Say yes."""
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Go to a byte."""
+        base = {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self._size}[whence]
+        self._at = max(0, base + offset)
+        return self._at
+
+    def tell(self) -> int:
+        """Return the number of the next byte."""
+        return self._at
+
+    def readinto(self, buffer: object) -> int:
+        """Read as many bytes as fit."""
+        view = memoryview(buffer).cast("B")  # type: ignore[arg-type]  # a writable buffer
+        n, head = min(len(view), max(0, self._size - self._at)), self._piece.head
+        known = head[self._at : self._at + n]
+        self._file.seek(self._piece.start + max(0, self._at - len(head)))
+        data = known + self._file.read(n - len(known))
+        view[: len(data)] = data
+        self._at += len(data)
+        return len(data)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+        super().close()
+
+
+def pieces_of(path: Path) -> tuple[list[Piece], list[str]]:
+    """Cut a sound file into pieces of known length.
+
+    Parameters
+    ----------
+    path : Path
+        A file that is not empty.
+
+    Returns
+    -------
+    pieces : list of Piece
+        In their order; of a FLAC stream that does not state its length with none either, see
+        `with_flac_length`.
+    notes : list of str
+        What should be known of it.
+
+    Raises
+    ------
+    RecordingError
+        It ends before its header says, or holds what cannot be told apart.
+    """
+    with path.open("rb") as file:
+        size = os.fstat(file.fileno()).st_size
+        start = _id3_bytes(file.read(10))
+        file.seek(start)
+        magic = file.read(4)
+        file.seek(0)
+        if magic in (*_RIFF, b"RIFX", b"FORM"):
+            return _riff_pieces(path, file, size)
+        if magic == b"OggS":
+            starts = _ogg_starts(file.read())
+        elif magic == b"fLaC":
+            starts = _places(file, _FLAC) or [0]
+        else:
+            return _mpeg_pieces(path, file.read())
+    ends = [*starts[1:], size]
+    pieces = [Piece(first, last) for first, last in zip(starts, ends, strict=True)]
+    return pieces, _joined_note(len(pieces))
+
+
+def _joined_note(number: int) -> list[str]:
+    return [f"{number} sounds one after the other in one file are read as one"] * (number > 1)
+
+
+def _places(file: BinaryIO, sign: bytes) -> list[int]:
+    """Find all places of a sign in a file of any size."""
+    found, tail, before = [], b"", 0
+    while block := file.read(1 << 18):
+        data = tail + block
+        at = data.find(sign)
+        while at >= 0:
+            found.append(before + at)
+            at = data.find(sign, at + 1)
+        tail = data[1 - len(sign) :]
+        before += len(data) - len(tail)
+    return found
+
+
+# RIFF: https://tech.ebu.ch/docs/tech/tech3285.pdf, tech3306.pdf (RF64), ITU-R BS.2088 (BW64)
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """One chunk: its four-letter name, where its content starts, and its announced size [byte]."""
+
+    name: bytes
+    start: int
+    size: int
+
+
+def chunks(file: BinaryIO) -> Iterator[Chunk]:
+    """Walk the chunks of a RIFF, RIFX, RF64, BW64 or AIFF file; nothing for any other.
+
+    The byte that makes an odd size even is missing in files of some programs.
+
+    Examples
+    --------
+    >>> list(chunks(io.BytesIO(b"RIFF....WAVEfmt " + bytes([2, 0, 0, 0]) + b"xxdata")))
+    [Chunk(name=b'fmt ', start=20, size=2)]
+    """
+    head = file.read(12)
+    if head[:4] not in (*_RIFF, b"RIFX", b"FORM"):
+        return
+    end = file.seek(0, os.SEEK_END)
+    order = "big" if head[:4] in (b"RIFX", b"FORM") else "little"
+    long_data: int | None = None
+    position = len(head)
+    while True:
+        file.seek(position)
+        name, size = _chunk_head(file.read(8), order)
+        if not name:
+            return
+        if name == b"ds64":
+            # A 64-bit file puts the true size of its samples here, and -1 where it belongs.
+            long_data = int.from_bytes(file.read(16)[8:], "little")
+        if name == b"data" and size == _NO_SIZE and long_data not in (None, 0, (1 << 64) - 1):
+            size = long_data or 0
+        yield Chunk(name, position + 8, size)
+        position += 8 + size
+        if size % 2:
+            file.seek(position)
+            field = file.read(9)
+            unpadded, padded = (_chunk_head(field[i:], order) for i in (0, 1))
+            lacks = unpadded[0] and position + 8 + unpadded[1] <= end
+            position += not (lacks and not (padded[0] and position + 9 + padded[1] <= end))
+
+
+def _chunk_head(field: bytes, order: str) -> tuple[bytes, int]:
+    """Name and size in the first eight bytes; no name where they are no head of a chunk."""
+    name = field[:4]
+    if len(field) < 8 or not all(0x20 <= byte < 0x7F for byte in name):
+        return b"", 0
+    return name, int.from_bytes(field[4:8], "little" if order == "little" else "big")
+
+
+def bext_description(path: Path) -> str:
+    """Read the description in the ``bext`` chunk of a WAV file, empty where it has none."""
+    with path.open("rb") as file:
+        end = os.fstat(file.fileno()).st_size
+        for chunk in chunks(file):
+            if chunk.name == b"data" and _is_unfinished(file, chunk, end):
+                break
+            if chunk.name == b"bext":
+                file.seek(chunk.start)
+                text = file.read(min(chunk.size, _DESCRIPTION_BYTES))
+                return text.partition(b"\0")[0].decode("latin-1").strip()
+    return ""
+
+
+def _riff_pieces(path: Path, file: BinaryIO, end: int) -> tuple[list[Piece], list[str]]:
+    tag = file.read(4)
+    file.seek(0)
+    before: list[Chunk] = []
+    walk = chunks(file)
+    data = None
+    for chunk in walk:
+        if chunk.name in _SAMPLE_CHUNKS:
+            data = chunk
+            break
+        before.append(chunk)
+    if data is None:
+        return [Piece(0, end)], []
+    if tag in _RIFF and _is_unfinished(file, data, end):
+        n = end - data.start
+        note = f"the recorder did not finish the header; the {n} bytes that follow it are read"
+        return [Piece(data.start, end, _head(file, before, n))], [note]
+    if missing := max(0, data.start + data.size - end):
+        raise RecordingError(
+            f"{path}: is truncated; its header announces {missing} bytes of samples more than "
+            f"the {end - data.start} that there are"
+        )
+    last = data
+    for last in walk:
+        if last.name in _RIFF:
+            raise RecordingError(
+                f"{path}: a second WAV file begins at byte {last.start - 8}; save each as its own"
+            )
+    rest = end - last.start - last.size
+    file.seek(last.start + last.size)
+    notes = []
+    if rest > 0 and any(file.read(1 << 20)):
+        notes = [f"{rest} bytes after the end that the header states are not read"]
+    padded = all(
+        one.start + one.size + one.size % 2 + 8 == following.start
+        for one, following in zip(before, [*before[1:], data], strict=True)
+    )
+    if tag == b"BW64" or (tag in _RIFF and not padded):
+        stop = data.start + data.size
+        return [Piece(data.start, stop, _head(file, before, data.size))], notes
+    return [Piece(0, end)], notes
+
+
+def _is_unfinished(file: BinaryIO, data: Chunk, end: int) -> bool:
+    """Whether a size of samples was never filled in: no chunks lead from there to the end."""
+    if data.size not in _UNFINISHED or (data.size and data.start + data.size <= end):
+        return False
+    if data.size or data.start >= end:
+        return data.start < end
+    position = data.start
+    while position < end:
+        file.seek(position)
+        name, size = _chunk_head(file.read(8), "little")
+        if not name or position + 8 + size > end:
+            return True
+        position += 8 + size + size % 2
+    return False
+
+
+def _head(file: BinaryIO, before: list[Chunk], n: int) -> bytes:
+    """Header of a 64-bit WAV file with the chunks before the samples, and `n` bytes of these."""
+    kept = b""
+    for chunk in before:
+        if chunk.name not in (b"ds64", b"JUNK", b"junk"):
+            file.seek(chunk.start)
+            content = file.read(min(chunk.size, 1 << 24))
+            content += bytes(len(content) % 2)
+            kept += struct.pack("<4sI", chunk.name, len(content)) + content
+    sizes = struct.pack("<4sIQQQI", b"ds64", 28, 4 + 36 + len(kept) + 8 + n, n, 0, 0)
+    data = struct.pack("<4sI", b"data", _NO_SIZE)
+    return struct.pack("<4sI4s", b"RF64", _NO_SIZE, b"WAVE") + sizes + kept + data
+
+
+# Ogg (RFC 3533)
+
+
+def _ogg_starts(data: bytes) -> list[int]:
+    """Find where the streams begin that follow one another in a file."""
+    starts, beginning, at = [], False, 0
+    while (at := data.find(b"OggS", at)) >= 0 and at + 27 <= len(data):
+        first = bool(data[at + 5] & 2)
+        if first and not beginning:
+            starts.append(at)
+        beginning = first
+        n = data[at + 26]
+        at += 27 + n + sum(data[at + 27 : at + 27 + n])
+    return starts or [0]
+
+
+# FLAC (RFC 9639)
+
+
+def flac_length(path: Path, piece: Piece) -> int | None:
+    """Return how many samples a stream of FLAC states, 0 if unknown; None for another file."""
+    with path.open("rb") as file:
+        file.seek(piece.start)
+        head = file.read(42)
+    if head[:8] != _FLAC or len(head) < 42:
+        return None
+    return (head[21] & 0x0F) << 32 | int.from_bytes(head[22:26], "big")
+
+
+def with_flac_length(path: Path, piece: Piece, n_samples: int) -> Piece:
+    """Return a stream of FLAC that states how long it is."""
+    with path.open("rb") as file:
+        file.seek(piece.start)
+        head = bytearray(file.read(42))
+    head[21] |= n_samples >> 32
+    head[22:26] = (n_samples & 0xFFFFFFFF).to_bytes(4, "big")
+    return Piece(piece.start + len(head), piece.end, bytes(head))
+
+
+# MPEG audio (ISO 11172-3, 13818-3)
+
+_RATES = (44100, 48000, 32000)  # [Hz], halved and quartered in versions 2 and 2.5
+_LAYER_3 = (0, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320)
+_LOW = (0, 8, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 144, 160)
+_BIT_RATES = {
+    (1, 1): tuple(range(0, 449, 32)),
+    (1, 2): (0, 32, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320, 384),
+    (1, 3): _LAYER_3,
+    (2, 1): (0, 32, 48, 56, 64, 80, 96, 112, 128, 144, 160, 176, 192, 224, 256),
+    (2, 2): _LOW,
+    (2, 3): _LOW,
+}
+"""[kbit/s], by version and layer."""
+
+
+class _Frame(NamedTuple):
+    """A frame of MPEG audio: what all of a sound share, its bytes, and its header for players."""
+
+    kind: tuple[int, int, int, bool]
+    size: int
+    info: int
+
+
+@lru_cache(maxsize=1 << 12)
+def _frame(head: bytes) -> _Frame | None:
+    """Read the four bytes that a frame begins with."""
+    bits = int.from_bytes(head, "big")
+    version, layer = bits >> 19 & 3, 4 - (bits >> 17 & 3)
+    bit_rate, rate = bits >> 12 & 15, bits >> 10 & 3
+    if bits >> 21 != 0x7FF or version == 1 or layer == 4 or bit_rate in (0, 15) or rate == 3:
+        return None
+    hertz = _RATES[rate] >> {3: 0, 2: 1, 0: 2}[version]
+    bits_s = 1000 * _BIT_RATES[1 if version == 3 else 2, layer][bit_rate]
+    padding, mono = bits >> 9 & 1, bits >> 6 & 3 == 3
+    if layer == 1:
+        size = 4 * (12 * bits_s // hertz + padding)
+    else:
+        size = (72 if layer == 3 and version != 3 else 144) * bits_s // hertz + padding
+    info = 4 + ((17 if mono else 32) if version == 3 else (9 if mono else 17))
+    return _Frame((version, layer, rate, mono), size, info)
+
+
+class _Stream:
+    """Frames that follow one another, with what a header for players announces of them."""
+
+    def __init__(self, at: int, info: bytes = b"", announced: int | None = None) -> None:
+        self.start = self.end = at
+        self.info, self.announced = info, announced
+        self.n_frames = 0
+
+    @property
+    def is_full(self) -> bool:
+        return self.announced is not None and self.n_frames >= self.announced
+
+
+def _mpeg_pieces(path: Path, data: bytes) -> tuple[list[Piece], list[str]]:
+    streams: list[_Stream] = []
+    at, kind = 0, None
+    begins = True  # a stream: at first, after a tag, and where the kind of frames changes
+    while 0 <= at <= len(data) - 4:
+        if tag := _tag_bytes(data, at):
+            at, begins = at + tag, True
+            continue
+        frame = _frame(data[at : at + 4])
+        if frame is None or (frame.kind != kind and not _run(data, at, frame)):
+            at = data.find(b"\xff", at + 1)
+            continue
+        if at + frame.size > len(data):
+            break
+        begins |= frame.kind != kind
+        kind = frame.kind
+        found = _info(data[at : at + frame.size], frame)
+        if found is not None:
+            streams.append(_Stream(at + frame.size, *found))
+            begins = False
+        else:
+            if begins or streams[-1].is_full:
+                streams.append(_Stream(at))
+            begins = False
+            streams[-1].n_frames += 1
+            streams[-1].end = at + frame.size
+        at += frame.size
+    streams = [one for one in streams if one.n_frames or one.announced]
+    if not streams:
+        raise RecordingError(f"{path}: is damaged or no sound file (Format not recognised)")
+    for one in streams:
+        if one.announced is not None and one.announced > one.n_frames + 1:  # some count the header
+            raise RecordingError(
+                f"{path}: is truncated; its header announces {one.announced} frames, "
+                f"{one.n_frames} can be read"
+            )
+    pieces = [Piece(one.start, one.end, _mpeg_head(one, data)) for one in streams]
+    return pieces, _joined_note(len(pieces))
+
+
+def _run(data: bytes, at: int, frame: _Frame) -> bool:
+    """Whether further frames of its kind follow, up to the end of the data or a tag."""
+    for _ in range(_MOST_RUN):
+        at += frame.size
+        if at >= len(data) or _tag_bytes(data, at):
+            return True
+        following = _frame(data[at : at + 4])
+        if following is None or following.kind != frame.kind:
+            return False
+        frame = following
+    return True
+
+
+def _id3_bytes(head: bytes) -> int:
+    """Size of an ID3v2 tag with this head, 0 where it is none."""
+    if head[:3] != b"ID3" or len(head) < 10 or any(byte > 0x7F for byte in head[6:10]):
+        return 0
+    size = head[6] << 21 | head[7] << 14 | head[8] << 7 | head[9]
+    return 10 + size + 10 * bool(head[5] & 0x10)
+
+
+def _tag_bytes(data: bytes, at: int) -> int:
+    """Size of a tag (ID3, APE) at a place, 0 where there is none."""
+    head = data[at : at + 3]
+    if head == b"ID3":
+        return _id3_bytes(data[at : at + 10])
+    if head == b"TAG":
+        return 128
+    if head == b"APE" and data[at : at + 8] == b"APETAGEX":
+        return 32 + int.from_bytes(data[at + 12 : at + 16], "little")
+    return 0
+
+
+def _info(data: bytes, frame: _Frame) -> tuple[bytes, int | None] | None:
+    """Read a header for players (Xing, Info, VBRI) and the frames it announces; None for sound."""
+    if frame.kind[1] == 3 and data[frame.info : frame.info + 4] in (b"Xing", b"Info"):
+        flags, n = struct.unpack(">II", data[frame.info + 4 : frame.info + 12].ljust(8, b"\0"))
+        return (data, n) if flags & 1 else (b"", None)
+    if data[36:40] == b"VBRI":
+        return b"", int.from_bytes(data[50:54], "big")
+    return None
+
+
+def _mpeg_head(stream: _Stream, data: bytes) -> bytes:
+    """Header for players with the number of frames counted; a plain one where there was none."""
+    head = bytearray(stream.info)
+    if not head:
+        bits = int.from_bytes(data[stream.start : stream.start + 4], "big")
+        bits = bits & 0xFFFF0DFF | 0x00019000  # without checksum and padding, of a middle bit rate
+        head[:] = bits.to_bytes(4, "big")
+        frame = _frame(bytes(head))
+        if frame is None or frame.kind[1] != 3:
+            return b""  # in layers 1 and 2, which do not vary, there are none
+        head += bytes(frame.size - 4)
+        head[frame.info : frame.info + 8] = struct.pack(">4sI", b"Info", 1)
+    else:
+        frame = _frame(bytes(head[:4]))
+    if frame is not None:
+        head[frame.info + 8 : frame.info + 12] = stream.n_frames.to_bytes(4, "big")
+    return bytes(head)
