@@ -18,10 +18,9 @@ from features.long.parts import in_pieces, n_samples_of, reader_of
 from models.drawing import BLUE, CHANNEL_LOOKS, padded, styled, thinned
 from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-from noise.audio.long_sound import AudibleSound, LongSound
+from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.base.label_looks import DARK_LABELS, LABEL_COLOURS
 from noise.pictures.axes import new_figure
-from noise.pictures.clip_levels import HIGHEST, LOWEST, RATE, clip_levels
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from features.kernels.orders import OrderMap
-    from features.long.parts import Parts
+    from features.long.parts import Parts, Read
     from models.recording import Recording
 
 __all__ = [
@@ -154,18 +153,18 @@ def level_over_time(
     >>> round(float(level_over_time(tone, 48e3, 1.0)[1].max()), 1)
     0.0
     """
-    return _levels(LongSound.of(sound, rate), reference, columns)
+    return _levels(lambda first, last: sound[first:last], sound.size, rate, reference, columns)
 
 
 def _levels(
-    sound: LongSound, reference: float, columns: int = 1200
+    read: Read, n: int, rate: float, reference: float, columns: int = 1200
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    pieces = fast_level_pieces(sound.read, sound.n_samples, sound.rate, reference=reference)
-    place, level = _extremes(pieces, 1 + sound.n_samples // _MOST)
+    pieces = fast_level_pieces(read, n, rate, reference=reference)
+    place, level = _extremes(pieces, 1 + n // _MOST)
     heard = np.isfinite(level)
     if not heard.any():
         return level[:0], level[:0]
-    return thinned(place[heard] / sound.rate, level[heard], columns=columns)
+    return thinned(place[heard] / rate, level[heard], columns=columns)
 
 
 def _extremes(
@@ -209,7 +208,8 @@ def recorded_levels(
     >>> round(float(level.max()), 1)
     91.0
     """
-    return _levels(AudibleSound.of(recording).sound, _reference(recording))
+    read = reader_of(recording, recording.first("pressure") or 0)
+    return _levels(read, n_samples_of(recording), recording.rate, _reference(recording))
 
 
 def recorded_speed(recording: Recording | Parts) -> tuple[NDArray[np.float64], float] | None:
@@ -298,8 +298,8 @@ def _unit(recording: Recording | Parts) -> str:
 
 def _spectrogram(figure: Figure, axes: Axes, recording: Recording | Parts, row: int) -> None:
     n = n_samples_of(recording)
-    duration, sound = n / recording.rate, LongSound(recording.rate, n, reader_of(recording, row))
-    level = clip_levels(sound.without_mean().resampled(RATE), _reference(recording))[::-1]
+    duration, read = n / recording.rate, reader_of(recording, row)
+    level = spectrogram(read, n, recording.rate, _reference(recording))[::-1]
     highest = 5.0 * math.ceil(float(level.max()) / 5.0)
     edges = np.geomspace(LOWEST, HIGHEST, level.shape[0] + 1)
     time = np.linspace(0.0, duration, level.shape[1] + 1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from models.errors import ParameterError
 from noise.app.sounds.stretch import number, read_stretch
-from noise.audio.line_levels import Grid, line_levels, strongest_line
+from noise.audio.spectrogram import HIGHEST, LOWEST, Grid, spectrogram as levels_of, strongest_line
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     Facts = dict[str, object]
 
 __all__ = ["line", "outline", "spectrogram"]
-
-_LOWEST, _HIGHEST = 50.0, 20e3
-"""Of the frequency axis, where nothing else is asked for [Hz]."""
 
 _STEP = 0.5
 """Of levels in bytes [dB]."""
@@ -69,7 +66,7 @@ def spectrogram(track: Track, query: Query) -> tuple[Facts, NDArray[np.uint8]]:
     height = int(number(query, "height", 256, 16, 1024))
     length = _frame(track, query, stretch.n / width)
     grid = Grid(stretch.first, stretch.last, width, height, lowest, highest, length, padding=2)
-    levels = line_levels(track.read, track.n, track.rate, track.reference, grid)
+    levels = levels_of(track.read, track.n, track.rate, track.reference, grid)
     top = _ROUND * math.ceil(float(levels.max()) / _ROUND)
     floor = top - 255 * _STEP
     facts: Facts = {
@@ -111,8 +108,8 @@ def line(track: Track, query: Query) -> Facts:
 
 def _frequencies(track: Track, query: Query) -> tuple[float, float]:
     nyquist = 0.5 * track.rate
-    highest = number(query, "high", min(_HIGHEST, nyquist), 0.0, nyquist)
-    lowest = number(query, "low", min(_LOWEST, 0.01 * highest), 0.0, nyquist)
+    highest = number(query, "high", min(HIGHEST, nyquist), 0.0, nyquist)
+    lowest = number(query, "low", min(LOWEST, 0.01 * highest), 0.0, nyquist)
     if not 0.0 < lowest < highest:
         raise ParameterError(f"low {lowest:g} Hz: must be above zero and below high {highest:g} Hz")
     return lowest, highest

@@ -14,7 +14,6 @@ from models.condition import Condition
 from noise.base.label_names import LABELS
 from noise.base.progress import counted
 from noise.labels.label_display import labels_in, naming_row
-from noise.pictures.clip_levels import RATE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -31,6 +30,9 @@ __all__ = [
     "RATE", "Entry", "Part", "label_counts", "labels_sentence",
     "stretch_start",
 ]  # fmt: skip
+
+RATE = 48000
+"""Of the sounds on a page [Hz]."""
 
 
 @dataclass(frozen=True)

@@ -6,19 +6,23 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from models.recording import REFERENCE_PRESSURE
+from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.label_display import ASSUMED, assumes_material
+from noise.pages.engine.entry import RATE
 from noise.pages.engine.over_time import level_displays, orders_display
 from noise.pages.engine.spectrogram import RANGE, TICKS, picture, top
 from noise.pages.engine.ticks import round_ticks
-from noise.pictures.clip_levels import HIGHEST, LOWEST, RATE, clip_levels
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from noise.pages.engine.clips import Clip
-    from noise.pages.engine.entry import Entry, Row
-    from noise.pages.engine.over_time import LevelDisplay, OrdersDisplay
+    from noise.pages.engine.entry import RATE, Entry, Row
+from noise.pages.engine.over_time import LevelDisplay, OrdersDisplay
 
 __all__ = [
     "Band", "EntryDisplay", "Fact", "draw_entries", "entry_display", "facts_of", "frequency_ticks",
@@ -123,7 +127,7 @@ def draw_entries(
     for calibrated, reference, unit in ((True, REFERENCE_PRESSURE, "dB re 20 µPa"),
                                         (False, 1.0, "dBFS")):  # fmt: skip
         of_it = {key: clip for key, clip in clips.items() if entries[key].calibrated == calibrated}
-        levels = {key: clip_levels(clip.samples, reference) for key, clip in of_it.items()}
+        levels = {key: _levels(clip, reference) for key, clip in of_it.items()}
         unit_a = "dB(A)" if calibrated else "dBFS(A)"
         measured = {key: known for key in of_it if (known := entries[key].fast_levels) is not None}
         over_time |= level_displays(of_it, RATE, reference, unit_a, measured)
@@ -146,6 +150,13 @@ def draw_entries(
         for key, entry in entries.items()
     }
     return displays, scale_words
+
+
+def _levels(clip: Clip, reference: float) -> NDArray[np.float64]:
+    def read(first: int, last: int) -> NDArray[np.float32]:
+        return clip.samples[first:last]
+
+    return spectrogram(read, clip.samples.size, RATE, reference)
 
 
 def frequency_ticks() -> tuple[tuple[float, str], ...]:

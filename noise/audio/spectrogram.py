@@ -1,24 +1,26 @@
-"""Levels of lines over time and logarithmic frequency, of any part of a sound: a spectrogram.
+"""Spectrogram of any part of a sound: levels of lines over time and logarithmic frequency.
 
-Each row and column holds the largest line in it, so that neither a click nor a tone is lost where a
-row or column holds many. Frames are transformed in single precision, many at once: what lies 140 dB
-below the strongest line of its frame is not measured, and no picture shows it.
+Pages, app and pictures share it, so that the same sound looks the same in all of them. Each row and
+column holds the largest line in it, so that neither a click nor a tone is lost where a row or
+column holds many. Frames are transformed in single precision, many at once: what lies 140 dB below
+the strongest line of its frame is not measured, and no picture shows it.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+LOWEST, HIGHEST = 50.0, 20e3
+"""Of the frequency axis, where nothing else is asked for [Hz]."""
 
-    from numpy.typing import NDArray
-
-__all__ = ["Grid", "Line", "line_levels", "strongest_line"]
+_WIDTH, _HEIGHT = 600, 150
+_FRAME = 2048 / 48000
+"""[s]"""
 
 _SILENCE = -300.0
 """Level of digital zero [dB]."""
@@ -47,7 +49,7 @@ class Grid:
     width, height : int
         Columns, and rows of the same ratio of frequencies.
     lowest, highest : float
-        Ends of the rows [Hz]; not above half the sampling rate.
+        Ends of the rows [Hz].
     length : int
         Of a frame, under a Hann window [samples].
     padding : int
@@ -70,12 +72,24 @@ class Grid:
         return np.geomspace(self.lowest, self.highest, self.height + 1)
 
 
-def line_levels(
+def whole_grid(n: int, rate: float) -> Grid:
+    """Return the grid of a whole sound of `n` samples at a rate [Hz], on pages and in pictures.
+
+    Examples
+    --------
+    >>> whole_grid(48000, 48e3).width, whole_grid(48000, 48e3).length
+    (500, 2048)
+    """
+    width = int(min(_WIDTH, max(16, n // round(0.002 * rate))))
+    return Grid(0, n, width, _HEIGHT, LOWEST, HIGHEST, 1 << round(math.log2(_FRAME * rate)))
+
+
+def spectrogram(
     read: Callable[[int, int], NDArray[np.floating]],
     n: int,
     rate: float,
     reference: float,
-    grid: Grid,
+    grid: Grid | None = None,
 ) -> NDArray[np.float64]:
     """Levels of lines in the rows and columns of a grid.
 
@@ -89,24 +103,25 @@ def line_levels(
         Sampling rate [Hz].
     reference : float
         Of the levels [unit of the samples].
-    grid : Grid
+    grid : Grid, optional
+        `whole_grid` by default.
 
     Returns
     -------
     ndarray, shape (height, width)
         The largest line in each row and column [dB re `reference`], the highest frequency first;
-        a steady tone has its own level.
+        a steady tone has its own level. Above half the sampling rate it is silent.
 
     Examples
     --------
     >>> tone = np.sin(2 * np.pi * 984.375 * np.arange(48000) / 48e3)
-    >>> whole = Grid(0, 48000, 100, 150, 50.0, 20e3, 2048)
-    >>> levels = line_levels(lambda first, last: tone[first:last], 48000, 48e3, 1.0, whole)
+    >>> levels = spectrogram(lambda first, last: tone[first:last], 48000, 48e3, 1.0)
     >>> round(float(levels.max()), 1), levels.shape
-    (-3.0, (150, 100))
+    (-3.0, (150, 500))
     """
     from scipy import fft
 
+    grid = grid or whole_grid(n, rate)
     padded = grid.padding * grid.length
     window = _window(grid.length)
     bins = fft.rfftfreq(padded, 1.0 / rate)
@@ -131,6 +146,7 @@ def line_levels(
         strength = np.pad(strength, ((0, 0), (0, 1)))
         largest = np.maximum.reduceat(strength, ends, axis=1)[:, :-1]
         power[column : column + columns] = np.where(between, strength[:, nearest], largest)
+    power[:, grid.edges[:-1] > 0.5 * rate] = 0.0
     return _levels(power, reference).T[::-1]
 
 
@@ -166,7 +182,7 @@ def strongest_line(
     Parameters
     ----------
     read, n, rate, reference
-        As for `line_levels`.
+        As for `spectrogram`.
     middle, length : int
         Of the frame [samples].
     low, high : float

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from noise.audio.line_levels import Grid, line_levels, strongest_line
+from noise.audio.spectrogram import Grid, spectrogram, strongest_line
 
 RATE = 48000.0
 
@@ -20,7 +20,7 @@ def tone(frequency, n=24000):
 
 
 def levels_of(samples, grid):
-    return line_levels(reader(samples), samples.size, RATE, 1.0, grid)
+    return spectrogram(reader(samples), samples.size, RATE, 1.0, grid)
 
 
 @settings(max_examples=25)
@@ -92,5 +92,5 @@ def test_silence_and_rows_above_half_the_rate_are_levels_too():
 def test_a_tone_is_nothing_at_low_frequencies_however_the_frames_cut_it():
     tone = np.sin(2 * np.pi * 1003.0 * np.arange(48000) / RATE) + 0.5
     grid = Grid(4800, 43200, 20, 40, 50.0, 20e3, 2048)
-    levels = line_levels(reader(tone), tone.size, RATE, 1.0, grid)
+    levels = spectrogram(reader(tone), tone.size, RATE, 1.0, grid)
     assert levels[-10:].max() < -95.0  # below 220 Hz
