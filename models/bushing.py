@@ -73,25 +73,16 @@ is an upper bound. Not in it: interference that grows with thermal expansion, re
 the modulus in the contact's own stiffness.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 from models.errors import ParameterError
+from models.schema import Quantity, refuse_impossible
 from models.units import ABSOLUTE_ZERO
 
 _SHORT = 1e-3
 """Below this L / (2 l) the share of the bulk is its leading term."""
-
-
-_POSSIBLE = {
-    "inner_radius": (1e-5, 10.0),  # m
-    "wall": (1e-8, 100.0),  # m
-    "length": (1e-6, 100.0),  # m, or endless
-    "youngs_modulus": (1.0, 1e13),  # Pa
-}
-"""Beyond these nothing can be computed of a sleeve, such as the pressure in one without a wall."""
 
 
 @dataclass(frozen=True)
@@ -123,22 +114,16 @@ class Sleeve:
     (3.48, 664)
     """
 
-    inner_radius: float
-    wall: float
-    length: float
-    youngs_modulus: float
-    poisson_ratio: float = 0.4995
+    inner_radius: Annotated[float, Quantity("inner_radius_mm", 1e-3, "mm", low=1e-2, high=1e4)]
+    wall: Annotated[float, Quantity("wall_mm", 1e-3, "mm", low=1e-5, high=1e5)]
+    length: Annotated[
+        float, Quantity("length_mm", 1e-3, "mm", low=1e-3, high=1e5, infinite="endless")
+    ]
+    youngs_modulus: Annotated[float, Quantity("youngs_modulus_MPa", 1e6, "MPa", low=1e-6, high=1e7)]
+    poisson_ratio: Annotated[float, Quantity("poisson_ratio", high=0.5, closed=True)] = 0.4995
 
     def __post_init__(self) -> None:
-        for name, (low, high) in _POSSIBLE.items():
-            value = getattr(self, name)
-            endless = name == "length" and value == math.inf
-            if not (low <= value <= high or endless):
-                raise ParameterError(f"sleeve: {name} = {value:g} must lie in {low:g} to {high:g}")
-        if not 0.0 <= self.poisson_ratio <= 0.5:
-            raise ParameterError(
-                f"sleeve: poisson_ratio = {self.poisson_ratio:g} must lie between 0 and 0.5"
-            )
+        refuse_impossible(self, "sleeve")
         if math.isinf(self.length) and self.poisson_ratio == 0.5:
             raise ParameterError(
                 "sleeve: without ends an incompressible one cannot give way; give a length, or a "
@@ -284,22 +269,28 @@ class TemperatureDependence:
     [1.25, 4.4]
     """
 
-    reference: float
-    glass_transition: float
-    c1: float = 8.86
-    c2: float = 101.6
-    stiffening: float = 0.1
-    exponent: float = 0.3
-    friction_peak: float | None = None
-    friction_width: float = 2.24
-    friction_floor: float = 0.3
+    reference: Annotated[float, Quantity("reference_C", low=ABSOLUTE_ZERO, high=2000.0)]
+    glass_transition: Annotated[
+        float, Quantity("glass_transition_C", low=ABSOLUTE_ZERO, high=2000.0)
+    ]
+    c1: Annotated[float, Quantity("wlf_c1", high=100.0)] = 8.86
+    c2: Annotated[  # above 50 the shift is finite at the glass temperature
+        float, Quantity("wlf_c2_K", low=50.0, high=1e3, closed=False)
+    ] = 101.6
+    stiffening: Annotated[float, Quantity("stiffening", high=10.0, closed=True)] = 0.1
+    exponent: Annotated[float, Quantity("stiffening_exponent", high=1.0, closed=True)] = 0.3
+    friction_peak: Annotated[
+        float | None, Quantity("friction_peak_rad_s", unit="rad/s", high=1e12)
+    ] = None
+    friction_width: Annotated[float, Quantity("friction_width", high=20.0)] = 2.24
+    friction_floor: Annotated[float, Quantity("friction_floor", high=1.0, closed=True)] = 0.3
 
     @property
     def range(self) -> tuple[float, float]:
         """Lowest and highest temperature at which WLF holds [degree Celsius]."""
         return self.glass_transition, self.glass_transition + _WLF_HOLDS
 
-    def given_at(self, reference: float) -> TemperatureDependence:
+    def given_at(self, reference: float) -> "TemperatureDependence":
         """Return the same dependence for numbers that are given at another temperature.
 
         Parameters

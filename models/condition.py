@@ -1,13 +1,12 @@
 """The operating condition of a recording or of a run: what the engineer sets on the rig."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from models.errors import ParameterError
-
-__all__ = ["FIXED", "Condition", "KnownCondition", "known_condition", "same_support"]
+from models.schema import Quantity, Text, declared
+from models.units import ABSOLUTE_ZERO
 
 FIXED = math.inf
 """Support stiffness of the clamp bolted to the baseplate [Nm/rad]."""
@@ -40,11 +39,58 @@ class Condition:
     True
     """
 
-    speed: float | None = None
-    interference: float | None = None
-    support_stiffness: float | None = None
-    material: str | None = None
-    temperature: float | None = None
+    speed: Annotated[
+        float | None,
+        Quantity(  # up to 19.75 at the rig (5.1.3); a bar that swings by 30 degrees at 6 Hz: 20
+            "speed_rad_s",
+            unit="rad/s",
+            low=-1e6,
+            high=1e6,
+            usual=(-25.0, 25.0),
+            help="speed of the shaft, of either sign",
+        ),
+    ] = None
+    interference: Annotated[
+        float | None,
+        Quantity(  # 0.127 to 0.381 at the rig (3.1.3); strains of rubber of 1 to 30 %
+            "interference_mm",
+            1e-3,
+            "mm",
+            low=1e-6,
+            high=10.0,
+            usual=(0.02, 3.0),
+            slips=((1e3, "metres"), (1e-3, "micrometres")),
+            default=0.279,
+            help="interference fit",
+        ),
+    ] = None
+    support_stiffness: Annotated[
+        float | None,
+        Quantity(  # 2214 and 3745 at the rig (Table 3.2)
+            "support_stiffness_Nm_rad",
+            unit="Nm/rad",
+            low=1e-3,
+            high=1e12,
+            usual=(1e3, 2e5),
+            slips=((1e-3, "Nmm/rad"), (180.0 / math.pi, "Nm/degree"), (1e3, "kNm/rad")),
+            infinite="fixed",
+            default=2214.0,
+            help="torsional stiffness of the beams",
+        ),
+    ] = None
+    material: Annotated[str | None, Text("material")] = None
+    temperature: Annotated[
+        float | None,
+        Quantity(  # from a car's cold start to beside its exhaust
+            "temperature_C",
+            unit="degree Celsius",
+            low=ABSOLUTE_ZERO,
+            high=2000.0,
+            usual=(-40.0, 150.0),
+            default=23.0,
+            help="ambient temperature",
+        ),
+    ] = None
 
     @property
     def words(self) -> list[str]:
@@ -64,6 +110,12 @@ class Condition:
         if self.speed is not None:
             words.append(f"{self.speed:g} rad/s")
         return words
+
+
+CONDITION: dict[str, Quantity] = {
+    name: entry for name, entry in declared(Condition).items() if isinstance(entry, Quantity)
+}
+"""Keys, units, bounds, defaults and help of a condition's numbers, by the names of the fields."""
 
 
 @dataclass(frozen=True)

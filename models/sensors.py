@@ -3,22 +3,64 @@
 A signal passes the anti-alias filter, gets the noise of sensor and amplifier, and is rounded to the
 steps of a converter that clips at its range. What a file leaves out is ideal, but for the noise,
 which is then that of `sim.acquisition`.
+
+Each key of the ``[sensors]`` table of a rig file is a table by kind of channel, ``range = { torque
+= 102.5 }``; ``bits`` and ``antialias_hz`` may be one number for all: that of the converter holds
+for the channels whose range is stated, since a step is a share of the range. ``noise = "from
+recordings"`` leaves the noise to be estimated where there are recordings to estimate it from.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Any
 
+from models.calibration import Calibration, calibration_table, read_calibration
+from models.errors import ParameterError
+from models.schema import Quantity, as_table, refuse_unknown
 from models.show import short_repr
+from models.units import CHANNEL_UNITS
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+FROM_RECORDINGS = "from recordings"
 
-    from models.calibration import Calibration
+_RANGES = {  # of full scale at the rig, Appendices B to E, and of what the field has
+    "torque": ((0.05, 1e4), (1e-9, 1e9)),  # +-102.5; cells of 0.1 Nm to 10 kNm
+    "acceleration": ((5.0, 1e6), (1e-6, 1e9)),  # +-977; sensors of 0.5 to 1e5 g
+    "pressure": ((0.02, 2e4), (1e-9, 1e8)),  # +-28.9; microphones to 180 dB
+    "angle": ((1e-3, 1e4), (1e-9, 1e9)),  # +-12.4
+    "speed": ((0.1, 1e4), (1e-6, 1e9)),
+    "force": ((1.0, 1e6), (1e-6, 1e12)),  # hammers of 20 N to 200 kN
+}
+_NOISE = {  # largest usual standard deviation: ten steps of the rig's 12 bits (3.1.2)
+    "torque": 0.5,
+    "acceleration": 5.0,
+    "pressure": 0.15,
+    "angle": 0.06,
+    "speed": 0.5,
+    "force": 5.0,
+}
+_BITS = Quantity("bits", unit="bit", low=2.0, high=32.0, usual=(8.0, 24.0))
+_ANTIALIAS = Quantity(  # below half of 30 kHz at the rig (3.1.2); slips repeat above 100 Hz
+    "antialias_hz", unit="Hz", low=1.0, high=1e9, usual=(500.0, 1e5), slips=((1e3, "kHz"),)
+)
+SENSOR_QUANTITIES = {
+    kind: {
+        "full_scale": Quantity(
+            f"range.{kind}", 1.0, unit, *_RANGES[kind][1], usual=_RANGES[kind][0]
+        ),
+        "noise": Quantity(
+            f"noise.{kind}", 1.0, unit, 0.0, 1e9, closed=True, usual=(0.0, _NOISE[kind])
+        ),
+        "bits": _BITS,
+        "antialias": _ANTIALIAS,
+    }
+    for kind, unit in CHANNEL_UNITS.items()
+}
+"""Quantities of a sensor by the names of its fields, by kind of channel."""
 
-__all__ = ["Sensor", "Sensors"]
+_KEYS = {"noise": "noise", "full_scale": "range", "bits": "bits", "antialias": "antialias_hz"}
+"""Of a rig file's table, by the names of the fields."""
 
 
 @short_repr
@@ -58,7 +100,7 @@ class Sensor:
             return 0.0
         return math.ldexp(self.full_scale, 1 - self.bits)
 
-    def over(self, other: Sensor) -> Sensor:
+    def over(self, other: "Sensor") -> "Sensor":
         """Return this sensor, with what it does not say taken from another."""
         said = {each.name: getattr(self, each.name) for each in fields(self)}
         return replace(other, **{name: x for name, x in said.items() if x is not None})
@@ -86,11 +128,20 @@ class Sensors:
     by_kind: Mapping[str, Sensor] = field(default_factory=dict)
     noise_from_recordings: bool = False
 
+    def quantities(self) -> Iterator[tuple[Quantity, list[float]]]:
+        """Go through the quantities that are stated, each with its values [unit of the key]."""
+        found: dict[Quantity, list[float]] = {}
+        for kind, sensor in self.by_kind.items():
+            for name, quantity in SENSOR_QUANTITIES[kind].items():
+                if (value := getattr(sensor, name)) is not None:
+                    found.setdefault(quantity, []).append(value)
+        yield from found.items()
+
     def of(self, kind: str) -> Sensor:
         """Return the sensor of a kind of channel."""
         return self.by_kind.get(kind, _IDEAL)
 
-    def unfiltered(self) -> Sensors:
+    def unfiltered(self) -> "Sensors":
         """Return these sensors for signals that have passed their filters."""
         kept = {kind: replace(sensor, antialias=None) for kind, sensor in self.by_kind.items()}
         return replace(self, by_kind=kept)
@@ -101,7 +152,7 @@ class Sensors:
         found = ((kind, sensor.calibration) for kind, sensor in self.by_kind.items())
         return {kind: calibration for kind, calibration in found if calibration is not None}
 
-    def over(self, other: Sensors) -> Sensors:
+    def over(self, other: "Sensors") -> "Sensors":
         """Return these sensors, with what they do not say taken from others."""
         kinds = dict.fromkeys((*other.by_kind, *self.by_kind))
         return Sensors(
@@ -111,3 +162,117 @@ class Sensors:
 
 
 _IDEAL = Sensor()
+
+
+def read_sensors(table: Any, base: Sensors, folder: Path, where: str) -> Sensors:
+    """Read sensors from a rig file's table, laid over those of its base.
+
+    Parameters
+    ----------
+    table : mapping
+        As the TOML file holds it.
+    base : Sensors
+        Of what the file changes.
+    folder : Path
+        Of the rig file; names of tables are relative to it.
+    where : str
+        What messages call the table.
+
+    Raises
+    ------
+    ParameterError
+        It holds what cannot be used; the message names the key.
+
+    Examples
+    --------
+    >>> table = {"range": {"torque": 102.5}, "bits": 12}
+    >>> read_sensors(table, Sensors(), Path(), "rig, sensors").of("torque").step
+    0.050048828125
+    """
+    table = as_table(table, "sensors", where)
+    refuse_unknown(table, {*_KEYS.values(), "calibration"}, where)
+    estimated = table.get("noise") == FROM_RECORDINGS
+    stated: dict[str, dict[str, Any]] = {}
+    for name, key in _KEYS.items():
+        given = {} if key == "noise" and estimated else table.get(key, {})
+        if not isinstance(given, Mapping):
+            known = {kind: s.full_scale for kind, s in base.by_kind.items()}
+            known |= stated.get("full_scale", {})
+            given = _for_all(given, name, [k for k, scale in known.items() if scale], where)
+        refuse_unknown(given, CHANNEL_UNITS, f"{where}, {key}")
+        stated[name] = {
+            kind: SENSOR_QUANTITIES[kind][name].read(value, where) for kind, value in given.items()
+        }
+    calibrations = as_table(table.get("calibration", {}), "calibration", where)
+    refuse_unknown(calibrations, CHANNEL_UNITS, f"{where}, calibration")
+    stated["calibration"] = {
+        kind: read_calibration(given, kind, folder, f"{where}, calibration of {kind}")
+        for kind, given in calibrations.items()
+    }
+    kinds = dict.fromkeys(kind for values in stated.values() for kind in values)
+    own = Sensors(
+        {kind: Sensor(**{n: v[kind] for n, v in stated.items() if kind in v}) for kind in kinds}
+    )
+    # What is stated ends an estimate of the base's, and an estimate what the base states.
+    below = replace(base, noise_from_recordings=base.noise_from_recordings and not stated["noise"])
+    if estimated:
+        quiet = {kind: replace(sensor, noise=None) for kind, sensor in base.by_kind.items()}
+        below = Sensors(quiet, noise_from_recordings=True)
+    return _checked(own.over(below), where)
+
+
+def _for_all(given: Any, name: str, ranged: list[str], where: str) -> dict[str, Any]:
+    """One number for all kinds of channel, or for those whose range is stated."""
+    if name == "antialias":
+        return dict.fromkeys(CHANNEL_UNITS, given)
+    if name == "bits":
+        if not ranged:
+            raise ParameterError(
+                f"{where}: bits without a range, of which a step is a share; add range = "
+                "{ torque = ... }"
+            )
+        return dict.fromkeys(ranged, given)
+    words = f'"{FROM_RECORDINGS}", or ' if name == "noise" else ""
+    raise ParameterError(
+        f"{where}: {_KEYS[name]} = {given!r} must be {words}a table by channel, such as "
+        "{ torque = 50 }"
+    )
+
+
+def _checked(sensors: Sensors, where: str) -> Sensors:
+    """Refuse bits that are not whole, or without a range; return them as whole numbers."""
+    for kind, sensor in sensors.by_kind.items():
+        if sensor.bits is not None and sensor.full_scale is None:
+            raise ParameterError(
+                f"{where}: bits of {kind} without a range, of which a step is a share; add range = "
+                f"{{ {kind} = ... }}"
+            )
+        if sensor.bits is not None and sensor.bits != int(sensor.bits):
+            raise ParameterError(f"{where}: bits = {sensor.bits!r} must be a whole number")
+    return replace(
+        sensors,
+        by_kind={
+            kind: sensor if sensor.bits is None else replace(sensor, bits=int(sensor.bits))
+            for kind, sensor in sensors.by_kind.items()
+        },
+    )
+
+
+def sensors_table(sensors: Sensors) -> dict[str, Any]:
+    """Return sensors as the table of a rig file; empty where all are ideal.
+
+    Examples
+    --------
+    >>> sensors_table(Sensors({"torque": Sensor(full_scale=102.5, bits=12)}))
+    {'range': {'torque': 102.5}, 'bits': {'torque': 12}}
+    """
+    table: dict[str, Any] = {}
+    for name, key in _KEYS.items():
+        values = {kind: getattr(sensor, name) for kind, sensor in sensors.by_kind.items()}
+        if stated := {kind: value for kind, value in values.items() if value is not None}:
+            table[key] = stated
+    if sensors.noise_from_recordings:
+        table["noise"] = FROM_RECORDINGS
+    for kind, calibration in sensors.calibrations.items():
+        table.setdefault("calibration", {})[kind] = calibration_table(calibration, kind)
+    return table

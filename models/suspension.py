@@ -18,22 +18,19 @@ B / w times the force in a link.
 Limits: a bar without twist, wheels that go together, is the rig, twice.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from importlib import resources
+from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.errors import ParameterError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.rig import Rig
-
-__all__ = ["WHEELS", "Bar", "Suspension", "TorsionChain", "torsion_chain"]
+from models.rig import Rig
+from models.rig_file import read_toml, rig_from
+from models.schema import Quantity, Text, as_table, declared, read_table, refuse_unknown
 
 WHEELS = {"together": (1.0, 1.0), "opposite": (1.0, -1.0), "left": (1.0, 0.0)}
 """Travel of the left and the right wheel, over the angle that is asked for."""
@@ -64,14 +61,14 @@ class Bar:
         Of the first torsional mode of the bar alone [-]; higher ones more, in proportion.
     """
 
-    diameter: float
-    wall: float
-    length: float
-    arm_length: float
-    arm_inertia: float
-    shear_modulus: float = 7.9e10
-    density: float = 7850.0
-    damping_ratio: float = 0.005
+    diameter: Annotated[float, Quantity("bar_diameter_mm", 1e-3, "mm")]
+    wall: Annotated[float, Quantity("bar_wall_mm", 1e-3, "mm")]
+    length: Annotated[float, Quantity("bar_length_mm", 1e-3, "mm")]
+    arm_length: Annotated[float, Quantity("arm_length_mm", 1e-3, "mm")]
+    arm_inertia: Annotated[float, Quantity("arm_inertia_kgm2")]
+    shear_modulus: Annotated[float, Quantity("shear_modulus_Pa", unit="Pa")] = 7.9e10
+    density: Annotated[float, Quantity("density_kgm3")] = 7850.0
+    damping_ratio: Annotated[float, Quantity("bar_damping_ratio", closed=True)] = 0.005
 
     @property
     def polar_moment(self) -> float:
@@ -109,11 +106,13 @@ class Suspension:
 
     rig: Rig
     bar: Bar
-    spacing: float
-    link_stiffness: float
-    link_damping: float
-    wheels: str
-    friction_coefficient: float | None = None
+    spacing: Annotated[float, Quantity("bushing_spacing_mm", 1e-3, "mm")]
+    link_stiffness: Annotated[float, Quantity("link_stiffness_N_m", unit="N/m")]
+    link_damping: Annotated[float, Quantity("link_damping_Ns_m", closed=True)]
+    wheels: Annotated[str, Text("wheels")]
+    friction_coefficient: Annotated[float | None, Quantity("friction_coefficient", high=10.0)] = (
+        None
+    )
 
     def __post_init__(self) -> None:
         if not 0.0 < self.spacing < self.bar.length:
@@ -152,7 +151,7 @@ class Suspension:
 
         Examples
         --------
-        >>> from models.rig_files.rig_file import load_material_rig
+        >>> from models.rig_file import load_material_rig
         >>> rig, bar = load_material_rig("fluorocarbon-thesis"), Bar(0.03, 0.004, 0.9, 0.2, 0.02)
         >>> dry = Suspension(rig, bar, 0.4, 2e6, 100.0, "opposite", friction_coefficient=0.5)
         >>> round(dry.contact_pressure(0.279e-3) / 1e6, 3)
@@ -269,3 +268,58 @@ def torsion_chain(
         bushings=np.array([counts[0], counts[0] + counts[1]]),
         load=load / bar.arm_length,
     )
+
+
+def suspension_file(named: Path = Path("suspension")) -> Path | None:
+    """Return the file that ``--rig`` names if it holds a suspension, else None.
+
+    Parameters
+    ----------
+    named : Path
+        A file, or ``suspension`` for the shipped example where no file has this name.
+
+    Examples
+    --------
+    >>> suspension_file().name
+    'suspension.toml'
+    """
+    if str(named) == "suspension" and not named.exists():
+        return Path(str(resources.files("models") / "data" / "rigs" / "suspension.toml"))
+    try:
+        content = read_toml(named, "")
+    except ParameterError:
+        return None  # who reads it next says why
+    return named if "suspension" in content else None
+
+
+def load_suspension(path: Path) -> Suspension:
+    """Read a rig file with a ``[suspension]`` table: a stabilizer bar in two of the rig's bushings.
+
+    Parameters
+    ----------
+    path : Path
+        As of `suspension_file`.
+
+    Returns
+    -------
+    Suspension
+
+    Raises
+    ------
+    ParameterError
+        It holds what cannot be used; the message names the key.
+
+    Examples
+    --------
+    >>> load_suspension(suspension_file()).wheels
+    'opposite'
+    """
+    where = f"rig file {path}"
+    content = read_toml(path, where)
+    table = as_table(content.pop("suspension"), "suspension", where)
+    rig, here = rig_from(content, path.parent, where), f"{where}, suspension"
+    bar_keys = {entry.key for entry in declared(Bar).values()}
+    refuse_unknown(table, {*bar_keys, *(e.key for e in declared(Suspension).values())}, here)
+    bar = read_table(Bar, {key: table[key] for key in table if key in bar_keys}, here)
+    rest = {key: table[key] for key in table if key not in bar_keys}
+    return read_table(Suspension, rest, here, rig=rig, bar=bar)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.radiation.rig_response import impulse_responses
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
 from noise.base.atomic import atomic
 

@@ -42,7 +42,7 @@ def write_run(path: str | os.PathLike[str], run: BlockRun, notes: tuple[str, ...
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.recordings import read_recording
     >>> from sim.long_run import simulate_blocks
     >>> run = simulate_blocks(load_material_rig("PDMS"), 5.0, seconds=0.2)

@@ -140,7 +140,7 @@ def run_criteria(run: Run) -> NoiseCriteria:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run_criteria(simulate(load_material_rig("PDMS"), 5.0)).swing < 1e-3
     True
@@ -167,7 +167,7 @@ def noise_criteria(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.5)
     >>> noise_criteria(run.motion, run.pressure, run.pulse_pressure).label
@@ -193,7 +193,7 @@ def label_by_physics(run: Run) -> str:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon")
     >>> label_by_physics(simulate(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0))

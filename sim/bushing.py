@@ -110,7 +110,7 @@ def lumped_bushing(rig: Rig, interference: float, support_stiffness: float) -> L
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> lumped_bushing(load_material_rig("PDMS"), 0.279e-3, math.inf).clamp_is_fixed
     True
     """

@@ -36,7 +36,7 @@ def constant_version(rig: Rig, library: Mapping[str, Effect] = EFFECTS) -> Rig:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("natural-rubber")
     >>> [str(spec) for spec in rig.effects], constant_version(rig).effects
     (['critical_torque_scatter:scatter=0.3'], ())

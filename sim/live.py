@@ -101,7 +101,7 @@ class LiveRun:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.shaft import ConstantSpeed
     >>> setting = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
     >>> run = LiveRun(setting)

@@ -109,7 +109,7 @@ def simulate_blocks(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> run = simulate_blocks(load_material_rig("PDMS"), 5.0, seconds=0.5, block_seconds=0.2)
     >>> run.n_samples, sum(block.shape[1] for block in run.blocks)
     (15000, 15000)

@@ -147,7 +147,7 @@ def simulate_motion(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.shaft import ConstantSpeed
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> run = simulate_motion(rig, ConstantSpeed(1.0), interference=0.279e-3,
@@ -207,7 +207,7 @@ def motion_blocks(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.shaft import ConstantSpeed
     >>> blocks = motion_blocks(
     ...     load_material_rig("fluorocarbon-thesis"), ConstantSpeed(1.0), interference=0.279e-3,

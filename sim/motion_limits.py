@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.plausible import rig_remarks
+from models.schema import remarks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,7 +34,7 @@ def blaming_the_unusual(rig: Rig) -> Iterator[None]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> with blaming_the_unusual(load_material_rig("PDMS").changed(critical_torque="x1000")):
     ...     raise ParameterError("no step is short enough")
     Traceback (most recent call last):
@@ -43,7 +43,7 @@ def blaming_the_unusual(rig: Rig) -> Iterator[None]:
     try:
         yield
     except ParameterError as error:
-        unusual = "; ".join(rig_remarks(rig))
+        unusual = "; ".join(remarks(rig))
         if not unusual:
             raise
         raise ParameterError(f"{unusual}; no motion can be computed: {error}") from None

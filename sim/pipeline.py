@@ -65,7 +65,7 @@ class Plan:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> plan = Plan(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0, (), 90e3, 0, 9)
     >>> plan.condition.speed, run_motion(plan).torque.size
     (5.0, 9)

@@ -66,7 +66,7 @@ class Run:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
     >>> run.motion.rate, run.settling, run.pressure.shape
     (90000.0, 0.5, (9000,))
@@ -102,7 +102,7 @@ class Run:
         Examples
         --------
         >>> from matplotlib.figure import Figure
-        >>> from models.rig_files.rig_file import load_material_rig
+        >>> from models.rig_file import load_material_rig
         >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
         >>> run.plot(Figure().subplots()).get_title("left")
         'PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s'
@@ -167,7 +167,7 @@ def simulate(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
     >>> run.recording.channel_names, run.recording.samples.shape
     (('torque', 'acceleration', 'pressure', 'angle'), (4, 3000))
@@ -246,7 +246,7 @@ def plan_run(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> plan = plan_run(
     ...     load_material_rig("PDMS"), 5, interference=0.279e-3, support_stiffness=2214.0,
     ...     temperature=23.0, seconds=1.0, rate=30e3, settling=None, library=None,

@@ -34,7 +34,7 @@ def torque_curves(motion: Motion, part: slice) -> list[Curve]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
     >>> [label for _, _, label, _ in torque_curves(run.motion, slice(0, 10))]
@@ -51,7 +51,7 @@ def run_html(run: Run) -> str:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> table = run_html(simulate(load_material_rig("PDMS"), 5.0, seconds=0.1))
     >>> "PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s" in table, table.count("<table>")
@@ -78,7 +78,7 @@ def draw_torques(
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.1)
     >>> draw_torques(run, Figure().subplots(), start=0.02).get_ylabel()

@@ -106,7 +106,7 @@ def at_temperature(rig: Rig, temperature: float | None) -> Rig:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
     >>> at_temperature(rig, 23.0) is rig
     True

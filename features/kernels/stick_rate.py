@@ -20,7 +20,7 @@ import numpy as np
 from features.long.parts import in_pieces, n_samples_of, reader_of
 from models.errors import ParameterError
 from models.rig import effective_stiffness
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 
 if TYPE_CHECKING:
     from features.long.parts import Parts

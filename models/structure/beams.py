@@ -59,8 +59,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.signal import bilinear, lfilter
 
+from models.condition import CONDITION
 from models.errors import ParameterError
-from models.plausible import BOUNDS
 from models.radiation.rayleigh import SOUND_SPEED, rayleigh_integral
 from models.rig import Beams, Microphone
 from models.structure.modal import ModalModel, add_ringing
@@ -131,11 +131,11 @@ def beam_length(beams: Beams, stiffness: float) -> float:
     >>> round(beam_length(steel, 2214.0), 4)
     0.1225
     """
-    low, high = BOUNDS["support_stiffness_Nm_rad"].possible
-    if not low <= stiffness <= high:
+    bounds = CONDITION["support_stiffness"]
+    if not bounds.possible(stiffness):
         raise ParameterError(
-            f"support stiffness {stiffness:g} Nm/rad belongs to no beam; possible is {low:g} to "
-            f"{high:g}"
+            f"support stiffness {stiffness:g} Nm/rad belongs to no beam; possible is "
+            f"{bounds.low:g} to {bounds.high:g}"
         )
     bending, lever = bending_stiffness(beams), beams.lever
     cubic = [stiffness, -8.0 * bending, -24.0 * bending * lever, -24.0 * bending * lever**2]

@@ -1,6 +1,6 @@
 """Responses measured on the user's own rig, in place of those of modelled structure and plate.
 
-What a rig file names with a support (`models.rig_files.measured_file`) stands in for the response
+What a rig file names with a support (`models.rig_file`) stands in for the response
 from the torque that the bushing puts into clamp and beams to the acceleration, to the sound, or
 both. What is not given stays modelled, as does all that the pulses of the anchors excite. What a
 response lacks outside its band is filled as `models.transfer_functions.causal` argues, below by the
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import same_support
 from models.errors import ParameterError
-from models.rig_files.rig_plate import HIGHEST_PLATE_FREQUENCY
+from models.rig import HIGHEST_PLATE_FREQUENCY
 from models.show import short_repr
 from models.transfer_functions.causal import causal_impulse_response
 from models.transfer_functions.coherence import trusted_band

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from models.plausible import remark, rig_remarks
+from models.condition import CONDITION
+from models.schema import remarks
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -48,20 +49,20 @@ def use_remarks(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
     >>> use_remarks(rig, speed=[15.0], interference=[0.279e-3], support_stiffness=[2214.0])
     ['speed 15 rad/s is beyond 13, the fastest that the numbers of fluorocarbon were fitted at']
     """
     finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
-    fits = [float(f"{1e3 * fit:.12g}") for fit in interference]
     beyond = _speed_remark(rig, speed)
+    fit = CONDITION["interference"]
     found = [
-        *rig_remarks(rig),
-        beyond or remark("speed_rad_s", *speed),
-        remark("interference_mm", *fits),
-        remark("support_stiffness_Nm_rad", *finite),
-        remark("temperature_C", *temperature),
+        *remarks(rig),
+        beyond or CONDITION["speed"].remark(*speed),
+        fit.remark(*map(fit.of, interference)),
+        CONDITION["support_stiffness"].remark(*finite),
+        CONDITION["temperature"].remark(*temperature),
         _support_remark(rig, support_stiffness),
         _anchor_remark(rig, finite),
     ]
@@ -120,7 +121,7 @@ def temperature_remark(rig: Rig, *asked: float | None) -> str:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> temperature_remark(load_material_rig("fluorocarbon-thesis"), 80.0)
     'temperature 80 degree Celsius is recorded and changes nothing: fluorocarbon-thesis states no \
 [temperature]'
@@ -157,7 +158,7 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.effects import EFFECTS
     >>> effect_remarks(load_material_rig("fluorocarbon"), EFFECTS)
     []
@@ -184,7 +185,7 @@ def constant_remark(rigs: Iterable[Rig], what: str) -> str:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> constant_remark([load_material_rig("natural-rubber")], "critical speeds")
     'critical speeds are of the constant version, without critical_torque_scatter, which ...'
     >>> constant_remark([load_material_rig("PDMS")], "critical speeds")

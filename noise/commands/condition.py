@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.foreign_file import LARGEST_TEXT, reading
-from models.rig_files.rig_parts import parse_spec
-from models.rig_files.shipped import material_names
+from models.rig import parse_spec
+from models.rig_file import material_names
 from models.units import ABSOLUTE_ZERO
 from noise.base.progress import note, say
 from noise.base.remarks import (
@@ -300,7 +300,7 @@ def _or(given: float | None, default: float) -> float:
 
 
 def _rig(options: Namespace, library: Mapping[str, Effect], read: Rig | None) -> Rig:
-    from models.rig_files.rig_file import load_material_rig, load_rig
+    from models.rig_file import load_material_rig, load_rig
 
     if options.rig is None:
         try:

@@ -79,7 +79,7 @@ def run(options: Namespace) -> int:
 def _read(options: Namespace, tell: Steps) -> tuple[Case, Mapping[str, Effect], set[str]]:
     """Read rig file, effects and recordings; return what was told of them, too."""
     tell("preparing")
-    from models.rig_files.rig_file import load_rig
+    from models.rig_file import load_rig
     from noise.base.user_effects import effect_library
     from noise.diagnosis.improved_file import check_base
 
@@ -152,8 +152,7 @@ def _tell(options: Namespace, diagnosis: Diagnosis, told: set[str]) -> None:
 
 
 def _write(options: Namespace, diagnosis: Diagnosis) -> list[Path]:
-    from models.rig_files.rig_text import base_name
-    from models.rig_files.shipped import material_of
+    from models.rig_file import base_name, material_of
     from noise.diagnosis.improved_file import NAME, improved_text
     from noise.pages.diagnosis.page import write_diagnosis
 

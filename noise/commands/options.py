@@ -337,7 +337,7 @@ def changed(rig: Rig, changes: Sequence[tuple[str, str | float]] | None) -> Rig:
     """
     if not changes:
         return rig
-    from models.rig_files.change import changed_rig
+    from models.change import changed_rig
 
     return changed_rig(rig, change_table(changes), "--change")
 

@@ -83,9 +83,9 @@ def run(options: Namespace) -> int:
         if getattr(options, option) is not None:
             _check_seconds(option, options.seconds)
     if options.rig is not None:
-        from models.rig_files.suspension_file import find_suspension
+        from models.suspension import suspension_file
 
-        held = find_suspension(options.rig)
+        held = suspension_file(options.rig)
         if held is not None:
             return _run_suspension(options, held)
     arguments, notes = run_arguments(options, options.rate)
@@ -118,7 +118,7 @@ def _run_suspension(options: Namespace, path: Path) -> int:
             raise ParameterError(
                 f"--{option.replace('_', '-')} is of the rig; --rig {options.rig} is a suspension"
             )
-    from models.rig_files.suspension_file import load_suspension
+    from models.suspension import load_suspension
 
     try:
         car = load_suspension(path)

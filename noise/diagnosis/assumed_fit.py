@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from models.rig_files.rig_file import load_material_rig
-from models.rig_files.shipped import material_names
+from models.rig_file import load_material_rig, material_names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -97,7 +97,7 @@ def known_effects(rig: Rig, library: Mapping[str, Effect]) -> set[str]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.effects import EFFECTS
     >>> known_effects(load_material_rig("fluorocarbon"), EFFECTS)
     {'slip_pulse'}

@@ -5,10 +5,10 @@ from __future__ import annotations
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
+from models.change import multiplied
 from models.errors import ParameterError
-from models.rig_files.change import multiplied
-from models.rig_files.rig_file import read_toml
-from models.rig_files.rig_text import changed_rig_text, support_name
+from models.rig import support_name
+from models.rig_file import changed_rig_text, read_toml
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def improved_text(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.diagnosis.improvement import Improvement
     >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (),
     ...                     {"damping": 0.02}, (),

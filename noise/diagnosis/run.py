@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models.rig import Rig
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.base.user_effects import effect_library
 from noise.diagnosis.case import read_case
 from noise.diagnosis.diagnose import diagnose_case

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.plausible import rig_remarks
-from models.rig_files.rig_text import rig_text
+from models.rig_file import rig_text
+from models.schema import remarks
 from noise.diagnosis.bench.check import unit_findings
 from noise.identification.bushing_fit import fit_bushing
 from noise.identification.bushing_numbers import bushing_numbers, read_again
@@ -128,7 +128,7 @@ def identify_rig(
         assumed=assumed,
         not_found=not_found,
         notes=(
-            *rig_remarks(rig),
+            *remarks(rig),
             *_notes(choice),
             *static_notes(static),
             *structure_notes(rig, [one.measured for one in subjects]),

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models.rig_files.change import changed_rig
-from models.rig_files.rig_file import read_toml, rig_from
-from models.rig_files.shipped import shipped_name
+from models.change import changed_rig
+from models.rig_file import read_toml, rig_from, shipped_name
 from noise.identification.bushing_fit import Known
 
 if TYPE_CHECKING:

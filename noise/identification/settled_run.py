@@ -100,7 +100,7 @@ def settled_run(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> run = settled_run(load_material_rig("fluorocarbon-thesis"), 0.279e-3, 2214.0, 1.0)
     >>> run.slips.sudden_share > 0.5, 100.0 < run.repetition_rate < 200.0
     (True, True)

@@ -114,10 +114,10 @@ def _number(row: Mapping[str, object], where: str) -> TableNumber:
     item = str(row.get("item") or "").strip()
     quantity = QUANTITIES.get(item)
     if quantity is None:
-        from models.checks import meant
+        from models.schema import did_you_mean
 
         raise ParameterError(
-            f"{where}: item {item!r} is unknown{meant(item, QUANTITIES)}; there are "
+            f"{where}: item {item!r} is unknown{did_you_mean(item, QUANTITIES)}; there are "
             f"{', '.join(QUANTITIES)}"
         )
     unit = str(row.get("unit") or "").strip()

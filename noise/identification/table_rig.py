@@ -15,7 +15,7 @@ import numpy as np
 
 from models.condition import FIXED
 from models.rig import LawSpec
-from models.rig_files.rig_text import rig_text
+from models.rig_file import rig_text
 from noise.base.interval import SURE_90
 from noise.identification.evidence import UNITS, table_evidence, with_evidence
 from noise.identification.outcome import Identification, Number

@@ -308,7 +308,7 @@ def infer_stretch(
     Examples
     --------
     >>> from models.condition import Condition
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.inference import load_inference
     >>> from noise.recordings.blocks import RecordingBlocks
     >>> from sim.run import simulate

@@ -73,7 +73,7 @@ def label(
     Examples
     --------
     >>> import tempfile
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.recordings import write_recording
     >>> from sim.run import simulate
     >>> silent = simulate(load_material_rig("PDMS"), 5.0).recording

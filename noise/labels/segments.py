@@ -172,7 +172,7 @@ def label_recording(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.classifier import load_classifier
     >>> from sim.run import simulate
     >>> silent = simulate(load_material_rig("PDMS"), 5.0).recording

@@ -78,7 +78,7 @@ def plot_recording(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> from sim.shaft import SpeedRamp
     >>> ramp = SpeedRamp(1.0, 9.0, 0.5)

@@ -72,7 +72,7 @@ def plot_run(run: Run) -> Figure:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> figure = plot_run(simulate(load_material_rig("fluorocarbon-thesis"), 1.0, seconds=0.2))
     >>> figure.get_suptitle()
@@ -93,7 +93,7 @@ def condition_words(condition: Condition, motion: Motion) -> str:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> from sim.shaft import SpeedRamp
     >>> run = simulate(load_material_rig("PDMS"), SpeedRamp(0.0, 5.0, 0.1), seconds=0.1)

@@ -49,7 +49,7 @@ def plot_sweep(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.pictures.sweep import sweep_torque
     >>> sweep = sweep_torque(load_material_rig("PDMS"), [1.0, 5.0], interference=0.254e-3,
     ...                      support_stiffness=[2214.0])
@@ -112,7 +112,7 @@ def plot_torque_of_fits(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.pictures.sweep import sweep_torque
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> sweeps = [sweep_torque(rig, [1.0, 5.0], interference=1e-3 * fit, support_stiffness=[FIXED])

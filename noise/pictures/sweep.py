@@ -97,7 +97,7 @@ def sweep_torque(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> sweep = sweep_torque(rig, [1.0, 2.5], interference=0.279e-3, support_stiffness=[3745.0])
     >>> sweep.slip_frequency.round(), sweep.mean.round(1)

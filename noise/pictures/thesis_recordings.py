@@ -16,7 +16,7 @@ import numpy as np
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
 from models.drawing import BLUE, levels
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.pictures.axes import MODEL_COLOURS
 from noise.pictures.channel_kinds import KINDS
 from noise.pictures.measured import FIRST_MODE, lines_at

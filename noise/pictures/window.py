@@ -58,7 +58,7 @@ def run_window(run: Run) -> Window:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("fluorocarbon-thesis"), 1.0, support_stiffness=3745.0)
     >>> window = run_window(run)

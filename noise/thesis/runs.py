@@ -16,8 +16,7 @@ import numpy as np
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
-from models.rig_files.rig_file import load_material_rig
-from models.rig_files.shipped import material_names
+from models.rig_file import load_material_rig, material_names
 from noise.base.remarks import constant_remark
 from noise.thesis.repetition import repetition_rate
 from sim.analysis.critical_damping import with_damping

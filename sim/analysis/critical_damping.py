@@ -31,7 +31,7 @@ def with_damping(rig: Rig, damping: float) -> Rig:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = with_damping(load_material_rig("fluorocarbon-thesis"), 0.05)
     >>> sorted({c for fit in rig.fits for c in fit.damping.values()})
     [0.05]
@@ -82,7 +82,7 @@ def critical_damping(
     --------
     The thesis prints 0.7599, with a misplaced point, for what its own program gives as 0.0760:
 
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> round(critical_damping(rig, 7.5, interference=0.279e-3, support_stiffness=3745.0,
     ...                        highest=0.1), 4)

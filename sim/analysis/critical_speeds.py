@@ -95,7 +95,7 @@ def critical_speeds(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> critical_speeds(rig, 0.279e-3, 3745.0, (5.0, 6.0, 6.75, 7.5))
     CriticalSpeeds(v_crit1=6.75, v_crit2=6.75)
@@ -137,7 +137,7 @@ def regime_at(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> regime_at(load_material_rig("fluorocarbon-thesis"), 1.0, 0.279e-3, 2214.0).value
     'stick-slip'
     """
@@ -165,7 +165,7 @@ def motion_from_rest(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> motion_from_rest(load_material_rig("PDMS"), 1.0, 0.279e-3, 2214.0).torque.shape
     (15000,)
     """

@@ -56,7 +56,7 @@ def friction_regime(motion: Motion) -> Regime:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> friction_regime(simulate(load_material_rig("PDMS"), 5.0, seconds=0.1).motion).value
     'steady sliding'
@@ -91,7 +91,7 @@ class SlidingWatch:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> motion = simulate(load_material_rig("fluorocarbon-thesis"), 5.0, seconds=0.1).motion
     >>> watch = SlidingWatch()
@@ -129,7 +129,7 @@ def never_slips(motion: Motion) -> bool:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> never_slips(simulate(rig, 5.0, seconds=0.1).motion)
@@ -158,7 +158,7 @@ def regime_measures(motion: Motion) -> tuple[float, float]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> sudden, oscillation = regime_measures(
     ...     simulate(load_material_rig("fluorocarbon"), 1.0, seconds=0.5).motion

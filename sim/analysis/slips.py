@@ -170,7 +170,7 @@ def motion_slips(motion: Motion) -> Slips:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.constant_version import constant_version
     >>> from sim.run import simulate
     >>> rig = constant_version(load_material_rig("fluorocarbon"))

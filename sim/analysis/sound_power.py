@@ -84,7 +84,7 @@ def motion_sound_power(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> rig, fit = load_material_rig("fluorocarbon"), 0.279e-3
     >>> run = simulate(rig, 10.0, interference=fit, support_stiffness=3745.0, seconds=0.3)

@@ -107,7 +107,7 @@ def steady_sliding(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> found = steady_sliding(load_material_rig("fluorocarbon"), [5.0, 13.0])
     >>> found.stable.tolist()
     [False, True]

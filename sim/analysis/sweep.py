@@ -71,7 +71,7 @@ class Sweep:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> runs = Sweep(rig, [1.0, 5.0, 12.0], support_stiffness=[[2214.0], [3745.0]], settling=1.0)
     >>> runs.features()["slip_frequency"].round()
@@ -147,7 +147,7 @@ class Sweep:
 
         Examples
         --------
-        >>> from models.rig_files.rig_file import load_material_rig
+        >>> from models.rig_file import load_material_rig
         >>> Sweep(load_material_rig("fluorocarbon-thesis"), [1.0, 5.0], seconds=0.1).torque().shape
         (2, 300)
         """

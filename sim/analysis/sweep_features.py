@@ -120,7 +120,7 @@ def motion_features(motion: Motion) -> NDArray[np.float64]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.motion import simulate_motion
     >>> from sim.shaft import ConstantSpeed
     >>> motion = simulate_motion(

@@ -47,7 +47,7 @@ def packed_systems(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> packed_systems(rig, np.array([0.279e-3]), np.array([np.inf]))[0, 2:].tolist()
     [665.0, -1.0, 0.0425, 0.0425, 10.7, 8.0]

@@ -54,7 +54,7 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.analysis.sweep import Sweep
     >>> found = Sweep(load_material_rig("fluorocarbon-thesis"), [1.0, 5.0], seconds=0.3).features()
     >>> found["slip_frequency"].round(), list(found)[:2]
@@ -91,7 +91,7 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
         Examples
         --------
         >>> from matplotlib.figure import Figure
-        >>> from models.rig_files.rig_file import load_material_rig
+        >>> from models.rig_file import load_material_rig
         >>> from sim.analysis.sweep import Sweep
         >>> found = Sweep(load_material_rig("PDMS"), [1.0, 5.0], seconds=0.01).features()
         >>> found.plot("torque_mean", Figure().subplots()).get_ylabel()
@@ -140,7 +140,7 @@ class SweptFeatures(dict[str, "NDArray[np.float64]"]):
         Examples
         --------
         >>> from importlib.util import find_spec
-        >>> from models.rig_files.rig_file import load_material_rig
+        >>> from models.rig_file import load_material_rig
         >>> from sim.analysis.sweep import Sweep
         >>> found = Sweep(load_material_rig("PDMS"), [1.0, 5.0], seconds=0.01).features()
         >>> if find_spec("pandas"):
@@ -192,7 +192,7 @@ def conditions_html(conditions: Mapping[str, NDArray[np.object_]], seconds: floa
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.analysis.sweep import Sweep
     >>> "1 to 5 rad/s" in Sweep(load_material_rig("PDMS"), [1.0, 5.0])._repr_html_()
     True

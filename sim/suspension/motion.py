@@ -115,7 +115,7 @@ def simulate_suspension(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from models.suspension import Bar, Suspension
     >>> from sim.shaft import Oscillation
     >>> car = Suspension(load_material_rig("PDMS"), Bar(0.03, 0.004, 0.9, 0.2, 0.02), 0.4, 2e6,

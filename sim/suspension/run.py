@@ -121,8 +121,8 @@ def run_suspension(
 
     Examples
     --------
-    >>> from models.rig_files.suspension_file import load_suspension
-    >>> from models.rig_files.shipped import suspension_file
+    >>> from models.suspension import load_suspension
+    >>> from models.suspension import suspension_file
     >>> from sim.shaft import Oscillation
     >>> run = run_suspension(load_suspension(suspension_file()), Oscillation(0.1, 2.0),
     ...     interference=0.279e-3, support_stiffness=2214.0, temperature=23.0, seconds=0.1,

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.diagnosis.case import Case
 from noise.diagnosis.cases.draw import SHARED, draw_case
 from noise.diagnosis.cases.rigs import with_offsets

@@ -16,7 +16,7 @@ import time
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.screening.design.axis_values import spread
 from noise.screening.design.design import Use
 from noise.screening.map.point import evaluate_point

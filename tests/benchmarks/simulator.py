@@ -16,7 +16,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
 from sim.constant_version import constant_version
 from sim.effects import EFFECTS

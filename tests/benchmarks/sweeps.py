@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.long_run import write_run
 from sim.analysis.sweep import Sweep
 from sim.analysis.sweep_features import motion_features

@@ -7,7 +7,7 @@ import pytest
 
 from features.modal.hammer import estimate_transfer_function
 from models.radiation.rig_response import impulse_responses
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.demo import CASES, run_demo
 from noise.demo_hits import ARM, N_HITS
 from noise.recordings import read_recording

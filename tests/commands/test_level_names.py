@@ -11,7 +11,7 @@ import pytest
 
 from features.registry import recording_features
 from models.recording import Channel, Recording
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.app.opened import open_paths
 from noise.app.sounds.playback import bands, level_course
 from noise.app.sounds.sound_cache import SoundCache

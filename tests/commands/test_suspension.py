@@ -5,9 +5,8 @@ import json
 import pytest
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_rig
-from models.rig_files.shipped import suspension_file
-from models.rig_files.suspension_file import load_suspension
+from models.rig_file import load_rig
+from models.suspension import load_suspension, suspension_file
 from noise.cli import main
 from noise.recordings import read_recording
 

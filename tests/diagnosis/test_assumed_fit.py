@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from models.rig_files.rig_file import load_material_rig, load_rig
-from models.rig_files.shipped import material_names
+from models.rig_file import load_material_rig, load_rig, material_names
 from noise.cli import main
 from noise.diagnosis.assumed_fit import assumed_fit
 from noise.diagnosis.case import Case

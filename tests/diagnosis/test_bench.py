@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import Case, read_case
 from noise.diagnosis.diagnose import diagnose_case

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.recording import Channel, Recording
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.sensors import Sensor, Sensors
 from noise.diagnosis.preparation.bounded import HIGHEST_RATE, LONGEST, bounded
 

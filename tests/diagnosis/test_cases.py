@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.cli import main
 from noise.diagnosis.case import read_case, usable
 from tests.helpers.made_posteriors import made_posterior

@@ -8,7 +8,7 @@ import pytest
 from models.condition import KnownCondition
 from models.recording import Channel, Recording
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.gap.distance import group_costs

@@ -12,12 +12,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
+from models.change import changed_rig, multiplied
 from models.condition import FIXED
 from models.errors import ParameterError
 from models.rig import LawSpec
-from models.rig_files.change import changed_rig, multiplied
-from models.rig_files.rig_file import load_material_rig, load_rig
-from models.rig_files.rig_text import base_name, changed_rig_text
+from models.rig_file import base_name, changed_rig_text, load_material_rig, load_rig
 from noise.cli import main
 from noise.diagnosis.case import Case
 from noise.diagnosis.diagnose import case_remarks

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.diagnosis.first_answer import first_answer, known_effects

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.condition import Condition
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.simulated.nominal import nominal_recordings

@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import binomtest, kstest
 
 from models.condition import Condition
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.distance import gap_of, reference
 from noise.diagnosis.gap.floor import case_gap, floor_widening, repeat_gap

@@ -9,7 +9,7 @@ import pytest
 import soundfile
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig
 from models.sensors import Sensor, Sensors
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from models.sensors import Sensor, Sensors
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.bench.silent import unchecked_units

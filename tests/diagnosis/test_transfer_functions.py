@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.diagnosis.simulated.transfer_functions import predict, torque_transfer_functions
 from tests.helpers.small_rigs import RIG, RIG_FILE

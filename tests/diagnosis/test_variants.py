@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.radiation.impulse_responses import radiate
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.diagnosis.cases.draw import draw_case
 from noise.diagnosis.cases.structures import draw_structure
 from noise.diagnosis.cases.variants import VARIANTS, draw_variant

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.recordings.files import read_recording
 from tests.blind.__main__ import main
 from tests.blind.benches import BITS, KINDS, NOISE, Bench, draw_bench

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.recordings.files import read_recording
 from tests.blind.cases import answer_of, run_case, without_effects, write_case
 from tests.blind.design import CLASSES, Condition, draw_design

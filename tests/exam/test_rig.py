@@ -6,8 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from models.rig_files.measured_file import measured_responses
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig, measured_responses
 from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.floor import case_gap
 from sim.acquisition import Acquisition

@@ -13,7 +13,7 @@ from features.transformer import RecordingFeatures
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig import Fit, effective_stiffness
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.run import simulate
 
 RATE = 30e3

@@ -7,7 +7,7 @@ from functools import cache
 
 from models.recording import Recording
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.diagnosis.findings import (
     Agreement,
     EffectFinding,

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from models.rig import Fit, LawSpec, Rig
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.run import simulate

@@ -9,7 +9,7 @@ import numpy as np
 
 from models.condition import KnownCondition
 from models.rig import Fit, LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.diagnosis.simulated.repeats import record, run_signals
 from noise.diagnosis.simulated.transfer_functions import chain_of, torque_transfer_functions
 from noise.recordings import write_recording

@@ -10,7 +10,7 @@ from hypothesis import given, settings, strategies as st
 from models.condition import Condition
 from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.identification.bushing_fit import Known, fit_bushing
 from noise.identification.levels import torque_levels
 from noise.identification.measured import measured

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import noise
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.cli import main
 from noise.identification import law_choice
 from noise.identification.law_candidates import CANDIDATES

@@ -3,8 +3,7 @@
 import tomllib
 from dataclasses import replace
 
-from models.rig_files.rig_file import load_material_rig, rig_from
-from models.rig_files.rig_text import rig_text
+from models.rig_file import load_material_rig, rig_from, rig_text
 from noise.identification.known import known_beforehand
 
 INERTIAS = "elastomer_inertia_kgm2 = 1.6e-5\nclamp_inertia_kgm2 = 8e-4\n"

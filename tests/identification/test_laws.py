@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from models.condition import KnownCondition
-from models.rig_files.rig_file import load_material_rig, load_rig
-from models.rig_files.rig_text import rig_text
+from models.rig_file import load_material_rig, load_rig, rig_text
 from noise.identification.bushing_fit import Known
 from noise.identification.law_candidates import CANDIDATES
 from noise.identification.law_choice import left_out

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.identification.excerpts import excerpts_of
 from noise.identification.prediction import foretold, friction_of
 from sim.bushing import lumped_bushing

@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 from models.condition import Condition
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.identification.bushing_fit import Known
 from noise.identification.evidence import elastomer_stiffness

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models.condition import Condition
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.identification.measured import measured
 from noise.identification.structure_check import level_offsets, structure_notes
 from sim.run import simulate

@@ -9,7 +9,7 @@ import pytest
 import noise
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig
 from noise.cli import main
 from noise.identification.bushing_fit import Known
 from noise.identification.evidence import Evidence, table_evidence, with_evidence

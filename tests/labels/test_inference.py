@@ -15,7 +15,7 @@ from sklearn.ensemble import RandomForestRegressor
 from models.condition import FIXED, Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.base.tables import write_table
 from noise.classifier import LABELS
 from noise.inference import Interval, infer_stretch, load_inference

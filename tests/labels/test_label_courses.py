@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.classifier import load_classifier
 from noise.labels.segments import file_label, label_recording
 from sim.run import simulate

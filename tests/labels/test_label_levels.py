@@ -8,7 +8,7 @@ import pytest
 
 from features.kernels.levels import a_weighted_level
 from models.recording import Channel, Recording
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.audio.assessment import assess
 from noise.classifier import load_classifier
 from noise.cli import main

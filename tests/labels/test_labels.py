@@ -9,7 +9,7 @@ import pytest
 from features.kernels.levels import a_weighted_level
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.batch.work import refusal
 from noise.classifier import LABELS, load_classifier
 from noise.labels.labelling import COLUMNS, Labelling, label_rows

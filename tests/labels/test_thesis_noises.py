@@ -9,7 +9,7 @@ from features.kernels.bands import third_octave_levels
 from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import find_lines, noise_floor
 from features.kernels.spectra import autospectrum
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.classifier import load_classifier
 from noise.demo import CASES
 from noise.labels.segments import file_label, label_recording

@@ -13,7 +13,7 @@ from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.rig_response import impulse_responses
 from models.rig import Beams, Microphone
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig
 from models.structure.beams import (
     PULSE,
     TORQUE,
@@ -193,36 +193,3 @@ def test_without_the_plate_a_creak_loses_10_db_above_2_khz(support, speed):
         whole.pulse_to_pressure - no_beams.pulse_to_pressure,
     )
     assert both - beams > 10.0
-
-
-def test_a_rig_file_says_how_the_beams_stand_and_whether_they_sound(tmp_path):
-    path = tmp_path / "rig.toml"
-    path.write_text(
-        "[beams]\nradiate = true\nanchor_rotation_Nm_rad = 500\n"
-        "anchor_translation_N_m = 'rigid'\nstrike = 0.01\nheight_m = 0.05\n"
-    )
-    beams = load_rig(path).beams
-    assert (beams.radiating, beams.anchor_rotation, beams.strike) == (True, 500.0, 0.01)
-    assert beams.anchor_translation == np.inf
-    shipped = load_material_rig("fluorocarbon").beams
-    assert (shipped.anchor_rotation, shipped.strike) == (250.0, 0.005)
-
-
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ('radiate = "yes"', "radiate = 'yes' must be true or false"),
-        ('anchor_rotation_Nm_rad = "soft"', 'must be a number above 0, or "rigid"'),
-        ("anchor_translation_N_m = -1.0", "anchor_translation_N_m = -1.0 must be a number above 0"),
-        ("height_m = 0", "height_m = 0 must be"),
-        ("strike = 1.5", "strike = 1.5 must be"),
-        ("stiffness = 3", "unknown key 'stiffness'"),
-    ],
-)
-def test_a_beam_that_cannot_be_used_is_refused_by_key(tmp_path, line, message):
-    path = tmp_path / "rig.toml"
-    path.write_text(f"[beams]\n{line}\n")
-    with pytest.raises(ParameterError) as refused:
-        load_rig(path)
-    assert message in str(refused.value)
-    assert "beams" in str(refused.value)

@@ -8,8 +8,7 @@ from hypothesis import given, strategies as st
 
 from models.calibration import Calibration
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_rig
-from models.rig_files.rig_text import rig_text
+from models.rig_file import load_rig, rig_text
 
 CELL = """reading_mV,torque_Nm
 -483,-40

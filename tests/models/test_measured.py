@@ -9,8 +9,7 @@ import pytest
 from models.errors import ParameterError
 from models.radiation.impulse_responses import radiate
 from models.radiation.rig_response import impulse_responses
-from models.rig_files.measured_file import measured_responses
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig, measured_responses
 from models.transfer_functions.files import write_transfer_function
 from models.transfer_functions.transfer_function import TransferFunction
 from tests.helpers.spectra import path_spectra
@@ -113,7 +112,7 @@ def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
     ("change", "message"),
     [
         (("= 2214", "= 0"), "support_stiffness_Nm_rad"),
-        (("= 2214", '= "stiff"'), "entry 'stiff'"),
+        (("= 2214", '= "stiff"'), "support_stiffness_Nm_rad = 'stiff' must be"),
         (("= 2214", "= true"), "support_stiffness_Nm_rad = True"),
         (("support_stiffness_Nm_rad = 2214", ""), "support_stiffness_Nm_rad = None"),
         (("torque_to_acceleration", "torque_to_force"), "unknown key 'torque_to_force'"),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.radiation.rig_response import impulse_responses
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.chain import resonance
 from tests.helpers.chain_paths import RATE, changed, spectra
 from tests.helpers.spectra import path_spectra

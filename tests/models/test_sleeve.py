@@ -11,7 +11,7 @@ from scipy.sparse.linalg import spsolve
 
 from models.bushing import Sleeve, shore_modulus
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig
 
 RIG = load_material_rig("fluorocarbon")
 FIT = """

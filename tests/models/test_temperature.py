@@ -6,9 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.bushing import TemperatureDependence
-from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig, load_rig, rig_from
-from models.rig_files.rig_text import rig_text
+from models.rig_file import load_material_rig
 
 GLASS = st.floats(-120.0, 20.0)
 ABOVE = st.floats(0.5, 200.0)
@@ -68,26 +66,3 @@ def test_the_loss_factor_of_the_model_is_that_of_the_fitted_damping():
     model = rubber.stiffening * math.tan(0.5 * math.pi * rubber.exponent) / (1 + rubber.stiffening)
     fitted = rig.elastomer_damping_share * fit.damping[2214.0] * first / fit.elastomer_stiffness
     assert model == pytest.approx(fitted, rel=0.5)
-
-
-def test_a_rig_written_out_keeps_its_table(tmp_path):
-    path = tmp_path / "rig.toml"
-    rig = load_material_rig("fluorocarbon")
-    path.write_text(rig_text(rig), encoding="utf-8")
-    assert load_rig(path).temperature == rig.temperature
-
-
-@pytest.mark.parametrize(
-    ("table", "wrong"),
-    [
-        ({"reference_C": 23}, "glass_transition_C is missing"),
-        ({"reference_C": -30, "glass_transition_C": -20}, "not above glass_transition_C"),
-        ({"reference_C": 23, "glass_transition_C": -20, "wlf_c2_K": 40}, "wlf_c2_K = 40"),
-        ({"reference_C": 23, "glass_transition_C": -20, "friction_floor": 2}, "friction_floor"),
-        ({"reference_C": 23, "glass_transition_c": -20}, "glass_transition_C"),
-        (23, "temperature"),
-    ],
-)
-def test_a_table_that_cannot_be_used_is_refused_by_key(tmp_path, table, wrong):
-    with pytest.raises(ParameterError, match=wrong):
-        rig_from({"material": "PDMS", "temperature": table}, tmp_path, "rig")

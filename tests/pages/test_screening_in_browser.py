@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.pages.screening.page import write_screening
 from noise.screening.design.design import Design, Use
 from noise.screening.screen import screen

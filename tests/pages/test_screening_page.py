@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.pages.engine.cells import cells_of, common_cells
 from noise.pages.screening.comparison import compare_designs
 from noise.pages.screening.page import write_screening

@@ -16,7 +16,7 @@ from features.kernels.spectra import autospectrum
 from models.drawing import thinned
 from models.errors import ParameterError
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.pictures.files import check_picture_path, write_picture
 from noise.pictures.run import plot_run

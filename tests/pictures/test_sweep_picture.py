@@ -9,7 +9,7 @@ import pytest
 from features.kernels.harmonics import analyse_harmonics
 from models.condition import FIXED
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.pictures.measured import FIRST_MODE, FITS, LINES, V_CRIT1, V_CRIT2, lines_at
 from noise.pictures.speeds import plot_sweep, plot_torque_of_fits
 from noise.pictures.sweep import sweep_torque

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from features.kernels.spectra import autospectrum
 from models.condition import FIXED
 from models.radiation.rig_response import impulse_responses
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.pictures import thesis, thesis_cases
 from noise.pictures.channel_kinds import KINDS

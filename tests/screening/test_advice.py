@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.screening.parts.advice import increase_margin, remove_noise
 from noise.screening.parts.design_variable import DesignVariable
 from sim.analysis.critical_damping import critical_damping, with_damping

@@ -1,6 +1,6 @@
 """Copies of design files beside a screen: each is the design that was screened."""
 
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.screening.design.design_files import copy_design_file
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.screening.design.design import Design, Use
 from noise.screening.map.batches import keeping
 from noise.screening.map.grid import grid_of

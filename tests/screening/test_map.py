@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.noise_definition import is_ambiguous, run_criteria
 from noise.screening.design.design import Design, Swinging, Use
 from noise.screening.map.batches import batch_evaluator

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.screening.parts.probability import NOISES, label_probabilities
 from noise.screening.parts.sampling import parts
 from sim.analysis.sweep import Sweep

@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 from scipy import stats
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.screening.parts.estimate import Estimate
 from noise.screening.parts.probability import label_probabilities
 from noise.screening.ranking.risk import Candidate, design_risk, ranked, risk_band, risk_grades

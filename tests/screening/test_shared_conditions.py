@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, example, given, settings, strategies as st
 
 from models.errors import ParameterError
 from models.rig import Fit, damping_at
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.screening.design.design import Design, Swinging, Use, load_design
 from noise.screening.map.grid import grid_of, shared_grid, shared_motions
 from noise.screening.map.point import evaluate_point

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import resample_poly
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.sensors import Sensor, Sensors
 from sim.acquisition import (
     CONVERTER_GAIN,

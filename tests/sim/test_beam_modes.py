@@ -7,7 +7,7 @@ import pytest
 
 from models.condition import FIXED
 from models.radiation.rig_response import impulse_responses
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from tests.helpers.chain_paths import RATE, changed, spectra
 from tests.helpers.spectra import path_spectra
 

@@ -11,7 +11,7 @@ from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
 from sim.chain import changed_chain
 from sim.effects import EFFECTS

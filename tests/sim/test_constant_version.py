@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.noise_definition import label_by_physics
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.slips import motion_slips

@@ -7,7 +7,7 @@ import pytest
 
 from features.kernels.harmonics import analyse_harmonics
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.analysis.regime import Regime, friction_regime
 from sim.bushing import lumped_bushing
 from sim.friction import friction_law

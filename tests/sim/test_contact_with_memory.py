@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.contact import CRITICAL, KINETIC, N_CONTACT
 from sim.friction.contact_with_memory import LAW
 from sim.parameters import resolve

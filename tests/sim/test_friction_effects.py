@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 
 from models.errors import ParameterError
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.analysis.regime import Regime, friction_regime
 from sim.bushing import lumped_bushing
 from sim.contact import (

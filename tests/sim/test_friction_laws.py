@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies as st
 from numba import float64, njit, types
 from scipy.optimize import brentq
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
 from sim.contact import CRITICAL, KINETIC, LAW_SIGNATURE, N_CONTACT
 from sim.friction import LAWS, friction_law

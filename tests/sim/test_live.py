@@ -11,7 +11,7 @@ import pytest
 from features.kernels.levels import sound_levels
 from models.errors import ParameterError
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.friction import LAWS

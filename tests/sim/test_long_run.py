@@ -13,7 +13,7 @@ from models.condition import FIXED, Condition
 from models.errors import ParameterError
 from models.recording import Channel
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
 from noise.long_run import write_run
 from noise.recordings import read_recording
@@ -149,7 +149,7 @@ def test_a_run_that_fails_on_its_way_leaves_no_file(tmp_path):
 def test_memory_stays_below_300_MB_and_does_not_grow(tmp_path, material):  # noqa: N802
     code = f"""
 from pathlib import Path
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.transfer_functions.filtering import convolve
 from noise.long_run import write_run
 from sim.long_run import simulate_blocks

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import welch
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage

@@ -10,7 +10,7 @@ from models.errors import ParameterError
 from models.radiation.rig_response import anchor_drives, first_mode_damping
 from models.radiation.sound_power import power_flow
 from models.rig import HIGHEST_PLATE_FREQUENCY
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import plate_modes
 from noise.audio.sound_power_table import COLUMNS, TOTAL, sound_power_rows

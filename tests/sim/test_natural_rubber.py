@@ -5,7 +5,7 @@ import pytest
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.noise_definition import label_by_physics
 from sim.analysis.regime import Regime, friction_regime
 from sim.run import simulate

@@ -5,8 +5,7 @@ import math
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from models.rig_files.rig_file import load_material_rig
-from models.rig_files.shipped import material_names
+from models.rig_file import load_material_rig, material_names
 from sim.analysis.regime import SlidingWatch, never_slips
 from sim.run import simulate
 from sim.shaft import Oscillation

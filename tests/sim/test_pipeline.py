@@ -8,7 +8,7 @@ import pytest
 from models.condition import KnownCondition
 from models.radiation.rig_response import impulse_responses
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.diagnosis.simulated.repeats import plan_repeat
 from sim.pipeline import (
     apply_sensor_effects,

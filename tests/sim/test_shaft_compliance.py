@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
 from sim.contact import N_CONTACT, N_CONTEXT, SHAFT_INERTIA, SHAFT_LAG, SHAFT_LAG_RATE, SHAFT_TORQUE
 from sim.effects import EFFECTS

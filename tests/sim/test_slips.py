@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.condition import FIXED
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.analysis.critical_damping import with_damping
 from sim.analysis.critical_speeds import SPEEDS, motion_from_rest
 from sim.analysis.regime import LEAST_OSCILLATION, Regime, friction_regime, regime_measures

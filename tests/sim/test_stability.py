@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.analysis.critical_speeds import critical_speeds
 from sim.analysis.stability import steady_sliding
 from sim.constant_version import constant_version

@@ -10,10 +10,8 @@ from scipy.integrate import quad, solve_ivp
 
 from models.errors import ParameterError
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
-from models.rig_files.shipped import suspension_file
-from models.rig_files.suspension_file import load_suspension
-from models.suspension import Bar, TorsionChain, torsion_chain
+from models.rig_file import load_material_rig
+from models.suspension import Bar, TorsionChain, load_suspension, suspension_file, torsion_chain
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.contact import CRITICAL, KINETIC, N_CONTACT

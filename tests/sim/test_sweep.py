@@ -7,7 +7,7 @@ import pytest
 
 from models.errors import ParameterError
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.analysis.sweep import FEATURES, Sweep
 from sim.analysis.sweep_features import motion_features
 from sim.analysis.sweep_systems import packed_systems

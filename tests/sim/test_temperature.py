@@ -7,7 +7,7 @@ import pytest
 
 from models.bushing import TemperatureDependence
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.analysis.critical_speeds import critical_speeds, motion_from_rest
 from sim.analysis.stability import steady_sliding
 from sim.friction import LAWS

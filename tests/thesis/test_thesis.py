@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.thesis import page, row, table
 from noise.thesis.explanations import WHY

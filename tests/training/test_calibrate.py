@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from models.condition import FIXED
-from models.rig_files.rig_file import load_material_rig, load_rig
+from models.rig_file import load_material_rig, load_rig
 from noise.identification.table_fit import fit_table, score_table
 from noise.training.calibrate.report import material_toml, measured_speeds, speeds_page
 from noise.training.calibrate.thesis_table import CELLS, SPEEDS_ALONE, THESIS_TABLE, THIN_CELLS

@@ -7,9 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
-from models.rig_files.rig_text import base_name
-from models.rig_files.shipped import material_names
+from models.rig_file import base_name, load_material_rig, material_names, read_toml, rig_from
 from noise.app.design.controls import Control, controls_of
 from noise.app.design.heard import heard_values
 

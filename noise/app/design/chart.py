@@ -39,7 +39,7 @@ def chart_of(asked: ChartRequest) -> dict[str, object]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.app.design.requests import ChartRequest
     >>> found = chart_of(ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0))
     >>> found["interference_mm"][0], found["speed_rad_s"][-1], found["labels"][0][0]
@@ -70,7 +70,7 @@ def suggestions_of(asked: SuggestionRequest) -> dict[str, object]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.app.design.requests import ChartRequest, SuggestionRequest
     >>> chart = ChartRequest(load_material_rig("PDMS"), 2214.0, 23.0)
     >>> suggestions_of(SuggestionRequest(chart, 0.279e-3, 5.0))

@@ -11,8 +11,8 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
+from models.condition import CONDITION
 from models.errors import ParameterError
-from models.plausible import BOUNDS
 from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.friction import LAWS, friction_law
@@ -136,7 +136,7 @@ def controls_of(rig: Rig, heard: Mapping[str, object] | None = None) -> list[Con
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> keys = [control.key for control in controls_of(load_material_rig("PDMS"))]
     >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
     (['motion', 'speed', 'run_up.start'], True, True)
@@ -181,7 +181,7 @@ def _number(
 
 
 def _motion(rig: Rig) -> Iterator[Control]:
-    fastest = BOUNDS["speed_rad_s"].usual[1]
+    fastest = CONDITION["speed"].usual[1]
     usual = min(fastest, 5.0)
     group, speeds, most = "Motion of the shaft", (0.0, fastest), (-200.0, 200.0)
     yield Control("motion", "choice", group, "Motion", "constant", choices=MOTIONS)
@@ -207,20 +207,23 @@ def _motion(rig: Rig) -> Iterator[Control]:
 def _condition(rig: Rig) -> Iterator[Control]:
     group = "Condition"
     low, high = (1e3 * fit for fit in rig.interference_range)
-    default = min(max(0.279, low), high)
+    fit, support, temperature = (
+        CONDITION[name] for name in ("interference", "support_stiffness", "temperature")
+    )
+    default = min(max(fit.default, low), high)
     yield _number(
         "interference", group, "Interference", default, "mm",
-        (round(0.7 * low, 3), round(1.3 * high, 3)), BOUNDS["interference_mm"].possible,
+        (round(0.7 * low, 3), round(1.3 * high, 3)), (fit.low, fit.high),
     )  # fmt: skip
     yield Control("fixed", "switch", group, "Clamp bolted to the baseplate", False)
-    bounds = BOUNDS["support_stiffness_Nm_rad"]
     yield _number(
-        "support", group, "Support stiffness", 2214.0, "Nm/rad", (1.2e3, 2e4), bounds.possible,
+        "support", group, "Support stiffness", support.default, "Nm/rad", (1.2e3, 2e4),
+        (support.low, support.high),
         log=True, only=("fixed", False),
     )  # fmt: skip
     yield _number(
-        "temperature", group, "Temperature", 23.0, "°C",
-        BOUNDS["temperature_C"].usual, BOUNDS["temperature_C"].possible,
+        "temperature", group, "Temperature", temperature.default, "°C", temperature.usual,
+        (temperature.low, temperature.high),
     )  # fmt: skip
 
 

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from models.change import changed_rig
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_arm
-from models.rig import LawSpec, damping_at
-from models.rig_files.change import changed_rig
-from models.rig_files.rig_parts import parse_spec
-from models.rig_files.rig_text import changed_rig_text
+from models.rig import LawSpec, damping_at, parse_spec
+from models.rig_file import changed_rig_text
 from noise.app.design.bases import Base, base_of
 from noise.app.design.controls import read_values
 from noise.app.design.heard import heard_table

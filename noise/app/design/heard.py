@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from models.checks import a_table, refuse_unknown
+from models.schema import as_table, refuse_unknown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -87,10 +87,10 @@ def heard_values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
     >>> heard_values({"design": {"heard": {"support_stiffness_Nm_rad": "fixed"}}}, "rig.toml")
     {'fixed': True}
     """
-    design = a_table(content.get("design", {}), "design", where)
+    design = as_table(content.get("design", {}), "design", where)
     where = f"{where}, design"
     stated: dict[str, Any] = {}
-    for name, value in a_table(design.get("heard", {}), "heard", where).items():
+    for name, value in as_table(design.get("heard", {}), "heard", where).items():
         inner = value if isinstance(value, Mapping) else {}
         stated |= {f"{name}.{key}": one for key, one in inner.items()} or {name: value}
     refuse_unknown(stated, set(_NAMES.values()), f"{where}.heard")

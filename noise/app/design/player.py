@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.app.design.pace import Pace
 from noise.app.design.transfer_paths import RATE, LiveTransferPaths, impulse_response_worker
 from noise.batch.work import one_thread

@@ -157,7 +157,7 @@ def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> time = np.arange(9000) / 30e3
     >>> torque = 8.0 + np.clip(5.0 * np.sin(2 * np.pi * 97.0 * time), -9.0, 4.3)
     >>> run = Recording(torque[None], 30e3, (Channel("torque"),))

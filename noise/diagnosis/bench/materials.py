@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from models.errors import BushingNoiseError
-from models.rig_files.rig_file import load_material_rig
-from models.rig_files.shipped import material_names
+from models.rig_file import load_material_rig, material_names
 from noise.diagnosis.bench.channels import SWINGING
 from noise.diagnosis.simulated.nominal import nominal_repeats
 

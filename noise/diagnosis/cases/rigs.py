@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from models.condition import FIXED, KnownCondition
 from models.rig import Fit, LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from models.sensors import Sensors
 from noise.diagnosis.cases.benches import Bench, draw_bench
 from noise.diagnosis.cases.laws import MATERIALS, draw_law, scaled_law

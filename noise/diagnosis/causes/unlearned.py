@@ -103,7 +103,7 @@ def poor_responses(rig: Rig, recordings: Sequence[Recording]) -> tuple[str, ...]
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_rig
+    >>> from models.rig_file import load_rig
     >>> poor_responses(load_rig("fluorocarbon"), [])
     ()
     """

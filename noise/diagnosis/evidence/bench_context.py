@@ -50,7 +50,7 @@ def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> run = Recording(np.zeros((1, 15_000)), 30e3, (Channel("torque"),))
     >>> bench_context(load_material_rig("fluorocarbon-thesis"), [run])
     {'seconds': 0.5, 'coherence': 1.0, 'constant_law': 1.0, 'listed': 0.0, 'torque_noise': 0.0, \

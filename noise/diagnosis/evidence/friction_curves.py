@@ -96,7 +96,7 @@ def friction_curves(recording: Recording, rig: Rig) -> FrictionCurves | None:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> run = simulate(rig, 1.0, interference=0.279e-3, support_stiffness=3745.0, seconds=0.4)

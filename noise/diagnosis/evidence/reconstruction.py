@@ -109,7 +109,7 @@ def reconstruct(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.bushing import lumped_bushing
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon-thesis")

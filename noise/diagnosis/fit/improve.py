@@ -13,9 +13,9 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from models.change import changed_rig, multiplied
 from models.errors import ParameterError
-from models.rig_files.change import changed_rig, multiplied
-from models.rig_files.rig_parts import parse_spec
+from models.rig import parse_spec
 from noise.diagnosis.cases.rigs import OFFSETS
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.case_comparison import CaseComparison, Model

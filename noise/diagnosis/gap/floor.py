@@ -83,7 +83,7 @@ def case_gap(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> at = {"interference": 0.279e-3, "support_stiffness": 3745.0}

@@ -100,7 +100,7 @@ def signature(recording: Recording) -> NDArray[np.float64]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("fluorocarbon-thesis"), 2.5, seconds=0.4)
     >>> values = signature(run.recording)

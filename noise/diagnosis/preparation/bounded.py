@@ -54,7 +54,7 @@ def bounded(
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> long = Recording(np.zeros((1, 288_000)), 96e3, (Channel("torque"),))
     >>> _, (short,), notes = bounded(load_material_rig("PDMS"), [long])
     >>> short.rate, short.duration

@@ -64,7 +64,7 @@ def prepared(rig: Rig, recordings: Sequence[Recording]) -> Prepared:
     >>> import numpy as np
     >>> from models.condition import KnownCondition
     >>> from models.recording import Channel, Recording
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> x = 7.0 + 0.1 * np.random.default_rng(0).standard_normal((1, 15_000))
     >>> at = KnownCondition(1.0, 0.279e-3, 3745.0)
     >>> run = Recording(x, 30e3, (Channel("torque"),), at)

@@ -44,7 +44,7 @@ def with_seen_sensors(rig: Rig, recordings: Sequence[Recording]) -> tuple[Rig, t
     --------
     >>> import numpy as np
     >>> from models.recording import Channel, Recording
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> noise = 0.01 * np.random.default_rng(0).standard_normal((1, 60_000))
     >>> run = Recording(noise, 30e3, (Channel("torque"),))
     >>> seen, notes = with_seen_sensors(load_material_rig("fluorocarbon-thesis"), [run])

@@ -91,7 +91,7 @@ def with_effects(rig: Rig, effects: Sequence[LawSpec]) -> Rig:
     Examples
     --------
     >>> from models.rig import LawSpec
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> more = LawSpec("critical_torque_scatter", {"scatter": 0.6})
     >>> list(map(str, with_effects(load_material_rig("natural-rubber"), [more]).effects))
     ['critical_torque_scatter:scatter=0.6']

@@ -99,7 +99,7 @@ def perturb_run(
     Examples
     --------
     >>> from models.condition import KnownCondition
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig, at = load_material_rig("PDMS"), KnownCondition(5.0, 0.279e-3, 2214.0)
     >>> once = perturb_run(rig, at, Scatter(), np.random.default_rng(1))[1]
     >>> once.speed != 5.0, once.support_stiffness
@@ -128,7 +128,7 @@ def perturb_rig(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> once = perturb_rig(rig, Scatter(), np.random.default_rng(1))
     >>> 0.9 < once.elastomer_inertia / rig.elastomer_inertia < 1.1
@@ -187,7 +187,7 @@ def plan_repeat(
     Examples
     --------
     >>> from models.condition import KnownCondition
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> at = KnownCondition(5.0, 0.279e-3, 2214.0)
     >>> plan = plan_repeat(load_material_rig("PDMS"), at, (), rate=DIAGNOSIS.rate(30e3), seconds=1)
     >>> plan.rate, plan.n_settling, plan.n_kept

@@ -79,7 +79,7 @@ def torque_transfer_functions(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> found = torque_transfer_functions(rig, 0.279e-3, 2214.0)
     >>> sorted(found), bool(abs(found["acceleration"].at(np.array([259.0]))[0]) > 1.0)

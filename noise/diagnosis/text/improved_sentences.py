@@ -22,7 +22,7 @@ def improved_sentence(improvement: Improvement) -> str:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.diagnosis.improvement import Improvement
     >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (),
     ...                     {"damping": 0.02}, (),
@@ -62,7 +62,7 @@ def improved_commands(
     Examples
     --------
     >>> from pathlib import Path
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from noise.diagnosis.improvement import Improvement
     >>> found = Improvement(load_material_rig("PDMS"), {"damping": 1.03}, (), (), {}, (), (), (),
     ...                     2.4, 1.1)

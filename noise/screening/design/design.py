@@ -27,11 +27,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.checks import a_number, a_table, a_text, refuse_unknown
 from models.errors import ParameterError
 from models.foreign_file import refusing
-from models.rig_files.rig_file import load_material_rig, read_toml, rig_from
-from models.rig_files.shipped import material_names
+from models.rig_file import load_material_rig, material_names, read_toml, rig_from
+from models.schema import as_table, as_text, number, refuse_unknown
 from models.show import short_repr
 from noise.screening.design.axis_values import (
     FREQUENCY,
@@ -187,13 +186,13 @@ def load_design(given: str | Path) -> Design:
 
 def _read_design(path: Path, where: str) -> Design:
     content = read_toml(path, where)
-    table = a_table(content.pop("design", {}), "design", where)
+    table = as_table(content.pop("design", {}), "design", where)
     tolerances = content.pop("tolerances", {})
     refuse_unknown(table, _USE_KEYS, f"{where}, design")
     rig = rig_from(content, path.parent, where)
     named = table.get("name", content.get("name", path.stem))
     return Design(
-        name=a_text(named, "name", f"{where}, design"),
+        name=as_text(named, "name", f"{where}, design"),
         rig=rig,
         use=_use(table, f"{where}, design"),
         tolerances=read_tolerances(tolerances, where, rig.effects),
@@ -225,9 +224,9 @@ def _swinging(given: object, where: str) -> Swinging | None:
     if given is None:
         return None
     where = f"{where}, oscillation"
-    table = a_table(given, "oscillation", where)
+    table = as_table(given, "oscillation", where)
     refuse_unknown(table, {"amplitude_deg", "frequency_hz"}, where)
-    degrees = a_number(table, "amplitude_deg", where)
+    degrees = number(table, "amplitude_deg", where)
     if "frequency_hz" not in table:
         raise ParameterError(f"{where}: frequency_hz is missing")
     frequency = axis_values(table["frequency_hz"], f"{where}: frequency_hz", FREQUENCY)

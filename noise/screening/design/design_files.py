@@ -13,8 +13,7 @@ import shutil
 from pathlib import Path
 
 from models.errors import BushingNoiseError, ParameterError
-from models.rig_files.rig_file import read_toml
-from models.rig_files.rig_text import base_name
+from models.rig_file import base_name, read_toml
 from noise.screening.design.design import load_design
 
 __all__ = ["copy_design_file"]

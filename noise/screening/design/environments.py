@@ -14,7 +14,7 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
-from models.rig_files.rig_parts import parse_spec
+from models.rig import parse_spec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -116,7 +116,7 @@ def in_environment(rig: Rig, where: Environment) -> Rig:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> wet = in_environment(load_material_rig("fluorocarbon-thesis"), environment("wet"))
     >>> wet.fit(0.279e-3).kinetic_torque, wet.effects[0].name
     (4.8, 'velocity_weakening')
@@ -144,7 +144,7 @@ def scaled_fit(fit: Fit, factors: Mapping[str, float]) -> Fit:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> fit = load_material_rig("fluorocarbon-thesis").fit(0.279e-3)
     >>> scaled_fit(fit, {"kinetic_torque": 2.0}).critical_torque
     16.0

@@ -14,8 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from models.checks import a_number, a_table, refuse_unknown
 from models.errors import ParameterError
+from models.schema import as_table, number, refuse_unknown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -146,7 +146,7 @@ def read_tolerances(
     >>> read_tolerances({"damping": 0.1}, "design")
     (Tolerance(name='damping', kind='relative', first=0.1, second=nan),)
     """
-    table, where = a_table(given, "tolerances", where), f"{where}, tolerances"
+    table, where = as_table(given, "tolerances", where), f"{where}, tolerances"
     stated = {
         spec.name: {key for key, value in spec.parameters.items() if not isinstance(value, str)}
         for spec in effects
@@ -157,7 +157,7 @@ def read_tolerances(
         if name in PARAMETERS:
             found.append(_tolerance(name, entry, where))
             continue
-        inner = a_table(entry, name, where)
+        inner = as_table(entry, name, where)
         refuse_unknown(inner, stated[name], f"{where}, {name}")
         found += [_tolerance(f"{name}.{key}", value, where) for key, value in inner.items()]
     return tuple(found)
@@ -165,17 +165,17 @@ def read_tolerances(
 
 def _tolerance(name: str, entry: object, where: str) -> Tolerance:
     if not isinstance(entry, Mapping):
-        return Tolerance(name, "relative", a_number({name: entry}, name, where, closed=True))
+        return Tolerance(name, "relative", number({name: entry}, name, where, closed=True))
     inside = f"{where}, {name}"
     refuse_unknown(entry, {"relative", "absolute", "low", "high"}, inside)
     kinds = set(entry)
     if kinds == {"low", "high"}:
         least = -math.inf if name == "temperature" else 0.0
-        low, high = (a_number(entry, key, inside, low=least) for key in ("low", "high"))
+        low, high = (number(entry, key, inside, low=least) for key in ("low", "high"))
         if not low < high:
             raise ParameterError(f"{inside}: low = {low:g} is not below high = {high:g}")
         return Tolerance(name, "limits", low, high)
     if kinds in ({"relative"}, {"absolute"}):
         kind = kinds.pop()
-        return Tolerance(name, kind, a_number(entry, kind, inside, closed=True))
+        return Tolerance(name, kind, number(entry, kind, inside, closed=True))
     raise ParameterError(f"{inside}: give a number, or one of relative, absolute, low and high")

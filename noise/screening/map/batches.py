@@ -98,7 +98,7 @@ def batch_evaluator(*, workers: int = -1, scheduler: str | None = None) -> Itera
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> one, rig = np.ones(1), load_material_rig("PDMS")
     >>> with batch_evaluator() as evaluate:
     ...     evaluate(Batch(rig, one, np.nan * one, 3e-4 * one, 2e3 * one, one))

@@ -36,7 +36,7 @@ def fast_intervals(motion: Motion, *, swings: bool) -> list[Motion]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> from sim.motion import simulate_motion
     >>> from sim.shaft import Oscillation
     >>> motion = simulate_motion(load_material_rig("PDMS"), Oscillation(0.26, 4.0), rate=30e3,

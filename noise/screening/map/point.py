@@ -166,7 +166,7 @@ def evaluate_point(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
     >>> evaluate_point(rig, 10.0, interference=0.279e-3, support_stiffness=3745.0).label
     'squeal'

@@ -104,7 +104,7 @@ def rows_of(rig: Rig, interference: Sequence[float]) -> list[int]:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rows_of(load_material_rig("PDMS"), [0.127e-3, 0.178e-3, 0.254e-3, 0.3e-3, 0.5e-3, 0.6e-3])
     [2, 2, 2, 3, 4, 4]
     """
@@ -124,7 +124,7 @@ def within_fits(rig: Rig, interference: float) -> bool:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> [within_fits(load_material_rig("PDMS"), fit) for fit in (0.178e-3, 0.254e-3)]
     [False, True]
     """
@@ -143,7 +143,7 @@ def fits_remark(rig: Rig, interference: Sequence[float]) -> str:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> fits_remark(load_material_rig("PDMS"), [0.178e-3, 0.254e-3, 0.3e-3])
     'fits are given for 0.254 and 0.381 mm; for 0.178 mm the nearest is held, for 0.3 mm they are...
     """

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from joblib import Parallel, delayed
 
 from models.errors import BushingNoiseError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.base.atomic import atomic
 from noise.identification.table_fit import fit_table
 from noise.training.calibrate.report import (

@@ -18,7 +18,7 @@ import numpy as np
 
 from models.condition import FIXED
 from models.rig import LawSpec
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.thesis.runs import LONG, SHORT
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.base.atomic import atomic, check_target
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import read_case

@@ -188,7 +188,7 @@ def stretch(run: Run, start: float, end: float) -> Run:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> run = simulate(load_material_rig("PDMS"), 5.0, seconds=0.2)
     >>> stretch(run, 0.05, 0.15).recording.samples.shape
     (4, 3000)

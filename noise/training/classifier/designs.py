@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from models.rig import Fit, LawSpec, Microphone, Plate, Rig
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.training.draws import log_uniform
 from sim.effects import EFFECTS
 from sim.friction import friction_law

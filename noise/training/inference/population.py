@@ -23,7 +23,7 @@ import numpy as np
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig import LawSpec, Rig
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.inference.inputs import (
     INTERFERENCE_RANGE,
     LONGEST,

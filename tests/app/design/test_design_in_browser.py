@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.app.design.player import RATE
 from sim.acquisition import Acquisition
 from sim.long_run import simulate_blocks

@@ -8,7 +8,7 @@ import pytest
 
 from models.errors import ParameterError
 from models.foreign_file import parse_toml
-from models.rig_files.rig_file import load_rig, rig_from
+from models.rig_file import load_rig, rig_from
 from noise.app.design.bases import bases_of
 from noise.app.design.controls import controls_of
 from noise.app.design.design import design_of

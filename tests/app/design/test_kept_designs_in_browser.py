@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from tests.helpers.design_page import DESIGN, DesignPage
 from tests.helpers.opened_app import opened_app
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from noise.app.design.bases import bases_of
 from noise.app.design.design import design_of
 from noise.app.design.player import BLOCK, HEADER, RATE, REFUSED, Player

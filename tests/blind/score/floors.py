@@ -13,7 +13,7 @@ import tempfile
 import warnings
 from pathlib import Path
 
-from models.rig_files.rig_file import load_rig
+from models.rig_file import load_rig
 from noise.diagnosis.case import read_case
 from noise.diagnosis.gap.floor import case_gap
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.integrate import simpson, solve_ivp
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
 from sim.friction import friction_law
 from sim.parameters import resolve

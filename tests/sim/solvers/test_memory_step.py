@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from models.rig_files.rig_file import load_material_rig
+from models.rig_file import load_material_rig
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
 from sim.effects.effect import activated

@@ -1,4 +1,4 @@
-"""Changes to a rig: factors, percentages and values for quantities that are named.
+"""Changes to a rig: factors, percentages and values for named quantities.
 
 A quantity of the bushing has a short name, ``damping``, and a long one with its unit,
 ``damping_Nms_rad``. ``"x2"`` and ``"-20 %"`` go with both, a bare number with the long one alone,
@@ -17,38 +17,25 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from models.checks import a_number, meant
+from models.bushing import Sleeve
 from models.errors import ParameterError
-from models.plausible import refuse_impossible
-from models.rig_files.sleeve_file import modulus_of
+from models.rig import Fit, LawSpec, Rig, modulus_of
+from models.schema import declared, did_you_mean, number, refuse_impossible
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from models.rig import Fit, LawSpec, Rig
-
-__all__ = ["changed_rig", "multiplied"]
-
-_FIT = {
-    "elastomer_stiffness": "elastomer_stiffness_Nm_rad",
-    "critical_torque": "critical_torque_Nm",
-    "kinetic_torque": "kinetic_torque_Nm",
-    "damping": "damping_Nms_rad",
+_SLEEVE = {name: declared(Sleeve)[name].key for name in ("wall", "length", "youngs_modulus")}
+_FIT = {name: entry.key for name, entry in declared(Fit).items() if name != "interference"}
+_RIG = {
+    name: declared(Rig)[name].key
+    for name in ("elastomer_inertia", "clamp_inertia", "elastomer_damping_share")
 }
-_LONG = _FIT | {
-    "elastomer_inertia": "elastomer_inertia_kgm2",
-    "clamp_inertia": "clamp_inertia_kgm2",
-    "elastomer_damping_share": "elastomer_damping_share",
-    "wall": "wall_mm",
-    "length": "length_mm",
-    "youngs_modulus": "youngs_modulus_MPa",
-}
-_SLEEVE = {"wall": 1e-3, "length": 1e-3, "youngs_modulus": 1e6}
-"""Units of those of the sleeve, in SI units."""
+_LONG = _FIT | _RIG | _SLEEVE
+"""Long names, with units, by short ones."""
+
 _FRICTION = "friction"
 
 _FACTOR = re.compile(r"x\s*(?P<number>[^\s%]+)")
@@ -57,7 +44,7 @@ _PERCENT = re.compile(r"(?P<number>[+-]\s*[^\s%]+)\s*%")
 
 @dataclass(frozen=True)
 class _Amount:
-    """What becomes of a value: it is multiplied, or replaced."""
+    """How a value changes: it is multiplied, or replaced."""
 
     factor: float = 1.0
     value: float | None = None
@@ -68,7 +55,7 @@ class _Amount:
 
 @dataclass(frozen=True)
 class _Target:
-    """Which number of the rig: `owner` is empty for those of the bushing, else a law's name."""
+    """A number of the rig: `owner` is empty for those of the bushing, else a law's name."""
 
     owner: str
     name: str
@@ -100,7 +87,7 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon")
     >>> other = changed_rig(rig, {"critical_torque": "-20 %", "ageing_time": "x2"}, "rig")
     >>> round(other.fit(0.279e-3).critical_torque, 3), other.friction.parameters["ageing_time"]
@@ -117,17 +104,13 @@ def changed_rig(rig: Rig, changes: Mapping[str, Any], where: str) -> Rig:
         rig = _resized(rig, bushing, where)
         made = replace(
             rig,
-            fits=tuple(_changed_fit(fit, bushing) for fit in rig.fits),
+            fits=tuple(replace(fit, **_changed(fit, _FIT, bushing)) for fit in rig.fits),
             friction=_changed_law(rig.friction, _FRICTION, amounts, where),
             effects=tuple(_changed_law(e, e.name, amounts, where) for e in rig.effects),
-            elastomer_inertia=_changed(bushing, "elastomer_inertia", rig),
-            clamp_inertia=_changed(bushing, "clamp_inertia", rig),
-            elastomer_damping_share=_changed(bushing, "elastomer_damping_share", rig),
+            **_changed(rig, _RIG, bushing),
         )
     except ParameterError as error:
         raise ParameterError(f"{where}: {str(error).removeprefix(f'{where}: ')}") from None
-    share = {"elastomer_damping_share": made.elastomer_damping_share}
-    a_number(share, "elastomer_damping_share", where, low=0.0, high=1.0, closed=True)
     refuse_impossible(made, where)
     return made
 
@@ -149,7 +132,7 @@ def multiplied(
 
     Examples
     --------
-    >>> from models.rig_files.rig_file import load_material_rig
+    >>> from models.rig_file import load_material_rig
     >>> multiplied(load_material_rig("PDMS"), {"damping": "x2", "kinetic_torque_Nm": 8.0},
     ...            {"damping": 1.01, "kinetic_torque": 0.5, "critical_torque": 0.9})
     {'damping': 'x2.02', 'kinetic_torque_Nm': 4.0, 'critical_torque': 'x0.9'}
@@ -204,53 +187,39 @@ def _target(rig: Rig, name: str, where: str) -> _Target:
         raise ParameterError(f"{where}: {name} can mean {possible}; write which")
     known = [*_LONG, *(k for k in _LONG.values() if k not in _LONG)]
     parameters = [f"{own}.{key}" for own, law in owners.items() for key in law.parameters]
-    hint = meant(name, [*known, *parameters, *(p.partition(".")[2] for p in parameters)])
+    hint = did_you_mean(name, [*known, *parameters, *(p.partition(".")[2] for p in parameters)])
     raise ParameterError(
         f"{where}: cannot change {name!r}{hint}; known are {', '.join([*known, *parameters])}"
     )
 
 
 def _amount(given: Any, name: str, target: _Target, where: str) -> _Amount:
-    said = f"{where}: {name} = {given!r}"
+    stated = f"{where}: {name} = {given!r}"
     if isinstance(given, str):
         text = given.strip()
         factor, percent = _FACTOR.fullmatch(text), _PERCENT.fullmatch(text)
-        number = math.nan
-        if factor:
-            number = _float(factor["number"])
-        elif percent:
-            number = 1.0 + _float(percent["number"].replace(" ", "")) / 100.0
-        if not 0.0 < number < math.inf:
+        by = math.nan
+        with suppress(ValueError):
+            if factor:
+                by = float(factor["number"])
+            elif percent:
+                by = 1.0 + float(percent["number"].replace(" ", "")) / 100.0
+        if not 0.0 < by < math.inf:
             raise ParameterError(
-                f"{said} is no change; write a factor above 0 such as 'x2', a percentage above "
+                f"{stated} is no change; write a factor above 0 such as 'x2', a percentage above "
                 "-100 % with its sign such as '-20 %', or a number"
             )
-        return _Amount(factor=number)
-    number = a_number({name: given}, name, where, low=-math.inf)
+        return _Amount(factor=by)
+    to = number({name: given}, name, where, low=-math.inf)
     long = _LONG.get(target.name)
     if not target.owner and name != long:
         raise ParameterError(
-            f"{said} has no unit; write {long} = {number:g}, or a factor such as 'x2'"
+            f"{stated} has no unit; write {long} = {to:g}, or a factor such as 'x2'"
         )
-    if not target.owner and (number < 0.0 or (number == 0.0 and not _may_vanish(target.name))):
-        raise ParameterError(f"{said} must be above 0")
-    return _Amount(value=number)
-
-
-def _may_vanish(name: str) -> bool:
-    return name == "elastomer_damping_share"
-
-
-def _float(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
-def _changed(amounts: Mapping[str, _Amount], name: str, rig: Rig) -> float:
-    old: float = getattr(rig, name)
-    return amounts[name].of(old) if name in amounts else old
+    vanishes = to == 0.0 and target.name == "elastomer_damping_share"
+    if not target.owner and not (to > 0.0 or vanishes):
+        raise ParameterError(f"{stated} must be above 0")
+    return _Amount(value=to)
 
 
 def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
@@ -265,7 +234,7 @@ def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
             "measured on: inner_radius_mm, wall_mm, length_mm, and hardness_shore_A or "
             "youngs_modulus_MPa"
         )
-    units = {name: _SLEEVE[name] for name in named}
+    units = {name: declared(Sleeve)[name].size for name in named}
     new = replace(
         old,
         **{
@@ -290,17 +259,19 @@ def _resized(rig: Rig, amounts: Mapping[str, _Amount], where: str) -> Rig:
     )
 
 
-def _changed_fit(fit: Fit, amounts: Mapping[str, _Amount]) -> Fit:
-    new: dict[str, Any] = {}
-    for name in _FIT:
-        if name not in amounts:
-            continue
-        amount, old = amounts[name], getattr(fit, name)
-        if isinstance(old, Mapping):
-            new[name] = {support: amount.of(value) for support, value in old.items()}
-        else:
-            new[name] = amount.of(old)
-    return replace(fit, **new)
+def _changed(
+    shown: Any, names: Mapping[str, str], amounts: Mapping[str, _Amount]
+) -> dict[str, Any]:
+    """Return what becomes of the fields of an object that have an amount."""
+    found: dict[str, Any] = {}
+    for name in names:
+        if name in amounts:
+            old, amount = getattr(shown, name), amounts[name]
+            if isinstance(old, Mapping):
+                found[name] = {support: amount.of(value) for support, value in old.items()}
+            else:
+                found[name] = amount.of(old)
+    return found
 
 
 def _changed_law(

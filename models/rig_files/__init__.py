@@ -1,1 +1,0 @@
-"""Rig files: what a TOML file says of a rig."""
