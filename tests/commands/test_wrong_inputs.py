@@ -158,10 +158,10 @@ def test_of_a_set_each_thing_is_said_once_and_of_which_sound(tmp_path, capsys):
     [
         (("--support-stiffness", "1e300"), "belongs to no beam; possible is 0.001 to 1e+12"),
         (("--support-stiffness", "1e-300"), "belongs to no beam; possible is 0.001 to 1e+12"),
-        (("--change", "wall_mm=1e-300"), "sleeve: wall = 1e-303 must lie in"),
-        (("--change", "wall_mm=1e300"), "sleeve: wall = 1e+297 must lie in"),
-        (("--change", "length_mm=1e-300"), "sleeve: length = 1e-303 must lie in"),
-        (("--change", "youngs_modulus_MPa=1e300"), "sleeve: youngs_modulus = 1e+306 must lie in"),
+        (("--change", "wall_mm=1e-300"), "sleeve: wall_mm = 1e-300 must be a number from"),
+        (("--change", "wall_mm=1e300"), "sleeve: wall_mm = 1e+300 must be a number from"),
+        (("--change", "length_mm=1e-300"), "sleeve: length_mm = 1e-300 must be"),
+        (("--change", "youngs_modulus_MPa=1e300"), "sleeve: youngs_modulus_MPa = 1e+300 must be"),
         (("--material", ""), "--material: "),
     ],
 )
