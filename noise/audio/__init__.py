@@ -1,5 +1,5 @@
 """Recordings as audible sound: for listening, and with a level that can be checked.
 
-`sound` makes it, `gain` decides how loud, `sequence` puts sounds behind one another, `wav` and
-`files` write it, `assessment` says what its levels are.
+`sound` makes it, `gain` decides how loud, `assessment` says what its levels are, `render` writes
+sets of files, `spectrogram` is what is seen of it.
 """

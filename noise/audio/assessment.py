@@ -9,20 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING
 
 from features.kernels.bands import NOMINAL_THIRD_OCTAVES
-from features.long.levels import long_sound_levels
+from features.kernels.levels import SoundLevels, sound_levels
 from features.sound_quality import SOUND_QUALITY_RATE, SoundQuality, sound_quality_of
 from models.errors import ParameterError
-from models.recording import REFERENCE_PRESSURE
-from noise.audio.long_sound import AudibleSound
-
-if TYPE_CHECKING:
-    from features.kernels.levels import SoundLevels
-    from models.recording import Recording
-
-__all__ = ["COLUMNS", "Assessment", "assess"]
+from models.recording import REFERENCE_PRESSURE, Recording
+from noise.audio.sound import pressure_channel, resampled
 
 _LONGEST = 600.0
 """Longest sound of which the quality is told [s]: a second takes seconds."""
@@ -124,12 +117,12 @@ class Assessment:
         return lines
 
 
-def assess(recording: Recording | AudibleSound, *, quality: bool = False) -> Assessment:
+def assess(recording: Recording, *, quality: bool = False) -> Assessment:
     """Measure the sound of a recording's first pressure channel.
 
     Parameters
     ----------
-    recording : Recording or AudibleSound
+    recording : Recording
     quality : bool
         Whether loudness, sharpness, roughness and tonality are told as well.
 
@@ -147,33 +140,26 @@ def assess(recording: Recording | AudibleSound, *, quality: bool = False) -> Ass
     Examples
     --------
     >>> import numpy as np
-    >>> from models.recording import Channel, Recording
+    >>> from models.recording import Channel
     >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)
     >>> of = assess(Recording(tone[np.newaxis], 48e3, (Channel("pressure"),)))
     >>> of.row(full_scale=2.0)["level_db"], of.row(full_scale=2.0)["level_dbfs"]
     (93.98, -6.02)
     """
-    take = AudibleSound.of(recording)
-    sound, calibrated = take.sound, take.about.calibrated
-    levels = long_sound_levels(
-        sound.read,
-        sound.n_samples,
-        sound.rate,
-        sound.moments,
-        reference=REFERENCE_PRESSURE if calibrated else 1.0,
-    )
-    measured = None
-    if quality:
-        if not calibrated:
-            raise ParameterError("sound quality needs a calibrated recording")
-        if sound.n_samples > _LONGEST * sound.rate:
-            raise ParameterError(
-                f"sound quality is told of {_LONGEST / 60.0:g} minutes at most, and this lasts "
-                f"{sound.n_samples / sound.rate / 60.0:.1f}"
-            )
-        at_rate = sound.without_mean().resampled(SOUND_QUALITY_RATE)
-        measured = sound_quality_of(at_rate.whole(), SOUND_QUALITY_RATE)
-    return Assessment(levels, calibrated, measured)
+    sound, rate = recording[pressure_channel(recording).name], recording.rate
+    calibrated = recording.calibrated
+    levels = sound_levels(sound, rate, reference=REFERENCE_PRESSURE if calibrated else 1.0)
+    if not quality:
+        return Assessment(levels, calibrated)
+    if not calibrated:
+        raise ParameterError("sound quality needs a calibrated recording")
+    if sound.size > _LONGEST * rate:
+        raise ParameterError(
+            f"sound quality is told of {_LONGEST / 60.0:g} minutes at most, and this lasts "
+            f"{sound.size / rate / 60.0:.1f}"
+        )
+    at_rate = resampled(sound - sound.mean(), rate, SOUND_QUALITY_RATE)
+    return Assessment(levels, calibrated, sound_quality_of(at_rate, SOUND_QUALITY_RATE))
 
 
 def _rounded(value: float, digits: int = 2) -> float | None:

@@ -8,29 +8,16 @@ the filter's phase is linear, so that a slip stays a click.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from models.errors import RecordingError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from models.recording import Channel, Recording
-
-__all__ = [
-    "FADE",
-    "LOWEST_HEARD",
-    "audible",
-    "fade_flank",
-    "playable",
-    "pressure_channel",
-    "resampled",
-    "resampling",
-]
+from models.errors import ParameterError, RecordingError
+from models.recording import Channel, Recording
 
 FADE = 0.010
 """Half a Hann window at either end [s]."""
@@ -42,6 +29,16 @@ _STOP_BAND = 100.0  # dB
 _PASS_BAND = 0.95  # of the lower Nyquist frequency
 _LARGEST_TERM = 20_000  # of that ratio: the filter is 300 times as long
 _FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right within 1e-6
+_ORDER = 4  # of a band's ends, once
+
+
+class _Described(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def rate(self) -> float: ...
+    @property
+    def channels(self) -> Sequence[Channel]: ...
 
 
 def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> NDArray[np.float64]:
@@ -68,7 +65,6 @@ def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> N
 
     Examples
     --------
-    >>> from models.recording import Channel, Recording
     >>> run = Recording(np.ones((1, 3000)), 30e3, (Channel("pressure"),))
     >>> audible(run).shape, audible(run, 44100).shape
     ((4800,), (4410,))
@@ -101,39 +97,14 @@ def playable(
     (4800,)
     """
     sound = resampled(signal - signal.mean(), rate, new_rate)
-    flank = fade_flank(sound.size, new_rate, fade)
-    sound[: flank.size] *= flank
-    sound[sound.size - flank.size :] *= flank[::-1]
+    n = min(round(fade * new_rate), sound.size // 2)
+    flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
+    sound[:n] *= flank
+    sound[sound.size - n :] *= flank[::-1]
     return sound
 
 
-def fade_flank(n_samples: int, rate: float, fade: float) -> NDArray[np.float64]:
-    """Gain that a sound is faded in with; out by the same, backwards.
-
-    Parameters
-    ----------
-    n_samples : int
-        Of the sound, half of which is faded at most.
-    rate : float
-        Sampling rate [Hz].
-    fade : float
-        Length of the fade [s].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [-]
-
-    Examples
-    --------
-    >>> fade_flank(10, 100.0, 0.02).round(2).tolist()
-    [0.15, 0.85]
-    """
-    n = min(round(fade * rate), n_samples // 2)
-    return np.asarray(np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2)
-
-
-def pressure_channel(recording: Recording) -> Channel:
+def pressure_channel(recording: _Described) -> Channel:
     """Return the channel that is heard: the first of sound pressure.
 
     Raises
@@ -143,7 +114,6 @@ def pressure_channel(recording: Recording) -> Channel:
 
     Examples
     --------
-    >>> from models.recording import Channel, Recording
     >>> run = Recording(np.ones((2, 16)), 30e3, (Channel("torque"), Channel("pressure_2")))
     >>> pressure_channel(run).name
     'pressure_2'
@@ -156,7 +126,7 @@ def pressure_channel(recording: Recording) -> Channel:
     for channel in recording.channels:
         if channel.kind == "pressure":
             return channel
-    have = ", ".join(recording.channel_names)
+    have = ", ".join(channel.name for channel in recording.channels)
     raise RecordingError(
         f"recording {recording.name!r} has no pressure channel to be heard; it has {have}"
     )
@@ -172,33 +142,15 @@ def resampled(signal: NDArray[np.float64], rate: float, new_rate: float) -> NDAr
     """
     from scipy.signal import resample_poly
 
-    up, down, taps = resampling(rate, new_rate)
+    up, down, taps = _resampling(rate, new_rate)
     if up == down:
         return np.array(signal, dtype=float)
     return np.asarray(resample_poly(signal, up, down, window=taps))
 
 
 @lru_cache(maxsize=4)
-def resampling(rate: float, new_rate: float) -> tuple[int, int, NDArray[np.float64]]:
-    """Ratio of two sampling rates and the filter that goes with it.
-
-    Parameters
-    ----------
-    rate, new_rate : float
-        [Hz]
-
-    Returns
-    -------
-    up, down : int
-        What the one is multiplied and divided by.
-    taps : ndarray, shape (n,)
-        At the multiplied rate [-]; empty where the rates are the same.
-
-    Examples
-    --------
-    >>> resampling(44100.0, 48000.0)[:2], resampling(48000.0, 48000.0)[2].size
-    ((160, 147), 0)
-    """
+def _resampling(rate: float, new_rate: float) -> tuple[int, int, NDArray[np.float64]]:
+    """Ratio of two sampling rates [Hz] and the filter that goes with it, at the multiplied rate."""
     from scipy.signal import firwin, kaiser_beta
 
     terms = max(1, min(_FINEST_RATIO, int(_LARGEST_TERM * rate / new_rate)))
@@ -211,3 +163,50 @@ def resampling(rate: float, new_rate: float) -> tuple[int, int, NDArray[np.float
     n_taps = math.ceil((_STOP_BAND - 7.95) / (2.285 * math.pi * (1.0 - _PASS_BAND) * stop)) | 1
     window = ("kaiser", kaiser_beta(_STOP_BAND))
     return up, down, np.asarray(firwin(n_taps, 0.5 * (1.0 + _PASS_BAND) * stop, window=window))
+
+
+def in_band(
+    signal: NDArray[np.float64], rate: float, band: tuple[float, float]
+) -> NDArray[np.float64]:
+    """Return a signal in a band of frequencies alone, without delay.
+
+    Butterworth's filter runs forwards and backwards, so that a slip stays where it was: at the ends
+    of the band it is 6 dB down, and falls by 48 dB an octave beyond.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        In any [unit].
+    rate : float
+        Sampling rate [Hz].
+    band : tuple of float
+        Lowest and highest frequency [Hz].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In the same [unit], without its mean.
+
+    Raises
+    ------
+    ParameterError
+        A frequency is not below half the sampling rate.
+
+    Examples
+    --------
+    >>> tones = np.sin(2 * np.pi * np.array([[100.0], [1000.0]]) * np.arange(48000) / 48e3).sum(0)
+    >>> round(float(in_band(tones, 48e3, (500.0, 2000.0)).var()), 2)
+    0.5
+    """
+    from scipy.signal import butter, sosfiltfilt
+
+    low, high = band
+    if high >= 0.5 * rate:
+        raise ParameterError(
+            f"a filter at {high:g} Hz needs more than the {rate:g} Hz it is sampled at; "
+            f"stay below {0.5 * rate:g} Hz"
+        )
+    sections = butter(_ORDER, band, "bandpass", fs=rate, output="sos")
+    # Long enough for it to die out in; at its ends the sound is turned about them.
+    padding = min(signal.size - 1, round(4.0 * rate / low))
+    return np.asarray(sosfiltfilt(sections, signal - signal.mean(), padlen=padding))

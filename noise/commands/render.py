@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from argparse import ArgumentTypeError
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from noise.base.atomic import check_target
@@ -20,15 +22,13 @@ from noise.commands.options import (
     one_of,
     refuse,
     seed,
-    whole_number,
 )
 
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from noise.audio.rendering import Survey
-    from noise.batch.lines import Results
-    from noise.commands.render_plans import Plan
+    from models.recording import Recording
+    from noise.audio.render import FullScale, Measured, Part
     from noise.commands.render_sources import Source
 
 
@@ -73,10 +73,6 @@ OPTIONS = (
     ),
     Option("--ab").help("put the inputs behind one another into one file, at the same gain"),
     Option("--gap S", number(least=0.0, most=60.0), 0.5).help("silence between two of them in s"),
-    Option("--repeats N", whole_number(1, most=20), 1).help(
-        "simulate each run N times, with random numbers of its own, one behind the other; "
-        "with --ab: A B A B ... (default: 1, at most 20)"
-    ),
     Option("--rate 44100|48000", one_of(44100, 48000), 48000).help(
         "sampling rate of the sound in Hz"
     ),
@@ -102,10 +98,6 @@ OPTIONS = (
         "the ends and 48 dB an octave beyond; levels are then those of the band, and how far they "
         "lie below the whole sound is told (default: all)"
     ),
-    Option("--notch HZ", number(least=10.0, most=200e3), repeated=True).help(
-        "take a tone of this frequency out, and what lies 3 % beside it; zero-phase; may be "
-        "given several times (default: none)"
-    ),
     Option("--sound-quality").help(
         "tell loudness (ISO 532-1), sharpness (DIN 45692), roughness and tonality as well; "
         "needs the extra sound-quality, and some seconds a second of sound; 10 minutes at most"
@@ -118,8 +110,6 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Write the sounds."""
-    from noise.batch.lines import kept_results
-    from noise.commands.render_plans import measuring_identity
     from noise.commands.render_sources import sources_of
 
     if options.sound_quality:
@@ -129,15 +119,27 @@ def run(options: Namespace) -> int:
     if options.ab and options.match_loudness:
         raise ParameterError("--ab plays all parts at the same gain; leave --match-loudness out")
     sources = sources_of(options)
-    if options.ab and len(sources) * options.repeats < 2:
+    if options.ab and len(sources) < 2:
         raise ParameterError("--ab puts two or more inputs behind one another; give a second one")
     folder = _folder(options, sources)
     check_target(options.out)
-    plans = _plans(options, sources, folder)
-    _keep_inputs(options.out, sources, plans)
-    table = None if folder is None else folder / "levels.csv"
-    with kept_results(table, measuring_identity(options)) as kept:
-        return _rendered(options, plans, folder, kept)
+    files = _files(options, sources, folder)
+    _keep_inputs(options.out, sources, files)
+    return _rendered(options, files, folder)
+
+
+class _File(NamedTuple):
+    """One file to be: what it is called, and what is heard in it."""
+
+    name: str
+    target: Path
+    sources: list[Source]
+
+    def recordings(self, band: tuple[float, float] | None) -> list[Recording]:
+        from noise.audio.render import heard
+
+        made = [source.recording() for source in self.sources]
+        return made if band is None else [heard(one, band) for one in made]
 
 
 def _folder(options: Namespace, sources: list[Source]) -> Path | None:
@@ -155,32 +157,21 @@ def _folder(options: Namespace, sources: list[Source]) -> Path | None:
     return named
 
 
-def _plans(options: Namespace, sources: list[Source], folder: Path | None) -> list[Plan]:
-    from noise.audio.files import audio_path
-    from noise.audio.filters import SoundFilter
-    from noise.commands.render_plans import Plan
+def _files(options: Namespace, sources: list[Source], folder: Path | None) -> list[_File]:
+    from noise.audio.render import audio_path
 
-    through = SoundFilter(options.band, tuple(options.notch or ()))
-    numbers = range(options.repeats)
     if folder is not None:
-        return [
-            Plan(one.name, audio_path(folder / one.name), tuple((one, n) for n in numbers), through)
-            for one in sources
-        ]
+        return [_File(one.name, audio_path(folder / one.name), [one]) for one in sources]
     target = audio_path(options.out)
-    runs = tuple((source, number) for number in numbers for source in sources)
-    return [Plan(target.stem if options.ab else sources[0].name, target, runs, through)]
+    return [_File(target.stem if options.ab else sources[0].name, target, sources)]
 
 
-def _keep_inputs(out: Path, sources: list[Source], plans: list[Plan]) -> None:
+def _keep_inputs(out: Path, sources: list[Source], written: list[_File]) -> None:
     """Refuse to write over a recording or its sidecar."""
-    from noise.commands.render_sources import RecordedSource
-
-    read = [source.path for source in sources if isinstance(source, RecordedSource)]
+    read = [source.path for source in sources if source.path is not None]
     stems = {path.parent.resolve() / path.stem for path in read}
     files = {(path.stat().st_dev, path.stat().st_ino) for path in read}
-    for plan in plans:
-        target = plan.target
+    for _, target, _ in written:
         same = target.parent.resolve() / target.stem in stems
         if not same and target.exists():
             same = (target.stat().st_dev, target.stat().st_ino) in files
@@ -188,108 +179,126 @@ def _keep_inputs(out: Path, sources: list[Source], plans: list[Plan]) -> None:
             raise ParameterError(f"--out {out} would overwrite the recording or its sidecar")
 
 
-def _rendered(
-    options: Namespace, plans: list[Plan], folder: Path | None, kept: Results | None
-) -> int:
-    from noise.audio.rendering import COLUMNS, render
+def _rendered(options: Namespace, files: list[_File], folder: Path | None) -> int:
+    from noise.audio.render import COLUMNS, full_scales, measure, render
     from noise.base.tables import write_table
-    from noise.commands.render_gain import faint_notes, full_scales
 
-    surveys: dict[str, Survey] = {}
+    measured: dict[str, Measured] = {}
     refused: dict[str, str] = {}
-    filters: dict[str, list[str]] = {}
     shape = {"rate": options.rate, "gap": options.gap, "fade": options.fade}
-    for plan in track(plans, "measuring", unit="sound"):
+    for file in track(files, "measuring", unit="sound"):
         try:
-            surveys[plan.name], notes = plan.surveyed(
-                kept,
+            of = measure(
+                file.recordings(options.band),
                 **shape,
                 quality=options.sound_quality,
-                loudness=options.match_loudness,
+                match=options.match_loudness,
             )
-        except BushingNoiseError as error:
+        except (BushingNoiseError, MemoryError) as error:
             if folder is None and not isinstance(error, RecordingError):
                 raise
-            refused[plan.name] = str(error)
-            refuse(error, plan.name)
+            refused[file.name] = str(error) or "needs more memory than there is"
+            refuse(refused[file.name], file.name)
             continue
-        if plan.through:
-            filters[plan.name] = [one[-1].removeprefix("filtered: ") for one in notes]
-            for words in dict.fromkeys(filters[plan.name]):
-                say(f"{plan.name}: {words}")
+        measured[file.name] = of
+        for words in dict.fromkeys(filter(None, map(_filter_words, of.parts))):
+            say(f"{file.name}: {words}")
     scales = full_scales(
-        surveys, pascal=options.pascal_per_full_scale, matched=options.match_loudness
+        measured, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
-    _notes(options, plans, surveys)
-    faint, faint_of = faint_notes(surveys, scales, back_to_back=options.ab)
-    if faint:
-        note(faint)
+    _notes(options, files, measured)
+    faint = _note_faint(measured, scales, alone=options.ab)
     rows: list[dict[str, object]] = []
-    for index, plan in enumerate(plans):
-        if plan.name not in surveys:
-            rows.append({"file": plan.target.name, "error": refused[plan.name]})
+    for index, (name, target, _) in enumerate(files):
+        if name not in measured:
+            rows.append({"file": target.name, "error": refused[name]})
             continue
-        survey_of, scale = surveys[plan.name], scales[plan.name]
-        with plan.takes() as takes:
-            written = render(
-                plan.target,
-                takes,
-                survey_of,
-                scale,
-                **shape,
-                bits=options.bits,
-                seed=(options.seed, index),
-                note=faint_of.get(plan.name),
-            )
-        name = plan.target.name if folder is None else plan.target.relative_to(folder).as_posix()
-        told = filters.get(plan.name, [""] * len(written.rows))
-        rows += [
-            {"file": name, **row, "filter": words or None, "note": faint_of.get(plan.name)}
-            for row, words in zip(written.rows, told, strict=True)
-        ]
-        _tell(plan, survey_of, scale.value, written.summary, alone=folder is None)
-        print(plan.target)
-        print(plan.target.with_suffix(".json"))
-    if folder is not None:
-        write_table(
-            folder / "levels.csv",
-            ("file", *COLUMNS, "filter", "note", "error"),
-            rows,
+        of, scale = measured[name], scales[name]
+        written, summary = render(
+            target,
+            files[index].recordings(options.band),
+            of,
+            scale,
+            **shape,
+            bits=options.bits,
+            seed=(options.seed, index),
+            note=faint.get(name),
         )
+        file_name = target.name if folder is None else target.relative_to(folder).as_posix()
+        rows += [
+            {"file": file_name, **row, "filter": _filter_words(part), "note": faint.get(name)}
+            for row, part in zip(written, of.parts, strict=True)
+        ]
+        worth = f"full scale is {scale.value:.4g} Pa; " * of.calibrated
+        say(f"{name}: {worth}in the file {summary}")
+        several = len(of.parts) > 1
+        for part in of.parts:
+            lead = f"{name}: {part.about.name}" if several else name
+            for line in part.assessment.words(scale.value, bands=folder is None and not several):
+                say(f"{lead}: {line}")
+        print(target)
+        print(target.with_suffix(".json"))
+    if folder is not None:
+        write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "note", "error"), rows)
         print(folder / "levels.csv")
     return 1 if refused else 0
 
 
-def _tell(plan: Plan, survey: Survey, full_scale: float, summary: str, *, alone: bool) -> None:
-    if survey.calibrated:
-        say(f"{plan.name}: full scale is {full_scale:.4g} Pa; in the file {summary}")
-    else:
-        say(f"{plan.name}: in the file {summary}")
-    several = len(survey.assessments) > 1
-    for part, assessment in zip(survey.parts, survey.assessments, strict=True):
-        lead = f"{plan.name}: {part.name}" if several else plan.name
-        for line in assessment.words(full_scale, bands=alone and not several):
-            say(f"{lead}: {line}")
+def _filter_words(part: Part) -> str | None:
+    last = part.about.notes[-1] if part.about.notes else ""
+    return last.removeprefix("filtered: ") if last.startswith("filtered: ") else None
 
 
-def _notes(options: Namespace, plans: list[Plan], surveys: dict[str, Survey]) -> None:
+def _notes(options: Namespace, files: list[_File], measured: Mapping[str, Measured]) -> None:
     """Say what the user should know of."""
-    from noise.commands.render_sources import SimulatedSource
-
-    unknown = [of.name for of in surveys.values() if not of.calibrated]
+    unknown = [of.name for of in measured.values() if not of.calibrated]
     if unknown:
         more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
         note(
             f"{unknown[0]}{more}: not calibrated, so how loud it was is not known; levels are in "
             "dBFS only (--full-scale gives a calibration)"
         )
-    for of in surveys.values():
+    for of in measured.values():
         for line in of.untold:
             note(line)
-    short = any(
-        isinstance(source, SimulatedSource) and source.arguments["seconds"] < _LONG_ENOUGH
-        for plan in plans
-        for source, _ in plan.runs
-    )
+    short = any(source.seconds < _LONG_ENOUGH for file in files for source in file.sources)
     if short and options.seconds is None:
         note("a sound of 2 to 10 s is easier to judge by ear; --seconds simulates for longer")
+
+
+_LEAST_AUDIBLE = -48.0
+"""A-weighted level in a file of what just stands out [dBFS(A)]: speech at -23 LUFS played as loud
+as a talker at 1 m (60 dB(A), ISO 9921), over the background of a quiet office, 35 dB(A)."""
+
+_MOST_NAMED = 4
+
+
+def _note_faint(
+    measured: Mapping[str, Measured], scales: Mapping[str, FullScale], *, alone: bool
+) -> dict[str, str]:
+    """Say which sounds are nearly inaudible in their files, and what makes them audible."""
+    from noise.audio.render import full_scales
+
+    told: dict[str, str] = {}
+    for name, of in measured.items():
+        value = scales[name].value
+        in_file = max(part.assessment.in_file(value).level_af_max for part in of.parts)
+        if math.isfinite(in_file) and in_file < _LEAST_AUDIBLE:
+            in_air = max(part.assessment.levels.level_af_max for part in of.parts)
+            at = f"{in_air:.1f} dB(A) at the microphone, " * of.calibrated
+            told[name] = f"{name} ({at}{in_file:.1f} dBFS(A) in the file)"
+    if not told:
+        return {}
+    scale = scales[next(iter(told))]
+    lead = f"nearly inaudible (below {_LEAST_AUDIBLE:g} dBFS(A)) where the volume suits speech"
+    remedy = ""
+    if scale.gain == "calibrated":
+        lead += f", unless playback is calibrated to {scale.value:g} Pa"
+        common = next(iter(full_scales(measured).values())).value
+        louder = 20.0 * math.log10(scale.value / common)
+        remedy = f"; without --pascal-per-full-scale {louder:.0f} dB louder"
+    if len(measured) > 1 and not alone and scale.gain != "matched":
+        remedy += "; with --match-loudness as loud as the others"
+    more = f" and {len(told) - _MOST_NAMED} more" * (len(told) > _MOST_NAMED)
+    note(f"{lead}: {', '.join([*told.values()][:_MOST_NAMED])}{more}{remedy}")
+    return {name: f"{lead}: {words}{remedy}" for name, words in told.items()}

@@ -7,90 +7,61 @@ Whatever cannot be used is refused before anything is simulated.
 
 from __future__ import annotations
 
+import math
 import re
 import shlex
 from argparse import ArgumentParser, Namespace
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from models.errors import ParameterError
+from models.recording import Recording
 from noise.base.progress import note
 from noise.commands.condition import CONDITION, given_options, run_arguments, with_notes
 from noise.commands.options import add_options, full_scale_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from contextlib import ExitStack
-
-    from models.recording import Recording
-    from noise.audio.long_sound import AudibleSound
     from noise.recordings.meaning import PascalPerFullScale
-
-__all__ = ["RecordedSource", "SimulatedSource", "Source", "sources_of"]
 
 _ALONE = {"speed": "oscillate", "oscillate": "speed"}
 """Options of which one takes the other's place."""
 
 
 @dataclass(frozen=True)
-class RecordedSource:
-    """A recording on disk; `name` is its path without the ending, below the folder named."""
+class Source:
+    """One sound to be heard.
+
+    Parameters
+    ----------
+    name : str
+        Of a recording its path without the ending, below the folder named.
+    make : callable
+        Reads or simulates it.
+    path : Path, optional
+        Of a recording.
+    seconds : float
+        That are simulated; infinite for a recording.
+    notes : tuple of str
+        What the user should know before it is simulated.
+    """
 
     name: str
-    path: Path
-    full_scale: PascalPerFullScale | None
-
-    def heard(self, number: int, stack: ExitStack) -> AudibleSound:
-        """Open it, until `stack` is closed; the same whatever `number`."""
-        del number
-        from noise.audio.long_sound import AudibleSound
-        from noise.recordings import read_recording
-        from noise.recordings.blocks import open_blocks
-
-        opened = stack.enter_context(open_blocks(self.path, full_scale=self.full_scale))
-        return AudibleSound.of(opened or read_recording(self.path, full_scale=self.full_scale))
-
-
-@dataclass(frozen=True)
-class SimulatedSource:
-    """A condition of the rig; `arguments` are those of `sim.run.simulate`."""
-
-    name: str
-    arguments: Mapping[str, Any]
-    seed: int
+    make: Callable[[str], Recording]
+    path: Path | None = None
+    seconds: float = math.inf
     notes: tuple[str, ...] = ()
-    done: dict[int, Recording] = field(default_factory=dict)
 
-    def heard(self, number: int, stack: ExitStack) -> AudibleSound:
-        """Return the run of this number; nothing is left for `stack` to close."""
-        del stack
-        from noise.audio.long_sound import AudibleSound
+    @cached_property
+    def simulated(self) -> Recording:
+        """What is heard of the run, which is simulated once."""
+        return self.make(self.name)
 
-        return AudibleSound.of(self.recording(number))
-
-    def recording(self, number: int) -> Recording:
-        """Simulate the run of this number, each with random numbers of its own."""
-        if number not in self.done:
-            import numpy as np
-
-            from sim.run import simulate
-
-            arguments = dict(self.arguments)
-            if number:
-                arguments["rng"] = np.random.default_rng([self.seed, number])
-            # Its sound is all that is heard of it, and may have to be kept for long.
-            made = simulate(**arguments)
-            run = made.recording if number else with_notes(made, self.notes, arguments, self.name)
-            row = run.first("pressure")
-            if row is not None:
-                samples, channels = run.samples[row : row + 1].copy(), (run.channels[row],)
-                run = replace(run, samples=samples, channels=channels)
-            self.done[number] = replace(run, name=self.name)
-        return self.done[number]
-
-
-Source = RecordedSource | SimulatedSource
+    def recording(self) -> Recording:
+        """Return its pressure channel; a recording is read each time."""
+        return self.make(self.name) if self.path is not None else self.simulated
 
 
 def sources_of(options: Namespace) -> list[Source]:
@@ -118,11 +89,6 @@ def sources_of(options: Namespace) -> list[Source]:
             f"{given[0]} describes a run to simulate, but {recorded[0]} is already recorded; "
             "give one or the other"
         )
-    if recorded and not options.ab and options.repeats > 1:
-        raise ParameterError(
-            f"--repeats simulates a run again, but {recorded[0]} is already recorded, and a "
-            "recording is not looped; record it for longer"
-        )
     full_scale = full_scale_of(options)
     sources: list[Source] = []
     for text in options.inputs:
@@ -133,11 +99,11 @@ def sources_of(options: Namespace) -> list[Source]:
     if not options.inputs:
         sources.append(_source(options.out.name.removesuffix(".wav"), options))
     named = _with_names_of_their_own(sources)
-    _tell_notes([source for source in named if isinstance(source, SimulatedSource)])
+    _tell_notes([source for source in named if source.path is None])
     return named
 
 
-def _tell_notes(sources: Sequence[SimulatedSource]) -> None:
+def _tell_notes(sources: Sequence[Source]) -> None:
     """Note each thing once: what holds of all runs as such, the rest with the names of its runs."""
     found: dict[str, list[str]] = {}
     for source in sources:
@@ -162,8 +128,18 @@ def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[Source]
     if not found:
         raise ParameterError(f"{path}: there are no recordings in it")
     return [
-        RecordedSource(str(Path(name).with_suffix("")), file, full_scale) for file, name in found
+        Source(str(Path(name).with_suffix("")), partial(_read, file, full_scale), file)
+        for file, name in found
     ]
+
+
+def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recording:
+    from noise.audio.render import heard
+    from noise.recordings import read_recording
+    from noise.recordings.blocks import open_blocks
+
+    with open_blocks(path, full_scale=full_scale) as opened:
+        return heard(opened or read_recording(path, full_scale=full_scale))
 
 
 def _simulated(text: str, options: Namespace) -> Source:
@@ -194,7 +170,15 @@ def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
 def _source(name: str, options: Namespace) -> Source:
     # At the rate of the sound: the rig's own rate would cut the creak off at 15 kHz.
     arguments, notes = run_arguments(options, options.rate)
-    return SimulatedSource(name, arguments, options.seed, notes)
+
+    def simulated(name: str) -> Recording:
+        from noise.audio.render import heard
+        from sim.run import simulate
+
+        run = with_notes(simulate(**arguments), notes, arguments, name)
+        return heard(replace(run, name=name))
+
+    return Source(name, simulated, seconds=arguments["seconds"], notes=notes)
 
 
 def _with_names_of_their_own(sources: list[Source]) -> list[Source]:

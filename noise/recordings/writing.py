@@ -2,14 +2,10 @@
 
 A run too long for memory comes block by block. The header says at once how long the file will be,
 so what arrives must be just as much; until it has, nothing stands under the file's own name.
-
-The same samples give the same bytes. The sound library pads the header or adds the time of day to
-it, scipy writes these bytes but wants all samples at once: so the header is packed here.
 """
 
 from __future__ import annotations
 
-import struct
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +17,7 @@ from models.recording import Recording
 from noise.base.atomic import atomic
 from noise.recordings.files import MIN_SAMPLES, READERS
 from noise.recordings.sidecar import sidecar_text
+from noise.recordings.wav import wav_header
 
 if TYPE_CHECKING:
     import os
@@ -31,11 +28,7 @@ if TYPE_CHECKING:
     from models.condition import Condition
     from models.recording import Channel
 
-__all__ = ["float_wav_header", "write_blocks", "write_recording"]
 
-_IEEE_FLOAT = 3  # code of the format
-_BYTES = 4  # of a sample
-_HEADER = 58  # bytes
 _BLOCK = 1 << 16  # samples a channel
 
 
@@ -154,7 +147,7 @@ def _write(
         )
     text = sidecar_text(about)
     try:
-        header = float_wav_header(len(about.channels), n_samples, int(rate))
+        header = wav_header(n_samples, int(rate), 32, n_channels=len(about.channels))
     except ParameterError as error:
         raise ParameterError(f"{target}: {error}") from error
     # The sidecar is moved into place first: samples are never seen without what they mean.
@@ -189,31 +182,6 @@ def _frames(
             f"{target}: channel {name!r} holds samples that are not finite in 32 bits"
         )
     return frames
-
-
-def float_wav_header(n_channels: int, n_samples: int, rate: int) -> bytes:
-    """Header of a WAV file; the samples follow it, interleaved, as little-endian 32-bit floats.
-
-    Raises
-    ------
-    ParameterError
-        The samples are more than a WAV file can hold, or the header's numbers do not fit.
-
-    Examples
-    --------
-    >>> len(float_wav_header(4, 3600 * 30000, 30000))
-    58
-    """
-    frame = n_channels * _BYTES
-    size = n_samples * frame
-    if max(size + _HEADER, rate * frame) >= 1 << 32 or frame >= 1 << 16:
-        raise ParameterError(
-            f"{n_channels} channels of {n_samples} samples at {rate} Hz do not fit into a WAV "
-            f"file (4 GiB); write shorter recordings"
-        )
-    kind = (_IEEE_FLOAT, n_channels, rate, rate * frame, frame, 8 * _BYTES, 0)
-    head = struct.pack("<4sI4s4sIHHIIHHH", b"RIFF", _HEADER - 8 + size, b"WAVE", b"fmt ", 18, *kind)
-    return head + struct.pack("<4sII4sI", b"fact", 4, n_samples, b"data", size)
 
 
 def _wav_path(path: Path) -> Path:

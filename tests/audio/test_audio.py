@@ -11,11 +11,11 @@ from hypothesis import given, settings, strategies as st
 from models.condition import FIXED, Condition
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
-from noise.audio.files import write_audio
 from noise.audio.gain import common_full_scale, least_full_scale
+from noise.audio.render import write_audio
 from noise.audio.sound import audible
-from noise.audio.wav import BITS
 from noise.recordings import read_recording
+from noise.recordings.wav import BITS
 
 SQUEAL = Condition(speed=10.0, interference=0.279e-3, support_stiffness=FIXED, material="PDMS")
 

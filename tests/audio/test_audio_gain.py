@@ -13,7 +13,7 @@ from noise.audio.gain import (
     matched_loudness,
     true_peak,
 )
-from noise.audio.wav import wav_bytes
+from noise.recordings.wav import wav_bytes
 
 RATE = 48000
 

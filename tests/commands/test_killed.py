@@ -193,18 +193,7 @@ def simulates_and_measures_nothing_again(call, target, given, tmp_path, shares):
         assert not (folder / journal).exists()
 
 
-@pytest.mark.slow
-def test_a_set_of_sounds_goes_on_where_half_of_it_was_measured(tmp_path):
-    make_recordings(tmp_path / "given" / "runs", 12, 1, 1.0)
-    (tmp_path / "given" / "runs" / "day1" / "shift1" / "run0001.flac").unlink()
-    call = ["render", "runs", "--out", "set"]
-    simulates_and_measures_nothing_again(
-        call, "set/levels.csv", tmp_path / "given", tmp_path, [0.5]
-    )
-
-
 KEEPING = {
-    "render": (CALLS["render"], "set/levels.csv"),
     "screen": (["screen", "fluorocarbon", "PDMS", "--simulations", "200", "--no-tolerances",
                 "--sounds", "1", "--out", "screen"], "screen/map.csv"),
     "train": (["train", "--samples", "20", "--out", "mine.npz"], "mine.npz"),

@@ -213,8 +213,6 @@ def test_a_sound_too_short_for_its_quality_is_rendered_all_the_same(tmp_path, ca
         (["{runs}", "--out", "{runs}"], "would overwrite"),
         (["{runs}/loud.wav", "--ab", "--out", "{tmp}/s.wav"], "give a second one"),
         (["{runs}", "--ab", "--match-loudness", "--out", "{tmp}/s.wav"], "--match-loudness"),
-        (["{runs}/loud.wav", "--repeats", "2", "--out", "{tmp}/s.wav"], "not looped"),
-        (["{runs}/loud.wav", "--repeats", "0", "--out", "{tmp}/s.wav"], "--repeats"),
         (["{runs}/loud.wav", "--gap", "-1", "--out", "{tmp}/s.wav"], "--gap"),
         (["--speed 5 --pitch 3", "--out", "{tmp}/s.wav"], "--pitch"),
         (["", "--out", "{tmp}/s.wav"], "INPUT is empty"),

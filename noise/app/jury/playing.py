@@ -23,7 +23,7 @@ from noise.audio.gain import (
     true_peak,
 )
 from noise.audio.sound import playable
-from noise.audio.wav import wav_bytes
+from noise.recordings.wav import wav_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

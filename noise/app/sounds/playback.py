@@ -15,7 +15,7 @@ from features.kernels.levels import a_weighted, fast_levels, sound_levels
 from noise.app.sounds.stretch import number, read_stretch
 from noise.audio.gain import LOUDNESS_BLOCK, loudness
 from noise.audio.sound import playable
-from noise.audio.wav import wav_bytes
+from noise.recordings.wav import wav_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -21,8 +21,8 @@ from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.gain import full_scale_without_clipping, true_peak
 from noise.audio.sound import FADE
-from noise.audio.wav import integers, largest_sample
 from noise.pages.engine.entry import RATE, stretch_start
+from noise.recordings.wav import integers, largest_sample
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

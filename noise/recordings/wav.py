@@ -1,39 +1,23 @@
-"""A WAV file for listening, byte by byte.
+"""A WAV file, byte by byte: the same samples give the same bytes.
 
-The sound library writes neither dither nor a description with the value of full scale, and adds
-the time of day to float files, so that the same sound would never give the same bytes twice.
+The sound library pads the header or adds the time of day to it, and writes neither dither nor a
+description with the value of full scale; scipy wants all samples at once.
 """
 
 from __future__ import annotations
 
 import math
 import struct
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = [
-    "BITS",
-    "integers",
-    "largest_sample",
-    "wav_bytes",
-    "wav_end",
-    "wav_header",
-    "wav_samples",
-    "with_full_scale",
-]
 
 BITS = (16, 24, 32)
 """Sizes of a sample: integer, integer, floating point."""
 
-_LARGEST_FILE = 1 << 32  # byte
-_BEFORE_SAMPLES = 1024  # byte, at most
-_IN_DS64 = (1 << 32) - 1  # stands for a size that the chunk ds64 tells
 _DESCRIPTION_CHUNK = 602  # byte (EBU Tech 3285); the first 256 are the description
 
 
@@ -95,78 +79,61 @@ def wav_bytes(
     >>> wav_bytes(np.zeros(8), 48000, 16)[:4], len(wav_bytes(np.zeros(8), 48000, 16))
     (b'RIFF', 60)
     """
-    header = wav_header(fractions.size, rate, bits, description=description)
-    return header + wav_samples(fractions, bits, dither) + wav_end(fractions.size, bits)
+    size = fractions.size
+    if bits == 32:
+        return wav_header(size, rate, bits, description=description) + (
+            fractions.astype("<f4").tobytes()
+        )
+    samples = integers(fractions, bits, dither)
+    padding = bytes(len(samples) % 2)
+    return wav_header(size, rate, bits, description=description) + samples + padding
 
 
-def wav_header(n_samples: int, rate: int, bits: int, *, description: str = "") -> bytes:
-    """Return what stands before the samples of a WAV file, an RF64 file from 4 GiB on.
+def wav_header(
+    n_samples: int, rate: int, bits: int, *, n_channels: int = 1, description: str = ""
+) -> bytes:
+    """Return what stands before the samples of a WAV file.
 
     Parameters
     ----------
     n_samples : int
+        Of each channel.
     rate : int
         Sampling rate [Hz].
     bits, description
         As in `wav_bytes`.
+    n_channels : int
+
+    Raises
+    ------
+    ParameterError
+        The samples are more than a WAV file can hold, or the header's numbers do not fit.
 
     Notes
     -----
-    EBU Tech 3285 (Broadcast Wave Format), EBU Tech 3306 (RF64).
+    EBU Tech 3285 (Broadcast Wave Format).
 
     Examples
     --------
-    >>> wav_header(8, 48000, 16)[:4], wav_header(1 << 31, 48000, 16)[:4]
-    (b'RIFF', b'RF64')
+    >>> len(wav_header(3600 * 30000, 30000, 32, n_channels=4)), len(wav_header(8, 48000, 16))
+    (58, 44)
     """
-    frame = bits // 8
-    size, code = n_samples * frame, 3 if bits == 32 else 1
-    large = size >= _LARGEST_FILE - _BEFORE_SAMPLES
-    chunks = [(b"fmt ", struct.pack("<HHIIHH", code, 1, rate, rate * frame, frame, bits))]
-    if bits == 32:
-        chunks += [(b"fact", struct.pack("<I", min(n_samples, _IN_DS64)))]
+    frame = n_channels * bits // 8
+    size, floating = n_samples * frame, bits == 32
+    kind = (3 if floating else 1, n_channels, rate, rate * frame, frame, bits)
+    if max(size + 1024, rate * frame) >= 1 << 32 or frame >= 1 << 16:
+        raise ParameterError(
+            f"{n_channels} channels of {n_samples} samples at {rate} Hz do not fit into a WAV "
+            f"file (4 GiB); write shorter recordings"
+        )
+    chunks = [(b"fmt ", struct.pack("<HHIIHH", *kind) + bytes(2 * floating))]
+    if floating:
+        chunks.append((b"fact", struct.pack("<I", n_samples)))
     if description:
-        chunks += [(b"bext", description.encode("ascii").ljust(_DESCRIPTION_CHUNK, b"\0"))]
+        chunks.append((b"bext", description.encode("ascii").ljust(_DESCRIPTION_CHUNK, b"\0")))
     head = b"".join(name + struct.pack("<I", len(content)) + content for name, content in chunks)
-    head += b"data" + struct.pack("<I", _IN_DS64 if large else size)
-    riff = 4 + len(head) + size + size % 2
-    if not large:
-        return b"RIFF" + struct.pack("<I", riff) + b"WAVE" + head
-    sizes = struct.pack("<IQQQI", 28, riff + 36, size, n_samples, 0)
-    return b"RF64" + struct.pack("<I", _IN_DS64) + b"WAVEds64" + sizes + head
-
-
-def wav_samples(
-    fractions: NDArray[np.float64], bits: int, dither: np.random.Generator | None = None
-) -> bytes:
-    """Return samples as they stand in the file; arguments as of `wav_bytes`.
-
-    Parameters
-    ----------
-    fractions : ndarray, shape (n,)
-        Over full scale [-].
-    bits, dither
-        As in `wav_bytes`.
-
-    Examples
-    --------
-    >>> len(wav_samples(np.zeros(8), 24))
-    24
-    """
-    if bits == 32:
-        return fractions.astype("<f4").tobytes()
-    return integers(fractions, bits, dither)
-
-
-def wav_end(n_samples: int, bits: int) -> bytes:
-    r"""Return what stands behind the samples: their bytes are an even number.
-
-    Examples
-    --------
-    >>> wav_end(3, 24), wav_end(4, 24)
-    (b'\x00', b'')
-    """
-    return b"\0" * (n_samples * bits // 8 % 2)
+    riff = struct.pack("<4sI4s", b"RIFF", 12 + len(head) + size + size % 2, b"WAVE")
+    return riff + head + struct.pack("<4sI", b"data", size)
 
 
 def integers(

@@ -1,0 +1,536 @@
+"""Recordings as audible WAV files of a set, whose gains belong together.
+
+It takes two passes: first every sound is measured, then the gain is chosen that suits them all,
+then each is written. What is kept between is a few numbers a sound, so that a set may be larger
+than memory. Recordings that are joined into one file, as A and B of a comparison, have one gain;
+each is faded by itself, and there is silence between them.
+
+What full scale is worth stands in the sidecar and in the file's own description, so that the WAV
+stays calibrated when the sidecar is lost. (Floating-point samples have no other place for it, since
+a sidecar's ``scale`` is for integers.)
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.condition import Condition
+from models.errors import ParameterError
+from models.recording import Recording
+from noise.audio.assessment import COLUMNS as LEVEL_COLUMNS, Assessment, assess
+from noise.audio.gain import (
+    CEILING,
+    LOUDNESS_BLOCK,
+    QUIETEST_FULL_SCALE,
+    common_full_scale,
+    full_scale_without_clipping,
+    least_full_scale,
+    loudness,
+    matched_full_scale,
+    matched_loudness,
+    true_peak,
+)
+from noise.audio.sound import FADE, audible, in_band, pressure_channel
+from noise.base.atomic import atomic
+from noise.recordings.blocks import RecordingBlocks
+from noise.recordings.sidecar import sidecar_text
+from noise.recordings.wav import BITS, largest_sample, wav_bytes, with_full_scale
+
+GAP = 0.5
+"""Silence between two recordings in one file [s]."""
+
+COLUMNS = (
+    *("part", "start_s", "end_s", "calibrated", "gain", "full_scale_Pa"),
+    *("true_peak_dbtp", "loudness_lufs"),
+    *LEVEL_COLUMNS,
+)
+"""Of the table of levels, one row a part of a file."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One recording in a file.
+
+    Parameters
+    ----------
+    start, end : float
+        [s]
+    about : Recording
+        What is known of it, without samples.
+    assessment : Assessment
+    """
+
+    start: float
+    end: float
+    about: Recording
+    assessment: Assessment
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Peak, loudness and levels of a sound, measured before it is written.
+
+    Parameters
+    ----------
+    parts : tuple of Part
+    true_peak : float
+        [unit of the sound]
+    loudness : float or None
+        With the true peak at full scale [LUFS]; None where it was not asked for.
+    untold : tuple of str
+        Why the sound quality of a part is not told, though it was asked for.
+    """
+
+    parts: tuple[Part, ...]
+    true_peak: float
+    loudness: float | None
+    untold: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Of its first recording."""
+        return self.parts[0].about.name
+
+    @property
+    def calibrated(self) -> bool:
+        """Whether its samples are in pascals."""
+        return self.parts[0].about.calibrated
+
+
+@dataclass(frozen=True)
+class FullScale:
+    """A gain: value of a sample at full scale, how it was chosen, loudness aimed at [LUFS]."""
+
+    value: float
+    gain: str
+    target: float | None = None
+
+
+def heard(
+    recording: Recording | RecordingBlocks, band: tuple[float, float] | None = None
+) -> Recording:
+    """Return the first pressure channel of a recording as one of its own, in a band [Hz] alone.
+
+    Raises
+    ------
+    RecordingError
+        There is no pressure channel, or nothing to be heard.
+    ParameterError
+        A frequency is not below half the sampling rate.
+
+    Examples
+    --------
+    >>> from models.recording import Channel
+    >>> tones = np.sin(2 * np.pi * np.array([[100.0], [1000.0]]) * np.arange(48000) / 48e3).sum(0)
+    >>> both = Recording(tones[None], 48e3, (Channel("pressure"),))
+    >>> heard(both, (500.0, 2000.0)).notes
+    ('filtered: 500 to 2000 Hz, zero-phase; 3.0 dB below the whole sound',)
+    """
+    blocks = RecordingBlocks.of(recording)
+    channel = pressure_channel(blocks)
+    samples = blocks.track(blocks.channels.index(channel)).read(0, blocks.n_samples)
+    notes = getattr(recording, "notes", ())
+    if band is not None:
+        try:
+            kept = in_band(samples[0], blocks.rate, band)
+        except ParameterError as error:
+            raise ParameterError(f"{blocks.name}: {error}") from None
+        before, after = float(samples.std()), float(kept.std())
+        change = "silent"
+        if before > 0.0 and after > 0.0:
+            change = f"{20.0 * math.log10(before / after):.1f} dB below the whole sound"
+        low, high = band
+        notes = (*notes, f"filtered: {low:g} to {high:g} Hz, zero-phase; {change}")
+        samples = kept[np.newaxis]
+    return Recording(
+        samples, blocks.rate, (channel,), blocks.condition, blocks.calibrated, blocks.name, notes
+    )
+
+
+def joined(
+    recordings: Sequence[Recording], rate: int = 48000, *, gap: float = GAP, fade: float = FADE
+) -> tuple[NDArray[np.float64], list[tuple[float, float]]]:
+    """Put the sounds of recordings behind one another, at the same gain.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    rate : int
+        Sampling rate of the result [Hz].
+    gap : float
+        Silence between two of them [s].
+    fade : float
+        Length of the fades of each [s].
+
+    Returns
+    -------
+    samples : ndarray, shape (n_samples,)
+        As `noise.audio.sound.audible` gives them.
+    times : list of tuple of float
+        Where each begins and ends [s].
+
+    Raises
+    ------
+    ParameterError
+        Some are calibrated and others are not.
+
+    Examples
+    --------
+    >>> from models.recording import Channel
+    >>> run = Recording(np.ones((1, 48)), 48e3, (Channel("pressure"),), name="A")
+    >>> samples, times = joined([run, run], gap=0.001)
+    >>> samples.size, times
+    (144, [(0.0, 0.001), (0.002, 0.003)])
+    """
+    known = {one.calibrated: one.name for one in recordings}
+    if len(known) > 1:
+        raise ParameterError(
+            f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "
+            "loud they are to each other; give its calibration"
+        )
+    pieces: list[NDArray[np.float64]] = []
+    times: list[tuple[float, float]] = []
+    start = 0
+    for recording in recordings:
+        sound = audible(recording, rate, fade=fade)
+        times.append((start / rate, (start + sound.size) / rate))
+        pieces += [sound, np.zeros(round(gap * rate))]
+        start += sound.size + pieces[-1].size
+    return np.concatenate(pieces[:-1]), times
+
+
+def measure(
+    recordings: Sequence[Recording],
+    *,
+    rate: int = 48000,
+    gap: float = GAP,
+    fade: float = FADE,
+    quality: bool = False,
+    match: bool = False,
+) -> Measured:
+    """Measure the sound that recordings make back to back.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    rate, gap, fade
+        As for `joined`.
+    quality : bool
+        Whether its sound quality is told as well, where that can be.
+    match : bool
+        Whether it has to have a loudness.
+
+    Raises
+    ------
+    ParameterError
+        A recording has no sound, or with `match` no loudness.
+
+    Examples
+    --------
+    >>> from models.recording import Channel
+    >>> tone = np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)[np.newaxis]
+    >>> of = measure([Recording(tone, 48e3, (Channel("pressure"),), name="tone")])
+    >>> of.calibrated, round(of.true_peak, 3)
+    (True, 1.0)
+    """
+    samples, times = joined(recordings, rate, gap=gap, fade=fade)
+    peak = true_peak(samples, rate)
+    parts, untold = [], []
+    for recording, (start, end) in zip(recordings, times, strict=True):
+        try:
+            found = assess(recording, quality=quality)
+        except ParameterError as error:
+            if not quality:
+                raise
+            found = assess(recording)
+            untold.append(f"{recording.name}: {error}")
+        about = replace(recording, samples=np.empty((1, 0)))
+        parts.append(Part(start, end, about, found))
+    reached = None
+    if match:
+        try:
+            if peak == 0.0:
+                raise ParameterError("a silent sound has no loudness to be matched")
+            reached = loudness(samples / peak, rate)
+        except ParameterError as error:
+            raise ParameterError(f"{recordings[0].name}: {error}") from None
+    return Measured(tuple(parts), peak, reached, tuple(untold))
+
+
+def full_scales(
+    sounds: Mapping[str, Measured], *, pascal: float | None = None, matched: bool = False
+) -> dict[str, FullScale]:
+    """Choose the gain of the sounds of a set.
+
+    Parameters
+    ----------
+    sounds : mapping of str to Measured
+    pascal : float, optional
+        Sound pressure at full scale [Pa] for all of them.
+    matched : bool
+        Whether all get the same loudness. Without either they have one full scale in common.
+
+    Raises
+    ------
+    ParameterError
+        A sound would clip at `pascal` or is not calibrated, or a common gain would mean nothing.
+
+    Examples
+    --------
+    >>> full_scales({}, matched=True)
+    {}
+    """
+    if not sounds:
+        return {}
+    if matched:
+        loudest = {name: of.loudness for name, of in sounds.items() if of.loudness is not None}
+        target = matched_loudness(list(loudest.values()))
+        return {
+            name: FullScale(
+                sounds[name].true_peak * 10.0 ** ((value - target) / 20.0), "matched", target
+            )
+            for name, value in loudest.items()
+        }
+    known = {of.calibrated: of.name for of in sounds.values()}
+    if pascal is not None:
+        if False in known:
+            raise ParameterError(
+                f"--pascal-per-full-scale needs a calibrated input, and {known[False]} is not; "
+                "--full-scale or --calibrator gives its calibration"
+            )
+        loud = max(sounds.values(), key=lambda of: of.true_peak)
+        if loud.true_peak > CEILING * pascal:
+            raise ParameterError(
+                f"--pascal-per-full-scale {pascal:g} would clip {loud.name}; the smallest that "
+                f"does not is {full_scale_without_clipping(loud.true_peak):g}"
+            )
+        return dict.fromkeys(sounds, FullScale(pascal, "calibrated"))
+    if len(known) > 1:
+        raise ParameterError(
+            f"{known[True]} is calibrated and {known[False]} is not, so one gain cannot keep how "
+            "loud they are to each other; --full-scale gives a calibration, --match-loudness "
+            "needs none"
+        )
+    value = common_full_scale([np.array([of.true_peak]) for of in sounds.values()])
+    if True in known:  # so that silence is not made loud
+        value = max(value, QUIETEST_FULL_SCALE)
+    return dict.fromkeys(sounds, FullScale(value, "common"))
+
+
+def render(
+    path: Path,
+    recordings: Sequence[Recording],
+    of: Measured,
+    full_scale: FullScale,
+    *,
+    rate: int = 48000,
+    gap: float = GAP,
+    fade: float = FADE,
+    bits: int = 24,
+    seed: int | Sequence[int] = 0,
+    note: str | None = None,
+) -> tuple[list[dict[str, object]], str]:
+    """Write one file of a set.
+
+    Parameters
+    ----------
+    path : Path
+    recordings : sequence of Recording
+        Of one channel each, as `heard` returns them.
+    of : Measured
+        Of these recordings.
+    full_scale : FullScale
+    rate, gap, fade
+        As they were measured.
+    bits : int
+        One of `noise.recordings.wav.BITS`; 16 is dithered.
+    seed : int or sequence of int
+        Of the dither.
+    note : str, optional
+        For the sidecar: what the listener should know of the gain.
+
+    Returns
+    -------
+    rows : list of dict
+        By `COLUMNS`, one a part.
+    summary : str
+        A line about the file.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.recording import Channel
+    >>> tone = np.sin(2 * np.pi * 1000 * np.arange(48000) / 48e3)[np.newaxis]
+    >>> runs = [Recording(tone, 48e3, (Channel("pressure"),), name="tone")]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     target = Path(folder) / "tone.wav"
+    ...     render(target, runs, measure(runs), FullScale(2.0, "calibrated"))[1]
+    'true peak -6.0 dBTP, loudness -9.0 LUFS'
+    """
+    samples, _ = joined(recordings, rate, gap=gap, fade=fade)
+    value = full_scale.value
+    if full_scale.target is not None:
+        # The gate of the loudness moves with the gain.
+        value = matched_full_scale(samples, rate, full_scale.target)
+        value = max(value, of.true_peak / CEILING)
+    long_enough = samples.size >= LOUDNESS_BLOCK * rate
+    reached = loudness(samples / value, rate) if long_enough else -math.inf
+    peak = of.true_peak / value
+    file: dict[str, object] = {
+        "gain": full_scale.gain,
+        "full_scale_Pa": value if of.calibrated else None,
+        "true_peak_dbtp": round(20.0 * math.log10(peak), 2) if peak > 0.0 else None,
+        "loudness_lufs": round(reached, 2) if math.isfinite(reached) else None,
+    }
+    made: dict[str, object] = {**file, "dither": "triangular" if bits == 16 else None}
+    if note:
+        made["note"] = note
+    write_audio(
+        path,
+        samples,
+        rate,
+        full_scale=value,
+        bits=bits,
+        recording=_common([part.about for part in of.parts]),
+        dither=np.random.default_rng(seed) if bits == 16 else None,
+        about={"render": made, "parts": [_entry(part, value) for part in of.parts]},
+    )
+    rows = [
+        {"part": part.about.name, "start_s": part.start, "end_s": part.end,
+         "calibrated": of.calibrated, **file, **part.assessment.row(value)}
+        for part in of.parts
+    ]  # fmt: skip
+    summary = "silent" if peak == 0.0 else f"true peak {20.0 * math.log10(peak):.1f} dBTP"
+    if math.isfinite(reached):
+        summary += f", loudness {reached:.1f} LUFS"
+    return rows, summary
+
+
+def _entry(part: Part, full_scale: float) -> dict[str, object]:
+    """Return a part as the sidecar has it."""
+    about = part.about
+    return {
+        "name": about.name,
+        "start_s": part.start,
+        "end_s": part.end,
+        "conditions": json.loads(sidecar_text(about))["conditions"],
+        **({"notes": list(about.notes)} if about.notes else {}),
+        **part.assessment.entry(full_scale),
+    }
+
+
+def _common(recordings: Sequence[Recording]) -> Recording:
+    """Return what holds for all recordings, without samples."""
+    conditions = [recording.condition for recording in recordings]
+    values = {one.name: {getattr(c, one.name) for c in conditions} for one in fields(Condition)}
+    shared: dict[str, Any] = {name: of.pop() for name, of in values.items() if len(of) == 1}
+    return replace(recordings[0], condition=Condition(**shared), notes=())
+
+
+def write_audio(
+    path: str | Path,
+    samples: NDArray[np.float64],
+    rate: int,
+    *,
+    full_scale: float,
+    bits: int = 24,
+    recording: Recording,
+    dither: np.random.Generator | None = None,
+    about: Mapping[str, object] | None = None,
+) -> Path:
+    """Write sound as a WAV file for listening, with a sidecar; both whole or not at all.
+
+    Parameters
+    ----------
+    path : path-like
+        ``squeal`` and ``squeal.wav`` are the same; parent folders are made.
+    samples : ndarray, shape (n_samples,)
+        As `noise.audio.sound.audible` gives them.
+    rate : int
+        Sampling rate [Hz].
+    full_scale : float
+        Value of a full-scale sample, in the unit of `samples`.
+    bits : int
+        One of `noise.recordings.wav.BITS`; 32 is floating point, full scale being 1.
+    recording : Recording
+        Where the sound comes from: its condition, microphone and calibration go into the sidecar.
+    dither : numpy.random.Generator, optional
+        Of the dither of integer samples; none by default.
+    about : mapping of str to object, optional
+        What else the sidecar says, as JSON has it.
+
+    Returns
+    -------
+    Path
+        The WAV file. `noise.recordings.read_recording` reads it back calibrated, if the recording
+        was.
+
+    Raises
+    ------
+    ParameterError
+        A sample would clip, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from models.recording import Channel
+    >>> from noise.recordings import read_recording
+    >>> run = Recording(np.full((1, 480), 0.25), 48e3, (Channel("pressure"),))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_audio(Path(folder) / "tone", run["pressure"], 48000, full_scale=2.0,
+    ...                        recording=run)
+    ...     float(read_recording(path)["pressure"].max())
+    0.25
+    """
+    target = audio_path(Path(path))
+    if bits not in BITS:
+        raise ParameterError(f"{target}: samples of {bits} bit; there are 16, 24 and 32 (float)")
+    if not 0.0 < full_scale < math.inf:
+        raise ParameterError(f"{target}: full scale is {full_scale!r}, expected a positive number")
+    if not np.abs(samples).max(initial=0.0) <= full_scale * largest_sample(bits):
+        raise ParameterError(
+            f"{target}: full scale {full_scale:g} would clip; the smallest that does not is "
+            f"{least_full_scale(samples, bits):g}"
+        )
+    channel = replace(pressure_channel(recording), name="pressure")
+    content = json.loads(
+        sidecar_text(replace(recording, samples=np.empty((1, 0)), channels=(channel,)))
+    )
+    if recording.calibrated and bits < 32:
+        content["channels"][0]["scale"] = full_scale
+    elif recording.calibrated:
+        # Floating-point samples whose channels are named would be read as pascals; these are
+        # fractions of full scale, and the file's description says what that is.
+        del content["calibrated"]
+        content["audio"] = content.pop("channels")[0] | {"scale": full_scale}
+    description = with_full_scale(full_scale) if recording.calibrated else ""
+    data = wav_bytes(samples / full_scale, rate, bits, description=description, dither=dither)
+    text = json.dumps(content | dict(about or {}), indent=1) + "\n"
+    with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
+        wav.write_bytes(data)
+        sidecar.write_text(text, encoding="utf-8")
+    return target
+
+
+def audio_path(path: Path) -> Path:
+    """Return the path with the ending ``.wav``, added where it is missing.
+
+    Examples
+    --------
+    >>> audio_path(Path("run0.5")).name, audio_path(Path("run.WAV")).name
+    ('run0.5.wav', 'run.WAV')
+    """
+    return path if path.suffix.lower() == ".wav" else path.with_name(path.name + ".wav")
